@@ -42,7 +42,7 @@ pub fn checkpoint(bytes: &[u8]) {
 }
 
 static EULER: Spec =
-    Spec { kind: "symplectic_euler", summary: "", documentation: "", dimensions: &[2, 3], fields: &[] };
+    Spec { kind: "symplectic_euler", summary: "", documentation: "", dimensions: &[2, 3], fields: &[], roles: &[] };
 
 include!("shape_kinds.rs");
 

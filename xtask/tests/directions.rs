@@ -83,3 +83,49 @@ fn physics_crates_do_no_input_or_output() {
         }
     }
 }
+
+/// Layers above models and integrators ask for a role (`Spec::plays`) and know no kind by its word. Benchmarks choose theirs by name.
+#[test]
+fn layers_above_compare_no_model_and_no_integrator_by_name() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the workspace");
+    let kinds: Vec<String> = sources(&root.join("crates/opruga-models/src"))
+        .into_iter()
+        .chain(sources(&root.join("crates/opruga-integrators/src")))
+        .flat_map(|(_, text)| {
+            let words = text.split("kind: \"").skip(1).filter_map(|rest| rest.split('"').next().map(String::from));
+            words.collect::<Vec<_>>()
+        })
+        .collect();
+    assert!(kinds.iter().any(|kind| kind == "mass_spring") && kinds.iter().any(|kind| kind == "newmark"), "{kinds:?}");
+    for name in ["opruga-world", "opruga-io", "opruga", "opruga-studio", "opruga-cli"] {
+        for (path, text) in sources(&root.join("crates").join(name).join("src")) {
+            let path = path.to_string_lossy().into_owned();
+            if ["/tests", "/bench/", "tests.rs", "testing"].iter().any(|part| path.contains(part)) {
+                continue;
+            }
+            let product = text.split("#[cfg(test)]").next().unwrap_or("");
+            for kind in &kinds {
+                for form in ["kind() == ", ".model(", ".integrator(", "spec.kind == "] {
+                    let compared = format!("{form}\"{kind}\"");
+                    // A command has the word of a model: `drag`.
+                    assert!(!product.contains(&compared) || kind == "drag", "{path} says {compared}");
+                }
+            }
+        }
+    }
+}
+
+/// The sources of a folder and of the folders in it.
+fn sources(folder: &Path) -> Vec<(std::path::PathBuf, String)> {
+    let mut out = Vec::new();
+    for entry in std::fs::read_dir(folder).expect("a folder of sources") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            out.extend(sources(&path));
+        } else if path.extension().is_some_and(|ending| ending == "rs") {
+            let text = std::fs::read_to_string(&path).expect("a source file");
+            out.push((path, text));
+        }
+    }
+    out
+}

@@ -1,6 +1,6 @@
 //! How long a run will take, told once where that is long, and what would make it shorter.
 
-use opruga::core::spec::{Value, Values};
+use opruga::core::spec::{Role, Value, Values};
 use opruga::math::words::{counted, rounded};
 use opruga::{Registry, World};
 
@@ -65,8 +65,8 @@ fn shorter<const D: usize>(world: &World<D>) -> Vec<String> {
         if has_real_time(&library, rule) {
             out.push("--set integrator.accuracy=real_time".to_string());
         }
-        if let Some(substeps) = explicit_substeps(world, &library) {
-            out.push(format!("an explicit rule, --set integrator=symplectic_euler --set time.substeps={substeps}"));
+        if let Some((kind, substeps)) = explicit_substeps(world, &library) {
+            out.push(format!("an explicit rule, --set integrator={kind} --set time.substeps={substeps}"));
         }
         if time.substeps > 1 {
             out.push(format!("fewer substeps than {}: implicit rules have no largest stable step", time.substeps));
@@ -95,16 +95,16 @@ fn has_real_time<const D: usize>(library: &Registry<D>, rule: &Values) -> bool {
     rule.text("accuracy") == Some("exact") && set.is_ok() && kind.build(&faster).is_ok()
 }
 
-/// Substeps at which symplectic Euler would be stable, if these are not many.
-fn explicit_substeps<const D: usize>(world: &World<D>, library: &Registry<D>) -> Option<f64> {
-    let kind = library.integrator("symplectic_euler")?;
+/// The explicit rule that is offered, and the substeps at which it would be stable, if these are not many.
+fn explicit_substeps<const D: usize>(world: &World<D>, library: &Registry<D>) -> Option<(&'static str, f64)> {
+    let kind = library.integrator_that(Role::OfferedExplicit)?;
     let rule = kind.build(&Values::defaults(kind.spec(), D)).ok()?;
     let mut limit = f64::INFINITY;
     for (_, stability) in world.stability() {
         limit = limit.min(stability.spectrum.largest_stable_step(&*rule)?);
     }
     let substeps = (1.2 * world.blueprint().time.frame / limit).ceil().max(1.0);
-    (substeps <= MANY_SUBSTEPS).then_some(substeps)
+    (substeps <= MANY_SUBSTEPS).then_some((kind.spec().kind, substeps))
 }
 
 #[cfg(test)]

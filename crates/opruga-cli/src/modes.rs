@@ -6,7 +6,7 @@ use crate::run::default_folder;
 use crate::source::{Opened, Source, open};
 use crate::uses;
 use opruga::blueprint::{AnyBlueprint, Blueprint};
-use opruga::core::spec::Values;
+use opruga::core::spec::{Role, Values};
 use opruga::draw;
 use opruga::io::output_folder::{Existing, OutputFolder};
 use opruga::io::scene;
@@ -52,7 +52,8 @@ pub(crate) fn modes(call: &Modes) -> Result<u8, Failure> {
 /// one that it had: the tolerance, the number of iterations, the linear solver.
 fn look_for_equilibrium<const D: usize>(call: &Modes, blueprint: &mut Blueprint<D>) {
     let registry = Registry::<D>::default();
-    let Some(spec) = registry.integrator("equilibrium").map(|kind| kind.spec()).filter(|_| call.equilibrium) else {
+    let Some(spec) = registry.integrator_that(Role::Statics).map(|kind| kind.spec()).filter(|_| call.equilibrium)
+    else {
         return;
     };
     let own = blueprint.bodies.iter_mut().filter_map(|body| body.integrator.as_mut());
@@ -71,9 +72,11 @@ fn look_for_equilibrium<const D: usize>(call: &Modes, blueprint: &mut Blueprint<
 fn leave_statics<const D: usize>(call: &Modes, blueprint: &mut Blueprint<D>) {
     let registry = Registry::<D>::default();
     let runs = call.equilibrium || call.after > 0.0;
-    let Some(spec) = registry.integrator("backward_euler").map(|kind| kind.spec()).filter(|_| !runs) else { return };
+    let Some(spec) = registry.integrator_that(Role::OfferedImplicit).map(|kind| kind.spec()).filter(|_| !runs) else {
+        return;
+    };
     let own = blueprint.bodies.iter_mut().filter_map(|body| body.integrator.as_mut());
-    for values in own.chain([&mut blueprint.integrator]).filter(|values| values.kind() == "equilibrium") {
+    for values in own.chain([&mut blueprint.integrator]).filter(|values| values.spec().plays(Role::Statics)) {
         *values = Values::defaults(spec, D);
     }
 }

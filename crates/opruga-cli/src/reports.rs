@@ -52,6 +52,8 @@ struct Found {
     bodies: usize,
     nodes: usize,
     integrator: String,
+    /// Whether every body is in statics, which knows no time.
+    is_static: bool,
     h: f64,
     substeps: u32,
     cells: Vec<CellSummary>,
@@ -66,6 +68,7 @@ impl Found {
             bodies: world.bodies().count(),
             nodes: world.bodies().map(|b| world.node_count(b)).sum(),
             integrator: world.integrators().join(", "),
+            is_static: world.is_static(),
             h: world.h(),
             substeps: world.blueprint().time.substeps,
             cells: cells(world),
@@ -101,9 +104,7 @@ impl core::fmt::Display for Found {
             (counted(self.bodies as u64, "body", "bodies"), counted(self.nodes as u64, "node", "nodes"));
         writeln!(f, "{bodies}, {nodes}, {} dimensions", self.dimension)?;
         let substeps = counted(self.substeps.into(), "substep", "substeps");
-        // Statics knows of no time.
-        let statics = self.integrator == "equilibrium";
-        match statics {
+        match self.is_static {
             true => writeln!(f, "{}: a balance", self.integrator)?,
             false => writeln!(f, "{}: h = {} s, {substeps} a frame", self.integrator, number(self.h))?,
         }
@@ -113,7 +114,7 @@ impl core::fmt::Display for Found {
             let cells = counted(c.cells as u64, "cell", "cells");
             writeln!(f, "  `{}`: {cells} with angles of {low}° to {high}°, edges of {short} m to {long} m", c.body)?;
         }
-        for (body, stability) in self.stability.iter().filter(|_| !statics) {
+        for (body, stability) in self.stability.iter().filter(|_| !self.is_static) {
             let limit = match stability.largest_stable_step {
                 None => "there is no stable step".into(),
                 Some(limit) if limit.is_infinite() => "every step is stable".into(),

@@ -25,8 +25,7 @@ macro_rules! collider {
                 Field::new("motion", Allowed::Path, "s, m", Default::Absent, "Displacement over time, added to the placement; at rest before and after."),
                 Field::new("spin", $turn, "rad/s", Default::Absent, "Angular velocity about the pivot, from t = 0 on; in 3D a vector along the axis."),
                 Field::new("pivot", Allowed::Vector, "m", Default::Absent, "Where the axis of the spin passes; without it the centre of the shape.").applies(&[Condition::Given("spin")]),
-            ],
-        };
+            ], roles: &[], };
     };
 }
 
@@ -54,16 +53,20 @@ const MIN: Field = Field::new(
     "m",
     Default::Absent,
     "Corner with the least coordinates; with `max`, instead of `center` and `size`.",
-);
-const MAX: Field = Field::new("max", Allowed::Vector, "m", Default::Absent, "Corner with the greatest coordinates.");
+)
+.with(&["max"]);
+const MAX: Field =
+    Field::new("max", Allowed::Vector, "m", Default::Absent, "Corner with the greatest coordinates.").with(&["min"]);
 const CENTER: Field = Field::new(
     "center",
     Allowed::Vector,
     "m",
     Default::Absent,
     "Centre of the box; with `size`, instead of `min` and `max`.",
-);
-const SIZE: Field = Field::new("size", Allowed::Vector, "m", Default::Absent, "Lengths of the sides.");
+)
+.with(&["size"]);
+const SIZE: Field =
+    Field::new("size", Allowed::Vector, "m", Default::Absent, "Lengths of the sides.").with(&["center"]);
 const INSIDE_BOX: Field =
     Field::new("inside", Allowed::Boolean, "", NO, "Whether bodies are kept inside instead of outside.");
 

@@ -24,6 +24,29 @@ pub struct Spec {
     pub dimensions: &'static [usize],
     /// The parameters, in the order of the documentation.
     pub fields: &'static [Field],
+    /// What the layers above ask about it; most kinds have no role.
+    pub roles: &'static [Role],
+}
+
+/// What a kind does that the layers above ask about, so that none of them has to know a kind by its word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// A model that owns cells of the mesh and knows their stress and volume ratio J. Two models that own one cell are refused.
+    OwnsCells,
+    /// A model of gas in closed chambers.
+    Gas,
+    /// A model whose forces act along the edges of the mesh; pictures draw them as lines.
+    Edges,
+    /// The model that a world adds to every body where it has a drag (`world.drag`). Its first parameter is the rate [1/s].
+    WorldDrag,
+    /// A model whose readings have the units of the published program: pixels instead of metres.
+    Published,
+    /// An integrator whose steps end where forces balance.
+    Statics,
+    /// The integrator that a program offers where a person has named none, or one without a stable step. It is explicit.
+    OfferedExplicit,
+    /// The integrator that takes the place of [`Role::Statics`] where a body has to move. It is stable at any step.
+    OfferedImplicit,
 }
 
 /// The code of the refusal of none or several of the fields of a choice.
@@ -35,6 +58,10 @@ pub fn one_of(set: &[&str]) -> String {
 }
 
 impl Spec {
+    /// Whether it has a role.
+    pub fn plays(&self, role: Role) -> bool {
+        self.roles.contains(&role)
+    }
     /// The sets of fields of which exactly one is given, each once.
     pub fn choices(&self) -> impl Iterator<Item = &'static [&'static str]> {
         self.fields.iter().filter_map(|field| match field.default {
@@ -59,6 +86,10 @@ pub struct Field {
     pub documentation: &'static str,
     /// Where it has a say: where all of these hold.
     pub applies: &'static [Condition],
+    /// The value with which an editor begins where the scene is silent and there is no default.
+    pub start: Option<f64>,
+    /// Other fields that are given with it or not at all.
+    pub companions: &'static [&'static str],
 }
 
 impl Field {
@@ -70,11 +101,19 @@ impl Field {
         default: Default,
         documentation: &'static str,
     ) -> Field {
-        Field { name, range, unit, default, documentation, applies: &[] }
+        Field { name, range, unit, default, documentation, applies: &[], start: None, companions: &[] }
     }
     /// The same parameter where it has a say under conditions only.
     pub const fn applies(self, applies: &'static [Condition]) -> Field {
         Field { applies, ..self }
+    }
+    /// The same parameter with the value at which an editor begins.
+    pub const fn starts_at(self, start: f64) -> Field {
+        Field { start: Some(start), ..self }
+    }
+    /// The same parameter with others that are given with it or not at all.
+    pub const fn with(self, companions: &'static [&'static str]) -> Field {
+        Field { companions, ..self }
     }
 }
 
@@ -182,15 +221,21 @@ pub enum Value {
 }
 
 /// The values of the fields of one [`Spec`], checked and complete: defaults are filled in.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Values {
-    kind: &'static str,
+    spec: &'static Spec,
     entries: Vec<(&'static str, Value)>,
+}
+
+impl PartialEq for Values {
+    fn eq(&self, other: &Values) -> bool {
+        self.kind() == other.kind() && self.entries == other.entries
+    }
 }
 
 impl Values {
     /// The defaults of a specification; required fields stay empty until [`Values::set`] fills them.
-    pub fn defaults(spec: &Spec, dimension: usize) -> Values {
+    pub fn defaults(spec: &'static Spec, dimension: usize) -> Values {
         let mut entries = Vec::new();
         for field in spec.fields {
             let value = match field.default {
@@ -203,11 +248,15 @@ impl Values {
             };
             entries.push((field.name, value));
         }
-        Values { kind: spec.kind, entries }
+        Values { spec, entries }
     }
     /// The word that names the kind.
     pub fn kind(&self) -> &'static str {
-        self.kind
+        self.spec.kind
+    }
+    /// What describes it.
+    pub fn spec(&self) -> &'static Spec {
+        self.spec
     }
     /// Sets a field after checking it against its specification.
     ///

@@ -115,9 +115,8 @@ impl Lab {
 
 /// Multiplies μ of solids, with λ as it is, and the stiffness of springs and hinges.
 fn stiffen<const D: usize>(blueprint: &mut Blueprint<D>, factor: f64) -> Result<(), Trouble> {
-    let specs = opruga::catalogue().models;
     for values in blueprint.bodies.iter_mut().flat_map(|body| &mut body.models) {
-        let spec = specs.iter().find(|spec| spec.kind == values.kind()).ok_or("an unknown model")?;
+        let spec = values.spec();
         let mut changed: Vec<(&str, f64)> = Vec::new();
         match values.kind() {
             "fem" => {

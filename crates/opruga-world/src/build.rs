@@ -12,7 +12,7 @@ use opruga_collide::Colliders;
 use opruga_core::error::BuildError;
 use opruga_core::integrator::Integrator;
 use opruga_core::potential::Ingredients;
-use opruga_core::spec::{Value, Values};
+use opruga_core::spec::{Role, Value, Values};
 use opruga_core::state::{Columns, Layout, Parameter};
 use opruga_core::system::{Pin, Stabilisers, System};
 use opruga_math::{Simd, WIDTH};
@@ -292,12 +292,13 @@ impl<const D: usize> Builder<'_, D> {
         Ok(Island::new(system, integrator, bodies.to_vec(), range))
     }
 
-    /// Refuses cells that two models of finite elements share, and cells that none has though models name groups.
+    /// Refuses cells that two models own, and cells that no model owns though models name groups.
     fn check_cells(&self, body: &BodyBlueprint<D>) -> Result<(), BuildError> {
-        let refuse = |code, message| Err(BuildError::new("fem", code, message));
         let mut owner = vec![None; body.mesh.cells.len()];
         let mut groups = Vec::new();
-        for (number, model) in body.models.iter().enumerate().filter(|(_, model)| model.kind() == "fem") {
+        let mut kind = "";
+        for (number, model) in body.models.iter().enumerate().filter(|(_, model)| model.spec().plays(Role::OwnsCells)) {
+            kind = model.kind();
             let group = model.text("cells");
             let own: Vec<u32> = match group {
                 None => (0..owner.len() as u32).collect(),
@@ -311,9 +312,9 @@ impl<const D: usize> Builder<'_, D> {
                 {
                     let message = format!(
                         "cell {cell} belongs to the models {first} and {number} of the body, whose stiffness would add up; allowed: \
-                         every cell in one `fem` model. Name groups without common cells by `cells`"
+                         every cell in one `{kind}` model. Name groups without common cells by `cells`"
                     );
-                    return refuse("model.cells_twice", message);
+                    return Err(BuildError::new(kind, "model.cells_twice", message));
                 }
             }
         }
@@ -326,7 +327,7 @@ impl<const D: usize> Builder<'_, D> {
                     owner.len(),
                     groups.join(", ")
                 );
-                refuse("model.uncovered_cells", message)
+                Err(BuildError::new(kind, "model.uncovered_cells", message))
             }
             _ => Ok(()),
         }
@@ -334,7 +335,10 @@ impl<const D: usize> Builder<'_, D> {
 
     /// Refuses what cannot go with a mass matrix that couples nodes.
     fn check_mass_matrix(&self, body: &BodyBlueprint<D>, integrator: &dyn Integrator<D>) -> Result<(), BuildError> {
-        let refuse = |code, message: String| Err(BuildError::new("fem", code, message));
+        let coupling =
+            body.models.iter().find(|model| model.text("mass") == Some("consistent")).or(body.models.first());
+        let kind = coupling.map_or("", Values::kind);
+        let refuse = |code, message: String| Err(BuildError::new(kind, code, message));
         if !integrator.takes_mass_matrix() {
             let message = format!(
                 "`mass` is \"consistent\", which couples the accelerations of the nodes of a cell, and `{}` moves every node by \
@@ -367,12 +371,12 @@ impl<const D: usize> Builder<'_, D> {
         mass: &Parameter,
     ) -> Result<(), WorldError> {
         let refuse = |source| WorldError::Build { place: "world".into(), source };
-        let Some(model) = self.registry.model("drag") else { return Ok(()) };
+        let Some(model) = self.registry.model_that(Role::WorldDrag) else { return Ok(()) };
         let mut values = Values::defaults(model.spec(), D);
         let rate = Value::Number(self.blueprint.surroundings.drag);
         values
-            .set(model.spec(), "rate", rate, D)
-            .map_err(|e| refuse(BuildError::new("drag", "scene.range", e.to_string())))?;
+            .set(model.spec(), model.spec().fields[0].name, rate, D)
+            .map_err(|e| refuse(BuildError::new(model.spec().kind, "scene.range", e.to_string())))?;
         let all = vec![&values; layout.stride()];
         let ingredients = Ingredients {
             mesh: &*body.mesh,

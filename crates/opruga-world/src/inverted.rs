@@ -6,6 +6,7 @@
 //! are right side out, and no force tells.
 
 use crate::world::{Warning, World};
+use opruga_core::spec::Role;
 use opruga_math::words::{counted, number};
 use opruga_mesh::{jacobian_at, least_jacobian};
 
@@ -22,7 +23,8 @@ enum Found {
 
 impl<const D: usize> World<D> {
     pub(crate) fn inverted_cells_here(&self) -> Option<Warning> {
-        let solid = |body: &usize| self.blueprint.bodies[*body].models.iter().any(|model| model.kind() == "fem");
+        let solid =
+            |body: &usize| self.blueprint.bodies[*body].models.iter().any(|model| model.spec().plays(Role::OwnsCells));
         let mut first: Option<(usize, u32, Found)> = None;
         let (mut count, mut near) = (0, 0);
         for body in self.bodies().filter(solid) {
@@ -87,7 +89,7 @@ impl<const D: usize> World<D> {
 
     /// What else than more substeps turns cells of a body right side out: no law that it already has.
     fn what_rights_cells(&self, body: usize) -> &'static str {
-        let solids = self.blueprint.bodies[body].models.iter().filter(|model| model.kind() == "fem");
+        let solids = self.blueprint.bodies[body].models.iter().filter(|model| model.spec().plays(Role::OwnsCells));
         let laws: Vec<&str> = solids.filter_map(|model| model.text("material")).collect();
         match laws.as_slice() {
             laws if laws.iter().all(|law| *law == "fixed_corotated") => "smaller cells, or less that crushes them",

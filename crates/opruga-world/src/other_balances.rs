@@ -15,6 +15,7 @@
 
 use crate::pin_ways::ways;
 use crate::world::{Warning, World};
+use opruga_core::spec::Role;
 use opruga_core::state::{Columns, Layout, View};
 use opruga_core::system::{Stage, System};
 use opruga_core::tile::Tile;
@@ -120,7 +121,8 @@ impl<const D: usize> World<D> {
 
     /// Whether a body is of finite elements all of which turn: small strain has one shape that holds nothing, and no other balance.
     fn is_judged(&self, body: usize) -> bool {
-        let mut solids = self.blueprint.bodies[body].models.iter().filter(|model| model.kind() == "fem").peekable();
+        let mut solids =
+            self.blueprint.bodies[body].models.iter().filter(|model| model.spec().plays(Role::OwnsCells)).peekable();
         solids.peek().is_some() && solids.all(|model| model.text("material") != Some("linear"))
     }
 

@@ -20,6 +20,10 @@ impl<const D: usize> World<D> {
     pub fn energy(&self) -> Energy {
         self.energy
     }
+    /// Whether every body is in statics, which knows no time.
+    pub fn is_static(&self) -> bool {
+        !self.islands.is_empty() && self.islands.iter().all(|island| island.integrator.is_static())
+    }
     /// The kinds of integrators in use: that of the scene, then those that bodies have of their own.
     pub fn integrators(&self) -> Vec<&'static str> {
         let mut out = Vec::new();

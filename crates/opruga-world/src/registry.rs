@@ -2,7 +2,7 @@
 
 use opruga_core::integrator::IntegratorKind;
 use opruga_core::potential::Model;
-use opruga_core::spec::{Spec, Values};
+use opruga_core::spec::{Role, Spec, Values};
 
 /// Models and integrators by name. A user's crate adds its own.
 pub struct Registry<const D: usize> {
@@ -38,6 +38,14 @@ impl<const D: usize> Registry<D> {
     /// The model of a name.
     pub fn model(&self, kind: &str) -> Option<&dyn Model<D>> {
         self.models.iter().find(|m| m.spec().kind == kind).map(|m| &**m)
+    }
+    /// The first model with a role.
+    pub fn model_that(&self, role: Role) -> Option<&dyn Model<D>> {
+        self.models.iter().find(|m| m.spec().plays(role)).map(|m| &**m)
+    }
+    /// The first integrator with a role.
+    pub fn integrator_that(&self, role: Role) -> Option<&dyn IntegratorKind<D>> {
+        self.integrators.iter().find(|m| m.spec().plays(role)).map(|m| &**m)
     }
     /// The integrator of a name.
     pub fn integrator(&self, kind: &str) -> Option<&dyn IntegratorKind<D>> {

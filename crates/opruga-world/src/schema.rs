@@ -84,7 +84,7 @@ const fn section(
     documentation: &'static str,
     fields: &'static [Field],
 ) -> Spec {
-    Spec { kind, summary, documentation, dimensions: ANY_DIMENSION, fields }
+    Spec { kind, summary, documentation, dimensions: ANY_DIMENSION, fields, roles: &[] }
 }
 
 const fn child(name: &'static str, holds: Holds, required: bool, documentation: &'static str) -> Child {

@@ -37,6 +37,7 @@ static RING: Spec = Spec {
         CENTER,
         START_ANGLE,
     ],
+    roles: &[],
 };
 
 static RINGS: Spec = Spec {
@@ -49,6 +50,7 @@ static RINGS: Spec = Spec {
         Field::new("radii", Allowed::Numbers, "m", Default::Required, "The radius of each ring; negative: a hole."),
         Field::new("vertices", count(3), "", Default::Required, "How many vertices each ring has."),
     ],
+    roles: &[],
 };
 
 static REGULAR_POLYGON: Spec = Spec {
@@ -63,6 +65,7 @@ static REGULAR_POLYGON: Spec = Spec {
         CENTER,
         START_ANGLE,
     ],
+    roles: &[],
 };
 
 static POLYGON: Spec = Spec {
@@ -77,6 +80,7 @@ static POLYGON: Spec = Spec {
         Default::Required,
         "The corners; the first may be repeated at the end.",
     )],
+    roles: &[],
 };
 
 static LINE: Spec = Spec {
@@ -89,6 +93,7 @@ static LINE: Spec = Spec {
         Field::new("to", Allowed::Vector, "m", Default::Required, "Its last node."),
         Field::new("segments", count(1), "", Default::Required, "How many edges."),
     ],
+    roles: &[],
 };
 
 static POLYLINE: Spec = Spec {
@@ -106,6 +111,7 @@ static POLYLINE: Spec = Spec {
             "Whether the last node is joined to the first.",
         ),
     ],
+    roles: &[],
 };
 
 static GRID: Spec = Spec {
@@ -118,6 +124,7 @@ static GRID: Spec = Spec {
         Field::new("cells", Allowed::Integers, "", Default::Required, "How many cells along each axis."),
         CORNER,
     ],
+    roles: &[],
 };
 
 static QUADRILATERAL: Spec = Spec {
@@ -135,6 +142,7 @@ static QUADRILATERAL: Spec = Spec {
             "How many cells along the side from corner 0 to 1, and along that from 1 to 2.",
         ),
     ],
+    roles: &[],
 };
 
 static SHEET: Spec = Spec {
@@ -148,6 +156,7 @@ static SHEET: Spec = Spec {
         Field::new("v", Allowed::Vector, "m", Default::Required, "Its second side, from the corner."),
         Field::new("cells", Allowed::Integers, "", Default::Required, "How many cells along u and along v."),
     ],
+    roles: &[],
 };
 
 static BOX: Spec = Spec {
@@ -162,6 +171,7 @@ static BOX: Spec = Spec {
         FILLING_OF_SURFACES,
         SPACING_OF_FILLINGS,
     ],
+    roles: &[],
 };
 
 static ICOSPHERE: Spec = Spec {
@@ -182,6 +192,7 @@ static ICOSPHERE: Spec = Spec {
         FILLING_OF_SURFACES,
         SPACING_OF_FILLINGS,
     ],
+    roles: &[],
 };
 
 static TORUS: Spec = Spec {
@@ -204,6 +215,7 @@ static TORUS: Spec = Spec {
         FILLING_OF_SURFACES,
         SPACING_OF_FILLINGS,
     ],
+    roles: &[],
 };
 
 /// All shapes.

@@ -7,6 +7,7 @@
 
 use crate::blueprint::BodyBlueprint;
 use crate::world::{Warning, World};
+use opruga_core::spec::Role;
 use opruga_math::words::rounded;
 use opruga_mesh::{Element, Mesh};
 use opruga_solve::dense::symmetric_eigen;
@@ -92,7 +93,7 @@ impl Slender {
 
 fn slender<const D: usize>(body: &BodyBlueprint<D>) -> Option<Slender> {
     let mesh = &*body.mesh;
-    let solid = body.models.iter().any(|model| model.kind() == "fem");
+    let solid = body.models.iter().any(|model| model.spec().plays(Role::OwnsCells));
     if !solid || mesh.cells.iter().all(|(element, ..)| limit(element).is_none()) {
         return None;
     }

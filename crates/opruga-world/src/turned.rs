@@ -6,6 +6,7 @@
 
 use crate::other_balances::{in_space, turn_in_plane, turn_in_space};
 use crate::world::{Warning, World};
+use opruga_core::spec::Role;
 use opruga_math::words::rounded;
 
 /// The code of the warning.
@@ -31,7 +32,9 @@ impl<const D: usize> World<D> {
         let (mut worst, mut count): (Option<(usize, Turned)>, u64) = (None, 0);
         for body in 0..self.blueprint.bodies.len() {
             let models = &self.blueprint.bodies[body].models;
-            if models.iter().any(|model| model.kind() == "fem" && model.text("material") == Some("linear"))
+            if models
+                .iter()
+                .any(|model| model.spec().plays(Role::OwnsCells) && model.text("material") == Some("linear"))
                 && self.handle(body).is_some()
                 && let Some(turned) = self.farthest_turned(body)
             {
@@ -69,7 +72,9 @@ impl<const D: usize> World<D> {
     fn farthest_turned(&self, body: usize) -> Option<Turned> {
         let own = &self.blueprint.bodies[body];
         let mut worst: Option<Turned> = None;
-        for model in own.models.iter().filter(|m| m.kind() == "fem" && m.text("material") == Some("linear")) {
+        for model in
+            own.models.iter().filter(|m| m.spec().plays(Role::OwnsCells) && m.text("material") == Some("linear"))
+        {
             let group = model.text("cells").and_then(|name| own.mesh.cell_groups.get(name));
             for (cell, (_, _, nodes)) in own.mesh.cells.iter().enumerate() {
                 let cell = cell as u32;

@@ -21,7 +21,7 @@ use crate::implicit::settings::fields;
 use crate::implicit::step::{Implicit, Rule};
 use opruga_core::error::BuildError;
 use opruga_core::integrator::{Amplification, Integrator, IntegratorKind};
-use opruga_core::spec::{Spec, Values};
+use opruga_core::spec::{Role, Spec, Values};
 use opruga_core::system::System;
 
 /// The parameters.
@@ -34,6 +34,7 @@ oscillation falls by 1/√(1 + h²ω²) in a step, which is an error of the rule
 them and stick or slip by Coulomb's law. One body an island: bodies are not stepped side by side.",
     dimensions: &[2, 3],
     fields: fields!(of_time),
+    roles: &[Role::OfferedImplicit],
 };
 
 /// The kind `backward_euler`.

@@ -36,6 +36,7 @@ oscillation falls by (hω)⁴/4 in a step where hω is small. It remembers the s
 Euler. One body an island.",
     dimensions: &[2, 3],
     fields: fields!(of_time),
+    roles: &[],
 };
 
 /// The kind `bdf2`.

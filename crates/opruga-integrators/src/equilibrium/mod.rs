@@ -49,7 +49,7 @@ use opruga_core::error::{BuildError, StepError};
 use opruga_core::integrator::{Amplification, HistorySize, Integrator, IntegratorKind};
 use opruga_core::memory::Counts;
 use opruga_core::potential::{Reading, Views};
-use opruga_core::spec::{Allowed, Condition, Default, Field, Spec, Values};
+use opruga_core::spec::{Allowed, Condition, Default, Field, Role, Spec, Values};
 use opruga_core::system::{Stage, System};
 use opruga_math::words::number;
 use opruga_solve::blocks::nodes;
@@ -82,6 +82,7 @@ is on; `load_factor` in diagnostics.csv is the part that is on.",
 Absent: the whole load at once.",
         )
     ),
+    roles: &[Role::Statics],
 };
 
 /// The kind `equilibrium`.

@@ -34,6 +34,7 @@ pub const SPEC: Spec = Spec {
 a mode ω grows by ω²h per second.",
     dimensions: &[2, 3],
     fields: &[],
+    roles: &[],
 };
 
 /// The kind `explicit_euler`.

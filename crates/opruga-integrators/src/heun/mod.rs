@@ -33,6 +33,7 @@ pub const SPEC: Spec = Spec {
 damping: the energy of a mode ω grows by ¼ω⁴h³ per second.",
     dimensions: &[2, 3],
     fields: &[],
+    roles: &[],
 };
 
 /// The kind `heun`.

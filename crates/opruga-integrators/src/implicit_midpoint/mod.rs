@@ -39,6 +39,7 @@ damping amplitudes stay as they are; linear and angular momentum are kept to the
 much faster than the step falls by a tenth in a step, so that bodies come to rest. One body an island.",
     dimensions: &[2, 3],
     fields: fields!(of_time),
+    roles: &[],
 };
 
 /// The kind `implicit_midpoint`.

@@ -51,6 +51,7 @@ remembers the acceleration. One body an island.",
 rule of average acceleration.",
         )
     ),
+    roles: &[],
 };
 
 /// The kind `newmark`.

@@ -48,6 +48,7 @@ pub const SPEC: Spec = Spec {
 Four forces per step. Stable without damping for h ω ≤ 2.828, where it takes (hω)⁶/72 of the energy per step.",
     dimensions: &[2, 3],
     fields: &[],
+    roles: &[],
 };
 
 /// The kind `runge_kutta`.

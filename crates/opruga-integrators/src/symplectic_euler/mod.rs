@@ -9,7 +9,7 @@ mod tests;
 
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::integrator::{Amplification, Integrator, IntegratorKind};
-use opruga_core::spec::{Spec, Values};
+use opruga_core::spec::{Role, Spec, Values};
 use opruga_core::state::Parameter;
 use opruga_core::system::{Stage, State, System, Update};
 use opruga_math::{Pack, Strip, WIDTH};
@@ -22,6 +22,7 @@ pub const SPEC: Spec = Spec {
     documentation: "v₁ = v₀ + h a(x₀, v₀), x₁ = x₀ + h v₁. One force per step. Stable without damping for h ω < 2.",
     dimensions: &[2, 3],
     fields: &[],
+    roles: &[Role::OfferedExplicit],
 };
 
 /// The kind `symplectic_euler`.

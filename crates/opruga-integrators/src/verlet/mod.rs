@@ -36,6 +36,7 @@ pub const SPEC: Spec = Spec {
 h ω < 2.",
     dimensions: &[2, 3],
     fields: &[],
+    roles: &[],
 };
 
 /// The kind `verlet`.

@@ -10,7 +10,7 @@ use super::{pins, place_of, selectors};
 use crate::document::{Data, Node, Place};
 use crate::problem::{SceneError, visible};
 use crate::shapes::Loaded;
-use opruga_core::spec::Values;
+use opruga_core::spec::{Role, Values};
 use opruga_mesh::{Cut, Measure, Mesh, MeshError};
 use opruga_world::blueprint::{BodyBlueprint, Mass, PinBlueprint, Selector};
 use opruga_world::validity::{self, LONGEST};
@@ -60,9 +60,9 @@ struct Draft<'n, const D: usize> {
 }
 
 impl<const D: usize> Draft<'_, D> {
-    /// Whether a model of it is of finite elements.
-    fn is_of_elements(&self) -> bool {
-        self.models.iter().any(|model| model.kind() == "fem")
+    /// Whether a model of it owns its cells.
+    fn owns_cells(&self) -> bool {
+        self.models.iter().any(|model| model.spec().plays(Role::OwnsCells))
     }
 }
 
@@ -314,7 +314,7 @@ fn within_limits<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, D>
         let of_mesh = draft.shape.as_ref().is_some_and(|shape| shape.kind() == "mesh");
         let filled = matches!(filling, Some("triangles" | "tetrahedra")) || (D == 3 && filling == Some("lattice"));
         let simplices = draft.values.flag("simplices") || filled || of_mesh;
-        let quadratic = draft.values.integer("order").map_or(simplices && draft.is_of_elements(), |order| order == 2);
+        let quadratic = draft.values.integer("order").map_or(simplices && draft.owns_cells(), |order| order == 2);
         let nodes = if quadratic { nodes * f64::from(1 << D) } else { nodes };
         let (copies, models) = (draft.copies.map_or(1, |c| c.total()) as f64, draft.models.len() as f64);
         if let Err(error) = cost.add::<D>(copies, nodes, models, &reader.options.limits) {
@@ -344,7 +344,7 @@ fn of_wanted_cells<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>
         let boxes = mesh.cells.quadrilaterals.len() + mesh.cells.hexahedra.len();
         let linear = mesh.cells.triangles.len() + mesh.cells.tetrahedra.len();
         // What does not lock is what a body of finite elements is made of, unless the scene says otherwise.
-        let quadratic = order.map_or(draft.is_of_elements() && boxes == 0 && linear > 0, |order| order == 2);
+        let quadratic = order.map_or(draft.owns_cells() && boxes == 0 && linear > 0, |order| order == 2);
         if quadratic { mesh.into_quadratic() } else { Ok(mesh) }
     };
     match cut.and_then(wanted) {

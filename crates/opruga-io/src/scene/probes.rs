@@ -6,7 +6,7 @@ use super::reader::{Reader, join, listed};
 use super::{place_of, selectors};
 use crate::document::{Data, Node};
 use crate::problem::{SceneError, visible};
-use opruga_core::spec::nearest;
+use opruga_core::spec::{Role, Spec, nearest};
 use opruga_world::blueprint::{BodyBlueprint, ProbeBlueprint, Recorded};
 use opruga_world::schema;
 
@@ -83,9 +83,6 @@ fn recorded(reader: &mut Reader<'_>, node: &Node, path: &str) -> Vec<Recorded> {
     out
 }
 
-/// The models of this library that know no stress. Those of a user may.
-const WITHOUT_STRESS: [&str; 5] = ["mass_spring", "pressure", "bending", "drag", "as_published"];
-
 /// Refuses to record the stress of a body none of whose models knows one, now or after a command.
 fn refuse_without_cells<const D: usize>(
     reader: &mut Reader<'_>,
@@ -98,21 +95,26 @@ fn refuse_without_cells<const D: usize>(
     let Some((word, _)) = Recorded::ALL.iter().find(|(_, what)| what.is_of_cells() && record.contains(what)) else {
         return;
     };
-    let knows = |kind: &str| !WITHOUT_STRESS.contains(&kind);
+    let knows = |spec: &Spec| spec.plays(Role::OwnsCells);
+    let models = &reader.catalogue.models;
     let commands = match root.get("command").map(|commands| &commands.data) {
         Some(Data::Array(commands)) => &commands[..],
         _ => &[],
     };
     let later = commands.iter().any(|command| match command.get("models").map(|models| &models.data) {
-        Some(Data::Array(models)) => models.iter().filter_map(|model| model.get("kind")?.text()).any(knows),
+        Some(Data::Array(list)) => {
+            let kinds = list.iter().filter_map(|model| model.get("kind")?.text());
+            kinds.filter_map(|kind| models.iter().find(|spec| spec.kind == kind)).any(|spec| knows(spec))
+        }
         _ => false,
     });
-    if later || body.models.iter().any(|model| knows(model.kind())) {
+    if later || body.models.iter().any(|model| knows(model.spec())) {
         return;
     }
     let name = visible(body.common_name());
     let message = format!("`{word}` is recorded of `{name}`, none of whose models knows a stress");
+    let kinds: Vec<&str> = models.iter().filter(|spec| knows(spec)).map(|spec| spec.kind).collect();
     let error = SceneError::new("scene.no_stress", message).path(join(path, "record")).value(*word);
-    let error = error.allowed("bodies with a model `fem`");
+    let error = error.allowed(format!("bodies with a model `{}`", kinds.join("`, `")));
     reader.report(place_of(node, "record"), error.hint("`reaction` and `contact` are forces, which every body has"));
 }

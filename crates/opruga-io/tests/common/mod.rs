@@ -14,7 +14,7 @@ const fn field(name: &'static str, range: Allowed, unit: &'static str, default: 
 }
 
 const fn spec(kind: &'static str, dimensions: &'static [usize], fields: &'static [Field]) -> Spec {
-    Spec { kind, summary: "for tests", documentation: "", dimensions, fields }
+    Spec { kind, summary: "for tests", documentation: "", dimensions, fields, roles: &[] }
 }
 
 static MASS_SPRING: Spec = spec(

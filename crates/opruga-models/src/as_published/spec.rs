@@ -1,6 +1,6 @@
 //! Parameters of the published program.
 
-use opruga_core::spec::{Allowed, Default, Field, Spec};
+use opruga_core::spec::{Allowed, Default, Field, Role, Spec};
 
 /// The parameters of `as_published`.
 pub const SPEC: Spec = Spec {
@@ -51,4 +51,5 @@ An edge of no length makes its forces infinite or no number, as published. For t
             "When the button is held instead: `[[press, release], …]`; at each press the vertex nearest to the pointer is taken.",
         ),
     ],
+    roles: &[Role::Published],
 };

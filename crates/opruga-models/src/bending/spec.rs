@@ -24,21 +24,24 @@ that the force is large (k θ/ℓ). Source: Grinspun et al. 2003, Discrete shell
             "N·m",
             Default::OneOf(STIFFNESS),
             "Moment per angle k of every hinge; exactly one of `stiffness` and `modulus`.",
-        ),
+        )
+        .starts_at(0.02),
         Field::new(
             "modulus",
             Allowed::NOT_NEGATIVE,
             "Pa",
             Default::OneOf(STIFFNESS),
             "Young's modulus E, from which each hinge's stiffness follows; needs `thickness`.",
-        ),
+        )
+        .with(&["thickness"]),
         Field::new(
             "thickness",
             Allowed::POSITIVE,
             "m",
             Default::Absent,
             "Thickness t of the wall, or diameter of the wire of a chain in 3D; with `modulus`.",
-        ),
+        )
+        .starts_at(0.02),
         Field::new(
             "damping",
             Allowed::NOT_NEGATIVE,
@@ -54,4 +57,5 @@ that the force is large (k θ/ℓ). Source: Grinspun et al. 2003, Discrete shell
             "Whether the rest angles are those of the rest shape, or zero.",
         ),
     ],
+    roles: &[],
 };

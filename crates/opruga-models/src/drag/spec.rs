@@ -1,6 +1,6 @@
 //! Parameters of the drag.
 
-use opruga_core::spec::{Allowed, Default, Field, Spec};
+use opruga_core::spec::{Allowed, Default, Field, Role, Spec};
 
 /// The parameters of `drag`.
 pub const SPEC: Spec = Spec {
@@ -10,4 +10,5 @@ pub const SPEC: Spec = Spec {
 For oscillations alone use `damping` of `mass_spring` or `bending`, which are zero under rigid motion.",
     dimensions: &[2, 3],
     fields: &[Field::new("rate", Allowed::NOT_NEGATIVE, "1/s", Default::Required, "Rate λ at which velocities fall.")],
+    roles: &[Role::WorldDrag],
 };

@@ -2,7 +2,7 @@
 
 use super::materials::NAMES;
 use super::numbers::{EXPANSION, YOUNGS_MODULUS};
-use opruga_core::spec::{Allowed, Bound, Condition, Default, Field, Spec};
+use opruga_core::spec::{Allowed, Bound, Condition, Default, Field, Role, Spec};
 
 /// The parameters of `fem`.
 pub const SPEC: Spec = Spec {
@@ -157,5 +157,4 @@ cell: waves are then too fast where lumped masses make them too slow. For implic
             "What holds for linear triangles and tetrahedra above ν = 0.45: they are refused, or accepted although they lock, or resist \
 the volumes of nodes instead of those of cells, which does not lock (for them alone, and not in plane stress).",
         ),
-    ],
-};
+    ], roles: &[Role::OwnsCells], };

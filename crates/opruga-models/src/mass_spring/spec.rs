@@ -1,6 +1,6 @@
 //! Parameters of the spring model.
 
-use opruga_core::spec::{Allowed, Default, Field, Spec};
+use opruga_core::spec::{Allowed, Default, Field, Role, Spec};
 
 const STIFFNESS: &[&str] = &["stiffness", "modulus"];
 
@@ -20,14 +20,16 @@ A ring of springs alone resists neither bending nor a change of its enclosed are
             "N/m",
             Default::OneOf(STIFFNESS),
             "Spring constant k of every spring; exactly one of `stiffness` and `modulus`.",
-        ),
+        )
+        .starts_at(400.0),
         Field::new(
             "modulus",
             Allowed::NOT_NEGATIVE,
             "N/m",
             Default::OneOf(STIFFNESS),
             "Membrane modulus E₂D (Young's modulus times thickness) from which each spring's stiffness follows.",
-        ),
+        )
+        .starts_at(300.0),
         Field::new(
             "damping",
             Allowed::NOT_NEGATIVE,
@@ -50,4 +52,5 @@ A ring of springs alone resists neither bending nor a change of its enclosed are
             "Rest length as a multiple of the length in the rest shape.",
         ),
     ],
+    roles: &[Role::Edges],
 };

@@ -1,7 +1,7 @@
 //! Parameters of the gas.
 
 use super::gas::SMALLEST_VOLUME;
-use opruga_core::spec::{Allowed, Bound, Condition, Default, Field, Spec};
+use opruga_core::spec::{Allowed, Bound, Condition, Default, Field, Role, Spec};
 
 const AMOUNT: &[&str] = &["nRT", "pressure"];
 
@@ -31,14 +31,16 @@ Source: Matyka and Ollila 2003; thesis 3.3.",
             Default::OneOf(AMOUNT),
             "Amount of gas times temperature; exactly one of `nRT` and `pressure`. A command that sets either fills the chamber anew, \
              whatever had leaked.",
-        ),
+        )
+        .starts_at(20.0),
         Field::new(
             "pressure",
             Allowed::NOT_NEGATIVE,
             "Pa",
             Default::OneOf(AMOUNT),
             "Absolute pressure P₀ inside at the rest volume.",
-        ),
+        )
+        .starts_at(50.0),
         Field::new(
             "ambient",
             Allowed::NOT_NEGATIVE,
@@ -107,4 +109,5 @@ Source: Matyka and Ollila 2003; thesis 3.3.",
             "Fraction of the rest volume below which the pressure no longer rises.",
         ),
     ],
+    roles: &[Role::Gas],
 };

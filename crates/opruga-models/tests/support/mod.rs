@@ -30,7 +30,7 @@ impl<const N: usize, const ROWS: usize> IntoValue for &[[f64; N]; ROWS] {
 }
 
 /// The defaults of a model with some parameters set.
-pub(crate) fn values(spec: &Spec, set: Vec<(&str, Value)>) -> Values {
+pub(crate) fn values(spec: &'static Spec, set: Vec<(&str, Value)>) -> Values {
     let mut values = Values::defaults(spec, 2);
     for (name, value) in set {
         values.set(spec, name, value, 2).unwrap();

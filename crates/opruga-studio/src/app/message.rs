@@ -2,7 +2,7 @@
 
 use super::Studio;
 use crate::said::Step;
-use crate::session::{Request, STEADY};
+use crate::session::{Request, steady};
 use crate::shown::{Offer, Severity, Shown};
 use crate::words::Part;
 use egui::{
@@ -189,7 +189,8 @@ impl Studio {
                                 let name = match offer {
                                     Offer::HalveStep => words.halve_step().to_string(),
                                     Offer::Steady(_) => {
-                                        words.take_steady().replace("{}", &words.kind(Part::Integrator, STEADY))
+                                        let kind = steady().map_or("", |spec| spec.kind);
+                                        words.take_steady().replace("{}", &words.kind(Part::Integrator, kind))
                                     }
                                     Offer::Substeps(n) => words.use_substeps().replace("{}", &n.to_string()),
                                     Offer::Coarser(_, field, value) => {

@@ -7,14 +7,12 @@ use toml_edit::InlineTable;
 /// A model or an integrator of a scene of so many dimensions as a table. What has no effect beside the other values, and is as it would be
 /// by itself, is left out: whoever reads the scene would be warned of it.
 pub fn kind_table(values: &Values, dimension: usize) -> InlineTable {
-    let catalogue = opruga::catalogue();
-    let all = catalogue.models.iter().chain(&catalogue.integrators);
-    let spec = all.into_iter().find(|spec| spec.kind == values.kind());
-    let defaults = spec.map(|spec| Values::defaults(spec, dimension));
+    let spec = values.spec();
+    let defaults = Values::defaults(spec, dimension);
     let idle = |name: &str, value: &Value| {
-        let field = spec.and_then(|spec| spec.fields.iter().find(|field| field.name == name));
+        let field = spec.fields.iter().find(|field| field.name == name);
         field.is_some_and(|field| field.without_effect(values, dimension).is_some())
-            && defaults.as_ref().and_then(|defaults| defaults.get(name)) == Some(value)
+            && defaults.get(name) == Some(value)
     };
     let mut table = InlineTable::new();
     table.insert("kind", values.kind().into());

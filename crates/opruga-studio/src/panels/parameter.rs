@@ -53,7 +53,7 @@ pub fn begin(spec: &'static Spec, dimension: usize) -> Values {
         _ => false,
     };
     for field in spec.fields.iter().filter(chosen) {
-        if let Some(value) = starting(spec.kind, field) {
+        if let Some(value) = starting(field) {
             // A starting value is an allowed one: a test goes through all of them.
             let _ = values.set(spec, field.name, value, dimension);
         }
@@ -72,41 +72,29 @@ fn without(spec: &'static Spec, values: &Values, names: &[&str], dimension: usiz
 }
 
 /// Fields that are given together with a field or not at all.
-fn companions(kind: &str, name: &str) -> &'static [&'static str] {
-    match (kind, name) {
-        ("bending", "modulus") => &["thickness"],
-        ("box", "min") => &["max"],
-        ("box", "max") => &["min"],
-        ("box", "center") => &["size"],
-        ("box", "size") => &["center"],
-        _ => &[],
-    }
+fn companions(spec: &Spec, name: &str) -> &'static [&'static str] {
+    spec.fields.iter().find(|field| field.name == name).map_or(&[], |field| field.companions)
 }
 
 /// The values with this field instead of the other ones of which exactly one is given; none where no value is known with which it
 /// could begin, or where it is no such field.
 pub fn instead(spec: &'static Spec, values: &Values, field: &Field, dimension: usize) -> Option<Values> {
     let Unset::OneOf(set) = field.default else { return None };
-    let leave: Vec<&str> = set.iter().chain(set.iter().flat_map(|name| companions(spec.kind, name))).copied().collect();
+    let leave: Vec<&str> = set.iter().chain(set.iter().flat_map(|name| companions(spec, name))).copied().collect();
     let mut new = without(spec, values, &leave, dimension);
-    let with = companions(spec.kind, field.name);
+    let with = field.companions;
     for field in std::iter::once(field).chain(spec.fields.iter().filter(|other| with.contains(&other.name))) {
-        let kept = values.get(field.name).cloned().or_else(|| starting(spec.kind, field))?;
+        let kept = values.get(field.name).cloned().or_else(|| starting(field))?;
         new.set(spec, field.name, kept, dimension).ok()?;
     }
     Some(new)
 }
 
 /// A starting value for a field that the scene leaves silent.
-pub fn starting(kind: &str, field: &Field) -> Option<Value> {
-    let known = match (kind, field.name) {
-        ("mass_spring", "stiffness") => 400.0,
-        ("mass_spring", "modulus") => 300.0,
-        ("bending", "stiffness") => 0.02,
-        ("bending", "thickness") => 0.02,
-        ("pressure", "nRT") => 20.0,
-        ("pressure", "pressure") => 50.0,
-        _ => match field.range {
+pub fn starting(field: &Field) -> Option<Value> {
+    let known = match field.start {
+        Some(start) => start,
+        None => match field.range {
             Allowed::Number { least, greatest } => {
                 let end = |bound: Bound| match bound {
                     Bound::None => None,
@@ -192,7 +180,7 @@ fn tell(response: Response, about: &str) -> Response {
 
 /// Whether nothing that is given needs this field beside it.
 fn companion_is_silent(spec: &Spec, values: &Values, name: &str) -> bool {
-    let needs = |field: &Field| companions(spec.kind, field.name).contains(&name) && values.get(field.name).is_some();
+    let needs = |field: &Field| field.companions.contains(&name) && values.get(field.name).is_some();
     !spec.fields.iter().any(needs)
 }
 
@@ -200,7 +188,7 @@ fn companion_is_silent(spec: &Spec, values: &Values, name: &str) -> bool {
 /// given, or its name where a scene alone can.
 fn absent(ui: &mut Ui, place: Place<'_>, name: &str, unit: &str, about: &str) -> Option<Change> {
     let Place { part, kind, field, words, .. } = place;
-    let start = starting(kind, field).map(Change::Value);
+    let start = starting(field).map(Change::Value);
     let (start, text) = match (field.default, place.whole.zip(place.values)) {
         (Unset::OneOf(set), Some((spec, values))) => {
             let other =

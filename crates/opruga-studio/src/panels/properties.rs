@@ -29,7 +29,6 @@ pub struct Properties {
 struct Kinds {
     models: Vec<&'static Spec>,
     integrators: Vec<&'static Spec>,
-    obstacles: Vec<&'static Spec>,
     dimension: usize,
 }
 
@@ -37,12 +36,7 @@ impl Kinds {
     fn of(dimension: usize) -> Kinds {
         let there = |list: Vec<&'static Spec>| list.into_iter().filter(|s| s.dimensions.contains(&dimension)).collect();
         let registry = Registry::<2>::default();
-        Kinds {
-            models: there(registry.models()),
-            integrators: there(registry.integrators()),
-            obstacles: opruga::collide::all(dimension),
-            dimension,
-        }
+        Kinds { models: there(registry.models()), integrators: there(registry.integrators()), dimension }
     }
 }
 
@@ -77,12 +71,11 @@ impl Properties {
                 self.world(ui, shown, &kinds, words, asks);
             });
             for (number, obstacle) in shown.obstacles.iter().enumerate().take(16) {
-                let spec = kinds.obstacles.iter().find(|spec| spec.kind == obstacle.values.kind());
                 let kind = obstacle.values.kind();
                 let title = format!("{}: {}", words.obstacle(), words.kind(Part::Obstacle, kind));
                 let header = CollapsingHeader::new(heading(&title)).id_salt(("obstacle", number));
                 header.default_open(false).show(ui, |ui| {
-                    for field in spec.map_or(&[][..], |spec| spec.fields) {
+                    for field in obstacle.values.spec().fields {
                         let path = &format!("collider.{number}.{}", field.name);
                         let dimension = kinds.dimension;
                         let place = Place {
@@ -93,7 +86,7 @@ impl Properties {
                             dimension,
                             words,
                             values: Some(&obstacle.values),
-                            whole: spec.copied(),
+                            whole: Some(obstacle.values.spec()),
                         };
                         let unset = |_| Some(Request::Unset(path.clone()));
                         self.set(ui, place, obstacle.values.get(field.name), asks, unset);
@@ -151,7 +144,7 @@ impl Properties {
         }
         self.integrator(ui, words, body.integrator.as_ref(), Some(body), kinds, asks);
         for (number, model) in body.models.iter().enumerate() {
-            let Some(spec) = kinds.models.iter().copied().find(|spec| spec.kind == model.kind()) else { continue };
+            let spec = model.spec();
             let title = RichText::new(words.kind(Part::Model, spec.kind)).strong();
             let header =
                 CollapsingHeader::new(title).id_salt(("model", &body.title, spec.kind)).default_open(number < 2);
@@ -283,7 +276,7 @@ impl Properties {
             menu.response.labelled_by(label.id);
         });
         let Some(values) = own else { return };
-        let Some(spec) = kinds.integrators.iter().find(|spec| spec.kind == values.kind()) else { return };
+        let spec = values.spec();
         for field in spec.fields {
             let path = &match body {
                 Some(body) => format!("body.{}.integrator.{}", body.name, field.name),

@@ -23,7 +23,7 @@ mod titles;
 mod travel;
 
 pub use edits::{Edit, Placed};
-pub use offers::STEADY;
+pub use offers::steady;
 pub use patience::by_the_clock;
 pub use pointer::Grip;
 

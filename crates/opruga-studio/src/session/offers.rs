@@ -6,13 +6,15 @@ use crate::pair::read;
 use crate::said::Said;
 use crate::shown::{Offer, Severity, Shown};
 use opruga::blueprint::AnyBlueprint;
-use opruga::core::spec::{Value, Values};
+use opruga::core::spec::{Role, Spec, Value, Values};
 use opruga::io::Files;
 use opruga::world::schema::MOST_SUBSTEPS;
 use opruga::{Registry, WorldError};
 
 /// The integrator that is offered instead of one without a stable step: it costs as little.
-pub const STEADY: &str = "symplectic_euler";
+pub fn steady() -> Option<&'static Spec> {
+    Registry::<2>::default().integrator_that(Role::OfferedExplicit).map(|kind| kind.spec())
+}
 
 /// What a frame may take before a person is told of it [s].
 const LONG: f64 = 1.0;
@@ -37,8 +39,8 @@ impl Session {
             Offer::Steady(body) => {
                 self.go_back_a_second()?;
                 let dimension = self.dimension();
-                if let Some(kind) = Registry::<2>::default().integrator(STEADY) {
-                    let values = Values::defaults(kind.spec(), dimension);
+                if let Some(spec) = steady() {
+                    let values = Values::defaults(spec, dimension);
                     let take = |session: &mut Session, values: &Values| match body {
                         Some(body) => session.change(*body, None, Some(values.clone())),
                         None => session.integrator(values),

@@ -77,6 +77,7 @@ static SVG: Spec = Spec {
             "Whether pictures show the drawing in the fill colours of its parts, one over another, carried by the body; a gradient becomes the mean of its stops.",
         ),
     ],
+    roles: &[],
 };
 
 static MAP: Spec = Spec {
@@ -108,6 +109,7 @@ static MAP: Spec = Spec {
         OVERLAP,
         DROP_BELOW,
     ],
+    roles: &[],
 };
 
 static TEXT: Spec = Spec {
@@ -125,6 +127,7 @@ static TEXT: Spec = Spec {
         OVERLAP,
         DROP_BELOW,
     ],
+    roles: &[],
 };
 
 static BITMAP: Spec = Spec {
@@ -155,6 +158,7 @@ static BITMAP: Spec = Spec {
         OVERLAP,
         DROP_BELOW,
     ],
+    roles: &[],
 };
 
 static SURFACE: Spec = Spec {
@@ -210,6 +214,7 @@ static SURFACE: Spec = Spec {
         FILLING_OF_SURFACES,
         SPACING_OF_FILLINGS,
     ],
+    roles: &[],
 };
 
 static MESH: Spec = Spec {
@@ -234,6 +239,7 @@ static MESH: Spec = Spec {
             "What becomes of nodes that no cell names: an error, or left out, and counted.",
         ),
     ],
+    roles: &[],
 };
 
 /// All of them.

@@ -14,6 +14,7 @@ use crate::draw::{
     Sight,
 };
 use crate::mesh::{EdgeSet, Mesh, Skin, triangle_parts};
+use opruga_core::spec::Role;
 pub use quantity::Quantity;
 use quantity::{push_quantity, strain};
 pub use rest::rest_of;
@@ -243,7 +244,7 @@ impl Scenery {
     /// Adds the arrows of a body: the pressure of its gas at some of its nodes, or without gas the force on them.
     fn push_arrows<const D: usize>(&self, world: &mut World<D>, body: usize, arrows: &mut Vec<ArrowPicture>) {
         let fixed = &self.bodies[body];
-        let gas = world.blueprint().bodies[body].models.iter().any(|model| model.kind() == "pressure");
+        let gas = world.blueprint().bodies[body].models.iter().any(|model| model.spec().plays(Role::Gas));
         let mut forces = world.node_forces(body, gas.then_some(Account::Gas));
         let kind = if gas {
             // The force on a node over the surface that belongs to it.

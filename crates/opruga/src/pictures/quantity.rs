@@ -5,6 +5,7 @@ use crate::World;
 use crate::blueprint::BodyBlueprint;
 use crate::core::potential::{Account, CellState};
 use crate::draw::{ColourMap, Legend};
+use opruga_core::spec::Role;
 
 /// What the colours of the bodies tell.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -46,7 +47,7 @@ impl Quantity {
         if areas.any(|area| area.colour.is_some()) {
             return Quantity::Plain;
         }
-        let solid = |body: &BodyBlueprint<D>| body.models.iter().any(|model| model.kind() == "fem");
+        let solid = |body: &BodyBlueprint<D>| body.models.iter().any(|model| model.spec().plays(Role::OwnsCells));
         if !bodies.is_empty() && bodies.iter().all(solid) { Quantity::VonMises } else { Quantity::Strain }
     }
 

@@ -2,6 +2,7 @@
 
 use crate::blueprint::BodyBlueprint;
 use crate::draw::{BodyPicture, Facets, RestPicture};
+use opruga_core::spec::Role;
 use std::collections::BTreeMap;
 
 /// The least angle between two facets whose common edge shows the shape of a body, as a cosine.
@@ -11,7 +12,7 @@ const SHARP: f64 = 0.8;
 /// it bends around there; in statics, any body.
 pub(super) fn is_shown<const D: usize>(body: &BodyBlueprint<D>, integrator: &str) -> bool {
     let held = body.pins.iter().any(|pin| pin.motion.is_empty());
-    let solid = body.models.iter().any(|model| model.kind() == "fem");
+    let solid = body.models.iter().any(|model| model.spec().plays(Role::OwnsCells));
     body.mesh.skin.is_none() && (integrator == "equilibrium" || held && solid)
 }
 
