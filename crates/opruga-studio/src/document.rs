@@ -1,14 +1,11 @@
 //! The scene as its text: what a person does is written into it, so that saving is writing the text and the command line
 //! runs what was done here.
 
-mod commands;
-mod kinds;
 mod overrides;
 mod taken_over;
 
-pub use commands::{add_table, command_table};
-pub use kinds::kind_table;
 use opruga::core::spec::{Value, Values};
+pub use opruga::io::scene::written::{add_table, command_table, kind_table, numbers, toml};
 use opruga::io::{Files, SceneError, scene};
 use toml_edit::{Array, ArrayOfTables, DocumentMut, InlineTable, Item, Table, Value as Toml};
 
@@ -408,23 +405,5 @@ fn plain(value: &Toml) -> Option<Value> {
             list.iter().map(number).collect::<Option<Vec<f64>>>().map(Value::Numbers)
         }
         _ => None,
-    }
-}
-
-/// A number or several, as a list.
-pub fn numbers(of: &[f64]) -> Array {
-    of.iter().copied().collect()
-}
-
-/// A value of a parameter as TOML.
-pub fn toml(value: &Value) -> Toml {
-    match value {
-        Value::Number(x) => Toml::from(*x),
-        Value::Integer(x) => Toml::from(*x),
-        Value::Boolean(x) => Toml::from(*x),
-        Value::Text(x) => Toml::from(x.as_str()),
-        Value::Numbers(x) => Toml::Array(numbers(x)),
-        Value::Integers(x) => Toml::Array(x.iter().map(|n| i64::from(*n)).collect()),
-        Value::Rows(rows) => Toml::Array(rows.iter().map(|row| Toml::Array(numbers(row))).collect()),
     }
 }

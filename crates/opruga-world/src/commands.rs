@@ -79,6 +79,11 @@ impl<const D: usize> Action<D> {
         }
     }
 
+    /// Whether it acts over a time, up to an end, and not at once.
+    pub fn lasts(&self) -> bool {
+        matches!(self, Action::Drag { .. } | Action::Push { .. } | Action::Pin { .. })
+    }
+
     /// The word of a scene for what is done.
     pub fn word(&self) -> &'static str {
         match self {

@@ -118,3 +118,21 @@ fn conditions_name_fields_and_words_that_exist() {
     }
     assert!(conditions >= 10, "{conditions}");
 }
+
+#[test]
+fn what_has_no_effect_and_was_set_by_nobody_is_not_written() {
+    use opruga::core::spec::{Value, Values};
+    use opruga::io::scene::written;
+    let catalogue = opruga::catalogue();
+    let spec = catalogue.models.iter().find(|spec| spec.kind == "pressure").expect("gas");
+    let mut gas = Values::defaults(spec, 2);
+    gas.set(spec, "nRT", Value::Number(20.0), 2).expect("allowed");
+    let table = written::kind_table(&gas, 2);
+    assert!(!table.contains_key("gamma") && table.contains_key("nRT") && table.contains_key("process"));
+    // With another process it has one, and what a person has set is written wherever it stands.
+    gas.set(spec, "process", Value::Text("adiabatic".into()), 2).expect("allowed");
+    assert!(written::kind_table(&gas, 2).contains_key("gamma"));
+    gas.set(spec, "gamma", Value::Number(1.2), 2).expect("allowed");
+    gas.set(spec, "process", Value::Text("isothermal".into()), 2).expect("allowed");
+    assert!(written::kind_table(&gas, 2).contains_key("gamma"));
+}

@@ -79,7 +79,7 @@ pub(crate) fn commands<const D: usize>(
         let Some(actions) = actions(reader, number, node, path, &values, &known) else { continue };
         let end_of_path = values.rows("path").last().and_then(|row| row.first().copied());
         let until = values.number("until").or(end_of_path).unwrap_or(at);
-        let lasts = matches!(values.kind(), "drag" | "push" | "pin");
+        let lasts = actions.iter().any(Action::lasts);
         if values.kind() == "drag" && node.get("until").is_none() && values.rows("path").len() == 1 {
             let error = SceneError::new(
                 "scene.missing",

@@ -22,6 +22,7 @@ mod references;
 mod selectors;
 mod shape;
 mod velocities;
+pub mod written;
 
 use crate::catalogue::Catalogue;
 use crate::document::{self, Node, Place};

@@ -1,27 +1,55 @@
-//! Commands as a scene writes them.
+//! Commands, models and integrators as a scene writes them: the other direction of [`super::actions`].
 
-use super::{kind_table, numbers, toml};
-use opruga::blueprint::{Action, CommandBlueprint, Selector};
-use opruga::core::spec::Value;
+use opruga_core::spec::{Value, Values};
+use opruga_world::blueprint::{Action, CommandBlueprint, Selector};
 use toml_edit::{Array, InlineTable, Item, Table, Value as Toml};
+
+/// Several numbers as a list.
+pub fn numbers(of: &[f64]) -> Array {
+    of.iter().copied().collect()
+}
+
+/// A value of a parameter as TOML.
+pub fn toml(value: &Value) -> Toml {
+    match value {
+        Value::Number(x) => Toml::from(*x),
+        Value::Integer(x) => Toml::from(*x),
+        Value::Boolean(x) => Toml::from(*x),
+        Value::Text(x) => Toml::from(x.as_str()),
+        Value::Numbers(x) => Toml::Array(numbers(x)),
+        Value::Integers(x) => Toml::Array(x.iter().map(|n| i64::from(*n)).collect()),
+        Value::Rows(rows) => Toml::Array(rows.iter().map(|row| Toml::Array(numbers(row))).collect()),
+    }
+}
+
+/// A model or an integrator of a scene of so many dimensions as a table. What has no effect beside the other values, and is as it would be
+/// by itself, is left out: whoever reads the scene would be warned of it.
+pub fn kind_table(values: &Values, dimension: usize) -> InlineTable {
+    let spec = values.spec();
+    let defaults = Values::defaults(spec, dimension);
+    let idle = |name: &str, value: &Value| {
+        let field = spec.fields.iter().find(|field| field.name == name);
+        field.is_some_and(|field| field.without_effect(values, dimension).is_some())
+            && defaults.get(name) == Some(value)
+    };
+    let mut table = InlineTable::new();
+    table.insert("kind", values.kind().into());
+    for (name, value) in values.iter().filter(|(name, value)| !idle(name, value)) {
+        table.insert(name, toml(value));
+    }
+    table
+}
 
 /// A command as the scene file writes it, on the body of this name; none for what has no such form.
 pub fn command_table<const D: usize>(command: &CommandBlueprint<D>, body: &str) -> Option<Table> {
     let mut table = Table::new();
     table.decor_mut().set_prefix("\n");
-    let word = match &command.action {
-        Action::Drag { .. } => "drag",
-        Action::Push { .. } => "push",
-        Action::Pin { .. } => "pin",
-        Action::Free { .. } => "free",
-        Action::Set { .. } => "set",
-        Action::Remove { .. } => "remove",
-        Action::Change { .. } => "change",
-        Action::Add(_) => return None,
-    };
-    table["do"] = toml_edit::value(word);
+    if matches!(command.action, Action::Add(_)) {
+        return None;
+    }
+    table["do"] = toml_edit::value(command.action.word());
     table["at"] = toml_edit::value(command.at);
-    if matches!(word, "drag" | "push" | "pin") {
+    if command.action.lasts() {
         table["until"] = toml_edit::value(command.until);
     }
     let select = |select: &Selector<D>| match select {
@@ -32,7 +60,7 @@ pub fn command_table<const D: usize>(command: &CommandBlueprint<D>, body: &str) 
         }
         _ => None,
     };
-    if !matches!(word, "set") {
+    if !matches!(command.action, Action::Set { .. }) {
         table["body"] = toml_edit::value(body);
     }
     match &command.action {
