@@ -6,6 +6,7 @@ mod circles;
 mod gallery;
 mod goldens;
 mod licences;
+mod same_results;
 mod tokens;
 mod web;
 mod workspace;
@@ -21,7 +22,7 @@ struct Chore {
     work: fn(&[String]) -> Result<(), String>,
 }
 
-const CHORES: [Chore; 9] = [
+const CHORES: [Chore; 10] = [
     Chore {
         word: "licences",
         arguments: "",
@@ -35,6 +36,13 @@ const CHORES: [Chore; 9] = [
         about: "runs every scene and writes scenes/golden.txt",
         most: 0,
         work: |_| goldens::write(),
+    },
+    Chore {
+        word: "same-results",
+        arguments: "BASE [--scenes A,B] [--frames N] [--quick] [--also FOLDER]",
+        about: "runs all scenes and `opruga verify` of another commit and of the present tree, and compares every bit",
+        most: usize::MAX,
+        work: same_results::run,
     },
     Chore {
         word: "circles",
