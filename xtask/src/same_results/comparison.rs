@@ -16,7 +16,7 @@ pub(super) struct Outcome {
     /// The names of the figures.
     columns: Vec<String>,
     /// The figures of every frame, as text: equal texts are equal bits.
-    pub(super) rows: Vec<Vec<String>>,
+    rows: Vec<Vec<String>>,
 }
 
 /// A figure that is not the same on both sides.
@@ -31,6 +31,12 @@ pub(super) struct Difference {
 }
 
 impl Outcome {
+    /// How two runs have ended that ended in the same way, and before their time.
+    pub(super) fn early(&self, other: &Outcome) -> Option<String> {
+        let same = self.ending == other.ending && self.ending != "exit code 0";
+        same.then(|| format!("{} after {} frames", self.ending, self.rows.len().saturating_sub(1)))
+    }
+
     /// From the lines of hashes and the table of figures.
     pub(super) fn new(ending: String, hashes: &str, table: &str) -> Outcome {
         let mut lines = table.lines();

@@ -93,12 +93,14 @@ pub(crate) fn run(arguments: &[String]) -> Result<(), String> {
         .iter()
         .flat_map(|name| sides.iter().filter_map(move |(side, scenes)| Some((*side, *name, scenes.get(*name)?))));
     let outcomes = run_scenes(&jobs.collect::<Vec<_>>(), question.frames)?;
-    let (mut differences, mut frames) = (Vec::new(), u64::MAX);
+    let mut differences = Vec::new();
     for name in &names {
         let [then, now] = [&base, &present].map(|side| outcomes.get(&(side.name.as_str(), name.as_str())));
         match (then, now) {
             (Some(then), Some(now)) => {
-                frames = frames.min(now.rows.len().saturating_sub(1) as u64);
+                if let Some(ending) = then.early(now) {
+                    eprintln!("{name} ends early on both sides: {ending}");
+                }
                 differences.extend(comparison::of_scene(name, then, now));
             }
             (then, now) => differences.push(Difference::unknown(name, [then.is_some(), now.is_some()])),

@@ -24,8 +24,8 @@ pub(super) struct Side {
 }
 
 impl Side {
-    /// A commit. Its sources lie in a work tree of their own, one for all commits, with its own folder of what cargo builds: only
-    /// what differs from the last commit is compiled.
+    /// A commit. Its sources lie in a work tree of their own, one for all commits: only what differs from the last commit is
+    /// compiled.
     pub(super) fn of_commit(folder: &Path, commit: &str) -> Result<Side, String> {
         let root = folder.join("base");
         let tree = root.display().to_string();
@@ -38,26 +38,27 @@ impl Side {
         let name = commit[..12].to_string();
         let side = Side { folder: folder.join(&name), program: program(&folder.join(&name)), name, root, keeps: true };
         if !side.program.is_file() {
-            side.build(&folder.join("build"))?;
+            side.build(folder)?;
         }
         Ok(side)
     }
 
     /// The present tree, as it lies there.
     pub(super) fn present(folder: &Path) -> Result<Side, String> {
-        let folder = folder.join("present");
-        let name = "present".to_string();
-        let side = Side { program: program(&folder), root: workspace::root()?, folder, name, keeps: false };
-        side.build(&workspace::target()?)?;
+        let (own, name) = (folder.join("present"), "present".to_string());
+        let side = Side { program: program(&own), root: workspace::root()?, folder: own, name, keeps: false };
+        side.build(folder)?;
         Ok(side)
     }
 
-    /// Builds the program and keeps it, so that nothing that is compiled meanwhile changes it.
-    fn build(&self, target: &Path) -> Result<(), String> {
+    /// Builds the program and keeps it, so that nothing that is compiled meanwhile changes it. Both sides share what cargo builds
+    /// of their dependencies.
+    fn build(&self, folder: &Path) -> Result<(), String> {
         eprintln!("building {}", self.name);
+        let target = folder.join("build");
         let status = Command::new(env!("CARGO"))
             .args(["build", "--release", "--quiet", "--package", "opruga-cli", "--target-dir"])
-            .arg(target)
+            .arg(&target)
             .current_dir(&self.root)
             .status()
             .map_err(|e| format!("cargo build: {e}"))?;
