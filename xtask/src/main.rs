@@ -6,6 +6,7 @@ mod circles;
 mod gallery;
 mod goldens;
 mod licences;
+mod mutants;
 mod same_results;
 mod tokens;
 mod web;
@@ -22,7 +23,7 @@ struct Chore {
     work: fn(&[String]) -> Result<(), String>,
 }
 
-const CHORES: [Chore; 10] = [
+const CHORES: [Chore; 11] = [
     Chore {
         word: "licences",
         arguments: "",
@@ -57,6 +58,13 @@ const CHORES: [Chore; 10] = [
         about: "counts Rust tokens and long functions of each crate, and their change since a commit",
         most: 2,
         work: tokens::tell,
+    },
+    Chore {
+        word: "mutants",
+        arguments: "[NAME …]",
+        about: "puts ten faults into the code, one by one, and looks whether the tests notice",
+        most: usize::MAX,
+        work: mutants::run,
     },
     Chore {
         word: "gallery",

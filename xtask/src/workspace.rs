@@ -66,3 +66,15 @@ pub(crate) fn commit(name: &str) -> Result<String, String> {
     git(&["rev-parse", "--verify", "--quiet", &format!("{name}^{{commit}}")])
         .map_err(|_| format!("`{name}` is no commit of this repository"))
 }
+
+/// Makes a folder a work tree of a commit, or takes the one that lies there to it. What was changed in it is lost.
+pub(crate) fn check_out(folder: &Path, commit: &str) -> Result<(), String> {
+    let tree = folder.display().to_string();
+    if folder.join(".git").exists() {
+        git(&["-C", &tree, "checkout", "--quiet", "--detach", "--force", commit])?;
+    } else {
+        git(&["worktree", "prune"])?;
+        git(&["worktree", "add", "--quiet", "--detach", "--force", &tree, commit])?;
+    }
+    Ok(())
+}

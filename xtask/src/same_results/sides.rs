@@ -28,13 +28,7 @@ impl Side {
     /// compiled.
     pub(super) fn of_commit(folder: &Path, commit: &str) -> Result<Side, String> {
         let root = folder.join("base");
-        let tree = root.display().to_string();
-        if root.join(".git").exists() {
-            workspace::git(&["-C", &tree, "checkout", "--quiet", "--detach", "--force", commit])?;
-        } else {
-            workspace::git(&["worktree", "prune"])?;
-            workspace::git(&["worktree", "add", "--quiet", "--detach", "--force", &tree, commit])?;
-        }
+        workspace::check_out(&root, commit)?;
         let name = commit[..12].to_string();
         let side = Side { folder: folder.join(&name), program: program(&folder.join(&name)), name, root, keeps: true };
         if !side.program.is_file() {
