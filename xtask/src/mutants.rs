@@ -114,7 +114,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<(), String> {
         let names: Vec<&str> = MUTANTS.iter().map(|mutant| mutant.name).collect();
         return Err(format!("there is no mutant `{unknown}`; there are {}", names.join(", ")));
     }
-    let tree = workspace::target()?.join("mutants");
+    let tree = workspace::target()?.join("mutants/tree");
     workspace::check_out(&tree, &workspace::commit("HEAD")?)?;
     let chosen = |mutant: &&Mutant| arguments.is_empty() || arguments.iter().any(|name| name == mutant.name);
     let (mut failed, mut count) = (0, 0);
@@ -162,7 +162,8 @@ fn mutated(mutant: &Mutant, text: &str) -> Result<String, String> {
 /// Compiles tests, and runs them unless they are only to be compiled.
 fn test(tree: &Path, tests: &[&str], only_built: bool) -> Result<Output, String> {
     let mut cargo = Command::new(env!("CARGO"));
-    cargo.arg("test").args(tests).current_dir(tree).env("CARGO_TARGET_DIR", workspace::target()?);
+    let target = workspace::target()?.join("mutants/build");
+    cargo.arg("test").args(tests).current_dir(tree).env("CARGO_TARGET_DIR", target);
     if only_built {
         cargo.arg("--no-run");
     }

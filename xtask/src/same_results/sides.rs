@@ -25,14 +25,15 @@ pub(super) struct Side {
 
 impl Side {
     /// A commit. Its sources lie in a work tree of their own, one for all commits: only what differs from the last commit is
-    /// compiled.
+    /// compiled. What cargo builds of it lies apart from that of the present tree: cargo takes a crate for built where an equal
+    /// path in another work tree was built later than the file was changed, whatever the file holds.
     pub(super) fn of_commit(folder: &Path, commit: &str) -> Result<Side, String> {
         let root = folder.join("base");
         workspace::check_out(&root, commit)?;
         let name = commit[..12].to_string();
         let side = Side { folder: folder.join(&name), program: program(&folder.join(&name)), name, root, keeps: true };
         if !side.program.is_file() {
-            side.build(folder)?;
+            side.build(&folder.join("build"))?;
         }
         Ok(side)
     }
@@ -41,18 +42,16 @@ impl Side {
     pub(super) fn present(folder: &Path) -> Result<Side, String> {
         let (own, name) = (folder.join("present"), "present".to_string());
         let side = Side { program: program(&own), root: workspace::root()?, folder: own, name, keeps: false };
-        side.build(folder)?;
+        side.build(&workspace::target()?)?;
         Ok(side)
     }
 
-    /// Builds the program and keeps it, so that nothing that is compiled meanwhile changes it. Both sides share what cargo builds
-    /// of their dependencies.
-    fn build(&self, folder: &Path) -> Result<(), String> {
+    /// Builds the program and keeps it, so that nothing that is compiled meanwhile changes it.
+    fn build(&self, target: &Path) -> Result<(), String> {
         eprintln!("building {}", self.name);
-        let target = folder.join("build");
         let status = Command::new(env!("CARGO"))
             .args(["build", "--release", "--quiet", "--package", "opruga-cli", "--target-dir"])
-            .arg(&target)
+            .arg(target)
             .current_dir(&self.root)
             .status()
             .map_err(|e| format!("cargo build: {e}"))?;
