@@ -3,6 +3,9 @@
 //! Both are built, and both run every scene that lies in files: those that come with the program, those of the benchmarks and of the
 //! sweeps, and those of the fuzz corpus. Compared are the hash of every frame, every figure of `diagnostics.csv`, how the run
 //! ended, and every row of `opruga verify`. What a commit has computed is kept below `target/same-results`.
+//!
+//! Scenes that only the code of tests holds are left out, such as those of `crates/opruga/tests/torture`; `--also FOLDER` runs the
+//! scene files of any folder.
 
 mod comparison;
 mod hashes;

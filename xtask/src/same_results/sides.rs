@@ -66,7 +66,8 @@ impl Side {
     /// A call of the program, in a folder where no file has the name of a scene.
     fn call(&self, arguments: &[&str]) -> Result<Output, String> {
         let mut call = Command::new(&self.program);
-        call.args(arguments).current_dir(&self.folder);
+        // What is kept was computed with the best instructions of this machine.
+        call.args(arguments).current_dir(&self.folder).env_remove("OPRUGA_SIMD");
         call.output().map_err(|e| format!("{}: {e}", self.program.display()))
     }
 
@@ -75,8 +76,11 @@ impl Side {
         let folder = self.folder.join(format!("{frames}-frames")).join(name.replace('/', "-"));
         let file = |name: &str| folder.join(name).display().to_string();
         let [ending, table, hashes] = ["ending", "diagnostics.csv", "hashes"].map(|name| folder.join(name));
+        // Of a file that lies elsewhere nobody knows whether it is still the same.
+        let own = !Path::new(call).is_absolute()
+            || self.root.canonicalize().is_ok_and(|root| Path::new(call).starts_with(root));
         // The ending is written last: where it lies, the others are whole.
-        if !(self.keeps && ending.is_file()) {
+        if !(self.keeps && own && ending.is_file()) {
             let _ = std::fs::remove_dir_all(&folder);
             std::fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
             let found = self.compute(call, frames, &file)?;
