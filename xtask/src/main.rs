@@ -1,11 +1,16 @@
-//! Chores of the workspace: `cargo xtask licences | goldens | gallery | bench | web | web-trial | web-measure`; `--help` tells of each.
+//! Chores of the workspace: licences, results, sizes, pictures, speeds, the page of the studio; `cargo xtask --help` lists them.
 #![allow(clippy::disallowed_methods)] // no physics here
 
 mod bench;
+mod circles;
 mod gallery;
 mod goldens;
 mod licences;
+mod mutants;
+mod same_results;
+mod tokens;
 mod web;
+mod workspace;
 
 use std::process::ExitCode;
 
@@ -18,7 +23,7 @@ struct Chore {
     work: fn(&[String]) -> Result<(), String>,
 }
 
-const CHORES: [Chore; 7] = [
+const CHORES: [Chore; 11] = [
     Chore {
         word: "licences",
         arguments: "",
@@ -32,6 +37,34 @@ const CHORES: [Chore; 7] = [
         about: "runs every scene and writes scenes/golden.txt",
         most: 0,
         work: |_| goldens::write(),
+    },
+    Chore {
+        word: "same-results",
+        arguments: "BASE [--scenes A,B] [--frames N] [--quick] [--also FOLDER]",
+        about: "runs all scenes and `opruga verify` of another commit and of the present tree, and compares every bit",
+        most: usize::MAX,
+        work: same_results::run,
+    },
+    Chore {
+        word: "circles",
+        arguments: "",
+        about: "lists the import circles between the files of each crate",
+        most: 0,
+        work: |_| circles::check(),
+    },
+    Chore {
+        word: "tokens",
+        arguments: "[BASE] [--long]",
+        about: "counts Rust tokens and long functions of each crate, and their change since a commit",
+        most: 2,
+        work: tokens::tell,
+    },
+    Chore {
+        word: "mutants",
+        arguments: "[NAME …]",
+        about: "puts ten faults into the code, one by one, and looks whether the tests notice",
+        most: usize::MAX,
+        work: mutants::run,
     },
     Chore {
         word: "gallery",
@@ -78,7 +111,7 @@ impl Chore {
 
 /// All chores, for people.
 fn help() -> String {
-    let rows: Vec<String> = CHORES.iter().map(|chore| format!("  {:<46} {}", chore.usage(), chore.about)).collect();
+    let rows: Vec<String> = CHORES.iter().map(|chore| format!("  {:<68} {}", chore.usage(), chore.about)).collect();
     format!("Chores of the workspace\n{}", rows.join("\n"))
 }
 

@@ -10,7 +10,8 @@ mod pages;
 mod server;
 mod trial;
 
-use std::path::{Path, PathBuf};
+use crate::workspace::{root, target};
+use std::path::PathBuf;
 
 /// `cargo xtask web [--serve] [--port N]`.
 pub(crate) fn build(arguments: &[String]) -> Result<(), String> {
@@ -72,19 +73,6 @@ fn page() -> Result<PathBuf, String> {
     let folder = folder()?;
     pages::lay_out(&root()?, &made, &folder)?;
     Ok(folder)
-}
-
-/// The folder of the workspace.
-fn root() -> Result<PathBuf, String> {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .parent()
-        .map(PathBuf::from)
-        .ok_or_else(|| "the workspace has no folder".into())
-}
-
-/// Where cargo puts what it builds.
-fn target() -> Result<PathBuf, String> {
-    Ok(std::env::var_os("CARGO_TARGET_DIR").map_or(root()?.join("target"), PathBuf::from))
 }
 
 /// The folder of the page.

@@ -1,0 +1,202 @@
+//! Ten faults that a person could make, one for each part of the engine and what stands around it: do the tests notice?
+//!
+//! Every fault is put alone into a work tree of the last commit below `target/mutants`, and the tests that must fail are run there,
+//! before and after. By hand, for minutes: each fault compiles its crate anew.
+
+use crate::workspace;
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// A fault: one text of a file replaced by another.
+struct Mutant {
+    name: &'static str,
+    file: &'static str,
+    /// Stands in the file exactly once.
+    text: &'static str,
+    instead: &'static str,
+    /// The tests that must fail, as `cargo test` takes them.
+    tests: &'static [&'static str],
+}
+
+const MUTANTS: [Mutant; 10] = [
+    // Damping drives the spring.
+    Mutant {
+        name: "springs",
+        file: "crates/opruga-models/src/mass_spring/law.rs",
+        text: "thrust -= drag;",
+        instead: "thrust += drag;",
+        tests: &["--package", "opruga-models", "--test", "conformance", "mass_spring_in_the_plane"],
+    },
+    // The energy of an adiabatic gas forgets γ.
+    Mutant {
+        name: "gas",
+        file: "crates/opruga-models/src/pressure/gas.rs",
+        text: "(pressure, pressure * v / (gamma - 1.0), gamma)",
+        instead: "(pressure, pressure * v / gamma, gamma)",
+        tests: &["--package", "opruga-models", "--test", "closed_forms", "gas_laws"],
+    },
+    // The second derivative of a material has a wrong sign.
+    Mutant {
+        name: "fem",
+        file: "crates/opruga-models/src/fem/materials/neo_hookean.rs",
+        text: "let factor = p.lambda * log - p.mu;",
+        instead: "let factor = p.lambda * log + p.mu;",
+        tests: &["--package", "opruga-models", "--test", "fem", "every_material_on_every_element_in_the_plane"],
+    },
+    // Friction lets a node slide on that it should stop.
+    Mutant {
+        name: "contact",
+        file: "crates/opruga-collide/src/response.rs",
+        text: "let keep = S::select(pace.less_or_equal(most), zero, S::one() - most / pace);",
+        instead: "let keep = S::select(pace.less_or_equal(most), S::one(), S::one() - most / pace);",
+        tests: &["--package", "opruga-collide", "--test", "friction"],
+    },
+    // The iteration along a curve of equilibria takes the load of the last point for that of the next.
+    Mutant {
+        name: "statics",
+        file: "crates/opruga-integrators/src/equilibrium/arc.rs",
+        text: "time: h, h, load: now, impulse: 1.0, echo: 0.0 };",
+        instead: "time: h, h, load, impulse: 1.0, echo: 0.0 };",
+        tests: &["--package", "opruga-integrators", "--lib", "a_truss_is_followed_through_its_snap"],
+    },
+    // The normal of a triangle is read as its first corner.
+    Mutant {
+        name: "reader of STL",
+        file: "crates/opruga-io/src/shapes/stl.rs",
+        text: "record[12..48].chunks_exact(12)",
+        instead: "record[0..36].chunks_exact(12)",
+        tests: &["--package", "opruga-io", "--test", "surfaces", "every_format_gives_the_same_cube"],
+    },
+    // Nodes have other numbers than the file gives them.
+    Mutant {
+        name: "reader of TetGen",
+        file: "crates/opruga-io/src/meshes/tetgen.rs",
+        text: "found.node(number, position, place);",
+        instead: "found.node(number + 1, position, place);",
+        tests: &["--package", "opruga-io", "--test", "mesh_round_trips"],
+    },
+    // The differences between states lose their sign.
+    Mutant {
+        name: "recording",
+        file: "crates/opruga-io/src/recording/codec.rs",
+        text: "let folded = ((difference << 1) ^ (difference >> 63)) as u64;",
+        instead: "let folded = (difference << 1) as u64;",
+        tests: &["--package", "opruga-io", "--lib", "recording::codec"],
+    },
+    // The upper end of a range is left out.
+    Mutant {
+        name: "sweep",
+        file: "crates/opruga/src/sweep/grid.rs",
+        text: "k as f64 / (count - 1) as f64",
+        instead: "k as f64 / count as f64",
+        tests: &["--package", "opruga", "--lib", "ranges_reach_both_ends"],
+    },
+    // Going back in the studio keeps the future that was given up.
+    Mutant {
+        name: "studio",
+        file: "crates/opruga-studio/src/keyframes.rs",
+        text: "self.kept.retain(|(kept, _)| *kept <= frame);",
+        instead: "self.kept.retain(|(kept, _)| *kept >= frame);",
+        tests: &["--package", "opruga-studio", "--lib", "keyframes_stay_within_their_budget"],
+    },
+];
+
+/// What came of a fault.
+#[derive(Debug, PartialEq)]
+enum Verdict {
+    Caught,
+    Missed,
+}
+
+/// `cargo xtask mutants [NAME …]`: an error where the tests miss one of the faults, or where one cannot be tried.
+pub(crate) fn run(arguments: &[String]) -> Result<(), String> {
+    if let Some(unknown) = arguments.iter().find(|name| !MUTANTS.iter().any(|mutant| mutant.name == **name)) {
+        let names: Vec<&str> = MUTANTS.iter().map(|mutant| mutant.name).collect();
+        return Err(format!("there is no mutant `{unknown}`; there are {}", names.join(", ")));
+    }
+    let tree = workspace::target()?.join("mutants/tree");
+    workspace::check_out(&tree, &workspace::commit("HEAD")?)?;
+    let chosen = |mutant: &&Mutant| arguments.is_empty() || arguments.iter().any(|name| name == mutant.name);
+    let (mut failed, mut count) = (0, 0);
+    for mutant in MUTANTS.iter().filter(chosen) {
+        let verdict = attempt(mutant, &tree);
+        count += 1;
+        failed += usize::from(verdict != Ok(Verdict::Caught));
+        match verdict {
+            Ok(verdict) => println!("{}: {verdict:?}", mutant.name),
+            Err(error) => println!("{}: error: {error}", mutant.name),
+        }
+    }
+    if failed == 0 { Ok(()) } else { Err(format!("{failed} of {count} mutants are not caught")) }
+}
+
+/// Runs the tests without a fault and with it.
+fn attempt(mutant: &Mutant, tree: &Path) -> Result<Verdict, String> {
+    let path = tree.join(mutant.file);
+    let sound = workspace::read(&path)?;
+    let faulty = mutated(mutant, &sound)?;
+    let write = |text: &str| std::fs::write(&path, text).map_err(|e| format!("{}: {e}", path.display()));
+    let before = test(tree, mutant.tests, false)?;
+    if !before.status.success() || passed(&before) == 0 {
+        return Err("without it the tests fail, or there are none".into());
+    }
+    write(&faulty)?;
+    // What is not compiled is no test that fails.
+    let built = test(tree, mutant.tests, true);
+    let after = test(tree, mutant.tests, false);
+    write(&sound)?;
+    if !built?.status.success() {
+        return Err("with it the tests cannot be compiled".into());
+    }
+    Ok(if after?.status.success() { Verdict::Missed } else { Verdict::Caught })
+}
+
+/// The text of the file with the fault.
+fn mutated(mutant: &Mutant, text: &str) -> Result<String, String> {
+    match text.matches(mutant.text).count() {
+        1 => Ok(text.replace(mutant.text, mutant.instead)),
+        count => Err(format!("{} has `{}` {count} times, not once", mutant.file, mutant.text)),
+    }
+}
+
+/// Compiles tests, and runs them unless they are only to be compiled.
+fn test(tree: &Path, tests: &[&str], only_built: bool) -> Result<Output, String> {
+    let mut cargo = Command::new(env!("CARGO"));
+    let target = workspace::target()?.join("mutants/build");
+    cargo.arg("test").args(tests).current_dir(tree).env("CARGO_TARGET_DIR", target);
+    if only_built {
+        cargo.arg("--no-run");
+    }
+    cargo.output().map_err(|e| format!("cargo test: {e}"))
+}
+
+/// How many tests have passed.
+fn passed(output: &Output) -> usize {
+    let text = String::from_utf8_lossy(&output.stdout);
+    let counts = text
+        .lines()
+        .filter_map(|line| line.strip_prefix("test result: ok. ")?.split(' ').next()?.parse::<usize>().ok());
+    counts.sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_text_that_does_not_stand_there_once_is_no_mutant() {
+        let mutant = &MUTANTS[0];
+        assert_eq!(mutated(mutant, "a thrust -= drag; b"), Ok("a thrust += drag; b".into()));
+        for text in ["", "thrust -= drag; thrust -= drag;"] {
+            assert!(mutated(mutant, text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn mutants_have_names_of_their_own_and_change_something() {
+        for (number, mutant) in MUTANTS.iter().enumerate() {
+            assert!(MUTANTS[..number].iter().all(|other| other.name != mutant.name));
+            assert_ne!(mutant.text, mutant.instead, "{}", mutant.name);
+        }
+    }
+}
