@@ -335,6 +335,7 @@ fn print<const D: usize>(
             "shortest_edge": quality.shortest_edge, "longest_edge": quality.longest_edge,
             "groups": mesh.groups.keys().collect::<Vec<_>>(), "cell_groups": mesh.cell_groups.keys().collect::<Vec<_>>(),
             "cell_values": mesh.cell_values.keys().collect::<Vec<_>>(),
+            "node_values": mesh.node_values.keys().collect::<Vec<_>>(),
             "warnings": warnings, "left_out": left_out, "files": files,
         });
         return print_data(&format!("{row}\n"));
@@ -361,6 +362,7 @@ fn print<const D: usize>(
         ("groups of nodes", mesh.groups.keys().collect::<Vec<_>>()),
         ("groups of cells", mesh.cell_groups.keys().collect()),
         ("values of cells", mesh.cell_values.keys().collect()),
+        ("values of nodes", mesh.node_values.keys().collect()),
     ] {
         if !list.is_empty() {
             text += &format!("{what}: {}\n", names(list));

@@ -46,8 +46,8 @@ pub(crate) const NUMBERS: Limit = Limit { code: "limit.numbers", most: 1 << 20, 
 /// Meshes are compressed to a byte for every one or two of their numbers; zeros to a byte for a thousand.
 pub(crate) const NUMBERS_PER_BYTE: u64 = 8;
 
-/// Values of cells, and cells in groups: names times cells, whether a file gives them all or leaves most of them out.
-pub(crate) const VALUES: Limit = Limit { code: "limit.values", most: 1 << 25, what: "values or memberships of cells" };
+/// Values of cells and numbers of nodes, and cells in groups: names times cells, whether a file gives them all or leaves most of them out.
+pub(crate) const VALUES: Limit = Limit { code: "limit.values", most: 1 << 25, what: "values or memberships in groups" };
 
 /// What is left out of a file is listed up to so many; the rest is counted.
 pub(crate) const NOTICES: usize = 50;

@@ -339,6 +339,8 @@ mod tests {
         let (again, left_out) = file.assemble::<3>(crate::meshes::Mending::default()).expect("a body");
         assert_eq!((&again.positions, &again.cells), (&moved, &mesh.cells));
         assert_eq!(again.cell_values["group some"][..2], [0.0, 1.0]);
-        assert_eq!(left_out.len(), 3, "displacement, velocity and stress are no part of a body at rest");
+        assert_eq!(again.node_values["velocity [m/s]"].values, vec![0.0; 3 * mesh.nodes()]);
+        assert_eq!(again.node_values["displacement [m]"].values[..3], [0.0, 0.0, 0.0]);
+        assert_eq!(left_out.len(), 1, "stress is no part of a body at rest");
     }
 }

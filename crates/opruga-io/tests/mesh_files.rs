@@ -292,7 +292,8 @@ fn what_no_body_can_be_made_of_is_refused_with_its_line() {
         (plate("", &TWO).replace("2.2 0", "4 0"), "msh.version", 2, "4"),
         (plate("", &TWO).replace("$EndNodes", "$EndNode"), "msh.syntax", 10, "$EndNode"),
         (plate("", &TWO) + "$Elements\n", "msh.syntax", 16, "$Elements"),
-        (plate("", &TWO) + "$NodeData\n1\n", "msh.syntax", 16, "$NodeData"),
+        (plate("", &TWO) + "$Periodic\n1\n", "msh.syntax", 16, "$Periodic"),
+        (plate("", &TWO) + "$NodeData\n1\n", "msh.syntax", 17, "end of file"),
     ] {
         let error = body::<2>("a.msh", file.as_bytes(), Mending::default()).map(|_| file.clone()).unwrap_err();
         println!("{error}");

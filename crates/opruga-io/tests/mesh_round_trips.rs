@@ -8,7 +8,7 @@ use opruga_io::Files;
 use opruga_io::SceneError;
 use opruga_io::meshes::{Mending, read, write};
 use opruga_io::scene;
-use opruga_mesh::{Cells, Mesh};
+use opruga_mesh::{Cells, Mesh, NodeValues};
 use opruga_world::blueprint::AnyBlueprint;
 use std::collections::BTreeMap;
 use std::io::Write as _;
@@ -35,6 +35,13 @@ fn solid() -> Mesh<3> {
     mesh.cell_groups.insert("hard rubber".into(), vec![0, 2, 5]);
     mesh.cell_groups.insert("end".into(), vec![2]);
     mesh.cell_values.insert("Young's modulus".into(), vec![1e5, 2.5, 1e-7, 0.1, 3.0, 1.0 / 3.0]);
+    let nodes = mesh.nodes();
+    let of_nodes = |components: usize, from: f64| NodeValues {
+        components,
+        values: (0..components * nodes).map(|k| from + k as f64 / 3.0).collect(),
+    };
+    mesh.node_values =
+        BTreeMap::from([("v [m/s]".to_string(), of_nodes(3, -2.0)), ("T".to_string(), of_nodes(1, 1e-7))]);
     mesh
 }
 
@@ -83,6 +90,7 @@ fn gmsh_keeps_cells_groups_and_values() {
     let read = again(&quadratic, "msh");
     assert_eq!((&read.cells, &read.positions), (&quadratic.cells, &quadratic.positions));
     assert_eq!(read.cell_values, quadratic.cell_values);
+    assert_eq!(read.node_values, quadratic.node_values);
 }
 
 #[test]
@@ -93,6 +101,7 @@ fn vtk_keeps_cells_and_values() {
             let read = again(&mesh, ending);
             assert_eq!((&read.positions, &read.cells), (&mesh.positions, &mesh.cells), "{ending}");
             assert_eq!(read.cell_values, mesh.cell_values, "{ending}");
+            assert_eq!(read.node_values, mesh.node_values, "{ending}");
             assert_eq!(write(&mesh, ending).unwrap().left_out.len(), 1, "groups are told of");
         }
         let (mesh, read) = (plate(), again(&plate(), ending));
@@ -215,7 +224,8 @@ fn one(bytes: &[u8]) -> Result<(Mesh<3>, Vec<SceneError>), SceneError> {
 #[test]
 fn all_codings_of_vtk_xml_give_the_same_mesh() {
     let (expected, notices) = one(text_vtu().as_bytes()).unwrap();
-    assert_eq!(notices.len(), 1, "values of points are left out, and counted");
+    assert_eq!(notices, []);
+    assert_eq!(expected.node_values["u"].values, [1.0, 2.0, 3.0, 4.0]);
     assert_eq!((expected.cells.tetrahedra[0], expected.cell_values["E"][0]), ([0, 1, 2, 3], 2.5e6));
 
     let inline = |texts: [String; 5]| texts.map(|text| format!("format=\"binary\">{text}"));

@@ -153,6 +153,18 @@ pub enum MeshError {
         /// Number of cells of the mesh.
         cells: usize,
     },
+    /// Values of nodes are more or fewer than there are nodes.
+    #[error("`{name}` has {values} numbers, {components} a node, for {nodes} nodes")]
+    NodeValues {
+        /// Name of the quantity.
+        name: String,
+        /// Number of numbers.
+        values: usize,
+        /// Numbers that a node has.
+        components: usize,
+        /// Number of nodes of the mesh.
+        nodes: usize,
+    },
     /// Something that only triangles and tetrahedra can do was asked of another cell.
     #[error("a {element} is no triangle or tetrahedron; it has to be cut into these first")]
     NotSimplices {

@@ -69,7 +69,7 @@ pub use face::{CutFace, FaceError, cut_face};
 pub use geometry::signed_volume;
 pub use jacobian::{LeastJacobian, jacobian_at, least_jacobian};
 pub use measure::{Measure, Share};
-pub use mesh::{Cells, MAXIMUM_NODES, Mesh};
+pub use mesh::{Cells, MAXIMUM_NODES, Mesh, NodeValues};
 pub use plane::LARGEST_ANGLE;
 pub use polygon::Polygon;
 pub use quadratic::{TETRAHEDRON_EDGES, TETRAHEDRON_SHARES, TRIANGLE_SHARES, TRIANGLE_SIDES, triangle_parts};

@@ -106,8 +106,19 @@ pub struct Mesh<const D: usize> {
     pub cell_groups: BTreeMap<String, Vec<u32>>,
     /// Named numbers, one per cell in the order of [`Cells::iter`], such as the parameters of a material; NaN for a cell that has none.
     pub cell_values: BTreeMap<String, Vec<f64>>,
+    /// Named numbers or vectors of nodes, such as a velocity that another program has computed.
+    pub node_values: BTreeMap<String, NodeValues>,
     /// What is drawn instead of the boundary, in space only.
     pub skin: Option<Skin>,
+}
+
+/// Numbers or vectors, one per node.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NodeValues {
+    /// How many numbers a node has.
+    pub components: usize,
+    /// The numbers, node by node; NaN for a node that has none.
+    pub values: Vec<f64>,
 }
 
 /// A row of elements as (kind, index, nodes).
@@ -142,7 +153,8 @@ impl<const D: usize> Mesh<D> {
     ///
     /// # Errors
     /// [`MeshError::TooManyNodes`], [`MeshError::IndexOutOfRange`], [`MeshError::RepeatedNode`], [`MeshError::WrongDimension`],
-    /// [`MeshError::SheetPairing`], [`MeshError::CellOutOfRange`] or [`MeshError::CellValues`], whichever is met first. [`Mesh::check`] lists every problem instead.
+    /// [`MeshError::SheetPairing`], [`MeshError::CellOutOfRange`], [`MeshError::CellValues`] or [`MeshError::NodeValues`], whichever is met first.
+    /// [`Mesh::check`] lists every problem instead.
     pub fn validate(&self) -> Result<(), MeshError> {
         const { assert!(D == 2 || D == 3, "bodies live in the plane or in space") }
         limit_nodes(self.positions.len() as u64)?;
@@ -179,6 +191,14 @@ impl<const D: usize> Mesh<D> {
         }
         if let Some((name, values)) = self.cell_values.iter().find(|(_, values)| values.len() != cells) {
             return Err(MeshError::CellValues { name: name.clone(), values: values.len(), cells });
+        }
+
+        // Values of nodes.
+        for (name, field) in &self.node_values {
+            if field.components == 0 || field.components.checked_mul(self.nodes()) != Some(field.values.len()) {
+                let (components, values) = (field.components, field.values.len());
+                return Err(MeshError::NodeValues { name: name.clone(), values, components, nodes: self.nodes() });
+            }
         }
 
         // Sheet quadrilaterals: each the union of its two triangles.

@@ -126,7 +126,7 @@ impl<const D: usize> Mesh<D> {
     /// The same body of quadratic cells: every triangle and tetrahedron gets a node in the middle of each of its edges.
     ///
     /// Corners keep their numbers; the new nodes follow, in the order of (lower corner, higher corner). A new node joins every node group that holds
-    /// both ends of its edge. Cells keep their groups and values. Facets are found anew; sides are straight. Quadratic cells stay as they are, and lend
+    /// both ends of its edge, and has the mean of their values. Cells keep their groups and values. Facets are found anew; sides are straight. Quadratic cells stay as they are, and lend
     /// their nodes to neighbours that share an edge.
     ///
     /// # Errors
@@ -171,6 +171,13 @@ impl<const D: usize> Mesh<D> {
             *node = self.positions.len() as u32;
             let (p, q) = (self.positions[a as usize], self.positions[b as usize]);
             self.positions.push(core::array::from_fn(|axis| 0.5 * (p[axis] + q[axis])));
+            for field in self.node_values.values_mut() {
+                let width = field.components;
+                for k in 0..width {
+                    let of = |node: u32| field.values[node as usize * width + k];
+                    field.values.push(0.5 * (of(a) + of(b)));
+                }
+            }
             for nodes in self.groups.values_mut() {
                 if nodes.binary_search(&a).is_ok() && nodes.binary_search(&b).is_ok() {
                     nodes.push(*node);

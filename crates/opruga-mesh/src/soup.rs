@@ -152,6 +152,10 @@ impl<const D: usize> Mesh<D> {
             nodes.retain(|node| used[*node as usize]);
             nodes.iter_mut().for_each(renumber);
         }
+        for field in self.node_values.values_mut() {
+            let rows = field.values.chunks_exact(field.components.max(1)).zip(&used);
+            field.values = rows.filter(|(_, used)| **used).flat_map(|(row, _)| row).copied().collect();
+        }
         dropped
     }
 }

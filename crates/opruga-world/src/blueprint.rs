@@ -127,6 +127,8 @@ pub struct BodyBlueprint<const D: usize> {
     pub angular_velocity: Vec<f64>,
     /// Gradient of the velocity at the start G = ∂v/∂x, row by row [1/s]: what G (x − c) adds about the centre of mass c.
     pub velocity_gradient: [[f64; D]; D],
+    /// What every node has besides at the start [m/s], one row per node; empty: nothing.
+    pub node_velocities: Arc<[[f64; D]]>,
     /// How much it weighs.
     pub mass: Mass,
     /// Depth out of the plane in 2D; in 3D the thickness of a sheet or the width of a wire, for the mass by density alone [m].

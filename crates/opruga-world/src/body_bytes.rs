@@ -55,7 +55,8 @@ impl Writer<'_> {
         self.text(&body.name);
         self.vectors(&[body.translation, body.velocity]);
         self.numbers(&body.angular_velocity);
-        self.vectors(&body.velocity_gradient);
+        // The rows of the gradient, then the velocities of nodes, of which most bodies have none.
+        self.vectors(&[&body.velocity_gradient[..], &body.node_velocities].concat());
         let (kind, numbers): (u64, &[f64]) = match &body.mass {
             Mass::Total(mass) => (0, std::slice::from_ref(mass)),
             Mass::Density(density) => (1, std::slice::from_ref(density)),
@@ -193,7 +194,9 @@ impl Reader<'_> {
         let name = self.text()?;
         let [translation, velocity] = self.vectors::<D>()?[..] else { return Err(damaged("a body")) };
         let angular_velocity = self.numbers()?;
-        let Ok(velocity_gradient) = self.vectors::<D>()?.try_into() else { return Err(damaged("a body")) };
+        let rows = self.vectors::<D>()?;
+        let Some((gradient, node_velocities)) = rows.split_at_checked(D) else { return Err(damaged("a body")) };
+        let velocity_gradient = core::array::from_fn(|row| gradient[row]);
         let (kind, numbers) = (self.count()?, self.numbers()?);
         let mass = match (kind, numbers.as_slice()) {
             (0, [mass]) => Mass::Total(*mass),
@@ -223,6 +226,7 @@ impl Reader<'_> {
             velocity,
             angular_velocity,
             velocity_gradient,
+            node_velocities: Arc::from(node_velocities),
             mass,
             thickness,
             integrator,

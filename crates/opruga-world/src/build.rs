@@ -82,7 +82,8 @@ pub(crate) fn initial_state<const D: usize>(body: &BodyBlueprint<D>) -> BodyStat
     let stretches = body.velocity_gradient != [[0.0; D]; D];
     let v = x
         .iter()
-        .map(|p| {
+        .enumerate()
+        .map(|(node, p)| {
             let mut v = body.velocity;
             let r: [f64; D] = core::array::from_fn(|d| p[d] - center[d]);
             if D == 2 && spin.len() == 1 {
@@ -100,6 +101,9 @@ pub(crate) fn initial_state<const D: usize>(body: &BodyBlueprint<D>) -> BodyStat
                         *v += row[d] * r[d];
                     }
                 }
+            }
+            if let Some(own) = body.node_velocities.get(node) {
+                v.iter_mut().zip(own).for_each(|(v, own)| *v += own);
             }
             v
         })

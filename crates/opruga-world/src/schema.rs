@@ -348,8 +348,8 @@ pub const VELOCITY: Section = Section {
     spec: &section(
         "velocity",
         "The velocity at the start as a field",
-        "v = linear + angular × (x − c) + gradient (x − c), where c is the centre of mass of the body and x where a node is at \
-         the start.",
+        "v = linear + angular × (x − c) + gradient (x − c) + of_nodes, where c is the centre of mass of the body and x where a node \
+         is at the start.",
         &[
             Field::new("linear", Allowed::Vector, "m/s", Default::Origin, "The velocity of the centre of mass."),
             Field::new(
@@ -358,6 +358,13 @@ pub const VELOCITY: Section = Section {
                 "1/s",
                 Default::Absent,
                 "∂v/∂x, a row for every axis: `[[0.1, 0], [0, 0]]` stretches the plane along x, `[[0, 1], [0, 0]]` shears it.",
+            ),
+            Field::new(
+                "of_nodes",
+                Allowed::Text,
+                "",
+                Default::Absent,
+                "The name of vectors of the mesh file, one per node, that are velocities [m/s]: they turn with `rotation`, `scale` leaves them.",
             ),
         ],
     ),

@@ -313,6 +313,18 @@ fn numbers<const D: usize>(body: &BodyBlueprint<D>) -> Result<(), Fault> {
     range::<D>(&Allowed::Vector, "velocity", Value::Numbers(body.velocity.to_vec()))?;
     let gradient = body.velocity_gradient.iter().map(|row| row.to_vec()).collect();
     range::<D>(&Allowed::Points, "velocity", Value::Rows(gradient))?;
+    if !(body.node_velocities.is_empty() || body.node_velocities.len() == body.mesh.nodes()) {
+        return Err(Fault {
+            code: "scene.length",
+            field: "velocity",
+            message: format!("{} nodes have a velocity", body.node_velocities.len()),
+            value: body.node_velocities.len().to_string(),
+            allowed: format!("none, or each of {} nodes", body.mesh.nodes()),
+        });
+    }
+    for velocity in body.node_velocities.iter() {
+        range::<D>(&Allowed::Vector, "velocity", Value::Numbers(velocity.to_vec()))?;
+    }
     let turns = if D == 2 { 1 } else { 3 };
     if !(body.angular_velocity.is_empty() || body.angular_velocity.len() == turns) {
         return Err(Fault {

@@ -95,6 +95,7 @@ fn scene<const D: usize>(
         velocity: [0.2; D],
         angular_velocity: Vec::new(),
         velocity_gradient: [[0.0; D]; D],
+        node_velocities: Arc::from([]),
         mass: Mass::Total(1.0),
         thickness: 1.0,
         integrator: None,

@@ -53,6 +53,7 @@ fn body<const D: usize>(mesh: Mesh<D>, mass: &str, integrator: &str) -> Blueprin
             velocity: [0.0; D],
             angular_velocity: Vec::new(),
             velocity_gradient: [[0.0; D]; D],
+            node_velocities: Arc::from([]),
             mass: Mass::Density(DENSITY),
             thickness: 0.1,
             integrator: None,

@@ -90,6 +90,7 @@ pub(crate) fn rings(bodies: usize, vertices: usize, integrator: &str) -> Result<
         velocity: [0.0, 0.0],
         angular_velocity: Vec::new(),
         velocity_gradient: [[0.0; 2]; 2],
+        node_velocities: Arc::from([]),
         mass: Mass::Node(1.0),
         thickness: 1.0,
         integrator: None,

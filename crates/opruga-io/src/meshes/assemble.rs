@@ -23,17 +23,19 @@ pub struct Mending {
 /// `mesh.empty`, `mesh.dimension`, `mesh.mixed_dimension`, `mesh.degenerate_element`, `mesh.duplicate_element`, `mesh.inverted`,
 /// `mesh.unreferenced`, `mesh.non_manifold`, with the place of the element or node.
 pub(super) fn assemble<const D: usize>(
-    found: Found,
+    mut found: Found,
     nodes: &Scanner<'_>,
     items: &Scanner<'_>,
     mending: Mending,
 ) -> Result<(Mesh<D>, Vec<SceneError>), SceneError> {
+    // Nodes keep their order, so these are theirs as they stand.
+    let node_values = std::mem::take(&mut found.node_values);
     let work = Assembly { found: &found, nodes, items };
     let dimension = work.dimension::<D>()?;
     let mut notices = found.all_notices();
     let stored = Stored::of(&found.positions, found.items.iter().map(Item::nodes), found.single);
     notices.extend(stored.told().map_err(|error| work.file(error))?);
-    let mut mesh = Mesh::<D> { positions: work.positions(&mut notices)?, ..Mesh::default() };
+    let mut mesh = Mesh::<D> { positions: work.positions(&mut notices)?, node_values, ..Mesh::default() };
     // Cells are counted kind by kind: `order` says which item each of them was.
     let order = work.order(dimension);
     work.distinct(&order)?;

@@ -2,7 +2,9 @@
 
 use super::scanner::Scanner;
 use crate::budget::{NOTICES, VALUES};
-use crate::problem::SceneError;
+use crate::problem::{SceneError, visible};
+use opruga_mesh::NodeValues;
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Elements that Opruga knows, numbered as in [`opruga_mesh::Cells`].
@@ -101,11 +103,13 @@ pub(crate) struct Found {
     pub(crate) node_groups: BTreeMap<String, Vec<u32>>,
     /// Named numbers, one per item; NaN for items that have none.
     pub(crate) item_values: BTreeMap<String, Vec<f64>>,
+    /// Named numbers and vectors of nodes; NaN for nodes that have none.
+    pub(crate) node_values: BTreeMap<String, NodeValues>,
     /// What is left out, up to a number.
     notices: Vec<SceneError>,
     /// What more is left out.
     more: usize,
-    /// Values of items and memberships in groups.
+    /// Values of items and nodes, and memberships in groups.
     given: u64,
     /// Whether the file holds coordinates of 4 bytes each.
     pub(crate) single: bool,
@@ -161,6 +165,35 @@ impl Found {
         Ok(())
     }
 
+    /// Adds values of the nodes from one on, as many as follow it; those before it that have none are NaN.
+    ///
+    /// # Errors
+    /// `limit.values`; `mesh.components` where nodes before them have another number of components under this name.
+    pub(super) fn values_of_nodes(
+        &mut self,
+        name: &str,
+        first: usize,
+        components: usize,
+        own: impl Iterator<Item = f64>,
+    ) -> Result<(), SceneError> {
+        let known = self.node_values.get(name).map_or(0, |known| known.values.len());
+        let end = self.positions.len() * components;
+        self.gives(end.saturating_sub(known))?;
+        let field = match self.node_values.entry(name.to_string()) {
+            Entry::Vacant(free) => free.insert(NodeValues { components, values: Vec::new() }),
+            Entry::Occupied(taken) if taken.get().components == components => taken.into_mut(),
+            Entry::Occupied(taken) => {
+                let before = taken.get().components;
+                let message = format!("nodes have {before} numbers `{}`, and others {components}", visible(name));
+                let error = SceneError::new("mesh.components", message).value(components.to_string());
+                return Err(error.allowed(before.to_string()));
+            }
+        };
+        field.values.resize(first * components, f64::NAN);
+        field.values.extend(own);
+        Ok(())
+    }
+
     /// Counts values of items and memberships in groups.
     ///
     /// # Errors
@@ -191,6 +224,11 @@ impl Found {
         }
         all
     }
+}
+
+/// Whether values of so many components are kept for every node: numbers, and vectors of the plane and of space. Tensors have no use here.
+pub(super) fn is_kept(components: u64) -> bool {
+    (1..=3).contains(&components)
 }
 
 /// From the numbers of a file to places in a list.

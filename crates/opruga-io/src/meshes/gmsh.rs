@@ -1,18 +1,18 @@
-//! Gmsh, versions 2.2 and 4.1, as text or as bytes of either order: sections, names of groups, values of elements.
+//! Gmsh, versions 2.2 and 4.1, as text or as bytes of either order: sections, names of groups, values of elements and nodes.
 //!
 //! Physical groups become groups: those of points, curves and surfaces of nodes, those of what fills the body of nodes and of cells. A group without a
-//! name is called after its dimension and number: `curve 3`. `$ElementData` of one component becomes a value of cells.
+//! name is called after its dimension and number: `curve 3`. `$ElementData` of one component becomes a value of cells, `$NodeData` of up to three a value of nodes.
 //!
 //! # Source
 //! C. Geuzaine, J.-F. Remacle, Gmsh reference manual, "MSH file format" and "Legacy formats".
 
-use super::found::{Found, Kind, Numbers, SUPPORTED, one};
+use super::found::{Found, Kind, Numbers, SUPPORTED, is_kept, one};
 use super::scanner::Scanner;
 use super::{gmsh_2, gmsh_4};
 use crate::problem::{SceneError, visible};
 use opruga_math::words::counted;
+use opruga_mesh::NodeValues;
 use std::collections::BTreeMap;
-use std::collections::btree_map::Entry;
 
 pub(super) const SYNTAX: &str = "msh.syntax";
 pub(super) const SIZE: &str = "msh.size";
@@ -93,7 +93,8 @@ pub(super) fn read(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
                 }
                 elements = true;
             }
-            "ElementData" if elements => element_data(scanner, &mut context)?,
+            "ElementData" if elements => data(scanner, &mut context, None)?,
+            "NodeData" if numbers.is_some() => data(scanner, &mut context, numbers.as_ref())?,
             "Nodes" | "Elements" | "Entities" if modern || section != "Entities" => {
                 let error = scanner.error(SYNTAX, format!("there is a second section ${section}"), from);
                 return Err(error.value(format!("${section}")).allowed("one"));
@@ -197,9 +198,13 @@ fn skip(scanner: &mut Scanner<'_>, section: &str, from: usize, found: &mut Found
     Ok(())
 }
 
-/// `$ElementData`: a number for every element, or for some.
-fn element_data(scanner: &mut Scanner<'_>, context: &mut Context) -> Result<(), SceneError> {
+/// `$ElementData`, a number for every element or for some; `$NodeData`, a number or a vector of nodes, whose numbers are given then.
+fn data(scanner: &mut Scanner<'_>, context: &mut Context, nodes: Option<&Numbers>) -> Result<(), SceneError> {
     let found = &mut context.found;
+    let (section, number_of, there) = match nodes {
+        Some(_) => ("NodeData", "the number of a node", found.positions.len()),
+        None => ("ElementData", "the number of an element", found.items.len()),
+    };
     let start = scanner.at;
     let (texts, from) = scanner.whole::<u64>(SYNTAX, "the number of texts")?;
     let texts = scanner.fits(SIZE, texts, 2, "texts", from)?;
@@ -224,60 +229,82 @@ fn element_data(scanner: &mut Scanner<'_>, context: &mut Context) -> Result<(), 
         let error = scanner.error(SYNTAX, "step, components and count of values are missing", from);
         return Err(error.value(tags.len().to_string()).allowed("3 whole tags or more"));
     };
-    if components != 1 {
+    if components != 1 && !(nodes.is_some() && is_kept(components)) {
         found.left_out(
             format!("values of {components} components are left out: `{}`", visible(&name)),
             components.to_string(),
         );
         scanner.at = start;
-        let end = b"$EndElementData";
-        let place = scanner.bytes[start..].windows(end.len()).position(|window| window == end);
+        let end = format!("$End{section}");
+        let place = scanner.bytes[start..].windows(end.len()).position(|window| window == end.as_bytes());
         return match place {
             Some(place) => {
                 scanner.at += place;
                 Ok(())
             }
-            None => Err(scanner.ends(SYNTAX, "`$EndElementData`")),
+            None => Err(scanner.ends(SYNTAX, &format!("`{end}`"))),
         };
     }
+    let width = components as usize;
     scanner.line_end(SYNTAX, "the count of values")?;
-    if context.order.len() != found.items.len() {
+    if nodes.is_none() && context.order.len() != there {
         context.order = found.items.iter().zip(0..).map(|(item, k)| (item.number, k)).collect();
         context.order.sort_unstable();
     }
     let order = &context.order;
-    // Elements that have no value take room too.
-    found.gives(found.items.len()).map_err(|e| scanner.at(e, from))?;
-    let mut values = vec![f64::NAN; found.items.len()];
-    for _ in 0..scanner.fits(SIZE, count, 4, "values", from)? {
+    // What has no value takes room too.
+    found.gives(there * width).map_err(|e| scanner.at(e, from))?;
+    let mut values = vec![f64::NAN; there * width];
+    for _ in 0..scanner.fits(SIZE, count, 2 + 2 * components, "values", from)? {
         if !scanner.binary {
             scanner.peek();
         }
         let place = scanner.at;
-        let (number, value) = if scanner.binary {
-            let number = scanner.binary_i32(SIZE, "the number of an element")?;
-            (number as u64, scanner.binary_f64(SIZE, "a value")?)
+        let number = if scanner.binary {
+            scanner.binary_i32(SIZE, number_of)? as u64
         } else {
-            (scanner.whole::<u64>(SYNTAX, "the number of an element")?.0, scanner.number(SYNTAX, "a value")?)
+            scanner.whole::<u64>(SYNTAX, number_of)?.0
         };
-        let Ok(at) = order.binary_search_by_key(&number, |entry| entry.0) else {
-            let error =
-                scanner.error("mesh.index", format!("a value names element {number}, which is not there"), place);
-            return Err(error.value(number.to_string()).allowed("the number of an element"));
+        let at = match nodes {
+            Some(nodes) => nodes.node(number, scanner, "a value", place)? as usize,
+            None => match order.binary_search_by_key(&number, |entry| entry.0) {
+                Ok(at) => order[at].1,
+                Err(_) => {
+                    let message = format!("a value names element {number}, which is not there");
+                    let error = scanner.error("mesh.index", message, place);
+                    return Err(error.value(number.to_string()).allowed("the number of an element"));
+                }
+            },
         };
-        let slot = &mut values[order[at].1];
-        if !slot.is_nan() {
-            let error = scanner.error("mesh.duplicate_element", format!("a value names element {number} twice"), place);
-            return Err(error.value(number.to_string()).allowed("every element once"));
+        let row = &mut values[at * width..(at + 1) * width];
+        if !row[0].is_nan() {
+            let (code, message, allowed) = match nodes {
+                Some(_) => ("mesh.duplicate_node", format!("a value names node {number} twice"), "every node once"),
+                None => {
+                    ("mesh.duplicate_element", format!("a value names element {number} twice"), "every element once")
+                }
+            };
+            return Err(scanner.error(code, message, place).value(number.to_string()).allowed(allowed));
         }
-        *slot = value;
+        for slot in row {
+            *slot = if scanner.binary {
+                scanner.binary_f64(SIZE, "a value")?
+            } else {
+                scanner.number(SYNTAX, "a value")?
+            };
+        }
     }
-    match found.item_values.entry(name) {
-        Entry::Vacant(first) => {
-            first.insert(values);
-        }
-        // A body at rest has one number, that of the first step.
-        Entry::Occupied(first) => *context.later.entry(first.key().clone()).or_default() += 1,
+    // A body at rest has one number, that of the first step.
+    let known = match nodes {
+        Some(_) => found.node_values.contains_key(&name),
+        None => found.item_values.contains_key(&name),
+    };
+    if known {
+        *context.later.entry(name).or_default() += 1;
+    } else if nodes.is_some() {
+        found.node_values.insert(name, NodeValues { components: width, values });
+    } else {
+        found.item_values.insert(name, values);
     }
     Ok(())
 }

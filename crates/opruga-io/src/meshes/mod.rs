@@ -1,4 +1,4 @@
-//! Meshes of other programs: nodes, elements of all kinds, groups and values of cells, from files and to files.
+//! Meshes of other programs: nodes, elements of all kinds, groups, values of cells and nodes, from files and to files.
 //!
 //! ```text
 //! .msh (Gmsh 2.2, 4.1) ─┐

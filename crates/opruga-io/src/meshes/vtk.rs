@@ -1,9 +1,9 @@
-//! Legacy VTK: unstructured grids as text or binary, with values of cells. Versions 1 to 5.
+//! Legacy VTK: unstructured grids as text or binary, with values of cells and nodes. Versions 1 to 5.
 //!
 //! # Source
 //! Kitware, "VTK File Formats", <https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html>.
 
-use super::found::{Found, Kind, SUPPORTED};
+use super::found::{Found, Kind, SUPPORTED, is_kept};
 use super::scanner::Scanner;
 use super::vtk_numbers::{Number, Value};
 use crate::problem::{SceneError, visible};
@@ -326,7 +326,7 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// Keeps values of cells of one component, and counts others.
+    /// Keeps values of cells of one component and those of nodes of up to three, and counts others.
     fn keep(
         &mut self,
         (name, at): (&str, usize),
@@ -337,9 +337,17 @@ impl Reader<'_, '_> {
         match of {
             Some((true, _)) if components == 1 => {
                 if self.found.item_values.contains_key(name) {
-                    return Err(twice(self.scanner.error(SYNTAX, values_twice(name), at), name));
+                    return Err(twice(self.scanner.error(SYNTAX, values_twice(false, name), at), name));
                 }
                 self.found.item_values.insert(name.to_string(), values.into_iter().map(|x| x.0).collect());
+            }
+            Some((false, _)) if is_kept(components) => {
+                if self.found.node_values.contains_key(name) {
+                    return Err(twice(self.scanner.error(SYNTAX, values_twice(true, name), at), name));
+                }
+                let numbers = values.into_iter().map(|x| x.0);
+                let kept = self.found.values_of_nodes(name, 0, components as usize, numbers);
+                kept.map_err(|error| self.scanner.at(error, at))?;
             }
             // Data of the whole file is no part of the body: time, cycle and the like.
             None => {}
@@ -441,9 +449,14 @@ impl Reader<'_, '_> {
     }
 }
 
-/// What is said where cells have values of one name twice.
-pub(super) fn values_twice(name: &str) -> String {
-    format!("the cells have values `{}` twice", visible(name))
+/// What is said where cells or points have values of one name twice.
+pub(super) fn values_twice(of_points: bool, name: &str) -> String {
+    let name = visible(name);
+    if of_points {
+        format!("the points have values `{name}` twice")
+    } else {
+        format!("the cells have values `{name}` twice")
+    }
 }
 
 /// An error at the second of them.

@@ -3,7 +3,7 @@
 //! # Source
 //! Kitware, "VTK XML Formats", <https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html>.
 
-use super::found::Found;
+use super::found::{Found, is_kept};
 use super::scanner::Scanner;
 use super::vtk;
 use super::vtk_numbers::{Number, Value};
@@ -130,11 +130,14 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Found, SceneError> {
         any = true;
         reader.piece(piece, &mut found)?;
     }
-    // Cells that have no value take room too.
+    // Cells and nodes that have no value take room too.
     let items = found.items.len();
-    let missing = found.item_values.values().map(|values| items - values.len()).sum();
+    let nodes = found.positions.len();
+    let of_nodes = found.node_values.values().map(|field| nodes * field.components - field.values.len());
+    let missing = found.item_values.values().map(|values| items - values.len()).chain(of_nodes).sum();
     found.gives(missing).map_err(|e| marked(&scanner, root, e))?;
     found.item_values.values_mut().for_each(|values| values.resize(items, f64::NAN));
+    found.node_values.values_mut().for_each(|field| field.values.resize(nodes * field.components, f64::NAN));
     if !any {
         return Err(at(&scanner, root, SYNTAX, "there is no piece")
             .value("0")
@@ -237,22 +240,46 @@ impl Reader<'_> {
             })?;
             start = end;
         }
-        self.data(piece, cells, first_cell, found)
+        self.data(piece, (cells, first_cell), (points, first as usize), found)
     }
 
-    /// Values of cells of one component; others, and those of points, are counted.
-    fn data(&self, piece: Node<'_, '_>, cells: u64, first: usize, found: &mut Found) -> Result<(), SceneError> {
-        self.only(piece, ("<CellData>", "<CellData>"), |node| node.has_tag_name("CellData"))?;
+    /// Values of cells of one component, and those of points of up to three; others are counted.
+    fn data(
+        &self,
+        piece: Node<'_, '_>,
+        (cells, first): (u64, usize),
+        (points, first_point): (u64, usize),
+        found: &mut Found,
+    ) -> Result<(), SceneError> {
+        for tag in ["CellData", "PointData"] {
+            let what = format!("<{tag}>");
+            self.only(piece, (&what, &what), |node| node.has_tag_name(tag))?;
+        }
         let mut names = BTreeSet::new();
         for (of, node) in piece.children().filter(Node::is_element).flat_map(|parent| {
             parent.children().filter(|n| n.has_tag_name("DataArray")).map(move |n| (parent.tag_name().name(), n))
         }) {
             let name = node.attribute("Name").unwrap_or("values");
-            let single = matches!(node.attribute("NumberOfComponents"), None | Some("1" | "0"));
+            let components = match node.attribute("NumberOfComponents") {
+                None | Some("1" | "0") => 1,
+                Some(text) => text.trim().parse().unwrap_or(0),
+            };
+            // Arrays of texts have a type of their own.
+            let numbers = node.attribute("type").and_then(Number::of_xml).is_some();
+            let second =
+                || vtk::twice(at(self.scanner, node, SYNTAX, vtk::values_twice(of == "PointData", name)), name);
             match of {
-                "CellData" if single => {
-                    if !names.insert(name) {
-                        return Err(vtk::twice(at(self.scanner, node, SYNTAX, vtk::values_twice(name)), name));
+                "PointData" if numbers && is_kept(components) => {
+                    if !names.insert((of, name)) {
+                        return Err(second());
+                    }
+                    let own = self.values(node, points * components)?;
+                    let kept = found.values_of_nodes(name, first_point, components as usize, own.into_iter());
+                    kept.map_err(|e| marked(self.scanner, node, e))?;
+                }
+                "CellData" if components == 1 => {
+                    if !names.insert((of, name)) {
+                        return Err(second());
                     }
                     let own = self.values(node, cells)?;
                     let before = found.item_values.get(name).map_or(0, Vec::len);

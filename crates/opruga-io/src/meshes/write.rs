@@ -20,7 +20,7 @@ pub struct Written {
     pub left_out: Vec<String>,
 }
 
-/// Writes the cells of a mesh, its groups and values of cells, in the format of an ending (without the dot).
+/// Writes the cells of a mesh, its groups, values of cells and of nodes, in the format of an ending (without the dot).
 ///
 /// # Errors
 /// `mesh.write` for an unknown ending, a mesh without cells, and cells that the format does not have.
@@ -35,6 +35,8 @@ pub fn write<const D: usize>(mesh: &Mesh<D>, ending: &str) -> Result<Written, Sc
             let mut written = named_values("vtk", vtk(mesh).into_bytes(), mesh);
             let gaps = mesh.cell_values.iter().filter(|(_, values)| !is_whole(values));
             written.left_out.extend(gaps.map(|(name, _)| format!("`{}`, which not all cells have", visible(name))));
+            let gaps = mesh.node_values.iter().filter(|(_, field)| !is_whole(&field.values));
+            written.left_out.extend(gaps.map(|(name, _)| format!("`{}`, which not all nodes have", visible(name))));
             Ok(written)
         }
         "vtu" => Ok(named_values("vtu", vtu_file(mesh), mesh)),
@@ -193,6 +195,18 @@ fn gmsh<const D: usize>(mesh: &Mesh<D>) -> String {
         out.extend(given.iter().map(|(cell, x)| format!("{} {x:e}\n", cell + 1)));
         out.push_str("$EndElementData\n");
     }
+    for (name, field) in &mesh.node_values {
+        // Vectors of Gmsh have three components.
+        let width = if field.components == 1 { 1 } else { 3 };
+        let rows = field.values.chunks_exact(field.components).enumerate();
+        let given: Vec<(usize, &[f64])> = rows.filter(|(_, row)| is_whole(row)).collect();
+        let _ = writeln!(out, "$NodeData\n1\n\"{}\"\n1\n0\n3\n0\n{width}\n{}", word(name), given.len());
+        for (node, row) in given {
+            let numbers = (0..width).map(|k| format!(" {:e}", row.get(k).copied().unwrap_or(0.0)));
+            let _ = writeln!(out, "{}{}", node + 1, numbers.collect::<String>());
+        }
+        out.push_str("$EndNodeData\n");
+    }
     out
 }
 
@@ -233,6 +247,21 @@ fn vtk<const D: usize>(mesh: &Mesh<D>) -> String {
         let _ = writeln!(out, "SCALARS {} double 1\nLOOKUP_TABLE default", name.replace(char::is_whitespace, "%20"));
         out.extend(values.iter().map(|x| format!("{x:e}\n")));
     }
+    let whole = || mesh.node_values.iter().filter(|(_, field)| is_whole(&field.values));
+    if whole().next().is_some() {
+        let _ = writeln!(out, "POINT_DATA {}", mesh.nodes());
+    }
+    for (name, field) in whole() {
+        let name = name.replace(char::is_whitespace, "%20");
+        let _ = match field.components {
+            3 => writeln!(out, "VECTORS {name} double"),
+            components => writeln!(out, "SCALARS {name} double {components}\nLOOKUP_TABLE default"),
+        };
+        for row in field.values.chunks_exact(field.components) {
+            let words: Vec<String> = row.iter().map(|x| format!("{x:e}")).collect();
+            let _ = writeln!(out, "{}", words.join(" "));
+        }
+    }
     out
 }
 
@@ -247,7 +276,11 @@ fn vtu_file<const D: usize>(mesh: &Mesh<D>) -> Vec<u8> {
     let mut write = || -> std::io::Result<()> {
         vtu::head(&mut out, None, &points, cells.len())?;
         vtu::cells(&mut out, cells.iter().map(|(kind, nodes)| (*kind, &nodes[..])))?;
-        std::io::Write::write_all(&mut out, b"<CellData>\n")?;
+        std::io::Write::write_all(&mut out, b"<PointData>\n")?;
+        for (name, field) in &mesh.node_values {
+            vtu::reals(&mut out, name, field.components, &field.values)?;
+        }
+        std::io::Write::write_all(&mut out, b"</PointData>\n<CellData>\n")?;
         for (name, values) in &mesh.cell_values {
             vtu::reals(&mut out, name, 1, values)?;
         }
@@ -287,7 +320,14 @@ fn references<const D: usize>(mesh: &Mesh<D>, left_out: &mut Vec<String>) -> Vec
     if !mesh.cell_values.is_empty() {
         left_out.push(counted(mesh.cell_values.len() as u64, "value of cells", "values of cells"));
     }
+    left_out.extend(of_nodes(mesh));
     out
+}
+
+/// What is said of values of nodes by formats that have no place for them.
+fn of_nodes<const D: usize>(mesh: &Mesh<D>) -> Option<String> {
+    let count = mesh.node_values.len() as u64;
+    (count > 0).then(|| counted(count, "value of nodes", "values of nodes"))
 }
 
 fn medit<const D: usize>(mesh: &Mesh<D>) -> Result<Written, SceneError> {
@@ -371,6 +411,7 @@ fn tetgen<const D: usize>(mesh: &Mesh<D>) -> Result<Written, SceneError> {
         let missing = (mesh.cell_values.len() - values.len()) as u64;
         left_out.push(counted(missing, "value that not all cells have", "values that not all cells have"));
     }
+    left_out.extend(of_nodes(mesh));
     let mut elements = format!("{} {} {}\n", mesh.cells.len(), D + 1, values.len());
     for (cell, (_, _, corners)) in mesh.cells.iter().enumerate() {
         let more: String = values.iter().map(|v| format!(" {:e}", v[cell])).collect();

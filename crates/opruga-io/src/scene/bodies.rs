@@ -414,7 +414,18 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
         report_vast(reader, node, join(&draft.path, key), format!("`{key}` makes it too large"));
         return None;
     }
-    let mesh = of_wanted_cells(reader, draft, mesh)?;
+    let mut mesh = of_wanted_cells(reader, draft, mesh)?;
+    // Nothing but the start needs them, so the body does not carry them on.
+    let values = std::mem::take(&mut mesh.node_values);
+    let node_velocities = match draft.velocities.of_nodes(&values, shape.kind(), &draft.rotation) {
+        Ok(velocities) => velocities,
+        Err(error) => {
+            let [velocity, of_nodes] = Velocities::<D>::OF_NODES;
+            let node = draft.node.get(velocity).unwrap_or(draft.node);
+            reader.report(place_of(node, of_nodes), error.path(join(&join(&draft.path, velocity), of_nodes)));
+            return None;
+        }
+    };
     // One metre is a fair depth of the plane, but no thickness of a cloth, and no width of a wire.
     let thin = match mesh.measure() {
         Ok(Measure::Length(_)) => Some("of a wire needs its width, here"),
@@ -447,6 +458,7 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
         velocity: draft.velocities.linear,
         angular_velocity: draft.velocities.angular.clone(),
         velocity_gradient: draft.velocities.gradient,
+        node_velocities,
         mass,
         thickness: draft.values.number("thickness").unwrap_or(1.0),
         integrator: draft.integrator.clone(),

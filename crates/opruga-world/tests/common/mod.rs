@@ -51,6 +51,7 @@ pub(crate) fn solid<const D: usize>(
             velocity: [0.0; D],
             angular_velocity: Vec::new(),
             velocity_gradient: [[0.0; D]; D],
+            node_velocities: Arc::from([]),
             mass: Mass::Density(1000.0),
             thickness: 1.0,
             integrator: None,

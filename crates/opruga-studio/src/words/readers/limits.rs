@@ -13,8 +13,8 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     ("the file asks for {} repeated vertices or more", "datoteka traži ponovljenih vrhova: {} ili više"),
     ("the file asks for {} numbers in arrays or more", "datoteka traži brojeva u poljima: {} ili više"),
     (
-        "the file asks for {} values or memberships of cells or more",
-        "datoteka traži vrijednosti ili pripadnosti ćelija: {} ili više",
+        "the file asks for {} values or memberships in groups or more",
+        "datoteka traži vrijednosti ili pripadnosti skupinama: {} ili više",
     ),
     ("at most {} closed outlines", "najviše {} zatvorenih obrisa"),
     ("at most {} points of outlines", "najviše {} točaka obrisa"),
@@ -23,7 +23,7 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     ("at most {} comparisons of rules with elements", "najviše {} usporedaba pravila s elementima"),
     ("at most {} repeated vertices", "najviše {} ponovljenih vrhova"),
     ("at most {} numbers in arrays", "najviše {} brojeva u poljima"),
-    ("at most {} values or memberships of cells", "najviše {} vrijednosti ili pripadnosti ćelija"),
+    ("at most {} values or memberships in groups", "najviše {} vrijednosti ili pripadnosti skupinama"),
     (
         "take a picture with fewer spots: one that is smoothed, or drawn with fewer colours",
         "uzmi sliku s manje mrlja: zaglađenu ili nacrtanu s manje boja",

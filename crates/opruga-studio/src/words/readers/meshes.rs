@@ -155,6 +155,8 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     ("one name for every group of a dimension", "svakoj skupini jedne dimenzije jedno ime"),
     ("a value names element {} twice", "vrijednost imenuje element {} dvaput"),
     ("every element once", "svaki element jednom"),
+    ("a value names node {} twice", "vrijednost imenuje čvor {} dvaput"),
+    ("nodes have {} numbers `{}`, and others {}", "čvorovi imaju brojeva: {}, pod imenom `{}`, a drugi {}"),
     ("{} later steps are left out of the values `{}`", "izostavljeno kasnijih koraka: {}, od vrijednosti `{}`"),
     ("{} later step is left out of the values `{}`", "izostavljeno kasnijih koraka: {}, od vrijednosti `{}`"),
     // Medit.
@@ -242,6 +244,7 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     ("CELL_DATA or POINT_DATA before it", "CELL_DATA ili POINT_DATA ispred toga"),
     ("`{}` is no number of components", "`{}` nije broj komponenata"),
     ("the first cell begins at {}", "prva ćelija počinje u {}"),
+    ("the points have values `{}` twice", "točke imaju vrijednosti `{}` dvaput"),
     ("the cells have values `{}` twice", "ćelije imaju vrijednosti `{}` dvaput"),
     ("a name of its own for every array", "svakom polju njegovo ime"),
     // VTK XML.

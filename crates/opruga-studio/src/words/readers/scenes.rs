@@ -152,6 +152,27 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     // Bodies.
     ("the body has `angular_velocity` and `velocity.angular`", "tijelo ima i `angular_velocity` i `velocity.angular`"),
     ("one of them", "jedno od toga"),
+    ("the nodes of the mesh have no vectors {}", "čvorovi mreže nemaju vektore {}"),
+    ("{} would stand in a mesh file, and the shape is a `{}`", "{} stajalo bi u datoteci mreže, a oblik je `{}`"),
+    ("`kind = \"mesh\"` reads one", "`kind = \"mesh\"` čita takvu datoteku"),
+    (
+        "vectors of nodes are `$NodeData` of Gmsh, `POINT_DATA` of VTK and `<PointData>` of VTU files",
+        "vektori čvorova su `$NodeData` u datotekama Gmsha, `POINT_DATA` u VTK i `<PointData>` u VTU",
+    ),
+    ("{} has {} numbers a node", "{} ima brojeva po čvoru: {}"),
+    ("{} has {} number a node", "{} ima brojeva po čvoru: {}"),
+    ("2, or 3 of which the last is 0", "2, ili 3 od kojih je zadnji 0"),
+    ("a velocity is a vector", "brzina je vektor"),
+    ("{} of node {} is {}", "{} čvora {} iznosi {}"),
+    ("finite numbers for every node", "konačni brojevi za svaki čvor"),
+    ("nodes are counted from 0", "čvorovi se broje od 0"),
+    ("{} of node {} leaves the plane", "{} čvora {} izlazi iz ravnine"),
+    ("0 along z", "0 duž osi z"),
+    (
+        "nodes are counted from 0; `dimension = 3` at the head of a scene in space",
+        "čvorovi se broje od 0; `dimension = 3` na početku scene u prostoru",
+    ),
+    ("{}, turned with the body, is {}", "{}, zakrenuto s tijelom, iznosi {}"),
     ("`gradient` has {} rows", "`gradient` ima {} redaka"),
     ("`gradient` has {} row", "`gradient` ima {} redak"),
     (
