@@ -1,5 +1,6 @@
 //! Every example runs, and what it prints is right.
 #![allow(dead_code, reason = "a test calls `run` of an example, cargo calls `main`")]
+#![allow(clippy::duplicate_mod, reason = "two examples build on the scene of a third")]
 
 #[path = "../examples/ball_in_code.rs"]
 mod ball_in_code;
