@@ -16,7 +16,8 @@ struct Made {
 }
 
 /// Pictures that are not the film strip of the scene after which they are named.
-const OTHERS: [Made; 4] = [
+const OTHERS: [Made; 5] = [
+    Made { file: "side-by-side.gif", call: &["run", "docs/scenes/side-by-side.toml", "--gif"], from: "video.gif" },
     Made {
         file: "pressures-arrows.png",
         call: &["run", "pressures", "--arrows", "--seconds", "1.5"],

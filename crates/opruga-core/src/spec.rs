@@ -4,6 +4,7 @@
 //! of the studio. It knows nothing of any file format.
 
 mod condition;
+mod convert;
 mod names;
 
 pub use condition::Condition;

@@ -26,6 +26,7 @@ mod pin_ways;
 mod plausible;
 mod population;
 mod problems;
+mod programs;
 mod readings;
 mod rebuild;
 pub mod registry;

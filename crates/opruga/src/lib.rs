@@ -22,6 +22,7 @@
 //! }
 //! ```
 
+pub mod extend;
 pub mod pictures;
 pub mod recordings;
 pub mod scenes;
@@ -47,7 +48,12 @@ pub fn catalogue() -> io::Catalogue {
     io::Catalogue { models: registry.models(), integrators: registry.integrators(), colliders }
 }
 
-/// The examples of the README, for the tests.
+/// The program of docs/library.md, for the tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/library.md")]
+struct Library;
+
+/// README.md may get a program too.
 #[cfg(doctest)]
 #[doc = include_str!("../../../README.md")]
 struct Readme;

@@ -32,6 +32,7 @@
 mod grid;
 mod metrics;
 mod plots;
+mod programs;
 mod question;
 mod table;
 
