@@ -1,5 +1,5 @@
 //! What the fuzz targets do with any bytes, without a fuzzer: the targets in `fuzz_targets` call these functions under
-//! libFuzzer, and the test `opruga/tests/fuzz_corpus.rs` with every file of `fuzz/corpus`, on any compiler.
+//! libFuzzer, and the test `opruga/tests/all/fuzz_corpus.rs` with every file of `fuzz/corpus`, on any compiler.
 
 use opruga::Input;
 use opruga::core::spec::Spec;

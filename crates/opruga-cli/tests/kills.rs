@@ -4,6 +4,7 @@
 #![cfg(unix)]
 #![allow(clippy::disallowed_methods)] // no physics here
 
+#[path = "all/common/mod.rs"]
 mod common;
 use common::*;
 use opruga::blueprint::{AnyBlueprint, Blueprint};

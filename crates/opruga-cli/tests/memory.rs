@@ -1,6 +1,7 @@
 //! Memory: estimates beside what runs take, and limits of the machine.
 #![cfg(target_os = "linux")]
 
+#[path = "all/common/mod.rs"]
 mod common;
 
 use common::*;

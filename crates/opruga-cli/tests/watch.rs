@@ -1,5 +1,6 @@
 //! `--watch`: again when the scene changes, whatever was wrong with it before.
 
+#[path = "all/common/mod.rs"]
 mod common;
 
 use common::{code, opruga, program, said};

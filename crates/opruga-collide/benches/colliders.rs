@@ -1,7 +1,7 @@
 //! Time per node of the pass over one collider: `cargo bench -p opruga-collide`.
 #![allow(missing_docs)]
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../tests/all/common/mod.rs"]
 mod common;
 use common::*;
 use opruga_core::contacts::{Contacts, Moved};

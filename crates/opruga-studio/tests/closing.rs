@@ -1,6 +1,7 @@
 //! The window is asked to close.
 #![allow(missing_docs)]
 
+#[path = "all/screen/mod.rs"]
 #[allow(dead_code, reason = "the pictures are compared elsewhere")]
 mod screen;
 

@@ -3,6 +3,7 @@
 // No physics here.
 #![allow(clippy::disallowed_methods)]
 
+#[path = "all/screen/mod.rs"]
 #[allow(dead_code, reason = "the pictures are compared elsewhere")]
 mod screen;
 

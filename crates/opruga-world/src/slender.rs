@@ -2,7 +2,7 @@
 //!
 //! A cell whose shape functions lack what bending needs pays for it with a strain that is none, in proportion to its length: a body of the
 //! thickness T bends too stiffly by a part of about (L/T)², however many cells lie across. Measured on beams and plates
-//! (`tests/slender_cells.rs`, docs/finite-elements.md): linear cells are 45 % too high in the first frequencies where their longest edge
+//! (`tests/all/slender_cells.rs`, docs/finite-elements.md): linear cells are 45 % too high in the first frequencies where their longest edge
 //! is T; quadratic tetrahedra, which lack a part of twisting alone, 10 % where it is 8.5 T. Quadratic triangles and boxes have no limit.
 
 use crate::blueprint::BodyBlueprint;

@@ -1,0 +1,261 @@
+//! Mistakes of the first hour: what the program says of them, in sentences and numbers that people read.
+#![allow(clippy::disallowed_methods)] // no physics here
+
+use crate::common;
+use common::*;
+use serde_json::Value;
+use std::path::Path;
+
+/// A scene of one body, with its shape and model, and a place for more lines.
+fn scene(dimension: u32, body: &str, more: &str) -> String {
+    format!(
+        "format = \"opruga-1\"\ndimension = {dimension}\n[time]\nseconds = 0.1\nsubsteps = 20\n[integrator]\nkind = \"verlet\"\n\
+         [[body]]\nname = \"it\"\nmass = 1\n{body}\n{more}"
+    )
+}
+
+const RING: &str = "shape = { kind = \"ring\", radius = 0.5, vertices = 24, center = [0, 0.4] }\n\
+                    models = [{ kind = \"mass_spring\", stiffness = 900.0, damping = 1.0 }]";
+const FLOOR: &str = "[[collider]]\nkind = \"half_space\"\npoint = [0, 0]\nnormal = [0, 1]\n";
+
+fn write(folder: &Path, text: &str) {
+    std::fs::write(folder.join("s.toml"), text).expect("a file");
+}
+
+/// A body that begins inside an obstacle is told of with the obstacle, the depth and the shift that frees it; the shift does.
+#[test]
+fn a_body_that_begins_inside_an_obstacle_is_told_of() {
+    let folder = tempfile::tempdir().expect("a folder");
+    write(folder.path(), &scene(2, RING, FLOOR));
+    let output = opruga(folder.path(), &["check", "s.toml"]);
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    let all = printed(&output);
+    let line = all.lines().find(|l| l.contains("contact.starts_inside")).unwrap_or_else(|| panic!("it is told: {all}"));
+    assert!(line.contains("body `it` begins inside obstacle 0 (half_space)"), "{line}");
+    assert!(line.contains("deepest by 0.1 m") && line.contains("moved by (0, 0.1) m it would be free"), "{line}");
+    // The run tells it before it begins, once, and counts it.
+    let output = opruga(folder.path(), &["run", "s.toml", "--no-pictures", "--out", "a"]);
+    assert_eq!(said(&output).matches("contact.starts_inside").count(), 1, "{}", said(&output));
+    assert!(said(&output).starts_with("warning[contact.starts_inside]"), "{}", said(&output));
+    let found = summary(folder.path(), &["run", "s.toml", "--out", "b"]);
+    assert_eq!(found["warnings"][0]["code"], "contact.starts_inside");
+    // With --strict it is an error at the body.
+    let strict = opruga(folder.path(), &["run", "s.toml", "--strict", "--out", "c"]);
+    assert_eq!(code(&strict), 2);
+    assert!(
+        said(&strict).contains("s.toml:8:") && said(&strict).contains("error[contact.starts_inside]"),
+        "{}",
+        said(&strict)
+    );
+    let freed = opruga(folder.path(), &["check", "s.toml", "--strict", "--set", "body.it.position=[0, 0.1]"]);
+    assert_eq!(code(&freed), 0, "{}", said(&freed));
+    // Held nodes stay where they are, and copies are told of once.
+    let held =
+        opruga(folder.path(), &["check", "s.toml", "--strict", "--set", "body.it.pin=[{ select = { all = true } }]"]);
+    assert_eq!(code(&held), 0, "{}", said(&held));
+    let copies = printed(&opruga(
+        folder.path(),
+        &["check", "s.toml", "--set", "body.it.copies={ count = [1, 5], spacing = [2, -0.01] }"],
+    ));
+    assert_eq!(copies.matches("contact.starts_inside").count(), 1, "{copies}");
+    assert!(copies.contains("`it[4]`") && copies.contains("by 0.14 m") && copies.contains("(5 times)"), "{copies}");
+}
+
+/// The shift frees a body from any obstacle: inside a box, in the corner of a room, across a ball, in a convex block.
+#[test]
+fn the_shift_out_of_an_obstacle_frees_the_body() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for collider in [
+        "kind = \"box\"\nmin = [-0.2, 0.0]\nmax = [3.0, 3.0]",
+        "kind = \"box\"\nmin = [-5.0, -5.0]\nmax = [5.0, 5.0]",
+        "kind = \"box\"\nmin = [-0.4, 0.0]\nmax = [3.0, 3.0]\ninside = true",
+        "kind = \"ball\"\ncenter = [0.2, 0.0]\nradius = 0.3",
+        "kind = \"ball\"\ncenter = [0.2, 0.0]\nradius = 0.8\ninside = true",
+        "kind = \"capsule\"\na = [-3.0, 0.0]\nb = [3.0, 0.0]\nradius = 0.2\nthickness = 0.05",
+        "kind = \"convex\"\npoints = [[-2.0, -1.0], [2.0, -1.0], [0.0, 0.3]]",
+    ] {
+        write(folder.path(), &scene(2, RING, &format!("[[collider]]\n{collider}\n")));
+        let all = printed(&opruga(folder.path(), &["check", "s.toml"]));
+        assert!(all.contains("contact.starts_inside"), "{collider}: {all}");
+        let shift = all.split("moved by (").nth(1).and_then(|t| t.split(')').next());
+        let shift = shift.unwrap_or_else(|| panic!("{collider}: {all}"));
+        let output =
+            opruga(folder.path(), &["check", "s.toml", "--strict", "--set", &format!("body.it.position=[{shift}]")]);
+        assert_eq!(code(&output), 0, "{collider}: {shift}: {}", said(&output));
+    }
+}
+
+/// What an override has caused is told as the fault of that override, and else at the field that is meant.
+#[test]
+fn an_override_that_a_model_refuses_is_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let body = "shape = { kind = \"grid\", size = [1, 1], cells = [2, 2] }\nsimplices = true\norder = 1\nmodels = [\n\
+                {\n kind = \"fem\", material = \"neo_hookean\",\n youngs_modulus = 1e4,\n poissons_ratio = 0.3 }]";
+    write(folder.path(), &scene(2, body, ""));
+    for path in ["body.it.models.fem.poissons_ratio", "body.0.models.0.poissons_ratio"] {
+        let set = format!("{path}=0.49");
+        let output = opruga(folder.path(), &["check", "s.toml", "--set", &set]);
+        assert_eq!(code(&output), 2);
+        assert!(said(&output).starts_with(&format!("--set {set}: error[model.locking]")), "{}", said(&output));
+    }
+    let text = scene(2, &body.replace("= 0.3", "= 0.49"), "");
+    write(folder.path(), &text);
+    let line = text.lines().position(|l| l.contains("poissons_ratio")).expect("it is there") + 1;
+    let output = opruga(folder.path(), &["check", "s.toml", "--set", "body.it.models.fem.youngs_modulus=1e5"]);
+    assert!(said(&output).starts_with(&format!("s.toml:{line}:")), "{}", said(&output));
+}
+
+/// An error of a turn says what is wanted, with an example.
+#[test]
+fn a_rotation_that_is_none_is_explained() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let cube = "shape = { kind = \"grid\", size = [1, 1, 1], cells = [1, 1, 1] }\nmodels = []\n";
+    for wrong in ["90", "\"90 degrees\"", "[0, 1]", "[0, 0, 0, 1]"] {
+        write(folder.path(), &scene(3, &format!("{cube}rotation = {wrong}"), ""));
+        let output = opruga(folder.path(), &["check", "s.toml"]);
+        assert_eq!(code(&output), 2, "{wrong}");
+        for part in ["the axis times the angle about it in radians", "[0, 0, 1.5708] turns by 90° about z"] {
+            assert!(said(&output).contains(part), "{wrong}: {}", said(&output));
+        }
+    }
+    write(folder.path(), &scene(2, &format!("{RING}\nrotation = [0, 0, 1]"), ""));
+    let output = opruga(folder.path(), &["check", "s.toml"]);
+    assert!(said(&output).contains("the angle in radians, counter-clockwise"), "{}", said(&output));
+}
+
+/// What is offered instead of an unknown word exists in the dimension of the scene, each word once.
+#[test]
+fn words_of_the_other_dimension_are_not_offered() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let cube = "shape = { kind = \"grid\", size = [1, 1, 1], cells = [1, 1, 1] }\nmodels = []";
+    for (dimension, body, allowed) in [
+        (2, RING, "half_space, box, ball, capsule, convex, polyline"),
+        (3, cube, "half_space, box, ball, capsule, convex, triangle_mesh"),
+    ] {
+        write(folder.path(), &scene(dimension, body, "[[collider]]\nkind = \"sphere\"\nradius = 1\n"));
+        let output = opruga(folder.path(), &["check", "s.toml"]);
+        assert_eq!(code(&output), 2);
+        let line = said(&output).lines().find(|line| line.contains("allowed")).map(String::from);
+        assert_eq!(line, Some(format!("  = allowed: {allowed}")), "{}", said(&output));
+    }
+}
+
+/// A name that is near to several scenes brings the nearest of them, not the first.
+#[test]
+fn all_near_names_are_offered() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let hint = |word: &str| {
+        let output = opruga(folder.path(), &["run", word]);
+        assert_eq!(code(&output), 4);
+        said(&output).lines().find(|l| l.contains("hint")).unwrap_or_default().to_string()
+    };
+    let near = hint("ballon");
+    assert!(near.starts_with("  = hint: did you mean `balloons`") && near.contains("`ball`"), "{near}");
+    let near = hint("canti-lever");
+    assert!(near.contains("`cantilever`") && near.contains("`cantilever-cube`"), "{near}");
+    assert_eq!(hint("presures"), "  = hint: did you mean `pressures`?");
+}
+
+/// Times and energies in sentences have the digits that people read, whatever the run does.
+#[test]
+fn numbers_of_messages_are_short() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = scene(
+        2,
+        RING,
+        "[[command]]\ndo = \"set\"\nat = 0.05\npath = \"body.it.models.mass_spring.stiffness\"\nvalue = -1\n",
+    );
+    write(folder.path(), &text);
+    // A step that blows up: energies of many digits.
+    let arguments = [
+        "run",
+        "s.toml",
+        "--allow-unstable",
+        "--no-pictures",
+        "--seconds",
+        "3",
+        "--out",
+        "o",
+        "--set",
+        "time.substeps=1",
+        "--set",
+        "body.it.models.mass_spring.stiffness=4e4",
+        "--set",
+        "command=[]",
+        "--set",
+        "body.it.velocity=[1, 2]",
+    ];
+    let output = opruga(folder.path(), &arguments);
+    let all = said(&output);
+    for word in all.split(|c: char| !(c.is_ascii_digit() || c == '.')) {
+        assert!(word.len() <= 12, "{word}: {all}");
+    }
+    // A command that is refused says once when it was.
+    let late = scene(
+        2,
+        RING,
+        "[[command]]\ndo = \"remove\"\nat = 0.05\nbody = \"it\"\n[[command]]\ndo = \"push\"\nat = 0.07\nuntil = 0.09\nbody = \"it\"\nselect = { all = true }\nforce = [1, 0]\n",
+    );
+    write(folder.path(), &late);
+    let output = opruga(folder.path(), &["run", "s.toml", "--no-pictures", "--out", "p"]);
+    assert!(said(&output).matches("t = ").count() <= 1, "{}", said(&output));
+}
+
+/// Frequencies are printed as people write them; a mode that grows has an imaginary one.
+#[test]
+fn frequencies_are_read_by_people_and_an_unstable_mode_is_called_so() {
+    let folder = tempfile::tempdir().expect("a folder");
+    // Pressed springs in a row between two walls give way sideways.
+    let chain = "shape = { kind = \"line\", from = [0, 0], to = [1, 0], segments = 4 }\npin = [{ select = { nodes = [0, 4] } }]\n\
+                 models = [{ kind = \"mass_spring\", stiffness = 900.0, rest_scale = 1.2 }]";
+    write(folder.path(), &scene(2, chain, ""));
+    let output = opruga(folder.path(), &["modes", "s.toml", "-n", "4", "--out", "o"]);
+    let all = printed(&output);
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    assert!(all.contains("unstable: grows as exp(") && all.contains(" i "), "{all}");
+    assert!(!all.contains("e0") && !all.contains("0.0000"), "{all}");
+    let rows: Value =
+        serde_json::from_slice(&std::fs::read(folder.path().join("o/modes.json")).expect("a file")).expect("JSON");
+    let (growth, square) = (&rows["rows"][0]["growth"], &rows["rows"][0]["omega_squared"]);
+    assert!(
+        square.as_f64().is_some_and(|s| s < 0.0 && (growth.as_f64().unwrap_or(0.0).powi(2) + s).abs() < 1e-6 * -s),
+        "{rows}"
+    );
+    assert!(folder.path().join("o/modes.png").is_file());
+    // Without a load nothing resists them sideways, and what rounding makes of that is no growth.
+    let slack = ["modes", "s.toml", "-n", "4", "--out", "p", "--set", "body.it.models.mass_spring.rest_scale=1"];
+    let output = opruga(folder.path(), &slack);
+    let all = printed(&output);
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    assert!(all.matches("nothing resists it").count() == 3 && !all.contains("unstable"), "{all}");
+}
+
+/// A run that takes minutes says so after its first frames, and what would make it shorter.
+#[test]
+fn a_long_run_says_how_long_it_will_take() {
+    use std::io::{BufRead as _, BufReader};
+    let folder = tempfile::tempdir().expect("a folder");
+    write(folder.path(), &scene(2, RING, FLOOR));
+    let call =
+        ["run", "s.toml", "--no-pictures", "--seconds", "1e6", "--out", "o", "--set", "integrator=backward_euler"];
+    let mut run = program(folder.path(), &call).spawn().expect("it runs");
+    // It comes before the first of the lines that tell every ten seconds how far the run is.
+    let mut all = String::new();
+    for line in BufReader::new(run.stderr.take().expect("its talk")).lines() {
+        all += &(line.expect("text") + "\n");
+        if all.contains("note: ") || all.contains(" left") {
+            break;
+        }
+    }
+    run.kill().expect("it is killed");
+    run.wait().expect("it ends");
+    let line = all.lines().find(|l| l.starts_with("note: the run will take about ")).unwrap_or_else(|| panic!("{all}"));
+    for part in [
+        " more (",
+        " frames of ",
+        "Shorter: --set integrator.accuracy=real_time",
+        "--set integrator=symplectic_euler --set time.substeps=",
+    ] {
+        assert!(line.contains(part), "{part}: {line}");
+    }
+}

@@ -1,0 +1,20 @@
+//! Every test of this crate that needs no process of its own, in one program: it is linked once.
+
+mod checkpoints;
+mod command_line;
+mod common;
+mod faults;
+mod first_mistakes;
+mod gallery;
+mod lost_files;
+mod material;
+mod mesh;
+mod newcomer;
+mod numbers_beyond_all;
+mod recordings;
+mod shape_files;
+mod stress_tables;
+mod sweeps;
+mod told_limits;
+mod true_words;
+mod verify;

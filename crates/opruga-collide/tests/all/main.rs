@@ -1,0 +1,9 @@
+//! Every test of this crate that needs no process of its own, in one program: it is linked once.
+
+mod common;
+mod facets;
+mod friction;
+mod impact;
+mod same_bits;
+mod seams;
+mod shapes;

@@ -1,0 +1,24 @@
+//! Every test of this crate that needs no process of its own, in one program: it is linked once.
+
+mod common;
+mod crossing_drawings;
+mod drawings;
+mod error_texts;
+mod files;
+mod framed_drawings;
+mod fuzz;
+mod lifetimes;
+mod malformed_meshes;
+mod maps;
+mod mesh_files;
+mod mesh_round_trips;
+mod odd_surfaces;
+mod recordings;
+mod rounded_coordinates;
+mod scenes;
+mod shape_fuzz;
+mod surface_bodies;
+mod surfaces;
+mod told_drawings;
+mod torture;
+mod unbounded_files;

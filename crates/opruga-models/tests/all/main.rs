@@ -1,0 +1,20 @@
+//! Every test of this crate that needs no process of its own, in one program: it is linked once.
+
+#[macro_use]
+mod support;
+
+mod as_published;
+mod bending;
+mod closed_forms;
+mod conformance;
+mod drag;
+mod fem;
+mod fem_boxes;
+mod fem_clamped;
+mod fem_closed_forms;
+mod fem_heat;
+mod fem_membrane;
+mod fem_refusals;
+#[path = "support/sparse.rs"]
+mod sparse;
+mod steps;

@@ -1,0 +1,174 @@
+//! What a world refuses, part by part, and what it warns of.
+
+use crate::common;
+
+use common::{solid, text};
+use opruga_core::spec::{Spec, Value, Values};
+use opruga_mesh::Mesh;
+use opruga_world::blueprint::*;
+use opruga_world::{Options, Registry, World, WorldError};
+use std::sync::Arc;
+
+fn values(spec: &'static Spec, fields: &[(&str, Value)]) -> Values {
+    let mut values = Values::defaults(spec, 2);
+    for (name, value) in fields {
+        values.set(spec, name, value.clone(), 2).expect("a field of the test's own");
+    }
+    values
+}
+
+fn model(kind: &str, field: &str, value: f64) -> Values {
+    let registry = Registry::<2>::default();
+    values(registry.model(kind).expect("a model").spec(), &[(field, Value::Number(value))])
+}
+
+fn wall(normal: [f64; 2]) -> ColliderBlueprint {
+    let spec = opruga_collide::all(2).into_iter().find(|s| s.kind == "half_space").expect("a wall");
+    let fields = [("point", Value::Numbers(vec![0.0, -9.0])), ("normal", Value::Numbers(normal.to_vec()))];
+    ColliderBlueprint { values: values(spec, &fields) }
+}
+
+fn body(name: &str, mesh: &Arc<Mesh<2>>, models: Vec<Values>) -> BodyBlueprint<2> {
+    BodyBlueprint {
+        name: name.into(),
+        mesh: Arc::clone(mesh),
+        translation: [0.0; 2],
+        velocity: [0.0; 2],
+        angular_velocity: vec![0.0],
+        velocity_gradient: [[0.0; 2]; 2],
+        node_velocities: Arc::from([]),
+        mass: Mass::Total(1.0),
+        thickness: 1.0,
+        integrator: None,
+        models,
+        pins: Vec::new(),
+    }
+}
+
+fn scene(bodies: Vec<BodyBlueprint<2>>, colliders: Vec<ColliderBlueprint>) -> Blueprint<2> {
+    let verlet = Registry::<2>::default().integrator("verlet").expect("an integrator").spec();
+    Blueprint {
+        name: "test".into(),
+        title: String::new(),
+        length_unit: "m".into(),
+        credit: String::new(),
+        picture: Default::default(),
+        seed: 0,
+        time: Time { seconds: 1.0, frame: 0.01, substeps: 10 },
+        surroundings: Surroundings {
+            gravity: [0.0, -9.81],
+            drag: 0.0,
+            largest_force: None,
+            largest_velocity: None,
+            largest_distance: None,
+        },
+        integrator: Values::defaults(verlet, 2),
+        bodies,
+        colliders,
+        loads: Vec::new(),
+        commands: Vec::new(),
+        probes: Vec::new(),
+    }
+}
+
+fn line() -> Arc<Mesh<2>> {
+    Arc::new(Mesh::line([0.0, 0.0], [1.0, 0.0], 1).expect("a line"))
+}
+
+#[test]
+fn every_part_that_is_refused_is_found_once() {
+    let (ring, line) = (Arc::new(Mesh::ring(0.5, 12, [0.0, 0.0], 0.0).expect("a ring")), line());
+    let (soft, stiff) = (model("mass_spring", "stiffness", 100.0), model("mass_spring", "stiffness", 1e9));
+    let gas = model("pressure", "nRT", 1.0);
+    let mut bodies = vec![
+        body("good", &ring, vec![soft.clone(), gas.clone()]),
+        body("open", &line, vec![soft.clone(), gas]),
+        body("loaded", &line, vec![soft]),
+    ];
+    bodies.extend((0..5).map(|k| body(&format!("stiff[{k}]"), &ring, vec![stiff.clone()])));
+    let mut blueprint = scene(bodies, vec![wall([0.0, 1.0]), wall([0.0, 1e-200]), wall([1e-200, 0.0])]);
+    blueprint.loads.push(LoadBlueprint {
+        body: 2,
+        select: Selector::Nodes(vec![0]),
+        kind: LoadKind::Pressure(1.0),
+        curve: Vec::new(),
+    });
+    let found: Vec<String> = World::problems(&blueprint, &Options::default())
+        .iter()
+        .map(|problem| match problem {
+            WorldError::Build { place, source } => format!("{place}: {}: {}", source.kind, source.code),
+            WorldError::UnstableStep { body, .. } => format!("unstable: {body}"),
+            other => other.code().to_string() + ": " + &other.to_string(),
+        })
+        .collect();
+    assert_eq!(
+        found,
+        [
+            "collider: collider 1 (half_space): collider.no_direction",
+            "collider: collider 2 (half_space): collider.no_direction",
+            "body `open`: pressure: model.open_surface",
+            "path.unknown: `load on loaded`: the selected nodes hold no whole facet of the boundary; allowed: all nodes of one \
+             facet at least",
+            "unstable: stiff[0]",
+        ]
+    );
+    // What a world accepts has no problems, and the other way round.
+    let first = World::new(blueprint.clone(), Options::default()).expect_err("refused");
+    assert!(World::problems(&blueprint, &Options::default()).contains(&first));
+    blueprint.bodies.truncate(1);
+    blueprint.colliders.truncate(1);
+    blueprint.loads.clear();
+    assert_eq!(World::problems(&blueprint, &Options::default()), []);
+    assert!(World::new(blueprint, Options::default()).is_ok());
+}
+
+/// Two nodes of m = 0.5 kg and a spring k swing with ω² = 2k/m, so the estimate is k/2 for each node, and the weight of
+/// both stretches that by 4 m g / k = 19.62 N / k: more than the metre between them for a softer spring than 19.62 N/m.
+#[test]
+fn a_body_is_warned_of_where_its_sag_exceeds_its_size() {
+    let warned = |stiffness: f64, size: f64, gravity: f64| {
+        let mesh = Arc::new(Mesh::line([0.0, 0.0], [size, 0.0], 1).expect("a line"));
+        let mut blueprint =
+            scene(vec![body("b", &mesh, vec![model("mass_spring", "stiffness", stiffness)])], Vec::new());
+        blueprint.surroundings.gravity = [0.0, gravity];
+        let world = World::new(blueprint, Options::default()).expect("a world");
+        world.warnings().iter().filter(|w| w.code == "units.sag").map(|w| w.count).sum::<u64>()
+    };
+    assert_eq!((warned(19.0, 1.0, -9.81), warned(20.2, 1.0, -9.81)), (1, 0));
+    assert_eq!((warned(9.5, 2.0, -9.81), warned(10.1, 2.0, -9.81)), (1, 0));
+    assert_eq!((warned(19_000.0, 1.0, 9_810.0), warned(20_200.0, 1.0, 9_810.0)), (1, 0));
+    assert_eq!((warned(0.1, 1.0, 0.0), warned(0.0, 1.0, -9.81)), (0, 0), "no weight, or nothing that sags");
+}
+
+/// Kinds of bodies are counted, and the warning is renewed rather than repeated when the scene changes.
+#[test]
+fn the_warning_is_counted_by_kinds_and_goes_when_its_cause_goes() {
+    let soft = |stiffness| vec![model("mass_spring", "stiffness", stiffness)];
+    let bodies = vec![body("a", &line(), soft(1.0)), body("b", &line(), soft(2.0)), body("c", &line(), soft(1e3))];
+    let mut world = World::new(scene(bodies, Vec::new()), Options::default()).expect("a world");
+    let counts = |world: &World<2>| world.warnings().iter().map(|w| (w.code.clone(), w.count)).collect::<Vec<_>>();
+    assert_eq!(counts(&world), [("units.sag".to_string(), 2)]);
+    assert!(world.warnings()[0].message.contains("body `a` of 1 kg"), "{}", world.warnings()[0].message);
+    world.set("body.a.models.mass_spring.stiffness", Value::Number(1e3)).expect("a parameter");
+    assert_eq!(counts(&world), [("units.sag".to_string(), 1)]);
+    world.set("body.b.models.mass_spring.stiffness", Value::Number(1e3)).expect("a parameter");
+    assert_eq!(counts(&world), []);
+}
+
+/// A law that pushes cells back is no advice for a body that has it; one that pushes them back from farther is.
+#[test]
+fn the_hint_of_inverted_cells_names_no_law_that_the_body_has() {
+    for (law, hint) in [
+        ("linear", "a material that pushes such cells back (`stable_neo_hookean`, `fixed_corotated`)"),
+        ("stable_neo_hookean", "back from farther (`fixed_corotated`)"),
+        ("fixed_corotated", "smaller cells, or less that crushes them"),
+    ] {
+        let mesh = Mesh::<2>::grid([0.0; 2], [1.0; 2], [1; 2]).expect("a square");
+        let fields = [("material", text(law)), ("youngs_modulus", Value::Number(1e3))];
+        let mut world = World::new(solid(mesh, "backward_euler", &[], &fields), Options::default()).expect("a world");
+        assert_eq!(world.inverted_cells(), None);
+        world.place_node(0, 0, [2.0, 2.0], [0.0; 2]).expect("a node");
+        let said = world.inverted_cells().expect("a cell inside out").message;
+        assert!(said.ends_with(hint), "{law}: {said}");
+    }
+}

@@ -1,0 +1,76 @@
+//! Frames that are broken off from outside, whatever the rule: the world is at its last good frame, and goes on as if nothing had been.
+#![allow(missing_docs)]
+
+use crate::common;
+
+use opruga::{BreakOff, Options, World, WorldError};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+/// A cantilever of finite elements under its weight.
+fn scene(integrator: &str, substeps: u32) -> opruga::blueprint::Blueprint<2> {
+    common::plane(&format!(
+        "format = \"opruga-1\"\ndimension = 2\n[time]\nseconds = 1.0\nframe = 0.02\nsubsteps = {substeps}\n\
+         [integrator]\n{integrator}\n[[body]]\nname = \"beam\"\nmass = 1.0\n\
+         shape = {{ kind = \"grid\", corner = [0.0, 0.0], size = [1.0, 0.2], cells = [10, 2] }}\n\
+         models = [{{ kind = \"fem\", youngs_modulus = 2000.0, poissons_ratio = 0.3 }}]\n\
+         pin = [{{ select = {{ side = \"left\" }} }}]\n"
+    ))
+}
+
+/// A world in which a law that does nothing counts how often it is asked; at a number of times that break the frame off.
+fn world(integrator: &str, substeps: u32, at: u32) -> (World<2>, Arc<BreakOff>, Arc<AtomicU32>) {
+    let break_off = Arc::new(BreakOff::default());
+    let options = Options { break_off: Arc::clone(&break_off), ..Options::default() };
+    let mut world = World::new(scene(integrator, substeps), options).expect("a world");
+    let asked = Arc::new(AtomicU32::new(0));
+    let (count, flag) = (Arc::clone(&asked), Arc::clone(&break_off));
+    let law = move |_, _, _, _| {
+        if count.fetch_add(1, Ordering::Relaxed) + 1 == at {
+            flag.ask(true);
+        }
+        [0.0; 2]
+    };
+    world.add_force(0, Arc::new(law)).expect("a law");
+    asked.store(0, Ordering::Relaxed);
+    (world, break_off, asked)
+}
+
+#[test]
+fn a_frame_that_is_broken_off_leaves_the_last_good_one_and_is_made_again_to_the_bit() {
+    for (rule, substeps) in [
+        ("kind = \"symplectic_euler\"", 200),
+        ("kind = \"verlet\"", 200),
+        ("kind = \"runge_kutta\"", 200),
+        ("kind = \"backward_euler\"", 4),
+        ("kind = \"bdf2\"\nwhen_not_converged = \"halve\"", 4),
+        ("kind = \"backward_euler\"\naccuracy = \"real_time\"", 4),
+        ("kind = \"implicit_midpoint\"", 4),
+        ("kind = \"equilibrium\"\nwhen_not_converged = \"halve\"", 1),
+    ] {
+        let (mut whole, _, asked) = world(rule, substeps, 0);
+        // Statics has nothing more to look for after its first frame.
+        let good = u32::from(!rule.contains("equilibrium"));
+        let (mut hash, mut begin) = (whole.state_hash(), 0);
+        for frame in 0..=good {
+            (hash, begin) = (whole.state_hash(), asked.load(Ordering::Relaxed));
+            whole.frame().unwrap_or_else(|error| panic!("{rule}, frame {frame}: {error}"));
+        }
+        let all = asked.load(Ordering::Relaxed);
+        whole.frame().expect("one more");
+        // Somewhere in the last frame but one.
+        let (mut broken, flag, asked) = world(rule, substeps, begin + 1 + good * (all - begin) / 3);
+        (0..good).for_each(|_| broken.frame().expect("the first one"));
+        assert_eq!(broken.state_hash(), hash, "{rule}");
+        assert_eq!(broken.frame(), Err(WorldError::BrokenOff), "{rule}");
+        let spent = asked.load(Ordering::Relaxed);
+        assert!(spent < all, "{rule}: {spent} of {all}: the frame has ended early");
+        assert_eq!((broken.frames(), broken.state_hash()), (u64::from(good), hash), "{rule}");
+        // As long as it is wanted nothing goes on.
+        assert_eq!(broken.frame(), Err(WorldError::BrokenOff), "{rule}");
+        flag.ask(false);
+        (0..2).for_each(|_| broken.frame().expect("it goes on"));
+        assert_eq!(broken.state_hash(), whole.state_hash(), "{rule}");
+        assert_eq!(broken.energy(), whole.energy(), "{rule}");
+    }
+}

@@ -1,0 +1,34 @@
+//! Every test of this crate that needs no process of its own, in one program: it is linked once.
+
+mod arcs_on_obstacles;
+mod broken_off;
+mod chambers;
+mod closed_forms;
+mod common;
+mod drawings;
+mod energy_in_flight;
+mod falling_solids;
+mod fields_without_effect;
+mod finite_elements;
+mod fuzz;
+mod fuzz_corpus;
+mod gas_over_time;
+mod golden_hashes;
+mod implicit;
+mod invariance;
+mod islands;
+mod ledger_at_rest;
+mod modes;
+mod numerical_damping;
+mod pictures;
+mod published_beside_physics;
+mod recordings;
+mod said_by_scenes;
+mod seams;
+mod shipped_measures;
+mod shipped_shapes;
+mod solids_from_shapes;
+mod stabilisers;
+mod sweeps;
+mod thermal;
+mod torture;

@@ -1,0 +1,182 @@
+//! What implicit rules take by themselves is measured and told, and nothing else is left over.
+#![allow(clippy::disallowed_methods)] // expected values of the tests' own
+
+use crate::common;
+
+use common::{built, frames, head, plane, space};
+use opruga::{Energy, World};
+
+const RULES: [&str; 5] = [
+    "backward_euler",
+    "bdf2",
+    "implicit_midpoint",
+    "newmark",
+    "newmark\"\nspectral_radius = 0.5\nlinear_solver = \"auto",
+];
+
+const NUMERICAL: &str = "ledger.numerical_damping";
+
+fn warns<const D: usize>(world: &World<D>, code: &str) -> bool {
+    world.warnings().iter().any(|warning| warning.code == code)
+}
+
+/// All that entered, less all that left and is there now, is what is left unexplained.
+fn adds_up(start: f64, e: &Energy) {
+    let given = start + e.work_user + e.work_gas + e.work_correction;
+    let taken = e.loss_damping + e.loss_friction + e.loss_contact + e.loss_numerical;
+    let left = given - taken - e.total();
+    assert!((left - e.loss_integrator).abs() <= 1e-12 * (given.abs() + taken.abs() + e.in_motion), "{left}: {e:?}");
+    assert!((e.closure - left.abs() / e.in_motion).abs() < 1e-9, "{e:?}");
+}
+
+const TIGHT: &str = "tolerance = 1e-10\n";
+
+/// A head with a tolerance.
+fn tight(frame: f64, substeps: u32, gravity: f64, rule: &str) -> String {
+    head(frame, substeps, gravity, rule).replace("[world]", &format!("{TIGHT}[world]"))
+}
+
+/// A soft square that spins about its middle, stretched by that to and fro, ten steps a turn.
+const SPINNING: &str = "[[body]]\nname = \"square\"\nshape = { kind = \"grid\", size = [1, 1], cells = [3, 3] }\n\
+    density = 1000\nangular_velocity = 10.0\nvelocity = [1.0, 2.0]\n\
+    models = [ { kind = \"fem\", youngs_modulus = 1e6, poissons_ratio = 0.3MORE } ]\n";
+
+#[test]
+fn a_free_body_has_its_energy_less_what_the_rule_took() {
+    for rule in RULES {
+        for more in ["", ", mass = \"consistent\""] {
+            let text = tight(0.05, 1, 0.0, rule) + &SPINNING.replace("MORE", more);
+            let mut world = built(plane(&text));
+            let start = world.energy().total();
+            for _ in 0..100 {
+                frames(&mut world, 1);
+                let e = world.energy();
+                adds_up(start, &e);
+                assert!((e.total() + e.loss_numerical - start).abs() < 1e-7 * start, "{rule}{more}: {e:?}");
+            }
+            let (e, told) = (world.energy(), warns(&world, NUMERICAL));
+            assert!(told || e.loss_numerical.abs() <= 0.05 * e.in_motion, "{rule}{more}: {e:?}");
+            assert!(rule != "backward_euler" || told && e.loss_numerical > 0.3 * start, "{rule}{more}: {e:?}");
+        }
+    }
+}
+
+/// A stiff bar that swings about its end, sixteen steps a period: what backward Euler takes is told, and no rule of no damping is blamed.
+#[test]
+fn a_pendulum_that_the_rule_stops_is_told() {
+    let bar = "[[body]]\nname = \"bar\"\nshape = { kind = \"grid\", size = [1.0, 0.1], cells = [10, 1], corner = [0, 0] }\ndensity = 1000\n\
+        models = [ { kind = \"fem\", youngs_modulus = 1e8, poissons_ratio = 0.3 } ]\n\
+        pin = [ { select = { box = [[-0.01, -0.01], [0.01, 0.01]] }, axes = \"xy\" } ]\n";
+    for (rule, substeps, expected) in [("backward_euler", 1, true), ("implicit_midpoint", 40, false)] {
+        let mut world = built(plane(&(tight(0.1, substeps, -9.81, rule) + bar)));
+        frames(&mut world, 60);
+        let e = world.energy();
+        assert_eq!(warns(&world, NUMERICAL), expected, "{rule}: {e:?}");
+        assert!(!warns(&world, "ledger.closure") && e.closure < 1e-6, "{rule}: {e:?}");
+        assert!(!expected || e.loss_numerical > 0.3 * e.in_motion, "{rule}: {e:?}");
+    }
+}
+
+const RING: &str = "[[body]]\nname = \"ball\"\nshape = { kind = \"ring\", radius = 0.5, vertices = 16, center = [0.0, 0.7] }\n\
+    mass = 1.0\nvelocity = [1.5, -1.0]\nmodels = [ { kind = \"mass_spring\", stiffness = 800.0, damping = 1.0 }, GAS ]\n";
+
+const FLOOR: &str =
+    "[[collider]]\nkind = \"half_space\"\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]\nfriction = 0.3\nrestitution = 0.5\n";
+
+/// Weight, a gas that is pumped up, a load that comes and goes, a pin that moves, obstacles with friction and restitution, steps that
+/// are halved, few iterations in real time.
+#[test]
+fn nothing_is_left_over_whatever_acts() {
+    let gas = RING.replace("GAS", "{ kind = \"pressure\", nRT = 60.0 }");
+    let pumped = RING.replace("GAS", "{ kind = \"pressure\", nRT = 60.0, ramp = 0.5 }");
+    let load = "[[load]]\nkind = \"force\"\nbody = \"ball\"\nselect = { node = 3 }\nvalue = [4.0, 2.0]\n\
+        curve = [[0.0, 0.0], [0.3, 1.0], [0.6, 0.2]]\n";
+    let pin = gas.clone()
+        + "pin = [ { select = { node = 0 }, axes = \"xy\", motion = [[0.0, 0.0, 0.0], [0.5, 0.4, 0.2], [1.0, 0.0, 0.0]] } ]\n";
+    let halves = "iterations = 5\nwhen_not_converged = \"halve\"\n";
+    let cases = [
+        ("gas", "", gas.clone(), 1e-6),
+        ("pumped", "", pumped, 1e-6),
+        ("load", "", gas.clone() + load, 1e-6),
+        ("pin", "", pin, 1e-6),
+        ("halved", halves, gas.clone(), 1e-6),
+        ("floor", "", gas.clone() + FLOOR, 1e-3),
+        ("real time", "accuracy = \"real_time\"\n", gas.clone() + FLOOR, 0.05),
+    ];
+    for (name, setting, body, most) in &cases {
+        for rule in RULES.into_iter().filter(|rule| *name != "real time" || ["backward_euler", "bdf2"].contains(rule)) {
+            let tolerance = if name == &"real time" { "" } else { TIGHT };
+            let text =
+                head(1.0 / 60.0, 1, -9.81, rule).replace("[world]", &format!("{tolerance}{setting}[world]")) + body;
+            let mut world = built(plane(&text));
+            let start = world.energy().total();
+            let mut worst = 0.0f64;
+            for _ in 0..90 {
+                frames(&mut world, 1);
+                adds_up(start, &world.energy());
+                worst = worst.max(world.energy().closure);
+            }
+            println!("{name}, {rule}: {worst:.2e}, {:?}", world.energy());
+            assert!(worst < *most, "{name}, {rule}: {worst} {:?}", world.energy());
+        }
+    }
+}
+
+/// A snapshot, an earlier frame, a look into a frame: the sum is that of the frames that count.
+#[test]
+fn what_rules_took_goes_with_the_state() {
+    let text =
+        |substeps: u32, frame: f64| head(frame, substeps, -9.81, "backward_euler") + &RING.replace(", GAS", "") + FLOOR;
+    let mut world = built(plane(&text(4, 1.0 / 16.0)));
+    frames(&mut world, 8);
+    let kept = world.snapshot();
+    frames(&mut world, 8);
+    let after = world.energy();
+    assert!(after.loss_numerical > 0.01 * after.in_motion, "{after:?}");
+    let mut other = built(plane(&text(4, 1.0 / 16.0)));
+    other.restore(&kept).expect("a snapshot");
+    frames(&mut other, 8);
+    assert_eq!(other.energy(), after);
+    assert_eq!(other.snapshot(), world.snapshot());
+    world.restore(&kept).expect("a snapshot");
+    frames(&mut world, 8);
+    assert_eq!(world.energy(), after);
+
+    let mut long = built(plane(&text(4, 1.0 / 16.0)));
+    let mut short = built(plane(&text(1, 1.0 / 64.0)));
+    long.keep_looks(1);
+    for _ in 0..16 {
+        frames(&mut long, 1);
+        let mut seen = Vec::new();
+        long.look_within(|world| seen.push(world.energy()));
+        seen.push(long.energy());
+        assert_eq!(seen.len(), 4);
+        for look in seen {
+            frames(&mut short, 1);
+            let expected = short.energy();
+            assert!((look.loss_numerical - expected.loss_numerical).abs() < 1e-9, "{look:?} {expected:?}");
+            assert!((look.loss_integrator - expected.loss_integrator).abs() < 1e-9, "{look:?} {expected:?}");
+        }
+    }
+}
+
+/// A program may change the scene while it runs: what that gives is its work, and no damping.
+#[test]
+fn changes_of_the_scene_are_no_damping() {
+    let text = "format = \"opruga-1\"\ndimension = 3\n[time]\nseconds = 1\nframe = 0.02\nsubsteps = 1\n[world]\n\
+        gravity = [0, 0, -9.81]\n[integrator]\nkind = \"implicit_midpoint\"\ntolerance = 1e-12\n[[body]]\nname = \"cube\"\n\
+        shape = { kind = \"grid\", size = [1, 1, 1], cells = [1, 1, 1], corner = [0, 0, 0] }\ndensity = 100\n\
+        models = [ { kind = \"fem\", youngs_modulus = 1e5, poissons_ratio = 0.3 } ]\n";
+    let mut world = built(space(text));
+    let start = world.energy().total();
+    frames(&mut world, 5);
+    world.set("world.gravity", opruga::core::spec::Value::Numbers(vec![0.0, 0.0, 5.0])).expect("another weight");
+    world.place_node(0, 0, [-0.05, 0.0, 0.0], [0.0, 0.0, 0.3]).expect("another place");
+    let placed = world.energy();
+    frames(&mut world, 5);
+    let e = world.energy();
+    assert!(
+        (e.loss_numerical - placed.loss_numerical).abs() < 1e-3 * e.in_motion && e.closure < 1e-9,
+        "{start}: {e:?}"
+    );
+}
