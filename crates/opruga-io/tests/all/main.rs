@@ -12,6 +12,7 @@ mod malformed_meshes;
 mod maps;
 mod mesh_files;
 mod mesh_round_trips;
+mod node_values;
 mod odd_surfaces;
 mod recordings;
 mod rounded_coordinates;

@@ -1,7 +1,6 @@
 //! Bodies that start with the velocities that a mesh file has for their nodes.
 
-mod common;
-use common::{head, read};
+use crate::common::{head, read};
 use opruga::blueprint::AnyBlueprint;
 use opruga::io::files::Files;
 use opruga::io::series::{Format, Shape};

@@ -2,17 +2,17 @@
 #![allow(dead_code, reason = "a test calls `run` of an example, cargo calls `main`")]
 #![allow(clippy::duplicate_mod, reason = "two examples build on the scene of a third")]
 
-#[path = "../examples/ball_in_code.rs"]
+#[path = "../../examples/ball_in_code.rs"]
 mod ball_in_code;
-#[path = "../examples/elements_from_arrays.rs"]
+#[path = "../../examples/elements_from_arrays.rs"]
 mod elements_from_arrays;
-#[path = "../examples/game_loop.rs"]
+#[path = "../../examples/game_loop.rs"]
 mod game_loop;
-#[path = "../examples/own_integrator.rs"]
+#[path = "../../examples/own_integrator.rs"]
 mod own_integrator;
-#[path = "../examples/own_model.rs"]
+#[path = "../../examples/own_model.rs"]
 mod own_model;
-#[path = "../examples/study.rs"]
+#[path = "../../examples/study.rs"]
 mod study;
 
 /// From 1.5 m a point falls for √(2 · 1.5 / 9.81) s = 0.553 s; the ball swells first, so its lowest node is there sooner.
