@@ -1,8 +1,8 @@
 //! Nodes against obstacles of many facets: one node after the other, by a tree.
 
 use crate::collider::Law;
-use crate::contacts::{Held, Meets};
 use crate::facets::Facets;
+use crate::held::{Held, Meets};
 use crate::motion::{Carry, Pose};
 use crate::response::{Face, Meeting, Surface, largest_rounding, meets, respond, rounding};
 use crate::shape::{entry, is_on_edge, support};

@@ -58,6 +58,7 @@ mod contacts;
 mod entries;
 mod facet_contacts;
 mod facets;
+mod held;
 mod hull;
 mod inside;
 mod motion;

@@ -1,8 +1,8 @@
 //! One shape against the nodes of a tile.
 
 use crate::collider::Law;
-use crate::contacts::{Held, Meets};
 use crate::entries::{Found, Ways, arrays, numbers};
+use crate::held::{Held, Meets};
 use crate::motion::{Carry, Pose};
 use crate::response::{Face, Meeting, Surface, largest_rounding, meets, respond, rounding};
 use crate::shape::{Shape, close_to};

@@ -324,6 +324,15 @@ fn take_plane(bounds: &mut Bounds, point: [f64; 3], normal: [f64; 3], diagonal: 
     }
 }
 
+impl View {
+    /// The view which shows everything in all pictures of a run.
+    pub fn fit<'a>(pictures: impl IntoIterator<Item = &'a Picture>) -> Result<View, DrawError> {
+        let mut fitting = Fitting::default();
+        pictures.into_iter().for_each(|picture| fitting.add(picture));
+        fitting.finish()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -12,6 +12,7 @@ mod error;
 mod eye;
 mod fitting;
 mod flat;
+mod framing;
 mod image;
 mod layout;
 mod marks;

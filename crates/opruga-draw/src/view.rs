@@ -1,7 +1,5 @@
 //! What all pictures of a run have in common: the part of space, the range of scalars and the scale of arrows.
 
-use crate::error::DrawError;
-use crate::fitting::Fitting;
 use crate::picture::{ArrowKind, Legend, Picture};
 use std::collections::BTreeMap;
 
@@ -38,13 +36,6 @@ pub struct View {
 }
 
 impl View {
-    /// The view which shows everything in all pictures of a run.
-    pub fn fit<'a>(pictures: impl IntoIterator<Item = &'a Picture>) -> Result<View, DrawError> {
-        let mut fitting = Fitting::default();
-        pictures.into_iter().for_each(|picture| fitting.add(picture));
-        fitting.finish()
-    }
-
     /// The larger side of the view [m].
     pub fn extent(&self) -> f64 {
         (0..3).map(|axis| self.high[axis] - self.low[axis]).fold(1e-12, f64::max)
@@ -53,27 +44,6 @@ impl View {
     /// The centre of the view [m].
     pub fn center(&self) -> [f64; 3] {
         std::array::from_fn(|axis| 0.5 * (self.low[axis] + self.high[axis]))
-    }
-
-    /// The width and the height of what is seen [m].
-    fn seen(&self, dimension: u8) -> [f64; 2] {
-        match dimension {
-            3 => crate::solid::seen_size(self),
-            _ => [0, 1].map(|axis| self.high[axis] - self.low[axis]),
-        }
-    }
-
-    /// How much of the width of a picture most bodies take along their larger side.
-    pub(crate) fn share_of_body(&self, dimension: u8) -> f64 {
-        let [wide, tall] = self.seen(dimension);
-        self.body / (wide + 0.08 * wide.max(tall)).max(tall / self.aspect(dimension)).max(1e-12)
-    }
-
-    /// The height of a picture divided by its width which fits the view.
-    pub fn aspect(&self, dimension: u8) -> f64 {
-        let [wide, tall] = self.seen(dimension);
-        let border = 0.08 * wide.max(tall);
-        ((tall + border) / (wide + border).max(1e-12)).clamp(0.25, 1.8)
     }
 
     /// The length of a long arrow beside bodies of a size [m].

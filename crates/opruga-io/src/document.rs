@@ -1,8 +1,8 @@
 //! A parsed scene as a tree of values, each of which knows where it was written.
 
 use crate::brackets::unclosed;
-use crate::problem::{SceneError, visible};
-use crate::scene::{Limits, MOST_ERRORS};
+use crate::limits::Limits;
+use crate::problem::{MOST_SHOWN, SceneError, visible};
 use crate::source::Source;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -103,7 +103,7 @@ pub(crate) fn parse(source: &Source<'_>) -> (Option<Node>, Vec<SceneError>) {
     problems.sort_by_key(|problem| problem.span().map_or(0, |span| span.start));
     let (open, mut told) = (if problems.is_empty() { None } else { unclosed(source.text) }, false);
     let count = problems.len();
-    for problem in problems.into_iter().take(MOST_ERRORS) {
+    for problem in problems.into_iter().take(MOST_SHOWN) {
         let span = problem.span().unwrap_or(0..0);
         // All that is read as part of a list that is never closed makes no sense: that is one slip.
         if let Some(open) = open.filter(|open| span.start >= open.open) {
@@ -142,8 +142,8 @@ pub(crate) fn parse(source: &Source<'_>) -> (Option<Node>, Vec<SceneError>) {
         error.hint = source.text.lines().nth(line - 1).and_then(|text| with_unit(text.split_once('=')?.1));
         errors.push(source.mark(error, span.start, span.end));
     }
-    if count > MOST_ERRORS {
-        errors.push(SceneError { file: source.file.to_string(), ..SceneError::and_more(count - MOST_ERRORS) });
+    if count > MOST_SHOWN {
+        errors.push(SceneError { file: source.file.to_string(), ..SceneError::and_more(count - MOST_SHOWN) });
     }
     (if broken { None } else { Some(root) }, errors)
 }

@@ -85,7 +85,7 @@ impl Files {
         };
         let path = folder.join(name);
         self.check_place(folder, &path, name)?;
-        crate::scene::regular_file(&path, most_bytes, "shape.too_large", "the file").map_err(|error| {
+        crate::regular_file::regular_file(&path, most_bytes, "shape.too_large", "the file").map_err(|error| {
             let error = error.value(visible(name));
             if path.exists() { error } else { self.missing(folder, name, error) }
         })

@@ -69,7 +69,11 @@ impl OutputFolder {
     /// `write.exists` where it holds other files and `existing` refuses them.
     pub fn open(path: &Path, existing: Existing) -> Result<OutputFolder, WriteError> {
         let cannot = |what: &str, e: &io::Error| {
-            WriteError::new("write.folder", path, format!("the folder cannot be {what}: {}", crate::scene::reason(e)))
+            WriteError::new(
+                "write.folder",
+                path,
+                format!("the folder cannot be {what}: {}", crate::regular_file::reason(e)),
+            )
         };
         if path.exists() && !path.is_dir() {
             return Err(WriteError::new("write.folder", path, "this is a file, no folder"));

@@ -34,7 +34,7 @@ impl WriteError {
             ..WriteError::new(
                 "write.failed",
                 path,
-                format!("writing stopped after {bytes} bytes: {}", crate::scene::reason(error)),
+                format!("writing stopped after {bytes} bytes: {}", crate::regular_file::reason(error)),
             )
         }
     }
@@ -172,7 +172,7 @@ impl Aside {
             return Err(WriteError::new("write.failed", path, "this is no name of a file"));
         };
         let (aside, file) = make_aside(folder_of(path), name).map_err(|e| {
-            let message = format!("the file cannot be made: {}", crate::scene::reason(&e));
+            let message = format!("the file cannot be made: {}", crate::regular_file::reason(&e));
             let hint = (e.kind() == io::ErrorKind::NotFound).then(|| "the folder around it is missing".into());
             WriteError { hint, ..WriteError::new("write.failed", path, message) }
         })?;

@@ -1,7 +1,7 @@
 //! The bytes of a scene before they are parsed: encoding, size, depth, and where a byte lies in the text.
 
+use crate::limits::Limits;
 use crate::problem::{Excerpt, SceneError, unprintable};
-use crate::scene::Limits;
 
 /// The byte-order mark of UTF-8.
 const MARK: &[u8] = b"\xef\xbb\xbf";

@@ -5,6 +5,8 @@ mod column;
 pub mod elementary;
 mod fetch;
 pub mod lane;
+#[cfg(target_arch = "x86_64")]
+mod logarithm;
 pub mod matrix;
 mod portable;
 mod registers;

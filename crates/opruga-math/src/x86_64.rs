@@ -8,8 +8,8 @@
 //! the promise of their caller on to the load and store instructions.
 #![allow(unsafe_code, unused_unsafe)] // not every operation of every register is unsafe
 
-use crate::elementary::logarithm_of_parts;
 use crate::lane::{Lane, ROW, Register};
+use crate::logarithm::logarithm_of_parts;
 use core::arch::x86_64::*;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 

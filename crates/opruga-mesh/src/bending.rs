@@ -1,6 +1,6 @@
 //! Where a body bends: hinges of surfaces, triples of chains.
 
-use crate::edges::ascending;
+use crate::geometry::ascending;
 use crate::{Mesh, MeshError};
 
 /// For each edge that two triangles share the four nodes [a, b, c, d] of the hinge, in the order of (|b − a|, lower node) as [`Mesh::edges`] has it.

@@ -1,7 +1,6 @@
 //! From cells to their boundary, and from boxes to simplices.
 
-use crate::edges::ascending;
-use crate::geometry::{HEXAHEDRON_FACES, TETRAHEDRON_FACES};
+use crate::geometry::{HEXAHEDRON_FACES, TETRAHEDRON_FACES, ascending};
 use crate::quadratic::{TRIANGLE_SIDES, tetrahedron_parts};
 use crate::quality::HEXAHEDRON_EDGES;
 use crate::{Element, Mesh, MeshError};

@@ -40,7 +40,8 @@ fn ridges<const D: usize>(facets: &[[u32; D]]) -> Vec<Use> {
     for (index, facet) in facets.iter().enumerate() {
         for corner in 0..D {
             let (a, b) = (facet[corner], facet[(corner + 1) % D]);
-            let (ridge, forward) = if D == 2 { ([a, a], corner == 0) } else { (crate::edges::ascending(a, b), a < b) };
+            let (ridge, forward) =
+                if D == 2 { ([a, a], corner == 0) } else { (crate::geometry::ascending(a, b), a < b) };
             uses.push(Use { ridge, facet: index as u32, forward });
         }
     }

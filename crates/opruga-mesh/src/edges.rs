@@ -2,7 +2,7 @@
 
 use crate::Mesh;
 use crate::MeshError;
-use crate::geometry::{HEXAHEDRON_FACES, lift, triangle_area};
+use crate::geometry::{HEXAHEDRON_FACES, ascending, lift, triangle_area};
 use crate::quadratic::{tetrahedron_parts, triangle_parts};
 
 /// Which edges of a mesh are meant.
@@ -47,12 +47,6 @@ pub fn edge_runs(edges: &[[u32; 2]]) -> Vec<EdgeRun> {
 /// Largest distance |b − a| in index between the ends of an edge: how far apart in memory neighbours lie. Zero for no edges.
 pub fn bandwidth(edges: &[[u32; 2]]) -> u32 {
     edges.iter().map(|&[a, b]| a.abs_diff(b)).max().unwrap_or(0)
-}
-
-/// The edge with its lower node first.
-#[inline]
-pub(crate) fn ascending(a: u32, b: u32) -> [u32; 2] {
-    if a < b { [a, b] } else { [b, a] }
 }
 
 /// Adds the sides of a closed polygon of nodes.

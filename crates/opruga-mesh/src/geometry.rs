@@ -95,3 +95,9 @@ pub fn signed_volume<const D: usize>(facets: &[[u32; D]], positions: &[[f64; D]]
     }
     volume
 }
+
+/// The edge with its lower node first.
+#[inline]
+pub(crate) fn ascending(a: u32, b: u32) -> [u32; 2] {
+    if a < b { [a, b] } else { [b, a] }
+}

@@ -1,6 +1,6 @@
 //! The inside of a closed surface as a lattice of tetrahedra.
 
-use crate::edges::ascending;
+use crate::geometry::ascending;
 use crate::lattice_bcc::{Key, Lattice};
 use crate::skin::{Inside, Skin, refined, weights};
 use crate::{Mesh, MeshError};

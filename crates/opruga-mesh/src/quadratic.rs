@@ -3,8 +3,7 @@
 //! A point of a quadratic cell is x(λ) = Σ Nₐ(λ) xₐ with barycentric coordinates λ: Nᵢ = λᵢ (2 λᵢ − 1) for corner i, Nᵢⱼ = 4 λᵢ λⱼ for the node in the
 //! middle of edge ij. Sides may be curved, as parabolas.
 
-use crate::edges::ascending;
-use crate::geometry::{Point, cross, tetrahedron_volume};
+use crate::geometry::{Point, ascending, cross, tetrahedron_volume};
 use crate::{Element, Mesh, MeshError};
 use std::collections::BTreeMap;
 

@@ -2,9 +2,10 @@
 
 use super::chain::Chain;
 use super::lone::{Alone, Lone};
+use super::parameters::{law_parameters, load_parameters};
 use super::pull::Gather;
 use super::{PairLaw, PairTable, PairTerm, Run, slot_of, within};
-use crate::state::{At, Layout, OrderedSum, Parameter, View, load};
+use crate::state::{At, Layout, OrderedSum, View, load};
 use crate::tile::{TILE, Tile};
 use core::ops::Range;
 use opruga_math::{Pack, Simd, Strip, StripMut, WIDTH, Work, lanes};
@@ -332,21 +333,6 @@ impl<L: PairLaw<D>, const D: usize> Work for Long<'_, '_, '_, L, D> {
         self.table.run::<P, L, D>(law, view, place, all, own, other, tile, &mut power);
         power.store(self.power);
     }
-}
-
-/// The numbers that a law reads for eight pairs.
-#[inline(always)]
-pub(super) fn law_parameters<P: Pack, L: PairLaw<D>, const D: usize>(law: &L, at: At) -> [P; 3] {
-    if L::UNIFORM {
-        let [second, third] = law.uniform();
-        return [P::zero(), second, third];
-    }
-    load_parameters(&law.parameters(), at)
-}
-
-#[inline(always)]
-pub(super) fn load_parameters<P: Pack>(parameters: &[&Parameter; 3], at: At) -> [P; 3] {
-    [parameters[0].load_at(at), parameters[1].load_at(at), parameters[2].load_at(at)]
 }
 
 /// Adds slots to `count` forces from `at` on: one slot times `sign`, or (`BOTH`) the slot of the first node and then

@@ -1,7 +1,7 @@
 //! Pairs by themselves: what closes an outline behind its chain, and what follows no other pair.
 
 use super::PairLaw;
-use super::force::law_parameters;
+use super::parameters::law_parameters;
 use crate::state::{At, Layout, View, load};
 use crate::tile::Tile;
 use opruga_math::{Pack, WIDTH, Work, lanes};

@@ -12,6 +12,7 @@
 mod chain;
 mod force;
 mod lone;
+mod parameters;
 mod pull;
 
 use crate::state::{Layout, Parameter};

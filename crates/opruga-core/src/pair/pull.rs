@@ -1,6 +1,6 @@
 //! Pairs outside of long runs, evaluated node by node.
 
-use super::force::law_parameters;
+use super::parameters::law_parameters;
 use super::{PairLaw, PairTable};
 use crate::state::{At, Layout, View, load};
 use crate::tile::Tile;

@@ -1,6 +1,6 @@
 //! Why a recording, or a frame of it, is refused.
 
-use super::format::VERSION;
+use super::version::VERSION;
 use crate::problem::SceneError;
 
 /// Why a recording, or a frame of it, was refused.
@@ -69,7 +69,7 @@ impl RecordingError {
 
 impl From<std::io::Error> for RecordingError {
     fn from(error: std::io::Error) -> RecordingError {
-        RecordingError::Read(crate::scene::reason(&error))
+        RecordingError::Read(crate::regular_file::reason(&error))
     }
 }
 

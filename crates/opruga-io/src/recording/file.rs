@@ -63,12 +63,12 @@ impl RecordingFile {
             path.file_name().ok_or_else(|| WriteError::new("write.failed", path, "this is no name of a file"))?;
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         make_folders(folder).map_err(|e| {
-            let message = format!("the folder around it cannot be made: {}", crate::scene::reason(&e));
+            let message = format!("the folder around it cannot be made: {}", crate::regular_file::reason(&e));
             WriteError::new("write.failed", path, message)
         })?;
         remove_the_dead(folder, Some(name));
         let (aside, file) = make_aside(folder, name).map_err(|e| {
-            let message = format!("the file cannot be made: {}", crate::scene::reason(&e));
+            let message = format!("the file cannot be made: {}", crate::regular_file::reason(&e));
             WriteError::new("write.failed", path, message)
         })?;
         let begin = || -> io::Result<(File, Writer<Box<dyn Target + Send>>)> {

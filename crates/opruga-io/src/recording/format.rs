@@ -1,11 +1,8 @@
 //! The parts of the file: head, header, heads of chunks, end.
 
 use super::error::RecordingError;
+use super::version::{BEFORE, VERSION};
 
-/// The version that is written.
-pub const VERSION: u32 = 6;
-/// The one before it, in which every frame without its state is a chunk of its own: what is written now says the same with a payload.
-const BEFORE: u32 = 5;
 /// What every recording begins with.
 pub const MAGIC: &[u8; 8] = b"OPRREC\x1a\n";
 const END: &[u8; 8] = b"OPREND\x1a\n";

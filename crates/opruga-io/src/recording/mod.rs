@@ -40,10 +40,12 @@ mod file;
 mod format;
 mod order;
 mod reader;
+mod version;
 mod writer;
 
 pub use error::RecordingError;
 pub use file::RecordingFile;
-pub use format::{Asset, Header, MAGIC, VERSION};
+pub use format::{Asset, Header, MAGIC};
 pub use reader::{Ending, Recording};
+pub use version::VERSION;
 pub use writer::Writer;

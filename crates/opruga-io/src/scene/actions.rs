@@ -1,6 +1,6 @@
 //! `[[load]]` and `[[command]]`.
 
-use super::bodies::Bodies;
+use super::body_list::Bodies;
 use super::lifetimes::Lifetimes;
 use super::moments::{Frames, Set};
 use super::pins;
@@ -8,7 +8,7 @@ use super::reader::{Reader, join};
 use super::{parameters, parts, place_of, selectors};
 use crate::document::{Data, Node};
 use crate::problem::SceneError;
-use opruga_core::spec::{Spec, Values, nearest};
+use opruga_core::spec::{Values, nearest};
 use opruga_world::blueprint::{Action, ColliderBlueprint, CommandBlueprint, LoadBlueprint, LoadKind, Selector};
 use opruga_world::schema::{self, Section};
 
@@ -225,9 +225,4 @@ fn held(reader: &mut Reader<'_>, node: &Node, path: &str) -> Option<(Option<u32>
             None
         }
     }
-}
-
-/// The specification of a kind in a list, for paths.
-pub(crate) fn spec_of(list: &[&'static Spec], kind: &str, dimension: usize) -> Option<&'static Spec> {
-    crate::catalogue::find(list, kind, dimension)
 }

@@ -1,6 +1,7 @@
 //! `[[body]]`: shape, mass, models and pins.
 
 use super::Cost;
+use super::body_list::Bodies;
 use super::copies::{Copies, copies, write_out};
 use super::names::{Names, What};
 use super::reader::{Reader, join};
@@ -17,25 +18,6 @@ use opruga_world::validity::{self, LONGEST};
 use opruga_world::{schema, shapes};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
-
-/// The bodies of a scene, copies written out; behind them those that commands add, in the order of time.
-pub(crate) struct Bodies<const D: usize> {
-    pub(crate) list: Vec<BodyBlueprint<D>>,
-    /// How many are there at the start.
-    pub(crate) initial: usize,
-    /// Number of an `add` command → place of its body in the list, and when it is added.
-    pub(crate) later: BTreeMap<usize, (usize, f64)>,
-    /// Name → place in the list.
-    pub(super) names: BTreeMap<String, usize>,
-    /// Name of a body with copies → the place of the first, and how far each is from where the body would lie.
-    pub(super) copied: BTreeMap<String, (usize, Vec<[f64; D]>)>,
-    /// What all of them would cost.
-    cost: Cost,
-    /// Names of bodies that could not be made: a reference to them is no further error.
-    pub(super) broken: Vec<String>,
-    /// Places of bodies that were made, but have errors in their fields.
-    pub(crate) unsound: BTreeSet<usize>,
-}
 
 /// A body as it was read, before its mesh is made.
 struct Draft<'n, const D: usize> {

@@ -1,6 +1,6 @@
 //! `copies`: many bodies of one shape in rows, columns and layers.
 
-use super::bodies::Bodies;
+use super::body_list::Bodies;
 use super::reader::{Reader, join};
 use crate::document::{Data, Node};
 use crate::problem::SceneError;

@@ -1,6 +1,6 @@
 //! What the bodies of a scene would cost, compared with the limits before any mesh is made.
 
-use super::Limits;
+use crate::limits::Limits;
 use crate::problem::SceneError;
 
 /// How much there is of what is limited. Bodies that commands take away count too: the world remembers them.

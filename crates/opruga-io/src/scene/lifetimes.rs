@@ -1,6 +1,6 @@
 //! Commands on bodies that are not there when they begin: before a command adds them, or after one has taken them away.
 
-use super::bodies::Bodies;
+use super::body_list::Bodies;
 use super::place_of;
 use super::reader::{Reader, join};
 use crate::document::Node;

@@ -6,6 +6,7 @@
 
 mod actions;
 mod bodies;
+mod body_list;
 mod copies;
 mod cost;
 mod dimension;
@@ -27,8 +28,10 @@ pub mod written;
 use crate::catalogue::Catalogue;
 use crate::document::{self, Node, Place};
 use crate::files::Files;
+pub use crate::limits::Limits;
 use crate::overrides;
 use crate::problem::{Notice, SceneError};
+use crate::regular_file::regular_file;
 use crate::source::Source;
 pub(crate) use cost::{Cost, shown};
 use moments::Frames;
@@ -37,57 +40,11 @@ use opruga_world::blueprint::{
     AnyBlueprint, Blueprint, ColliderBlueprint, LoadBlueprint, Pictured, Surroundings, Time,
 };
 use opruga_world::{schema, validity};
-pub(crate) use reader::MOST_ERRORS;
 use reader::{Reader, join};
 pub use shape::of_fields as shape_of_fields;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
-
-/// What a scene may cost, checked before anything is allocated.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Limits {
-    /// The largest scene file [bytes].
-    pub file_bytes: u64,
-    /// The largest file of a shape [bytes].
-    pub shape_bytes: u64,
-    /// How deep tables and arrays may be nested.
-    pub depth: usize,
-    /// The largest number of values in the lists of a scene file; what else takes memory when it is parsed counts by what it takes, a
-    /// line with a key as three.
-    pub values: u64,
-    /// The largest number of bodies.
-    pub bodies: u64,
-    /// The largest number of nodes of all bodies together.
-    pub nodes: u64,
-    /// The largest estimate of memory [bytes].
-    pub memory_bytes: u64,
-}
-
-impl Default for Limits {
-    /// Those of this machine.
-    fn default() -> Limits {
-        let limits = Limits::of_addresses(usize::BITS);
-        Limits { memory_bytes: crate::machine::memory_bytes().unwrap_or(limits.memory_bytes), ..limits }
-    }
-}
-
-impl Limits {
-    /// Those of a machine whose addresses have so many bits. A page in a browser has 4 GiB for everything: what takes more than half of
-    /// that is refused, as asking for more would end the page.
-    pub fn of_addresses(bits: u32) -> Limits {
-        Limits {
-            file_bytes: 64 << 20,
-            shape_bytes: 256 << 20,
-            depth: 128,
-            // Read in 300 MB and two seconds, whatever they are.
-            values: 1 << 20,
-            bodies: 4_000_000,
-            nodes: 200_000_000,
-            memory_bytes: if bits > 32 { 8 << 30 } else { 2 << 30 },
-        }
-    }
-}
 
 /// How a scene is read.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -204,64 +161,6 @@ pub fn bytes_of(path: &Path, limits: &Limits) -> Result<Vec<u8>, SceneError> {
         "read.failed" if !path.exists() => error.hint("`opruga list` shows the scenes that come with the program"),
         _ => error,
     })
-}
-
-/// The bytes of a regular file no larger than a limit.
-pub(crate) fn regular_file(path: &Path, most: u64, code: &'static str, what: &str) -> Result<Arc<[u8]>, SceneError> {
-    use std::io::Read as _;
-    let failed = |e: std::io::Error| SceneError::new("read.failed", format!("the file cannot be read: {}", reason(&e)));
-    let about = std::fs::metadata(path).map_err(failed)?;
-    if !about.is_file() {
-        let what = if about.is_dir() { "this is a folder" } else { "this is no regular file" };
-        return Err(SceneError::new("read.not_regular_file", what));
-    }
-    let too_large = |size: u64| {
-        SceneError::new(code, format!("{what} has {size} bytes"))
-            .value(size.to_string())
-            .allowed(format!("at most {most} bytes"))
-    };
-    if about.len() > most {
-        return Err(too_large(about.len()));
-    }
-    let mut file = std::fs::File::open(path).map_err(failed)?;
-    let before = Stamp::of(&file).map_err(failed)?;
-    // One byte more than allowed, in case that the file grows while it is read.
-    let mut bytes = Vec::new();
-    (&mut file).take(most + 1).read_to_end(&mut bytes).map_err(failed)?;
-    before.unchanged(&file, bytes.len() as u64)?;
-    if bytes.len() as u64 > most {
-        return Err(too_large(bytes.len() as u64));
-    }
-    Ok(bytes.into())
-}
-
-/// Size and time of change of a file, to tell whether it was changed while it was read.
-#[derive(Debug, PartialEq)]
-struct Stamp {
-    bytes: u64,
-    changed: Option<std::time::SystemTime>,
-}
-
-impl Stamp {
-    fn of(file: &std::fs::File) -> std::io::Result<Stamp> {
-        let about = file.metadata()?;
-        Ok(Stamp { bytes: about.len(), changed: about.modified().ok() })
-    }
-
-    /// Refuses what was read if it may be half old and half new.
-    fn unchanged(&self, file: &std::fs::File, read: u64) -> Result<(), SceneError> {
-        match Stamp::of(file) {
-            Ok(now) if now == *self && read == self.bytes => Ok(()),
-            _ => Err(SceneError::new("read.changed", "the file was changed while it was read")
-                .hint("try again once it is saved")),
-        }
-    }
-}
-
-/// The reason of an error of the system, without its number.
-pub(crate) fn reason(error: &std::io::Error) -> String {
-    let text = error.to_string();
-    text.split(" (os error").next().unwrap_or(&text).to_lowercase()
 }
 
 /// Everything below the head of a scene; parts with errors are left out.
@@ -413,29 +312,4 @@ fn picture<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Pictured<D> 
 /// The place of a value, or of the table that lacks it.
 pub(crate) fn place_of(node: &Node, key: &str) -> Place {
     node.get(key).map_or(node.place, |n| n.place)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use std::io::Write as _;
-
-    /// A file that grows, or is written over, between the first and the last byte that is read is refused.
-    #[test]
-    fn a_file_that_changes_while_it_is_read_is_refused() {
-        let path = std::env::temp_dir().join(format!("opruga-changed-{}", std::process::id()));
-        std::fs::write(&path, b"old text").expect("a file");
-        let file = std::fs::File::open(&path).expect("a file");
-        let stamp = Stamp::of(&file).expect("a stamp");
-        assert_eq!(stamp.unchanged(&file, 8), Ok(()));
-        assert_eq!(stamp.unchanged(&file, 7).map_err(|e| e.code), Err("read.changed"), "cut off meanwhile");
-        std::fs::OpenOptions::new().append(true).open(&path).and_then(|mut f| f.write_all(b"!")).expect("it grows");
-        assert_eq!(stamp.unchanged(&file, 8).map_err(|e| (e.code, e.exit_code())), Err(("read.changed", 4)));
-        let stamp = Stamp::of(&file).expect("a stamp");
-        let later = stamp.changed.expect("a time") + std::time::Duration::from_secs(1);
-        let writer = std::fs::OpenOptions::new().write(true).open(&path).expect("a file");
-        writer.set_modified(later).expect("a time");
-        assert_eq!(stamp.unchanged(&file, 9).map_err(|e| e.code), Err("read.changed"), "written over meanwhile");
-        std::fs::remove_file(&path).expect("the file is there");
-    }
 }

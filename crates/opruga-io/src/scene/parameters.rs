@@ -1,9 +1,9 @@
 //! The parameter that a `set` command changes while the scene runs: its path is resolved when the scene is read.
 
-use super::actions::spec_of;
-use super::bodies::Bodies;
+use super::body_list::Bodies;
 use super::place_of;
 use super::reader::{Reader, join, listed};
+use crate::catalogue;
 use crate::catalogue::Catalogue;
 use crate::document::Node;
 use crate::problem::{SceneError, visible};
@@ -123,13 +123,15 @@ fn resolve<const D: usize>(
         ["world", name] => find(schema::WORLD.spec, name).map(Some),
         ["time", "substeps"] => find(schema::TIME.spec, "substeps").map(Some),
         ["time", ..] => Err(lost("parameter that changes in the run", parameter, ["time.substeps"].into_iter())),
-        ["integrator", name] => match known.integrator.and_then(|v| spec_of(&catalogue.integrators, v.kind(), D)) {
-            Some(spec) => find(spec, name).map(Some),
-            None => Ok(None),
-        },
+        ["integrator", name] => {
+            match known.integrator.and_then(|v| catalogue::find(&catalogue.integrators, v.kind(), D)) {
+                Some(spec) => find(spec, name).map(Some),
+                None => Ok(None),
+            }
+        }
         ["collider", number, name] => {
             let collider = number.parse::<usize>().ok().and_then(|k| known.colliders.get(k));
-            match collider.and_then(|c| spec_of(&catalogue.colliders, c.values.kind(), D)) {
+            match collider.and_then(|c| catalogue::find(&catalogue.colliders, c.values.kind(), D)) {
                 Some(spec) => find(spec, name).map(Some),
                 None => {
                     let numbers: Vec<String> = (0..known.colliders.len().min(20)).map(|k| k.to_string()).collect();
@@ -139,7 +141,7 @@ fn resolve<const D: usize>(
         }
         ["body", name, "integrator", field] => {
             let Some(body) = body(name, known)? else { return Ok(None) };
-            match body.integrator.as_ref().and_then(|v| spec_of(&catalogue.integrators, v.kind(), D)) {
+            match body.integrator.as_ref().and_then(|v| catalogue::find(&catalogue.integrators, v.kind(), D)) {
                 Some(spec) => find(spec, field).map(Some),
                 None => Err(Lost {
                     message: format!("body `{}` has no integrator of its own", visible(name)),
@@ -158,7 +160,7 @@ fn resolve<const D: usize>(
                 .and_then(|k| body.models.get(k))
                 .map(Values::kind)
                 .or_else(|| kinds.clone().find(|k| k == kind));
-            match model.and_then(|k| spec_of(&catalogue.models, k, D)) {
+            match model.and_then(|k| catalogue::find(&catalogue.models, k, D)) {
                 Some(spec) => find(spec, field).map(Some),
                 None => Err(lost("model of this body", kind, kinds)),
             }

@@ -1,6 +1,6 @@
 //! Parts of bodies that loads act on: sides of the boundary, and cells.
 
-use super::bodies::Bodies;
+use super::body_list::Bodies;
 use super::place_of;
 use super::reader::{Reader, join};
 use crate::document::Node;

@@ -1,6 +1,7 @@
 //! `[[probe]]`: columns of `diagnostics.csv`.
 
-use super::bodies::{self, Bodies};
+use super::bodies;
+use super::body_list::Bodies;
 use super::names::{Names, What};
 use super::reader::{Reader, join, listed};
 use super::{place_of, selectors};

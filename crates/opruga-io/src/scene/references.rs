@@ -1,6 +1,6 @@
 //! Names of bodies in other tables: which body is meant, and what is said where none is.
 
-use super::bodies::Bodies;
+use super::body_list::Bodies;
 use super::reader::{Reader, join, listed};
 use crate::document::{Data, Node, Place};
 use crate::problem::{SceneError, visible};

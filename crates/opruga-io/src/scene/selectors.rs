@@ -1,6 +1,6 @@
 //! Sets of nodes: reading them, and refusing those that select nothing.
 
-use super::bodies::Bodies;
+use super::body_list::Bodies;
 use super::reader::{Reader, join, listed};
 use crate::document::{Data, Node, Place};
 use crate::problem::{SceneError, visible};

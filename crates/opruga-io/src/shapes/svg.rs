@@ -11,10 +11,10 @@
 
 use super::curves::{Affine, Curves, IDENTITY, Point, after};
 use super::drawing::Drawing;
-use super::svg_elements::units;
 use super::svg_fill::{Fill, Fills};
 use super::svg_sheets::Sheets;
 use super::svg_style::{ANIMATIONS, animations_of};
+use super::svg_units::units;
 use super::svg_xml::{document, is_drawing};
 use crate::budget::OUTLINES;
 use crate::problem::{SceneError, visible};

@@ -7,7 +7,7 @@
 //! W3C, Cascading Style Sheets, level 2 revision 1, chapters 5 and 6.
 
 use super::svg_index::Index;
-use super::svg_style::changes_outlines;
+use super::svg_outlines::changes_outlines;
 use super::svg_xml::is_drawing;
 use crate::budget::RULES;
 use crate::problem::{SceneError, visible};

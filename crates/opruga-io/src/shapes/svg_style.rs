@@ -3,32 +3,6 @@
 use super::svg_sheets::Sheets;
 use roxmltree::Node;
 
-/// Properties that change outlines, each with the value that does not; none where any value does.
-const OUTLINES: [(&str, Option<&str>); 22] = [
-    ("display", Some("none")),
-    ("visibility", Some("hidden")),
-    ("visibility", Some("collapse")),
-    ("opacity", Some("0")),
-    ("transform", None),
-    ("translate", None),
-    ("rotate", None),
-    ("scale", None),
-    ("offset-path", None),
-    ("clip-path", None),
-    ("mask", None),
-    ("fill-rule", None),
-    ("d", None),
-    ("x", None),
-    ("y", None),
-    ("width", None),
-    ("height", None),
-    ("cx", None),
-    ("cy", None),
-    ("r", None),
-    ("rx", None),
-    ("ry", None),
-];
-
 /// Properties that are read as attributes only, where they place an element otherwise than its attributes say.
 const PLACING: [&str; 5] = ["transform", "translate", "rotate", "scale", "offset-path"];
 
@@ -45,17 +19,6 @@ const MEASURES: [(&str, &[&str]); 10] = [
     ("rx", &["rect", "ellipse"]),
     ("ry", &["rect", "ellipse"]),
 ];
-
-/// Whether a property with a value is one that changes outlines.
-pub(super) fn changes_outlines(name: &str, value: &str) -> bool {
-    OUTLINES.iter().any(|(word, only)| {
-        *word == name
-            && match only {
-                Some(only) => value == *only || value.parse::<f64>().is_ok_and(|x| x == 0.0) && *only == "0",
-                None => value != "none",
-            }
-    })
-}
 
 impl Sheets {
     /// A property of an element that would place or cut it otherwise than it is read, with the value that it has.

@@ -7,10 +7,7 @@ use crate::{MAXIMUM_NODES, Mesh};
 use spade::{AngleLimit, Point2, RefinementParameters, Triangulation};
 use std::collections::BTreeMap;
 
-/// The smallest angle [°] of triangles inside, but where the outline is finer than the spacing or its corners are sharper themselves.
-pub const SMALLEST_ANGLE: f64 = 25.0;
-
-/// Circumradius over shortest edge at [`SMALLEST_ANGLE`]: ½ / sin 25°.
+/// Circumradius over shortest edge at [`super::SMALLEST_ANGLE`]: ½ / sin 25°.
 const RADIUS_TO_EDGE: f64 = 1.183_100_791_576_249_3;
 
 /// √3 / 2: height of an equilateral triangle over its side.
@@ -33,7 +30,7 @@ pub fn node_estimate(rings: &[Ring], spacing: f64) -> f64 {
 ///
 /// Nodes of the rings come first and keep their order; edges of the rings may be halved where a triangle would else be too thin. Inside, the nodes lie
 /// on a regular triangular lattice; between it and the outline lies a constrained Delaunay triangulation, refined until no angle is below
-/// [`SMALLEST_ANGLE`] but in triangles too small to be divided: small triangles would take small steps of time. What came out below it is told.
+/// [`super::SMALLEST_ANGLE`] but in triangles too small to be divided: small triangles would take small steps of time. What came out below it is told.
 ///
 /// # Errors
 /// [`OutlineError::TooCoarse`] where edges of the rings cross, [`OutlineError::TooFine`] where the mesh would be too large.

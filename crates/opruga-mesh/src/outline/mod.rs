@@ -26,13 +26,13 @@ pub use carrying::{Painted, carry};
 pub(crate) use crossing::first_meeting;
 pub use error::OutlineError;
 pub(crate) use filling::triangles_between;
-pub use filling::{SMALLEST_ANGLE, filled, node_estimate};
+pub use filling::{filled, node_estimate};
 pub use inside::{Inside, around};
 pub use nesting::nest;
 pub use overlap::{Overlap, joined, wound};
 pub use resample::resampled;
 pub use squares::{squares, squares_estimate};
-pub use thin::{Cause, Thin};
+pub use thin::{Cause, SMALLEST_ANGLE, Thin};
 
 use crate::{Mesh, MeshError};
 

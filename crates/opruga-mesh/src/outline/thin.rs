@@ -1,8 +1,10 @@
 //! Which triangles of a filling are thinner than promised, and why.
 
-use super::filling::SMALLEST_ANGLE;
 use super::{Ring, distance};
 use crate::Mesh;
+
+/// The smallest angle [°] of triangles inside, but where the outline is finer than the spacing or its corners are sharper themselves.
+pub const SMALLEST_ANGLE: f64 = 25.0;
 
 /// Rounding takes no more than this from an angle [°].
 const ROUNDING: f64 = 1e-6;

@@ -1,7 +1,8 @@
 //! What a law says at one deformation gradient: for tables, and to compare with other programs.
 
-use super::law::{Law, PARAMETERS, Points};
+use super::law::Law;
 use super::numbers::{lame, refuse_what_is_not_convex};
+use super::points::{PARAMETERS, Points};
 use super::{SPEC, materials, refuse};
 use opruga_core::error::BuildError;
 use opruga_core::potential::Definiteness;

@@ -1,10 +1,10 @@
 //! From the cells of a mesh to a solid, and what is refused on the way.
 
-use super::elements::Shape;
+use super::elements::{Cell, Shape, rest_gradient};
 use super::law::Law;
 use super::nodal_volume::NodalVolumes;
 use super::numbers::{Numbers, beyond};
-use super::section::{Cell, Plan, Section, rest_gradient};
+use super::section::{Plan, Section};
 use super::solid::{Built, Solid};
 use super::{mass, materials, refuse};
 use opruga_core::error::BuildError;

@@ -1,8 +1,8 @@
 //! Tangents at the points of elements to the blocks of their matrices, for every set of vector instructions.
 
 use super::elements::Shape;
-use super::law::{INVARIANTS, PRINCIPAL, read_matrix, write_matrix};
-use super::section::Group;
+use super::group::Group;
+use super::points::{INVARIANTS, PRINCIPAL, read_matrix, write_matrix};
 use super::work::geometry;
 use core::marker::PhantomData;
 use opruga_math::matrix::{self, Matrix};

@@ -28,6 +28,39 @@ pub(super) trait Shape<const D: usize, const N: usize>: Copy + Debug + Send + Sy
     const BOX: bool = false;
 }
 
+/// What an element is made of, for its section.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cell<const N: usize> {
+    /// Its number in the mesh.
+    pub(super) number: u32,
+    /// Its nodes.
+    pub(super) nodes: [u32; N],
+}
+
+/// (∂X/∂ξ)⁻¹ and det ∂X/∂ξ of the rest shape at a point.
+pub(super) fn rest_gradient<const D: usize, const N: usize>(
+    rest: &[[f64; D]; N],
+    slopes: &[[f64; D]; N],
+) -> ([[f64; D]; D], f64) {
+    let mut jacobian = [[0.0; D]; D];
+    for i in 0..D {
+        for j in 0..D {
+            for a in 0..N {
+                jacobian[i][j] += rest[a][i] * slopes[a][j];
+            }
+        }
+    }
+    let cofactors = opruga_math::matrix::cofactor(&jacobian);
+    let determinant = opruga_math::matrix::determinant_by(&jacobian, &cofactors);
+    let mut inverse = [[0.0; D]; D];
+    for i in 0..D {
+        for j in 0..D {
+            inverse[i][j] = cofactors[j][i] / determinant;
+        }
+    }
+    (inverse, determinant)
+}
+
 /// λ₀ = 1 − Σ ξ, λᵢ = ξᵢ of a simplex with C corners.
 fn barycentric<const C: usize>(xi: [f64; 3]) -> [f64; C] {
     let mut out = [1.0; C];

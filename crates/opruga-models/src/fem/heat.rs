@@ -13,8 +13,8 @@
 //! Vujošević, Lubarda, "Finite-strain thermoelasticity based on multiplicative decomposition of deformation gradient",
 //! Theor. Appl. Mech. 28–29 (2002); for small strain Timoshenko, Goodier, *Theory of elasticity*, chapter 13.
 
-use super::law::{Law, PARAMETERS, Points};
-use super::section::{MOST_PACKS, Room};
+use super::law::Law;
+use super::points::{MOST_PACKS, PARAMETERS, Points, Room};
 use opruga_core::potential::Definiteness;
 use opruga_math::{Simd, WIDTH};
 

@@ -3,27 +3,12 @@
 //! Elements write deformation gradients of some packs of points into a buffer of the first-level cache, a law makes
 //! stresses of them, elements make forces of these: two calls for 64 points cost less than a nanosecond per point.
 
-use super::material::{Material, Parameters, Tangent};
+use super::material::Material;
+use super::points::{INVARIANTS, MOST_PACKS, PRINCIPAL, Points, Room, read, write_matrix, write_tangent};
 use super::principal_frame::{Clamp, Frames, InFrame, OutOfFrame};
-use super::section::{MOST_PACKS, Room};
 use core::fmt::Debug;
 use opruga_core::potential::Definiteness;
-use opruga_math::matrix::Matrix;
 use opruga_math::{Lane, Pack, Register, Simd, WIDTH, Work};
-
-/// Numbers at a point: those of [`Parameters`], and the growth by heat.
-pub(super) const PARAMETERS: usize = 4;
-
-/// Packs of points: for each pack D² packs of F, row by row, and [`PARAMETERS`] packs.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Points<'a> {
-    /// Packs.
-    pub(super) count: usize,
-    /// Deformation gradients.
-    pub(super) gradient: &'a [f64],
-    /// Parameters.
-    pub(super) parameters: &'a [f64],
-}
 
 /// A material as elements see it.
 pub(super) trait Law<const D: usize>: Send + Sync + Debug {
@@ -56,13 +41,6 @@ pub(super) enum Form {
     /// By the invariants of F: [`INVARIANTS`] packs per pack of points, in the order of [`super::material::Invariants`].
     Invariants,
 }
-
-/// Numbers of [`super::material::Invariants`].
-pub(super) const INVARIANTS: usize = 4;
-
-/// Matrices of a tangent in the frame of the singular vectors: U, V, the second derivatives by stretches, and for pairs of
-/// axes what the tangent makes of u_a v_bᵀ (a < b): along itself at [a][b], along u_b v_aᵀ at [b][a].
-pub(super) const PRINCIPAL: usize = 4;
 
 /// A material as a law.
 #[derive(Clone, Copy, Debug)]
@@ -113,43 +91,6 @@ impl<M> Lift<M> {
     }
 }
 
-/// The numbers of a part of a pack of points.
-#[inline(always)]
-pub(super) fn read<R: Register, const D: usize>(
-    points: &Points<'_>,
-    pack: usize,
-    part: usize,
-) -> (Parameters<R>, Matrix<R, D>) {
-    let own = &points.parameters[pack * PARAMETERS * WIDTH..(pack + 1) * PARAMETERS * WIDTH];
-    let at = |k: usize| R::load(&own[k * WIDTH + part * R::NUMBERS..]);
-    let parameters = Parameters { mu: at(0), lambda: at(1), own: at(2) };
-    (parameters, read_matrix(&points.gradient[pack * D * D * WIDTH..(pack + 1) * D * D * WIDTH], part))
-}
-
-/// A part of D² packs, row by row.
-#[inline(always)]
-pub(super) fn read_matrix<R: Register, const D: usize>(from: &[f64], part: usize) -> Matrix<R, D> {
-    let from = &from[..D * D * WIDTH];
-    let mut out = [[R::zero(); D]; D];
-    for i in 0..D {
-        for j in 0..D {
-            out[i][j] = R::load(&from[(i * D + j) * WIDTH + part * R::NUMBERS..]);
-        }
-    }
-    out
-}
-
-/// Writes a part of D² packs.
-#[inline(always)]
-pub(super) fn write_matrix<R: Register, const D: usize>(to: &mut [f64], part: usize, matrix: &Matrix<R, D>) {
-    let to = &mut to[..D * D * WIDTH];
-    for i in 0..D {
-        for j in 0..D {
-            matrix[i][j].store(&mut to[(i * D + j) * WIDTH + part * R::NUMBERS..]);
-        }
-    }
-}
-
 struct Stress<'a, M, const D: usize> {
     points: Points<'a>,
     energy: &'a mut [f64],
@@ -187,21 +128,6 @@ impl<M: Material<D>, const D: usize> Work for Tangents<'_, M, D> {
                 let (p, f) = read::<P::Part, D>(&self.points, pack, part);
                 write_tangent(self.tangent, pack, part, &M::tangent(&p, &f));
             }
-        }
-    }
-}
-
-/// Writes a part of D⁴ packs of a pack of points.
-#[inline(always)]
-pub(super) fn write_tangent<R: Register, const D: usize>(
-    to: &mut [f64],
-    pack: usize,
-    part: usize,
-    tangent: &Tangent<R, D>,
-) {
-    for i in 0..D {
-        for j in 0..D {
-            write_matrix(&mut to[((pack * D + i) * D + j) * D * D * WIDTH..], part, &tangent[i][j]);
         }
     }
 }

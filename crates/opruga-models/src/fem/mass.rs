@@ -1,7 +1,6 @@
 //! The consistent mass matrix of cells: ρ ∫ Nₐ Nᵦ dX, less the lumped masses of the cell.
 
-use super::elements::Shape;
-use super::section::rest_gradient;
+use super::elements::{Shape, rest_gradient};
 
 /// Gauss's points and weights on [0, 1], exact to degree 7.
 const GAUSS: [(f64, f64); 4] = [

@@ -13,8 +13,8 @@
 //!
 //! Its second derivatives tie every node to those of all cells that share a cell with it: wide rows, no matrix of cells.
 
+use super::elements::rest_gradient;
 use super::numbers::beyond;
-use super::section::rest_gradient;
 use opruga_core::potential::{CellState, Sink};
 use opruga_core::state::{Layout, View};
 use opruga_core::threads::each_part;

@@ -1,10 +1,12 @@
 //! The numbers of the material of every cell: of the scene, or of the cells of the mesh.
 
-use super::section::NUMBERS;
 use super::{SPEC, refuse};
 use opruga_core::error::BuildError;
 use opruga_core::potential::Ingredients;
 use opruga_core::spec::{Field, Values};
+
+/// Numbers of an element: μ, λ, the material's own, growth by heat, retardation time.
+pub(super) const NUMBERS: usize = 5;
 
 /// λ − λ′ with λ′ = min(λ, 2μ): what resists volume so much that few cells could keep theirs and bend.
 pub(super) fn beyond(mu: f64, lambda: f64) -> f64 {

@@ -1,40 +1,18 @@
 //! A section as a solid sees it: shares that are evaluated side by side, matrices, states of cells.
 
-use super::elements::Shape;
+use super::elements::{Cell, Shape};
 use super::nodal_volume::Pressures;
 use super::pass::{Matrices, Pass};
 use super::pressures::Growth;
-use super::section::{Cell, FORCES, Section, Share};
+use super::section::{FORCES, Section, Share};
+use super::totals::{Totals, total};
 use super::work::Nodes;
 use core::fmt::Debug;
 use core::marker::PhantomData;
 use opruga_core::error::StepError;
 use opruga_core::potential::{CellState, Definiteness, Sink};
 use opruga_core::state::{Layout, View};
-use opruga_math::{ROW, Simd, WIDTH, sum_in_fixed_order};
-
-/// Sums over elements whose bits do not depend on the layout.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Totals {
-    /// Energy [J]: one body eight partial sums in the first row, eight bodies a column each.
-    pub(super) energy: [[f64; WIDTH]; WIDTH],
-    /// Power of damping [W].
-    pub(super) power: [[f64; WIDTH]; WIDTH],
-}
-
-/// One number for one body, or one for each of eight.
-pub(super) fn total(layout: Layout, partial: &[[f64; WIDTH]; WIDTH]) -> [f64; WIDTH] {
-    let mut out = [0.0; WIDTH];
-    match layout {
-        Layout::Single => out[0] = sum_in_fixed_order(&partial[0]),
-        Layout::Batch => {
-            for l in 0..WIDTH {
-                out[l] = sum_in_fixed_order(&core::array::from_fn(|k| partial[k][l]));
-            }
-        }
-    }
-    out
-}
+use opruga_math::{ROW, Simd, WIDTH};
 
 /// A section, whatever its elements.
 pub(super) trait Part<const D: usize>: Send + Sync + Debug {
@@ -87,7 +65,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Part<D> for Section<E, D, N
         &self.shares
     }
     fn scratch_len(&self, share: &Share) -> usize {
-        self.grown(share) + if self.nodal { share.packs * WIDTH } else { 0 }
+        self.numbers_of(share)
     }
     fn grow(&self, share: &Share, simd: Simd, view: &View<D>, scratch: &mut [f64]) {
         if !(E::SIMPLEX && self.nodal) {

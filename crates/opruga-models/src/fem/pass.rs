@@ -6,11 +6,13 @@
 use super::boxes::{self, Deform, DeformRates, KEPT, Of, Push, Rates};
 use super::contraction::{Contract, ContractInvariants, ContractPrincipal};
 use super::elements::Shape;
-use super::law::{Form, PARAMETERS, Points};
+use super::group::Group;
+use super::law::Form;
 use super::nodal_volume::Pressures;
-use super::part::{Part, Totals};
+use super::points::{MOST_PACKS, PARAMETERS, Points, Room};
 use super::pressures::{Means, PressedStress, PressedTangents};
-use super::section::{Group, MOST_PACKS, Room, Section, Share};
+use super::section::{Section, Share};
+use super::totals::Totals;
 use super::work::{Forces, Gradients, Nodes, ViscousStress, ViscousTangents, parameters_of_points};
 use core::marker::PhantomData;
 use core::ops::Range;
@@ -375,7 +377,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> StencilPacks<D> for Matrice
     fn deliver(&self, rows: &Range<usize>, to: &mut dyn FnMut(usize, &StencilPack<'_>)) {
         let stride = self.section.layout.stride();
         let mut pass = Pass::new(self.section, Simd::best());
-        for share in self.section.shares() {
+        for share in &self.section.shares {
             let from = share.nodes.partition_point(|node| (*node as usize + 1) * stride <= rows.start);
             if share.nodes.get(from).is_some_and(|node| *node as usize * stride < rows.end) {
                 let positions = self.section.positions(share, self.view, self.scratch);

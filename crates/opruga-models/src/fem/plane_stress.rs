@@ -1,8 +1,8 @@
 //! Plane stress: a law of space whose thickness finds its own stretch.
 
-use super::law::{Law, PARAMETERS, Points, read_matrix, write_matrix};
+use super::law::Law;
 use super::material::Tangent;
-use super::section::{MOST_PACKS, Room};
+use super::points::{MOST_PACKS, PARAMETERS, Points, Room, read_matrix, write_matrix};
 use opruga_core::potential::Definiteness;
 use opruga_math::{Lane, Pack, Register, Simd, WIDTH, Work, symmetric};
 

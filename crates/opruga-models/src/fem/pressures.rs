@@ -1,10 +1,10 @@
 //! What cells give to the volumes of their nodes, and what their pressures do to cells, for every set of vector instructions.
 
 use super::elements::Shape;
-use super::law::{Points, read_matrix, write_matrix};
+use super::group::Group;
 use super::material::{Tangent, add_cofactor_derivative, no_tangent};
 use super::nodal_volume::Pressures;
-use super::section::Group;
+use super::points::{Points, read_matrix, write_matrix};
 use super::work::{Nodes, gather, geometry};
 use core::marker::PhantomData;
 use opruga_core::state::Layout;

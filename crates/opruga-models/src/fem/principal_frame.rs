@@ -8,8 +8,8 @@
 //! [`PRINCIPAL`] matrices for every pack of points: U, V, ψᵢⱼ (before: σ in its first row), and for pairs of axes a < b
 //! the parts of [`Principal::pair`] at [a][b] and [b][a] (before: the difference and the sum).
 
-use super::law::{PRINCIPAL, Points, read, read_matrix, write_matrix, write_tangent};
 use super::material::{Material, Parameters, Principal, out_of_frame};
+use super::points::{PRINCIPAL, Points, read, read_matrix, write_matrix, write_tangent};
 use opruga_math::matrix::{self, Matrix};
 use opruga_math::singular::singular;
 use opruga_math::{Lane, Pack, Register, Twin, WIDTH, Work};

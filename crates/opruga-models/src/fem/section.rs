@@ -12,10 +12,10 @@
 //! are the same for every number of threads and for both layouts, and so are the bits.
 
 use super::boxes::{self, Boxes};
-use super::elements::Shape;
+use super::elements::{Cell, Shape, rest_gradient};
+use super::group::Group;
 use super::law::Law;
-use super::numbers::beyond;
-use super::part::Part;
+use super::numbers::{NUMBERS, beyond};
 use super::work::Nodes;
 use core::fmt::Debug;
 use core::marker::PhantomData;
@@ -23,30 +23,11 @@ use opruga_core::error::StepError;
 use opruga_core::state::{Layout, View};
 use opruga_math::{Column, ROW, WIDTH};
 
-/// Packs of points that are looked at together, at most.
-pub(super) const MOST_PACKS: usize = 9;
-
-/// Numbers of an element: μ, λ, the material's own, growth by heat, retardation time.
-pub(super) const NUMBERS: usize = 5;
-
 /// Packs of points in a share: a hundred kilobytes, half a millisecond at most.
 const SHARE: usize = 512;
 
 /// Where the forces of a share begin in its scratch, behind energies and powers.
 pub(super) const FORCES: usize = 2 * WIDTH;
-
-/// Room for some packs of points.
-#[repr(align(64))]
-pub(super) struct Room<const SIZE: usize>(pub(super) [f64; SIZE]);
-
-/// What an element is made of, for [`Section::new`].
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Cell<const N: usize> {
-    /// Its number in the mesh.
-    pub(super) number: u32,
-    /// Its nodes.
-    pub(super) nodes: [u32; N],
-}
 
 /// Elements of one kind and one material.
 #[derive(Debug)]
@@ -90,68 +71,6 @@ pub(super) struct Share {
     pub(super) nodes: Vec<u32>,
     /// Where its scratch begins in that of the section.
     pub(super) start: usize,
-}
-
-/// What every step of the work on some packs of elements needs to know.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Group<'a> {
-    pub(super) layout: Layout,
-    /// The first pack, and how many.
-    pub(super) first: usize,
-    pub(super) packs: usize,
-    /// Elements in all.
-    pub(super) count: usize,
-    /// Points of an element.
-    pub(super) points: usize,
-    /// Whether the law knows of rotations.
-    pub(super) turns: bool,
-    pub(super) places: &'a [u32],
-    pub(super) targets: &'a [u32],
-    pub(super) geometry: &'a [f64],
-    pub(super) boxes: &'a Boxes,
-    pub(super) parameters: &'a [f64],
-    /// Distance of the parameters of two packs.
-    pub(super) step: usize,
-}
-
-impl Group<'_> {
-    /// How many elements of a pack of one body are there; the last pack is filled up.
-    #[inline(always)]
-    pub(super) fn present(&self, pack: usize) -> usize {
-        match self.layout {
-            Layout::Single => (self.count - pack * WIDTH).min(WIDTH),
-            Layout::Batch => WIDTH,
-        }
-    }
-    /// Where the numbers of a pack lie, or those that hold for all packs: a whole one and the last one.
-    #[inline(always)]
-    pub(super) fn one_or(&self, one: bool, pack: usize) -> usize {
-        if one { usize::from(self.present(pack) < WIDTH) } else { pack }
-    }
-}
-
-/// (∂X/∂ξ)⁻¹ and det ∂X/∂ξ of the rest shape at a point.
-pub(super) fn rest_gradient<const D: usize, const N: usize>(
-    rest: &[[f64; D]; N],
-    slopes: &[[f64; D]; N],
-) -> ([[f64; D]; D], f64) {
-    let mut jacobian = [[0.0; D]; D];
-    for i in 0..D {
-        for j in 0..D {
-            for a in 0..N {
-                jacobian[i][j] += rest[a][i] * slopes[a][j];
-            }
-        }
-    }
-    let cofactors = opruga_math::matrix::cofactor(&jacobian);
-    let determinant = opruga_math::matrix::determinant_by(&jacobian, &cofactors);
-    let mut inverse = [[0.0; D]; D];
-    for i in 0..D {
-        for j in 0..D {
-            inverse[i][j] = cofactors[j][i] / determinant;
-        }
-    }
-    (inverse, determinant)
 }
 
 /// What a section is built from.
@@ -277,7 +196,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
         let mut start = 0;
         for k in 0..section.shares.len() {
             section.shares[k].start = start;
-            start += Part::scratch_len(&section, &section.shares[k]);
+            start += section.numbers_of(&section.shares[k]);
         }
         section
     }
@@ -342,6 +261,11 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
     /// Where J − 1 of the elements begins in the scratch of a share.
     pub(super) fn grown(&self, share: &Share) -> usize {
         FORCES + self.forces(share) + self.copy(share) * if self.damped { 2 } else { 1 }
+    }
+
+    /// Numbers of the scratch of a share.
+    pub(super) fn numbers_of(&self, share: &Share) -> usize {
+        self.grown(share) + if self.nodal { share.packs * WIDTH } else { 0 }
     }
 
     /// The measure of a point of an element [m³]; of the mean of a box that of the box.

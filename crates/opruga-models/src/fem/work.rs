@@ -3,10 +3,10 @@
 //! It goes register by register: what a point needs at a time hardly fits the registers of one.
 
 use super::elements::Shape;
-use super::law::{PARAMETERS, Points, read_matrix, write_matrix};
+use super::group::Group;
 use super::material::{Tangent, add_strain_tangent, no_tangent};
-use super::numbers::beyond;
-use super::section::{Group, NUMBERS};
+use super::numbers::{NUMBERS, beyond};
+use super::points::{PARAMETERS, Points, read_matrix, write_matrix};
 use core::marker::PhantomData;
 use opruga_core::state::Layout;
 use opruga_math::matrix::{self, Matrix};

@@ -1,8 +1,8 @@
 //! From positions to deformation gradients at the points, and their rates.
 
 use super::super::elements::Shape;
-use super::super::law::write_matrix;
-use super::super::section::Group;
+use super::super::group::Group;
+use super::super::points::write_matrix;
 use super::super::work::{Nodes, gather};
 use super::hourglass::{MOST_MODES, modes};
 use super::rest::Rest;

@@ -10,8 +10,7 @@
 //! whose energy is ½ g·Lᵀ H⁻¹ L g. Among the fields no combination is a pressure alone, so it stays finite as ν → 0.5, and H⁻¹
 //! knows what free sides do: a box bends with E in plane stress and E/(1 − ν²) in plane strain, and ε is the strain of that.
 
-use super::super::elements::{CORNERS, Shape};
-use super::super::section::rest_gradient;
+use super::super::elements::{CORNERS, Shape, rest_gradient};
 use super::corners::sums;
 
 /// Hourglass modes of a hexahedron.

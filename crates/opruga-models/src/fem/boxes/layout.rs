@@ -3,9 +3,8 @@
 //! The cells of a grid are equal but for rounding. They are taken for equal then, and what one pack has holds for all: 1.8
 //! kilobytes less to read for every hexahedron in every pass.
 
-use super::super::elements::Shape;
-use super::super::numbers::beyond;
-use super::super::section::{Cell, NUMBERS};
+use super::super::elements::{Cell, Shape};
+use super::super::numbers::{NUMBERS, beyond};
 use super::hourglass::{ROUNDING, Rest, fields, measures_at, modes, stiffness_numbers, stored};
 use super::pattern::Pattern;
 use opruga_core::state::Layout;

@@ -7,9 +7,9 @@
 //! and then, since β depends on F and g, by these; the corners come last.
 
 use super::super::elements::Shape;
-use super::super::law::read_matrix;
+use super::super::group::Group;
 use super::super::material::{Tangent, add_cofactor_derivative, no_tangent};
-use super::super::section::Group;
+use super::super::points::read_matrix;
 use super::hourglass::{FIELDS, MOST_MODES, MOST_STRESSES, PAIRS, modes, pairs, term};
 use super::rest::Rest;
 use super::{Frame, KEPT, Kept, Modes, cofactor_along, corners};

@@ -1,8 +1,8 @@
 //! Forces of boxes onto their corners.
 
 use super::super::elements::Shape;
-use super::super::law::read_matrix;
-use super::super::section::Group;
+use super::super::group::Group;
+use super::super::points::read_matrix;
 use super::super::work::scatter;
 use super::hourglass::{FIELDS, modes};
 use super::rest::Rest;

@@ -1,6 +1,6 @@
 //! Cells at rest as the lanes read them, and the strains of their assumed stresses.
 
-use super::super::section::Group;
+use super::super::group::Group;
 use super::hourglass::{
     FIELDS, MOST_MODES, MOST_STRESSES, PAIR, PAIRS, SIGNS, axes_of_field, fields, measures_at, modes, pairs,
     stiffness_numbers, stored,
