@@ -39,8 +39,9 @@ mod slack;
 mod tests;
 
 use crate::implicit::approach::{leaves_nodes_inside, lift_out};
+use crate::implicit::balance::{Balance, Solved};
 use crate::implicit::memory;
-use crate::implicit::newton::{Balance, Solved, solve};
+use crate::implicit::newton::solve;
 use crate::implicit::room::Room;
 use crate::implicit::settings::{Otherwise, Settings, Solver, fields};
 use crate::implicit::standstill;

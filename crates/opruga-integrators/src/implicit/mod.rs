@@ -11,6 +11,8 @@
 //! |---|---|
 //! | `settings` | the parameters that all rules have: accuracy, solver, what to do when it does not converge |
 //! | `step` | a step of a rule from start to ledger, halved or accepted where it does not converge |
+//! | `balance` | the balance of a stage, and what an iteration reports |
+//! | `stage` | a stage as it is evaluated: forces, matrix, incremental potential, contacts |
 //! | `theta` | the θ-method, which rules that damp nothing turn to in contact |
 //! | `newton` | the exact iteration: derivatives, direction, line search |
 //! | `direction` | one direction of it |
@@ -25,6 +27,7 @@
 //! | `linear` | the direction: conjugate gradients or sparse Cholesky |
 //! | `approach` | what keeps statics, without inertia, out of obstacles |
 //! | `contact` | which nodes obstacles hold, and whether they stick or slip |
+//! | `sight` | where nodes are within a step, as obstacles see it |
 //! | `contact_derivatives` | what the forces of contacts change by with positions |
 //! | `growth` | refuses what accepted steps blow up |
 //! | `slenderness` | for which bodies the real-time setting factors its matrix |
@@ -46,9 +49,10 @@
 //! brings along the normal is lost or returned by the restitution, and friction takes µ times that change as well.
 
 pub(crate) mod approach;
+pub(crate) mod balance;
 mod beginning;
 pub(crate) mod contact;
-pub(crate) mod contact_derivatives;
+mod contact_derivatives;
 pub(crate) mod direction;
 mod falling;
 mod growth;
@@ -66,7 +70,9 @@ mod rigid;
 pub(crate) mod room;
 mod rounding;
 pub(crate) mod settings;
+pub(crate) mod sight;
 mod slenderness;
+pub(crate) mod stage;
 pub(crate) mod standstill;
 pub(crate) mod step;
 pub(crate) mod theta;

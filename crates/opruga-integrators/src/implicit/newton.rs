@@ -1,61 +1,20 @@
 //! Newton's method on the balance of forces of a stage.
 
 use super::approach::part_without_inertia;
+use super::balance::{Balance, Solved};
 use super::beginning::begin;
-use super::contact::Verdict;
-use super::contact_derivatives::Sight;
 use super::direction::{Keep, find_direction};
 use super::falling::Falling;
 use super::line_search::{Stretches, line_search, slope_along};
-use super::linear::{Filter, Mixture, is_matrix_free};
+use super::linear::Filter;
 use super::room::Room;
 use super::rounding::{at_rounding, carries, chance, in_doubt, most_rounding, settle, visible};
 use super::settings::Settings;
+use super::stage::{evaluate, judge, longest, look};
 use super::whole;
 use opruga_core::error::StepError;
-use opruga_core::potential::Definiteness;
 use opruga_core::system::System;
-use opruga_core::threads::each_block;
 use opruga_math::Lane;
-
-/// The balance of a stage: σ M (u − y) = F(x₀ + u, β (u − z)) at a time after the start of the step.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Balance {
-    /// The factor of the mass [1/s²].
-    pub(crate) sigma: f64,
-    /// The factor of displacements in velocities [1/s].
-    pub(crate) beta: f64,
-    /// Which part of the way to the end of the step the stage is.
-    pub(crate) theta: f64,
-    /// The time of the stage after the start of the step [s].
-    pub(crate) time: f64,
-    /// The length of the step [s].
-    pub(crate) h: f64,
-    /// The part of the weight and of the loads that acts.
-    pub(crate) load: f64,
-    /// The change of momentum in the step by a force that acts in this stage alone, in units of force times h, and what the rule
-    /// will still add to it out of what it remembers.
-    pub(crate) impulse: f64,
-    pub(crate) echo: f64,
-}
-
-/// How the iteration ended.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Solved {
-    pub(crate) iterations: u32,
-    pub(crate) products: u32,
-    /// The largest displacement of a node in the last iteration [m].
-    pub(crate) correction: f64,
-    pub(crate) converged: bool,
-    /// What is left of the forces would still move a node by [m], where it is rounding and that is much.
-    pub(crate) blur: f64,
-    /// The forces that rounding of positions makes, over the loads, where they matter.
-    pub(crate) conditioning: f64,
-    /// The rounding of positions [m], the largest of a force [N] and what that would move a node by [m], where it did not converge.
-    pub(crate) floor: [f64; 3],
-    /// Whether what is left may have made energy.
-    pub(crate) doubtful: bool,
-}
 
 /// Corrections that fall by less than this in an iteration fall slowly.
 const SLOW: f64 = 0.03;
@@ -244,15 +203,6 @@ fn left_over<const D: usize>(
     Some(longest(&room.step, D))
 }
 
-/// The longest way of a node.
-pub(super) fn longest(step: &[f64], dimension: usize) -> f64 {
-    let mut longest: f64 = 0.0;
-    for node in step.chunks_exact(dimension) {
-        longest = node.iter().map(|x| x * x).sum::<f64>().larger(longest);
-    }
-    longest.sqrt()
-}
-
 /// Notes an iteration and, where that is asked for, makes of its step the one that it and those before lead to; says whether
 /// it did.
 fn mix<const D: usize>(room: &mut Room<D>, wanted: bool, slope: &mut f64) -> bool {
@@ -273,97 +223,6 @@ fn mix<const D: usize>(room: &mut Room<D>, wanted: bool, slope: &mut f64) -> boo
     }
     room.step.copy_from_slice(&room.trial);
     false
-}
-
-pub(crate) fn look<const D: usize>(
-    system: &System<D>,
-    room: &mut Room<D>,
-    balance: &Balance,
-    impacts_slide: bool,
-) -> bool {
-    let Room { contacting, x0, u, extent, .. } = room;
-    let sight = Sight::new(system, balance, x0, u, *extent);
-    contacting.look(&sight, impacts_slide)
-}
-
-/// Decides anew who is held, and how, from what the constraints would take.
-pub(crate) fn judge<const D: usize>(
-    system: &System<D>,
-    room: &mut Room<D>,
-    balance: &Balance,
-    settings: &Settings,
-    tolerance: f64,
-    yields: bool,
-) -> Verdict {
-    let Room { contacting, reaction, x0, u, extent, linear, mass, .. } = room;
-    let sight = Sight::new(system, balance, x0, u, *extent);
-    let mixture = mixture(system, mass, balance, Definiteness::Clamped, settings);
-    contacting.judge(reaction, &sight, tolerance, &|node| {
-        if yields { linear.size_at(&mixture, node) / D as f64 } else { 0.0 }
-    })
-}
-
-pub(crate) fn mixture<'a, const D: usize>(
-    system: &'a System<D>,
-    mass: &'a [f64],
-    balance: &Balance,
-    keep: Definiteness,
-    settings: &Settings,
-) -> Mixture<'a, D> {
-    Mixture {
-        system,
-        sigma: balance.sigma,
-        beta: balance.beta,
-        load: balance.load,
-        mass,
-        stage: Room::<D>::STAGE,
-        time: balance.time,
-        keep,
-        matrix_free: is_matrix_free(settings.solver),
-    }
-}
-
-/// The forces at x₀ + u (or at the trial), and what is out of balance.
-pub(crate) fn evaluate<const D: usize>(
-    system: &mut System<D>,
-    room: &mut Room<D>,
-    balance: &Balance,
-    trial: bool,
-) -> Result<(), StepError> {
-    let u: &[f64] = if trial { &room.trial } else { &room.u };
-    Room::show(system, &room.x0, u, &room.z, balance.beta);
-    system.evaluate(Room::<D>::STAGE, balance.time, 0.0, &mut room.force)?;
-    let Room { mass, y, force, residual, trial: tried, u, way, .. } = &mut *room;
-    let u: &[f64] = if trial { tried } else { u };
-    each_block(system.threads, D, [&mut *residual], |first, [residual]| {
-        for (node, out) in (first / D..).zip(residual.as_chunks_mut::<D>().0) {
-            for d in 0..D {
-                let k = node * D + d;
-                out[d] = balance.sigma * mass[node] * (u[k] - y[k]) - force.0[d][node];
-            }
-        }
-    });
-    if balance.sigma != 0.0
-        && let Some(inertia) = &system.inertia
-    {
-        way.clear();
-        way.extend(u.iter().zip(&*y).map(|(u, y)| u - y));
-        for node in 0..system.nodes {
-            let product = inertia.product::<D>(node, way);
-            for d in 0..D {
-                residual[node * D + d] += balance.sigma * product[d];
-            }
-        }
-    }
-    if balance.load != 1.0 {
-        system.outer_forces(Room::<D>::STAGE, balance.time, &mut room.outer);
-        for node in 0..system.nodes {
-            for d in 0..D {
-                room.residual[node * D + d] += (1.0 - balance.load) * room.outer.0[d][node];
-            }
-        }
-    }
-    Ok(())
 }
 
 fn full_step<const D: usize>(system: &mut System<D>, room: &mut Room<D>, balance: &Balance) -> Result<(), StepError> {

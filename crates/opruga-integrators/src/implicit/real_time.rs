@@ -6,12 +6,13 @@
 //!
 //! Sizes of what is out of balance are taken in the norm of the inverse diagonal blocks of the matrix, √(r·B r).
 
+use super::balance::{Balance, Solved};
 use super::direction::wanted_forces;
-use super::line_search::{potential, rounding_of_models};
 use super::linear::{Filter, Mixture};
-use super::newton::{self, Balance, Solved, evaluate, judge, look};
+use super::newton;
 use super::room::Room;
 use super::settings::Settings;
+use super::stage::{evaluate, judge, look, potential, rounding_of_models};
 use super::whole::settles;
 use opruga_core::error::StepError;
 use opruga_core::potential::Definiteness;
@@ -22,13 +23,6 @@ use opruga_solve::Indefinite;
 
 /// The part of what is out of balance that the linear solver leaves at most.
 const LINEAR: f64 = 0.05;
-
-/// The part with which an iteration is good enough, and the part that may be left when there is no other.
-pub(super) const ENOUGH: [f64; 2] = [0.2, 0.2];
-
-/// The same of a rule that damps slow motions little. What is left comes back in the next step, behind its time, and pushes
-/// along with the motion: where a fiftieth was good enough, a beam of 10 × 2 quadrilaterals still gained energy under `bdf2`.
-pub(super) const ENOUGH_UNDAMPED: [f64; 2] = [1e-3, 0.05];
 
 /// The part with which the matrix is made anew in the next step.
 const WORN: f64 = 0.2;

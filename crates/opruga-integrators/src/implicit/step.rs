@@ -1,15 +1,17 @@
 //! A step of an implicit rule from start to ledger.
 
+use super::balance::{Balance, Solved};
 use super::contact::{SMALL, dot};
 use super::growth;
 use super::holding;
 use super::impact::Ending;
 use super::memory;
-use super::newton::{self, Balance, Solved};
+use super::newton;
 use super::own_loss::{self, given};
 use super::real_time;
 use super::room::{Room, write};
 use super::settings::{Otherwise, Settings};
+use super::stage;
 use super::standstill;
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::integrator::{Amplification, HistorySize, Integrator};
@@ -202,7 +204,7 @@ fn attempt<R: Rule<D>, const D: usize>(
                 exactly = Some(real_time::exactly(settings));
                 continue;
             }
-            newton::evaluate(system, room, &balance, false)?;
+            stage::evaluate(system, room, &balance, false)?;
         }
         let Some(calmed) = used.calmed().filter(|_| room.contacting.any_at_rest()) else {
             break (balance, solved, used);
@@ -213,7 +215,7 @@ fn attempt<R: Rule<D>, const D: usize>(
         let Some(before) = energy.flatten() else { break (balance, solved, used) };
         if !gains(system, room, before, h, 0.0)? {
             // What is entered below goes by the stage.
-            newton::evaluate(system, room, &balance, false)?;
+            stage::evaluate(system, room, &balance, false)?;
             break (balance, solved, used);
         }
         system.work = work;

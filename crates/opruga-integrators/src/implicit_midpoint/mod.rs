@@ -20,7 +20,7 @@
 #[cfg(test)]
 mod tests;
 
-use crate::implicit::newton::Balance;
+use crate::implicit::balance::Balance;
 use crate::implicit::room::Room;
 use crate::implicit::settings::fields;
 use crate::implicit::step::{Implicit, Rule};

@@ -19,8 +19,8 @@
 #[cfg(test)]
 mod tests;
 
+use crate::implicit::balance::Balance;
 use crate::implicit::holding::{accelerations, held};
-use crate::implicit::newton::Balance;
 use crate::implicit::room::Room;
 use crate::implicit::settings::fields;
 use crate::implicit::step::{Implicit, Rule};
