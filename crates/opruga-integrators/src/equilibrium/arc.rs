@@ -9,12 +9,12 @@
 
 use super::{COMPLETE, Equilibrium, Reached, SPEC};
 use crate::implicit::balance::{Balance, Solved};
+use crate::implicit::convergence::report;
 use crate::implicit::direction::wanted_forces;
 use crate::implicit::linear::Filter;
 use crate::implicit::room::Room;
 use crate::implicit::sight::Sight;
 use crate::implicit::stage::{evaluate, judge, look, mixture};
-use crate::implicit::step::report;
 use opruga_core::error::StepError;
 use opruga_core::potential::Definiteness;
 use opruga_core::system::System;
