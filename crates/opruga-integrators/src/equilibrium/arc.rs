@@ -8,12 +8,13 @@
 //! turns by more than 60° is gone again in halves, but for the kinks that obstacles make.
 
 use super::{COMPLETE, Equilibrium, Reached, SPEC};
-use crate::implicit::contact_derivatives::Sight;
+use crate::implicit::balance::{Balance, Solved};
+use crate::implicit::convergence::report;
 use crate::implicit::direction::wanted_forces;
 use crate::implicit::linear::Filter;
-use crate::implicit::newton::{Balance, Solved, evaluate, judge, look, mixture};
 use crate::implicit::room::Room;
-use crate::implicit::step::report;
+use crate::implicit::sight::Sight;
+use crate::implicit::stage::{evaluate, judge, look, mixture};
 use opruga_core::error::StepError;
 use opruga_core::potential::Definiteness;
 use opruga_core::system::System;

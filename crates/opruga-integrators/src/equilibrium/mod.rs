@@ -39,12 +39,15 @@ mod slack;
 mod tests;
 
 use crate::implicit::approach::{leaves_nodes_inside, lift_out};
+use crate::implicit::balance::{Balance, Solved};
+use crate::implicit::convergence::report;
 use crate::implicit::memory;
-use crate::implicit::newton::{Balance, Solved, solve};
+use crate::implicit::minimiser::Minimiser;
+use crate::implicit::newton::Newton;
 use crate::implicit::room::Room;
 use crate::implicit::settings::{Otherwise, Settings, Solver, fields};
 use crate::implicit::standstill;
-use crate::implicit::step::{MOST_HALVINGS, commit, report, same_bits_everywhere};
+use crate::implicit::step::{MOST_HALVINGS, commit};
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::integrator::{Amplification, HistorySize, Integrator, IntegratorKind};
 use opruga_core::memory::Counts;
@@ -223,7 +226,7 @@ impl Equilibrium {
             }
             let before = solved;
             let settings = Settings { iterations: most - before.iterations, ..self.settings };
-            solved = solve(system, room, &balance, &settings)?;
+            solved = Newton(settings).minimise(system, room, &balance)?;
             solved.iterations += before.iterations;
             solved.products += before.products;
             if loose {
@@ -360,7 +363,7 @@ impl<const D: usize> Integrator<D> for Equilibrium {
         self.arc_length.is_some().then(|| system.history.numbers[LOAD])
     }
     fn same_bits_everywhere(&self, system: &System<D>) -> bool {
-        self.arc_length.is_none() && same_bits_everywhere(&self.settings, system)
+        self.arc_length.is_none() && Newton(self.settings).same_bits_everywhere(system)
     }
     fn is_static(&self) -> bool {
         true

@@ -1,9 +1,9 @@
 //! How far a correction may lead towards obstacles where no inertia holds it back.
 
+use super::balance::Balance;
 use super::contact::{Contact, Contacting};
-use super::contact_derivatives::Sight;
-use super::newton::Balance;
 use super::room::Room;
+use super::sight::Sight;
 use opruga_core::contacts::Touch;
 use opruga_core::system::System;
 use opruga_math::Lane;

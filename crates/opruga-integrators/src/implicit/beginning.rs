@@ -1,8 +1,8 @@
 //! Where an iteration begins.
 
-use super::line_search::potential;
-use super::newton::{Balance, evaluate};
+use super::balance::Balance;
 use super::room::Room;
+use super::stage::{evaluate, potential};
 use opruga_core::error::StepError;
 use opruga_core::system::System;
 

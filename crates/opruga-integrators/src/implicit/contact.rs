@@ -10,8 +10,8 @@
 //! force that the constraint would take. A contact that changes sides too often slips, or is released, for the rest of the
 //! step: no force leaves Coulomb's cone, and the last word is that no node may be inside.
 
-use super::contact_derivatives::Sight;
 use super::mixing::Mixing;
+use super::sight::Sight;
 use opruga_core::contacts::Touch;
 use opruga_math::Lane;
 use opruga_solve::blocks::{Block, isotropic, nodes};

@@ -1,8 +1,7 @@
 //! What the forces of contacts change by with the positions of their nodes.
 
 use super::contact::{Contact, Contacting, SMALL, dot};
-use super::newton::Balance;
-use opruga_core::system::System;
+use super::sight::Sight;
 use opruga_solve::blocks::{Block, isotropic};
 
 /// A direction of friction that turns by less than this in an iteration is followed by the next.
@@ -11,34 +10,13 @@ const FOLLOWED: f64 = 0.1;
 /// A slide of more than this part of the extent has a direction anyhow.
 const SLIDING: f64 = 1e-4;
 
-/// Where nodes are within a step, and what they may meet.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Sight<'a, const D: usize> {
-    pub(crate) system: &'a System<D>,
-    pub(crate) x0: &'a [f64],
-    pub(crate) u: &'a [f64],
-    pub(crate) theta: f64,
-    pub(crate) h: f64,
-    pub(crate) extent: f64,
-}
-
 /// How far from a node its surface is looked at, in extents of the body.
 const BESIDE: f64 = 1e-5;
 
 /// Normals that turn by more than this within that distance belong to an edge.
 const EDGE: f64 = 1e-2;
 
-impl<'a, const D: usize> Sight<'a, D> {
-    pub(crate) fn new(
-        system: &'a System<D>,
-        balance: &Balance,
-        x0: &'a [f64],
-        u: &'a [f64],
-        extent: f64,
-    ) -> Sight<'a, D> {
-        Sight { system, x0, u, theta: balance.theta, h: balance.h, extent }
-    }
-
+impl<const D: usize> Sight<'_, D> {
     /// ∂n/∂x along the surface, by differences; nothing at edges.
     fn turn_of_normal(&self, contact: &Contact<D>) -> Option<Block<D>> {
         let obstacles = self.system.contacts.as_ref()?;

@@ -1,13 +1,13 @@
 //! The direction of an iteration of Newton's method.
 
+use super::balance::Balance;
 use super::contact::Contacting;
-use super::contact_derivatives::Sight;
-use super::linear::{Filter, Linear, Mixture};
-use super::newton::{Balance, mixture};
+use super::linear::{Filter, LINEAR_TOLERANCE, Linear, Mixture, is_unsure};
 use super::rigid::Stage;
 use super::room::Room;
 use super::settings::Settings;
-use super::whole::is_unsure;
+use super::sight::Sight;
+use super::stage::mixture;
 use opruga_core::potential::Definiteness;
 use opruga_core::system::System;
 use opruga_core::threads::each_block;
@@ -37,9 +37,6 @@ impl Keep {
         }
     }
 }
-
-/// The part of the residual that the linear solver may leave, in the first iteration.
-pub(super) const LINEAR_TOLERANCE: f64 = 1e-2;
 
 /// How often a direction is corrected for the friction that it changes, at most.
 const MOST_ROUNDS: u32 = 12;

@@ -1,6 +1,6 @@
 //! What steps that count though they did not converge may do: a body that such steps have blown up is refused.
 
-use super::newton::Solved;
+use super::balance::Solved;
 use super::room::Room;
 use opruga_core::error::StepError;
 use opruga_core::system::System;

@@ -1,7 +1,7 @@
 //! What obstacles do at the end of a step: nodes that are inside nevertheless, velocities, and the ledger.
 
+use super::balance::Balance;
 use super::contact::{Contact, Contacting, Hold, SMALL, dot, split};
-use super::newton::Balance;
 use opruga_core::contacts::Touch;
 use opruga_core::system::{System, Work8};
 use opruga_math::{Lane, WIDTH};

@@ -1,8 +1,9 @@
 //! How far a step is gone.
 
+use super::balance::Balance;
 use super::linear::Filter;
-use super::newton::{Balance, evaluate};
 use super::room::Room;
+use super::stage::{evaluate, potential, rounding_of_models};
 use opruga_core::error::StepError;
 use opruga_core::system::System;
 use opruga_math::Lane;
@@ -27,10 +28,6 @@ pub(super) enum Stretches {
     /// Up to so many times its length, also where differences of energies are lost in rounding: off a balance that does not hold.
     UpTo(f64),
 }
-
-/// The rounding of an energy as a part of the terms whose difference it is in its models: of a law that takes the energy at rest away,
-/// a stiff body has more of it than energy.
-const CANCELLATION: f64 = 1e-15;
 
 /// The most halvings, or thereabouts, of a step.
 const MOST_TRIALS: usize = 14;
@@ -146,44 +143,4 @@ fn given_along<const D: usize>(room: &mut Room<D>) -> f64 {
     right.fill(0.0);
     contacting.subtract_friction(right);
     work - dot(right, step)
-}
-
-/// The rounding of the energies of the models [J].
-pub(super) fn rounding_of_models<const D: usize>(system: &System<D>) -> f64 {
-    CANCELLATION * system.members.iter().map(|member| member.potential.energy_parts()).sum::<f64>()
-}
-
-/// The incremental potential and the size of its parts [J].
-pub(super) fn potential<const D: usize>(
-    system: &System<D>,
-    room: &Room<D>,
-    balance: &Balance,
-    trial: bool,
-) -> Option<(f64, f64)> {
-    let energy = system.potential_energy(Room::<D>::STAGE, balance.time)?;
-    let u = if trial { &room.trial } else { &room.u };
-    let mut inertia = 0.0;
-    for (node, mass) in room.mass.iter().enumerate() {
-        for k in node * D..(node + 1) * D {
-            let way = u[k] - room.y[k];
-            inertia += mass * way * way;
-        }
-    }
-    if balance.sigma != 0.0
-        && let Some(coupled) = &system.inertia
-    {
-        // The forces were evaluated last, and with them the way.
-        inertia += coupled.square::<D>(&room.way);
-    }
-    inertia *= 0.5 * balance.sigma;
-    let mut lifted = 0.0;
-    if balance.load != 1.0 {
-        // What the missing part of the weight would have given.
-        for node in 0..system.nodes {
-            for d in 0..D {
-                lifted += (1.0 - balance.load) * room.outer.0[d][node] * u[node * D + d];
-            }
-        }
-    }
-    Some((energy + inertia + lifted, energy.abs() + inertia + lifted.abs()))
 }

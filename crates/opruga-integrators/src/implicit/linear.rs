@@ -3,6 +3,7 @@
 use super::settings::{Settings, Solver};
 use opruga_core::potential::{Definiteness, Sink};
 use opruga_core::system::{Stage, System};
+use opruga_math::Lane;
 use opruga_solve::blocks::{Block, held, isotropic, nodes, nodes_mut, times};
 use opruga_solve::{
     BlockJacobi, BlockMatrix, Cholesky, Directions, Factors, FilledCholesky, IncompleteCholesky, Indefinite,
@@ -35,6 +36,17 @@ const MOST_PRODUCTS: u32 = 20_000;
 
 /// After so many the complete factor is asked for: a nearly incompressible solid takes an incomplete one thousands.
 const MANY_PRODUCTS: u32 = 1000;
+
+/// The part of the residual that the linear solver may leave, in the first iteration.
+pub(super) const LINEAR_TOLERANCE: f64 = 1e-2;
+
+/// The rounding of a number as a part of itself.
+pub(super) const EPSILON: f64 = 0.5 * f64::EPSILON;
+
+/// A solution with a matrix whose stiffness is q times its mass knows the motions of the whole to about q ε of themselves. Above this they
+/// are solved for apart. Larger, and a fall by a rule's closed form is off by as much in every step that the iteration ends with
+/// (`tests/stiff_bodies.rs`); steel in cells of a centimetre is at 1e-9.
+pub(super) const UNSURE: f64 = 1e-6;
 
 /// What a matrix is made of.
 #[derive(Clone, Copy, Debug)]
@@ -347,4 +359,18 @@ impl<const D: usize> Linear<D> {
 /// Whether the solver of a body works without a matrix.
 pub(crate) fn is_matrix_free(solver: Solver) -> bool {
     solver == Solver::MatrixFree
+}
+
+/// By how much a matrix is stiffer than its masses at most.
+pub(super) fn contrast<const D: usize>(linear: &Linear<D>, mixture: &Mixture<D>) -> f64 {
+    let mut most: f64 = 0.0;
+    for (node, mass) in mixture.mass.iter().enumerate() {
+        most = (linear.size_at(mixture, node) / (mixture.sigma * mass)).larger(most);
+    }
+    most
+}
+
+/// Whether a solution with a matrix says too little of the motions of the whole.
+pub(super) fn is_unsure<const D: usize>(linear: &Linear<D>, mixture: &Mixture<D>) -> bool {
+    mixture.sigma != 0.0 && EPSILON * contrast(linear, mixture) > UNSURE
 }

@@ -10,7 +10,12 @@
 //! | file | what it does |
 //! |---|---|
 //! | `settings` | the parameters that all rules have: accuracy, solver, what to do when it does not converge |
-//! | `step` | a step of a rule from start to ledger, halved or accepted where it does not converge |
+//! | `step` | a step of a rule from start to ledger, and the guards around its minimiser |
+//! | `balance` | the balance of a stage, and what an iteration reports |
+//! | `stage` | a stage as it is evaluated: forces, matrix, incremental potential, contacts |
+//! | `rule` | what a rule says of a step |
+//! | `minimiser` | what finds the stage of a rule: `newton`, or `real_time` |
+//! | `convergence`, `energy` | guards that refuse what a minimiser found |
 //! | `theta` | the θ-method, which rules that damp nothing turn to in contact |
 //! | `newton` | the exact iteration: derivatives, direction, line search |
 //! | `direction` | one direction of it |
@@ -25,6 +30,7 @@
 //! | `linear` | the direction: conjugate gradients or sparse Cholesky |
 //! | `approach` | what keeps statics, without inertia, out of obstacles |
 //! | `contact` | which nodes obstacles hold, and whether they stick or slip |
+//! | `sight` | where nodes are within a step, as obstacles see it |
 //! | `contact_derivatives` | what the forces of contacts change by with positions |
 //! | `growth` | refuses what accepted steps blow up |
 //! | `slenderness` | for which bodies the real-time setting factors its matrix |
@@ -46,10 +52,13 @@
 //! brings along the normal is lost or returned by the restitution, and friction takes µ times that change as well.
 
 pub(crate) mod approach;
+pub(crate) mod balance;
 mod beginning;
 pub(crate) mod contact;
-pub(crate) mod contact_derivatives;
+mod contact_derivatives;
+pub(crate) mod convergence;
 pub(crate) mod direction;
+mod energy;
 mod falling;
 mod growth;
 pub(crate) mod holding;
@@ -58,6 +67,7 @@ mod kept;
 mod line_search;
 pub(crate) mod linear;
 pub(crate) mod memory;
+pub(crate) mod minimiser;
 mod mixing;
 pub(crate) mod newton;
 mod own_loss;
@@ -65,8 +75,11 @@ mod real_time;
 mod rigid;
 pub(crate) mod room;
 mod rounding;
+pub(crate) mod rule;
 pub(crate) mod settings;
+pub(crate) mod sight;
 mod slenderness;
+pub(crate) mod stage;
 pub(crate) mod standstill;
 pub(crate) mod step;
 pub(crate) mod theta;

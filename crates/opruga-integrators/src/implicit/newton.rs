@@ -1,61 +1,21 @@
 //! Newton's method on the balance of forces of a stage.
 
 use super::approach::part_without_inertia;
+use super::balance::{Balance, Solved};
 use super::beginning::begin;
-use super::contact::Verdict;
-use super::contact_derivatives::Sight;
 use super::direction::{Keep, find_direction};
 use super::falling::Falling;
 use super::line_search::{Stretches, line_search, slope_along};
-use super::linear::{Filter, Mixture, is_matrix_free};
+use super::linear::Filter;
+use super::minimiser::Minimiser;
 use super::room::Room;
 use super::rounding::{at_rounding, carries, chance, in_doubt, most_rounding, settle, visible};
 use super::settings::Settings;
+use super::stage::{evaluate, judge, longest, look};
 use super::whole;
 use opruga_core::error::StepError;
-use opruga_core::potential::Definiteness;
 use opruga_core::system::System;
-use opruga_core::threads::each_block;
 use opruga_math::Lane;
-
-/// The balance of a stage: σ M (u − y) = F(x₀ + u, β (u − z)) at a time after the start of the step.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Balance {
-    /// The factor of the mass [1/s²].
-    pub(crate) sigma: f64,
-    /// The factor of displacements in velocities [1/s].
-    pub(crate) beta: f64,
-    /// Which part of the way to the end of the step the stage is.
-    pub(crate) theta: f64,
-    /// The time of the stage after the start of the step [s].
-    pub(crate) time: f64,
-    /// The length of the step [s].
-    pub(crate) h: f64,
-    /// The part of the weight and of the loads that acts.
-    pub(crate) load: f64,
-    /// The change of momentum in the step by a force that acts in this stage alone, in units of force times h, and what the rule
-    /// will still add to it out of what it remembers.
-    pub(crate) impulse: f64,
-    pub(crate) echo: f64,
-}
-
-/// How the iteration ended.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Solved {
-    pub(crate) iterations: u32,
-    pub(crate) products: u32,
-    /// The largest displacement of a node in the last iteration [m].
-    pub(crate) correction: f64,
-    pub(crate) converged: bool,
-    /// What is left of the forces would still move a node by [m], where it is rounding and that is much.
-    pub(crate) blur: f64,
-    /// The forces that rounding of positions makes, over the loads, where they matter.
-    pub(crate) conditioning: f64,
-    /// The rounding of positions [m], the largest of a force [N] and what that would move a node by [m], where it did not converge.
-    pub(crate) floor: [f64; 3],
-    /// Whether what is left may have made energy.
-    pub(crate) doubtful: bool,
-}
 
 /// Corrections that fall by less than this in an iteration fall slowly.
 const SLOW: f64 = 0.03;
@@ -66,72 +26,160 @@ const MOST_DECISIONS: u32 = 30;
 /// From this iteration on forces that are as small as their rounding are a balance, whether it carries the loads or not.
 const MOST_AT_ROUNDING: u32 = 50;
 
-/// Looks for the stage from the displacement in `room.u` on; on success forces and residual belong to what is found.
-pub(crate) fn solve<const D: usize>(
-    system: &mut System<D>,
-    room: &mut Room<D>,
-    balance: &Balance,
-    settings: &Settings,
-) -> Result<Solved, StepError> {
-    let mut solved = Solved::default();
-    let goal = settings.tolerance * room.extent;
-    let mut size: f64 = 0.0;
-    for x in &room.x0 {
-        size = x.abs().larger(size);
+/// Newton's method: exact, to the tolerance of its settings.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Newton(pub(crate) Settings);
+
+impl<const D: usize> Minimiser<D> for Newton {
+    fn minimise(&self, system: &mut System<D>, room: &mut Room<D>, balance: &Balance) -> Result<Solved, StepError> {
+        let mut run = Iteration::new(room, balance, &self.0);
+        let torn = begin(system, room, balance)?;
+        prepare(system, room);
+        while run.solved.iterations < self.0.iterations {
+            system.go_on()?;
+            run.solved.iterations += 1;
+            let contacts = run.hold(system, room);
+            let Some((keep, slope)) = run.choose_direction(system, room, contacts.farthest > 0.0) else { break };
+            let mut correction = run.measure(system, room, keep, slope, contacts.changed);
+            run.go(system, room, &mut correction, contacts.farthest)?;
+            let stuck = correction.length == 0.0 && !contacts.changed;
+            if stuck && run.ends_at_rounding(system, room)? || !run.choose_derivatives(room, &correction, stuck) {
+                break;
+            }
+            let changed = contacts.changed | run.judge(system, room);
+            if !changed && !stuck && run.ends(system, room, &correction)? {
+                break;
+            }
+        }
+        run.estimate_error(system, room);
+        torn.filter(|_| !run.solved.converged).map_or(Ok(run.solved), Err)
     }
-    let torn = begin(system, room, balance)?;
+    fn same_bits_everywhere(&self, system: &System<D>) -> bool {
+        !self.0.solver.is_direct::<D>(system.nodes)
+    }
+}
+
+/// Begins anew what an iteration remembers.
+fn prepare<const D: usize>(system: &System<D>, room: &mut Room<D>) {
     room.linear.begin();
     room.rigid.begin();
     room.mixing.begin(room.u.len());
     room.friction.begin(if system.contacts.is_some() { system.nodes } else { 0 });
-    let mut first_norm = 0.0;
-    // What the next direction is made of first, and the correction of the last iteration that went all of its way.
-    let (mut first, mut before) = (Keep::Exact, f64::INFINITY);
-    let mut falling = Falling::new();
-    while solved.iterations < settings.iterations {
-        system.go_on()?;
-        solved.iterations += 1;
-        // Which nodes are held, and how far they have to go.
-        let mut changed = look(system, room, balance, true);
-        let farthest = room.contacting.hold(
-            &room.u,
-            balance.theta,
-            &room.held,
-            &room.x0,
-            &mut room.free,
-            &mut room.projectors,
-            &mut room.prescribed,
-        );
-        let moves = farthest > 0.0;
+}
 
-        // The direction; the exact derivatives as long as they are positive definite.
-        let mut keep = first;
-        let direction = loop {
-            match find_direction(system, room, balance, settings, keep, moves, &mut first_norm) {
+/// What the iteration knows beside the vectors.
+#[derive(Debug)]
+struct Iteration<'a> {
+    balance: &'a Balance,
+    settings: &'a Settings,
+    solved: Solved,
+    /// The correction that ends it [m].
+    goal: f64,
+    /// The largest coordinate [m].
+    size: f64,
+    first_norm: f64,
+    /// What the next direction is made of first.
+    first: Keep,
+    /// The correction of the last iteration that went all of its length [m].
+    before: f64,
+    falling: Falling,
+}
+
+/// What obstacles do in an iteration.
+#[derive(Clone, Copy, Debug)]
+struct Contacts {
+    /// Whether who is held has changed.
+    changed: bool,
+    /// How far held nodes have to go at most [m].
+    farthest: f64,
+}
+
+/// One correction of the iteration.
+#[derive(Clone, Copy, Debug)]
+struct Correction {
+    /// What its direction is made of.
+    keep: Keep,
+    slope: f64,
+    /// The longest displacement of a node by the direction alone [m], and what was gone of it.
+    plain: f64,
+    gone: f64,
+    /// Whether iterations before are mixed in.
+    mixed: bool,
+    /// Whether it halves the one before.
+    nears: bool,
+    /// The part of it that was gone.
+    length: f64,
+}
+
+impl<'a> Iteration<'a> {
+    fn new<const D: usize>(room: &Room<D>, balance: &'a Balance, settings: &'a Settings) -> Iteration<'a> {
+        let mut size: f64 = 0.0;
+        for x in &room.x0 {
+            size = x.abs().larger(size);
+        }
+        Iteration {
+            balance,
+            settings,
+            solved: Solved::default(),
+            goal: settings.tolerance * room.extent,
+            size,
+            first_norm: 0.0,
+            first: Keep::Exact,
+            before: f64::INFINITY,
+            falling: Falling::new(),
+        }
+    }
+
+    /// Looks which nodes are held, and how far they have to go.
+    fn hold<const D: usize>(&self, system: &System<D>, room: &mut Room<D>) -> Contacts {
+        let changed = look(system, room, self.balance, true);
+        let Room { contacting, u, held, x0, free, projectors, prescribed, .. } = room;
+        let farthest = contacting.hold(u, self.balance.theta, held, x0, free, projectors, prescribed);
+        Contacts { changed, farthest }
+    }
+
+    /// The direction in `room.step`, and the slope along it: of the exact derivatives as long as they are positive definite. None
+    /// where no derivatives lead downhill.
+    fn choose_direction<const D: usize>(
+        &mut self,
+        system: &System<D>,
+        room: &mut Room<D>,
+        moves: bool,
+    ) -> Option<(Keep, f64)> {
+        let mut keep = self.first;
+        let slope = loop {
+            match find_direction(system, room, self.balance, self.settings, keep, moves, &mut self.first_norm) {
                 Ok((products, slope)) => {
-                    solved.products += products;
+                    self.solved.products += products;
                     if slope <= 0.0 || !moves && keep != Keep::Exact {
-                        break Some(slope);
+                        break slope;
                     }
                 }
-                Err(products) => solved.products += products,
+                Err(products) => self.solved.products += products,
             }
-            match keep.next() {
-                Some(next) => keep = next,
-                None => break None,
-            }
+            keep = keep.next()?;
         };
-        let Some(mut slope) = direction else { break };
         if keep != Keep::Exact {
-            first = Keep::Clamped;
+            self.first = Keep::Clamped;
         }
+        Some((keep, slope))
+    }
 
+    /// Measures the correction in `room.step`, shortens it in statics, and mixes in those before where they fall slowly.
+    fn measure<const D: usize>(
+        &mut self,
+        system: &System<D>,
+        room: &mut Room<D>,
+        keep: Keep,
+        mut slope: f64,
+        changed: bool,
+    ) -> Correction {
         let plain = longest(&room.step, D);
-        solved.correction = plain;
+        self.solved.correction = plain;
         let mut gone = plain;
-        if balance.sigma == 0.0 {
+        if self.balance.sigma == 0.0 {
             // Without inertia a soft direction leads far.
-            let part = part_without_inertia(system, room, balance, plain);
+            let part = part_without_inertia(system, room, self.balance, plain);
             room.step.iter_mut().for_each(|s| *s *= part);
             gone *= part;
             slope *= part;
@@ -140,93 +188,136 @@ pub(crate) fn solve<const D: usize>(
         if changed {
             room.mixing.forget();
         }
-        let mixed = mix(room, plain > SLOW * before, &mut slope);
+        let mixed = mix(room, plain > SLOW * self.before, &mut slope);
         // With inertia rounding is reached where a correction does not halve the one before any more.
-        let halves = solved.iterations == 1 || before.is_finite() && plain <= 0.5 * before;
-        let nears = balance.sigma != 0.0 && halves;
-        before = plain;
-        falling.note(plain, keep != Keep::Exact && !mixed);
-        let mut length = 1.0;
-        if plain <= goal {
-            full_step(system, room, balance)?;
-        } else {
-            // What is too stiff and has not far to go to obstacles may go on, unless it falls towards them without inertia.
-            let falls = balance.sigma == 0.0 && system.contacts.is_some();
-            let stiff = keep != Keep::Exact && !falls;
-            let stretches = if stiff && farthest <= 1e-3 * room.extent && !room.contacting.any_turns() {
-                falling.stretches(room.extent)
-            } else {
-                Stretches::No
-            };
-            length = line_search(system, room, balance, slope, stretches)?;
-            gone *= length;
-            if length > 1.0 {
-                falling.stretched();
-            }
-            if length != 1.0 {
-                room.mixing.forget();
-                before = f64::INFINITY;
-            }
-        }
-        let stuck = length == 0.0 && !changed;
-        if stuck {
-            if at_rounding(system, room, balance, settings, size)
-                && whole::accepts(system, room, balance, settings, size, true)?
-            {
-                solved.converged = true;
-                solved.blur = settle(system, room, balance, settings)?;
-                break;
-            }
-            // A stiffer matrix leads less far, and more surely downhill.
-            match keep.next() {
-                _ if mixed => {}
-                Some(next) => first = next,
-                None => break,
-            }
-        } else if keep != Keep::Exact && gone <= 1e-2 * room.extent {
-            // Derivatives that were not positive may be so near the solution.
-            first = Keep::Exact;
-        }
+        let halves = self.solved.iterations == 1 || self.before.is_finite() && plain <= 0.5 * self.before;
+        let nears = self.balance.sigma != 0.0 && halves;
+        self.before = plain;
+        self.falling.note(plain, keep != Keep::Exact && !mixed);
+        Correction { keep, slope, plain, gone, mixed, nears, length: 1.0 }
+    }
 
-        // What the constraints would take says who stays held.
-        if system.contacts.is_some() && solved.iterations < MOST_DECISIONS {
-            let verdict = judge(system, room, balance, settings, settings.tolerance, true);
-            if verdict.anew {
-                room.mixing.forget();
+    /// Goes the correction in `room.step`, as far as the line search allows where it is no short one.
+    fn go<const D: usize>(
+        &mut self,
+        system: &mut System<D>,
+        room: &mut Room<D>,
+        correction: &mut Correction,
+        farthest: f64,
+    ) -> Result<(), StepError> {
+        let Correction { keep, slope, plain, .. } = *correction;
+        if plain <= self.goal {
+            return full_step(system, room, self.balance);
+        }
+        // What is too stiff and has not far to go to obstacles may go on, unless it falls towards them without inertia.
+        let falls = self.balance.sigma == 0.0 && system.contacts.is_some();
+        let stiff = keep != Keep::Exact && !falls;
+        let stretches = if stiff && farthest <= 1e-3 * room.extent && !room.contacting.any_turns() {
+            self.falling.stretches(room.extent)
+        } else {
+            Stretches::No
+        };
+        let length = line_search(system, room, self.balance, slope, stretches)?;
+        correction.length = length;
+        correction.gone *= length;
+        if length > 1.0 {
+            self.falling.stretched();
+        }
+        if length != 1.0 {
+            room.mixing.forget();
+            self.before = f64::INFINITY;
+        }
+        Ok(())
+    }
+
+    /// Whether an iteration without progress ends where it is, at the rounding of its forces.
+    fn ends_at_rounding<const D: usize>(
+        &mut self,
+        system: &mut System<D>,
+        room: &mut Room<D>,
+    ) -> Result<bool, StepError> {
+        let Iteration { balance, settings, size, .. } = *self;
+        if at_rounding(system, room, balance, settings, size)
+            && whole::accepts(system, room, balance, settings, size, true)?
+        {
+            self.solved.converged = true;
+            self.solved.blur = settle(system, room, balance, settings)?;
+        }
+        Ok(self.solved.converged)
+    }
+
+    /// Chooses what the next direction is made of; gives whether there is one.
+    fn choose_derivatives<const D: usize>(&mut self, room: &Room<D>, correction: &Correction, stuck: bool) -> bool {
+        let Correction { keep, mixed, gone, .. } = *correction;
+        if !stuck {
+            if keep != Keep::Exact && gone <= 1e-2 * room.extent {
+                // Derivatives that were not positive may be so near the solution.
+                self.first = Keep::Exact;
             }
-            changed |= verdict.anew || verdict.unsettled;
+            return true;
         }
-        let ends = !changed && !stuck;
-        if ends && plain <= goal && whole::accepts(system, room, balance, settings, size, false)? {
-            solved.converged = true;
-            break;
+        // A stiffer matrix leads less far, and more surely downhill.
+        match keep.next() {
+            _ if mixed => {}
+            Some(next) => self.first = next,
+            None => return false,
         }
-        let last = solved.iterations >= MOST_AT_ROUNDING.min(settings.iterations);
-        let may_end = ends && (last || !nears);
-        if may_end
+        true
+    }
+
+    /// Decides by what the constraints would take who stays held; gives whether that has changed.
+    fn judge<const D: usize>(&self, system: &System<D>, room: &mut Room<D>) -> bool {
+        if system.contacts.is_none() || self.solved.iterations >= MOST_DECISIONS {
+            return false;
+        }
+        let verdict = judge(system, room, self.balance, self.settings, self.settings.tolerance, true);
+        if verdict.anew {
+            room.mixing.forget();
+        }
+        verdict.anew || verdict.unsettled
+    }
+
+    /// Whether the iteration is at its end: by its correction, or by what is out of balance, which is rounding.
+    fn ends<const D: usize>(
+        &mut self,
+        system: &mut System<D>,
+        room: &mut Room<D>,
+        correction: &Correction,
+    ) -> Result<bool, StepError> {
+        let Iteration { balance, settings, size, .. } = *self;
+        if correction.plain <= self.goal && whole::accepts(system, room, balance, settings, size, false)? {
+            self.solved.converged = true;
+            return Ok(true);
+        }
+        let last = self.solved.iterations >= MOST_AT_ROUNDING.min(settings.iterations);
+        if (last || !correction.nears)
             && at_rounding(system, room, balance, settings, size)
             && (last || carries(system, room, balance))
             && whole::accepts(system, room, balance, settings, size, true)?
         {
-            solved.converged = true;
-            solved.blur = settle(system, room, balance, settings)?;
-            break;
+            self.solved.converged = true;
+            self.solved.blur = settle(system, room, balance, settings)?;
         }
+        Ok(self.solved.converged)
     }
-    if !solved.converged {
-        solved.floor = most_rounding(system, room, balance, settings, size);
-    }
-    if solved.converged {
-        solved.conditioning = room.rigid.conditioning;
+
+    /// Estimates how far rounding may have led from the stage, or what it hides where the iteration did not converge.
+    fn estimate_error<const D: usize>(&mut self, system: &mut System<D>, room: &mut Room<D>) {
+        let Iteration { balance, settings, size, .. } = *self;
+        if !self.solved.converged {
+            self.solved.floor = most_rounding(system, room, balance, settings, size);
+            return;
+        }
+        self.solved.conditioning = room.rigid.conditioning;
         let doubt = in_doubt(system, room, balance, settings, size);
-        let suspected = doubt.way.larger(solved.blur);
+        let suspected = doubt.way.larger(self.solved.blur);
         if suspected > 0.0 {
             let left = left_over(system, room, balance, settings);
             let chance = if doubt.lost { chance(system, room, balance, settings, size) } else { 0.0 };
-            solved.blur = left.map_or(suspected, |left| visible(left.larger(chance.smaller(suspected)), room.extent));
+            self.solved.blur =
+                left.map_or(suspected, |left| visible(left.larger(chance.smaller(suspected)), room.extent));
         }
     }
-    torn.filter(|_| !solved.converged).map_or(Ok(solved), Err)
 }
 
 /// How far what is left out of balance would move a node by the matrix of what was found [m]: what was suspected on the way there went by
@@ -242,15 +333,6 @@ fn left_over<const D: usize>(
     }
     find_direction(system, room, balance, settings, Keep::Exact, false, &mut 0.0).ok()?;
     Some(longest(&room.step, D))
-}
-
-/// The longest way of a node.
-pub(super) fn longest(step: &[f64], dimension: usize) -> f64 {
-    let mut longest: f64 = 0.0;
-    for node in step.chunks_exact(dimension) {
-        longest = node.iter().map(|x| x * x).sum::<f64>().larger(longest);
-    }
-    longest.sqrt()
 }
 
 /// Notes an iteration and, where that is asked for, makes of its step the one that it and those before lead to; says whether
@@ -273,97 +355,6 @@ fn mix<const D: usize>(room: &mut Room<D>, wanted: bool, slope: &mut f64) -> boo
     }
     room.step.copy_from_slice(&room.trial);
     false
-}
-
-pub(crate) fn look<const D: usize>(
-    system: &System<D>,
-    room: &mut Room<D>,
-    balance: &Balance,
-    impacts_slide: bool,
-) -> bool {
-    let Room { contacting, x0, u, extent, .. } = room;
-    let sight = Sight::new(system, balance, x0, u, *extent);
-    contacting.look(&sight, impacts_slide)
-}
-
-/// Decides anew who is held, and how, from what the constraints would take.
-pub(crate) fn judge<const D: usize>(
-    system: &System<D>,
-    room: &mut Room<D>,
-    balance: &Balance,
-    settings: &Settings,
-    tolerance: f64,
-    yields: bool,
-) -> Verdict {
-    let Room { contacting, reaction, x0, u, extent, linear, mass, .. } = room;
-    let sight = Sight::new(system, balance, x0, u, *extent);
-    let mixture = mixture(system, mass, balance, Definiteness::Clamped, settings);
-    contacting.judge(reaction, &sight, tolerance, &|node| {
-        if yields { linear.size_at(&mixture, node) / D as f64 } else { 0.0 }
-    })
-}
-
-pub(crate) fn mixture<'a, const D: usize>(
-    system: &'a System<D>,
-    mass: &'a [f64],
-    balance: &Balance,
-    keep: Definiteness,
-    settings: &Settings,
-) -> Mixture<'a, D> {
-    Mixture {
-        system,
-        sigma: balance.sigma,
-        beta: balance.beta,
-        load: balance.load,
-        mass,
-        stage: Room::<D>::STAGE,
-        time: balance.time,
-        keep,
-        matrix_free: is_matrix_free(settings.solver),
-    }
-}
-
-/// The forces at x₀ + u (or at the trial), and what is out of balance.
-pub(crate) fn evaluate<const D: usize>(
-    system: &mut System<D>,
-    room: &mut Room<D>,
-    balance: &Balance,
-    trial: bool,
-) -> Result<(), StepError> {
-    let u: &[f64] = if trial { &room.trial } else { &room.u };
-    Room::show(system, &room.x0, u, &room.z, balance.beta);
-    system.evaluate(Room::<D>::STAGE, balance.time, 0.0, &mut room.force)?;
-    let Room { mass, y, force, residual, trial: tried, u, way, .. } = &mut *room;
-    let u: &[f64] = if trial { tried } else { u };
-    each_block(system.threads, D, [&mut *residual], |first, [residual]| {
-        for (node, out) in (first / D..).zip(residual.as_chunks_mut::<D>().0) {
-            for d in 0..D {
-                let k = node * D + d;
-                out[d] = balance.sigma * mass[node] * (u[k] - y[k]) - force.0[d][node];
-            }
-        }
-    });
-    if balance.sigma != 0.0
-        && let Some(inertia) = &system.inertia
-    {
-        way.clear();
-        way.extend(u.iter().zip(&*y).map(|(u, y)| u - y));
-        for node in 0..system.nodes {
-            let product = inertia.product::<D>(node, way);
-            for d in 0..D {
-                residual[node * D + d] += balance.sigma * product[d];
-            }
-        }
-    }
-    if balance.load != 1.0 {
-        system.outer_forces(Room::<D>::STAGE, balance.time, &mut room.outer);
-        for node in 0..system.nodes {
-            for d in 0..D {
-                room.residual[node * D + d] += (1.0 - balance.load) * room.outer.0[d][node];
-            }
-        }
-    }
-    Ok(())
 }
 
 fn full_step<const D: usize>(system: &mut System<D>, room: &mut Room<D>, balance: &Balance) -> Result<(), StepError> {

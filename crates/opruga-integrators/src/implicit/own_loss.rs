@@ -25,7 +25,7 @@
 //!
 //! What pins hold does not count: their work is entered with the kinetic energy of held nodes.
 
-use super::newton::Balance;
+use super::balance::Balance;
 use super::room::Room;
 use opruga_core::system::{System, Work8};
 use opruga_math::WIDTH;

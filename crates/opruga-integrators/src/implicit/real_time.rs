@@ -6,14 +6,17 @@
 //!
 //! Sizes of what is out of balance are taken in the norm of the inverse diagonal blocks of the matrix, √(r·B r).
 
+use super::balance::{Balance, Solved};
 use super::direction::wanted_forces;
-use super::line_search::{potential, rounding_of_models};
 use super::linear::{Filter, Mixture};
-use super::newton::{self, Balance, Solved, evaluate, judge, look};
+use super::minimiser::Minimiser;
+use super::newton::Newton;
 use super::room::Room;
 use super::settings::Settings;
+use super::stage::{evaluate, judge, look, potential, rounding_of_models};
 use super::whole::settles;
 use opruga_core::error::StepError;
+use opruga_core::integrator::HistorySize;
 use opruga_core::potential::Definiteness;
 use opruga_core::system::System;
 use opruga_core::threads::each_block;
@@ -22,13 +25,6 @@ use opruga_solve::Indefinite;
 
 /// The part of what is out of balance that the linear solver leaves at most.
 const LINEAR: f64 = 0.05;
-
-/// The part with which an iteration is good enough, and the part that may be left when there is no other.
-pub(super) const ENOUGH: [f64; 2] = [0.2, 0.2];
-
-/// The same of a rule that damps slow motions little. What is left comes back in the next step, behind its time, and pushes
-/// along with the motion: where a fiftieth was good enough, a beam of 10 × 2 quadrilaterals still gained energy under `bdf2`.
-pub(super) const ENOUGH_UNDAMPED: [f64; 2] = [1e-3, 0.05];
 
 /// The part with which the matrix is made anew in the next step.
 const WORN: f64 = 0.2;
@@ -57,8 +53,8 @@ const MANY_PRODUCTS: u32 = 120;
 
 /// What the setting adds to what a rule remembers: the reference shape of the matrix and the velocities before the step;
 /// which matrix it is, and the length of the step.
-pub(crate) const COLUMNS: usize = 2;
-pub(crate) const NUMBERS: usize = 2;
+const COLUMNS: usize = 2;
+const NUMBERS: usize = 2;
 
 /// Numbers of the history: the matrix of elements without negative eigenvalues, above it ones with a raised diagonal. Zero is
 /// none, a negative number one that is to be made anew.
@@ -81,7 +77,7 @@ fn is_loose<const D: usize>(system: &System<D>) -> bool {
 }
 
 /// Where the body would come to under the acceleration of the last step, less x₀: in `room.u`.
-pub(crate) fn predict<const D: usize>(system: &System<D>, room: &mut Room<D>, theta: f64, h: f64) {
+fn predict<const D: usize>(system: &System<D>, room: &mut Room<D>, theta: f64, h: f64) {
     let last = system.history.numbers[room.own.numbers + 1];
     if last <= 0.0 || is_loose(system) {
         return;
@@ -102,7 +98,7 @@ pub(crate) fn predict<const D: usize>(system: &System<D>, room: &mut Room<D>, th
 }
 
 /// Keeps the velocities at the start of a step; nodes that met an obstacle go on as they do then.
-pub(crate) fn remember<const D: usize>(system: &mut System<D>, room: &Room<D>, h: f64) {
+fn remember<const D: usize>(system: &mut System<D>, room: &Room<D>, h: f64) {
     // The acceleration of an impact leads nowhere.
     system.history.numbers[room.own.numbers + 1] = if room.struck.is_empty() { h } else { 0.0 };
     let before = &mut system.history.columns[room.own.columns + 1];
@@ -236,42 +232,65 @@ impl Task<'_> {
     }
 }
 
-/// Looks for the stage from the displacement in `room.u` on; forces and residual belong to what is found.
+/// The real-time setting as a minimiser.
 ///
 /// What few iterations lead to counts only where it makes no energy: else the step is solved by Newton's method with its line search,
 /// and made in two halves where that does not converge. Its incremental potential must not be above that of a body that stays where it
 /// is; looked at are bodies in the air, and others whose matrix was made anew on the way, or that went far or are left farther out of
 /// balance than promised. What is left of a body on an obstacle is taken for an impulse of that, which the potential
 /// does not know: the end of such a step is doubtful ([`Solved::doubtful`]), and its energy decides.
-pub(crate) fn solve<const D: usize>(
-    system: &mut System<D>,
-    room: &mut Room<D>,
-    balance: &Balance,
-    settings: &Settings,
-) -> Result<Solved, StepError> {
-    let (cut_off, left) = (system.work.solver.cut_off, system.work.solver.left);
-    let outcome = iterate(system, room, balance, settings);
-    let spent = match &outcome {
-        Ok((solved, Trust::Whole)) => return Ok(*solved),
-        Ok((solved, Trust::IfNoGain)) if !has_risen(system, room, balance)? => {
-            return Ok(Solved { doubtful: true, ..*solved });
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RealTime(pub(crate) Settings);
+
+impl<const D: usize> Minimiser<D> for RealTime {
+    fn minimise(&self, system: &mut System<D>, room: &mut Room<D>, balance: &Balance) -> Result<Solved, StepError> {
+        let settings = &self.0;
+        let (cut_off, left) = (system.work.solver.cut_off, system.work.solver.left);
+        let outcome = iterate(system, room, balance, settings);
+        let spent = match &outcome {
+            Ok((solved, Trust::Whole)) => return Ok(*solved),
+            Ok((solved, Trust::IfNoGain)) if !has_risen(system, room, balance)? => {
+                return Ok(Solved { doubtful: true, ..*solved });
+            }
+            Ok((solved, Trust::IfDownhill)) if !has_risen(system, room, balance)? => return Ok(*solved),
+            Ok((solved, _)) => *solved,
+            // A law that has no meaning where the iteration led to.
+            Err(StepError::Model { .. }) => Solved::default(),
+            Err(_) => return outcome.map(|(solved, _)| solved),
+        };
+        (system.work.solver.cut_off, system.work.solver.left) = (cut_off, left);
+        distrust(system, room);
+        room.contacting.clear(system.nodes);
+        for k in 0..room.u.len() {
+            room.u[k] = if room.held[k].is_nan() { balance.theta * balance.h * room.v0[k] } else { room.held[k] };
         }
-        Ok((solved, Trust::IfDownhill)) if !has_risen(system, room, balance)? => return Ok(*solved),
-        Ok((solved, _)) => *solved,
-        // A law that has no meaning where the iteration led to.
-        Err(StepError::Model { .. }) => Solved::default(),
-        Err(_) => return outcome.map(|(solved, _)| solved),
-    };
-    (system.work.solver.cut_off, system.work.solver.left) = (cut_off, left);
-    distrust(system, room);
-    room.contacting.clear(system.nodes);
-    for k in 0..room.u.len() {
-        room.u[k] = if room.held[k].is_nan() { balance.theta * balance.h * room.v0[k] } else { room.held[k] };
+        let mut solved = Newton(exactly(settings)).minimise(system, room, balance)?;
+        solved.iterations += spent.iterations;
+        solved.products += spent.products;
+        Ok(solved)
     }
-    let mut solved = newton::solve(system, room, balance, &exactly(settings))?;
-    solved.iterations += spent.iterations;
-    solved.products += spent.products;
-    Ok(solved)
+    fn history(&self) -> HistorySize {
+        HistorySize { columns: COLUMNS, numbers: NUMBERS }
+    }
+    fn predict(&self, system: &System<D>, room: &mut Room<D>, balance: &Balance) {
+        predict(system, room, balance.theta, balance.h);
+    }
+    fn discard(&self, system: &mut System<D>, room: &Room<D>) {
+        distrust(system, room);
+    }
+    fn remember(&self, system: &mut System<D>, room: &Room<D>, h: f64) {
+        remember(system, room, h);
+    }
+    /// In real time nobody waits for another setting.
+    fn always_halves(&self) -> bool {
+        true
+    }
+    fn shares_threads(&self) -> bool {
+        true
+    }
+    fn same_bits_everywhere(&self, system: &System<D>) -> bool {
+        !self.0.solver.is_direct_in_real_time(system)
+    }
 }
 
 /// The settings of steps that few iterations led astray.
@@ -280,7 +299,7 @@ pub(crate) fn exactly(settings: &Settings) -> Settings {
 }
 
 /// Lets the next step make its matrix anew.
-pub(crate) fn distrust<const D: usize>(system: &mut System<D>, room: &Room<D>) {
+fn distrust<const D: usize>(system: &mut System<D>, room: &Room<D>) {
     let kind = &mut system.history.numbers[room.own.numbers];
     *kind = if *kind > 0.0 { -CLAMPED } else { *kind };
 }
@@ -317,6 +336,16 @@ enum Trust {
     None,
 }
 
+/// Whether the matrix is factored: found out once, and again where the scene asks for another solver.
+fn is_direct<const D: usize>(system: &System<D>, room: &mut Room<D>, settings: &Settings) -> bool {
+    let direct = match room.direct {
+        Some((solver, direct)) if solver == settings.solver => direct,
+        _ => settings.solver.is_direct_in_real_time(system),
+    };
+    room.direct = Some((settings.solver, direct));
+    direct
+}
+
 /// Three iterations, or as many as the scene says, and whether what they leave may count.
 fn iterate<const D: usize>(
     system: &mut System<D>,
@@ -324,14 +353,8 @@ fn iterate<const D: usize>(
     balance: &Balance,
     settings: &Settings,
 ) -> Result<(Solved, Trust), StepError> {
-    let direct = match room.direct {
-        Some((solver, direct)) if solver == settings.solver => direct,
-        _ => settings.solver.is_direct_in_real_time(system),
-    };
-    room.direct = Some((settings.solver, direct));
-    let task = Task { balance, direct };
+    let task = Task { balance, direct: is_direct(system, room, settings) };
     room.rigid.begin();
-    let number = room.own.numbers;
     let mut solved = Solved { converged: true, ..Solved::default() };
     // Whether the matrix is of this step.
     let fresh = !task.recall(system, room)?;
@@ -361,29 +384,8 @@ fn iterate<const D: usize>(
         let (enough, linear) = if is_loose(system) { (LOOSE * LOOSE, LOOSE) } else { held };
         let enough = if solved.iterations > 0 { (enough * first).larger(floor) } else { floor };
         if last || settled && size <= enough {
-            if size > (WORN * first).larger(floor) && system.history.numbers[number] > 0.0 {
-                system.history.numbers[number] = -CLAMPED;
-            }
-            let as_promised = size <= (most * first).larger(floor);
-            if slow || !as_promised {
-                let left = size / room.kept.stiffness().sqrt();
-                let work = &mut system.work.solver;
-                work.cut_off += 1;
-                work.left = left.larger(work.left);
-            }
-            // A part of what was torn at first is still torn; what is no number is not short.
-            let short = solved.correction <= SHORT * room.extent;
-            let trust = match (is_loose(system), as_promised) {
-                (true, _) if !short => Trust::None,
-                (true, _) if room.contacting.any() => Trust::IfNoGain,
-                (false, true) if !remade && short => Trust::Whole,
-                _ => Trust::IfDownhill,
-            };
-            // What moves no node against the stiffness of the others may move them all together.
-            let trust =
-                if settles(system, room, balance, settings, [NOTHING, LOOSE * LOOSE])? { trust } else { Trust::None };
-            solved.conditioning = room.rigid.conditioning;
-            return Ok((solved, trust));
+            let end = End { size, first, floor, most, slow, remade };
+            return conclude(system, room, balance, settings, solved, &end);
         }
         if solved.iterations > 0 && (is_loose(system) || size > WORN * first) {
             // The matrix of another shape does not lead there.
@@ -409,6 +411,55 @@ fn iterate<const D: usize>(
             undecided = verdict.anew || verdict.unsettled;
         }
     }
+}
+
+/// How the iterations of a step ended.
+#[derive(Clone, Copy, Debug)]
+struct End {
+    /// What is out of balance, what was at first, and what counts as nothing.
+    size: f64,
+    first: f64,
+    floor: f64,
+    /// The part of it that may be left.
+    most: f64,
+    /// Whether an iteration took many products, and whether the matrix was made anew.
+    slow: bool,
+    remade: bool,
+}
+
+/// Ends the iterations of a step: counts what they leave, and says whether it may count.
+fn conclude<const D: usize>(
+    system: &mut System<D>,
+    room: &mut Room<D>,
+    balance: &Balance,
+    settings: &Settings,
+    mut solved: Solved,
+    end: &End,
+) -> Result<(Solved, Trust), StepError> {
+    let End { size, first, floor, most, slow, remade } = *end;
+    let number = room.own.numbers;
+    if size > (WORN * first).larger(floor) && system.history.numbers[number] > 0.0 {
+        system.history.numbers[number] = -CLAMPED;
+    }
+    let as_promised = size <= (most * first).larger(floor);
+    if slow || !as_promised {
+        let left = size / room.kept.stiffness().sqrt();
+        let work = &mut system.work.solver;
+        work.cut_off += 1;
+        work.left = left.larger(work.left);
+    }
+    // A part of what was torn at first is still torn; what is no number is not short.
+    let short = solved.correction <= SHORT * room.extent;
+    let trust = match (is_loose(system), as_promised) {
+        (true, _) if !short => Trust::None,
+        (true, _) if room.contacting.any() => Trust::IfNoGain,
+        (false, true) if !remade && short => Trust::Whole,
+        _ => Trust::IfDownhill,
+    };
+    // What moves no node against the stiffness of the others may move them all together.
+    let trust = if settles(system, room, balance, settings, [NOTHING, LOOSE * LOOSE])? { trust } else { Trust::None };
+    solved.conditioning = room.rigid.conditioning;
+    Ok((solved, trust))
 }
 
 /// Goes the step that was found, and what is prescribed; `room.reaction` is then what the constraints take.

@@ -1,10 +1,10 @@
 //! Balances whose forces are as small as their rounding.
 
-use super::direction::LINEAR_TOLERANCE;
-use super::linear::{Filter, Linear, Mixture};
-use super::newton::{Balance, evaluate, longest, mixture};
+use super::balance::Balance;
+use super::linear::{Filter, LINEAR_TOLERANCE, Linear, Mixture};
 use super::room::Room;
 use super::settings::Settings;
+use super::stage::{evaluate, longest, mixture};
 use opruga_core::error::StepError;
 use opruga_core::potential::Definiteness;
 use opruga_core::system::System;

@@ -1,11 +1,17 @@
 //! The parameters that all implicit rules have.
 
-use super::real_time;
 use super::slenderness::is_slender;
 use opruga_core::error::BuildError;
 use opruga_core::spec::{Allowed, Bound, Default, Field, Values};
 use opruga_core::system::System;
 use opruga_math::words::number;
+
+/// The part with which an iteration is good enough, and the part that may be left when there is no other.
+const ENOUGH: [f64; 2] = [0.2, 0.2];
+
+/// The same of a rule that damps slow motions little. What is left comes back in the next step, behind its time, and pushes
+/// along with the motion: where a fiftieth was good enough, a beam of 10 × 2 quadrilaterals still gained energy under `bdf2`.
+const ENOUGH_UNDAMPED: [f64; 2] = [1e-3, 0.05];
 
 /// How the equations of a step are solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -193,11 +199,7 @@ impl Settings {
             iterations: values.integer("iterations").map_or(if real_time { 3 } else { 100 }, |n| n as u32),
             tolerance: values.number("tolerance").unwrap_or(1e-9),
             real_time,
-            leaves: if DAMPING_LITTLE.contains(&values.kind()) {
-                real_time::ENOUGH_UNDAMPED
-            } else {
-                real_time::ENOUGH
-            },
+            leaves: if DAMPING_LITTLE.contains(&values.kind()) { ENOUGH_UNDAMPED } else { ENOUGH },
             solver: match values.text("linear_solver") {
                 Some("conjugate_gradients") => Solver::ConjugateGradients,
                 Some("matrix_free") => Solver::MatrixFree,

@@ -3,7 +3,7 @@
 //! θ = ½ is the implicit midpoint rule, θ = 1 backward Euler. What is much faster than the step falls by the factor (1 − θ)/θ in
 //! a step, an oscillation with small hω by (θ − ½) h²ω² (Hughes 1987, 8.2).
 
-use super::newton::Balance;
+use super::balance::Balance;
 use super::room::Room;
 
 /// Where the stage is, as a part of the step.

@@ -1,40 +1,19 @@
 //! Whether what an iteration ended with balances a body as a whole, and how it is made to (`rigid`).
 
-use super::linear::{Filter, Linear, Mixture};
-use super::newton::{Balance, evaluate, longest, mixture};
+use super::balance::Balance;
+use super::linear::{EPSILON, Filter, UNSURE, contrast};
 use super::rigid::{Rigid, Stage};
 use super::room::Room;
 use super::rounding::{at_rounding, roundings_of};
 use super::settings::Settings;
+use super::stage::{evaluate, longest, mixture};
 use opruga_core::error::StepError;
 use opruga_core::potential::Definiteness;
 use opruga_core::system::System;
 use opruga_math::Lane;
 
-/// The rounding of a number as a part of itself.
-const EPSILON: f64 = 0.5 * f64::EPSILON;
-
-/// A solution with a matrix whose stiffness is q times its mass knows the motions of the whole to about q ε of themselves. Above this they
-/// are solved for apart. Larger, and a fall by a rule's closed form is off by as much in every step that the iteration ends with
-/// (`tests/all/stiff_bodies.rs`); steel in cells of a centimetre is at 1e-9.
-const UNSURE: f64 = 1e-6;
-
 /// How often the whole is moved at most; two are enough but where turns are large.
 const MOST_MOVES: usize = 8;
-
-/// By how much a matrix is stiffer than its masses at most.
-fn contrast<const D: usize>(linear: &Linear<D>, mixture: &Mixture<D>) -> f64 {
-    let mut most: f64 = 0.0;
-    for (node, mass) in mixture.mass.iter().enumerate() {
-        most = (linear.size_at(mixture, node) / (mixture.sigma * mass)).larger(most);
-    }
-    most
-}
-
-/// Whether a solution with a matrix says too little of the motions of the whole.
-pub(super) fn is_unsure<const D: usize>(linear: &Linear<D>, mixture: &Mixture<D>) -> bool {
-    mixture.sigma != 0.0 && EPSILON * contrast(linear, mixture) > UNSURE
-}
 
 /// Whether what Newton's method ended with may count, as far as the motions of the whole go: where these may be lost, by a matrix that
 /// knows them too little or in what was taken for rounding, they are balanced first. With the size of coordinates [m].

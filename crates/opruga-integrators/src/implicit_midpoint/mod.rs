@@ -20,10 +20,11 @@
 #[cfg(test)]
 mod tests;
 
-use crate::implicit::newton::Balance;
+use crate::implicit::balance::Balance;
 use crate::implicit::room::Room;
+use crate::implicit::rule::Rule;
 use crate::implicit::settings::fields;
-use crate::implicit::step::{Implicit, Rule};
+use crate::implicit::step::Implicit;
 use crate::implicit::theta::Theta;
 use opruga_core::error::BuildError;
 use opruga_core::integrator::{Amplification, Integrator, IntegratorKind};

@@ -19,11 +19,12 @@
 #[cfg(test)]
 mod tests;
 
+use crate::implicit::balance::Balance;
 use crate::implicit::holding::{accelerations, held};
-use crate::implicit::newton::Balance;
 use crate::implicit::room::Room;
+use crate::implicit::rule::Rule;
 use crate::implicit::settings::fields;
-use crate::implicit::step::{Implicit, Rule};
+use crate::implicit::step::Implicit;
 use crate::implicit::theta::Theta;
 use opruga_core::error::BuildError;
 use opruga_core::integrator::{Amplification, HistorySize, Integrator, IntegratorKind};

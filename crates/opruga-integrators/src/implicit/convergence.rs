@@ -1,0 +1,98 @@
+//! The guard of convergence: counts how searches went, and refuses steps that did not converge.
+
+use super::balance::Solved;
+use super::room::Room;
+use super::settings::{Otherwise, Settings};
+use super::standstill;
+use opruga_core::error::StepError;
+use opruga_core::system::System;
+use opruga_math::Lane;
+use opruga_math::words::number;
+
+/// Forces and corrections within so many roundings were lost in these, as is a body that its rounding would throw farther than its extent.
+const LOST: f64 = 10.0;
+
+/// Enters how the search for a balance of statics went, and refuses what has not converged.
+pub(crate) fn report<const D: usize>(
+    integrator: &'static str,
+    settings: &Settings,
+    system: &mut System<D>,
+    room: &Room<D>,
+    solved: &Solved,
+) -> Result<(), StepError> {
+    count(system, solved);
+    finish(system, room);
+    if solved.converged { Ok(()) } else { accept_or_refuse(integrator, settings, system, room, solved) }
+}
+
+/// Enters how a search went.
+pub(super) fn count<const D: usize>(system: &mut System<D>, solved: &Solved) {
+    let work = &mut system.work.solver;
+    work.iterations += u64::from(solved.iterations);
+    work.linear_iterations += u64::from(solved.products);
+    work.blurred += u64::from(solved.blur > 0.0);
+    work.blur = solved.blur.larger(work.blur);
+    work.conditioned += u64::from(solved.conditioning > 1.0);
+    work.conditioning = solved.conditioning.larger(work.conditioning);
+}
+
+/// Enters what a step that counts leaves out of balance.
+pub(super) fn finish<const D: usize>(system: &mut System<D>, room: &Room<D>) {
+    let work = &mut system.work.solver;
+    work.steps += 1;
+    work.residual = room.largest_residual().larger(work.residual);
+}
+
+/// Counts a step that has not converged, or refuses it.
+pub(super) fn accept_or_refuse<const D: usize>(
+    integrator: &'static str,
+    settings: &Settings,
+    system: &mut System<D>,
+    room: &Room<D>,
+    solved: &Solved,
+) -> Result<(), StepError> {
+    if settings.otherwise == Otherwise::Accept {
+        system.work.solver.accepted += 1;
+        return Ok(());
+    }
+    let flat_cells = standstill::flat_cells(system);
+    Err(refusal(integrator, settings, room, solved, (system.time, flat_cells), settings.hint()))
+}
+
+/// The error of a step that did not converge, with its time [s] and the cells that it found flat or inside out.
+pub(super) fn refusal<const D: usize>(
+    integrator: &'static str,
+    settings: &Settings,
+    room: &Room<D>,
+    solved: &Solved,
+    (time, flat_cells): (f64, Option<[usize; 2]>),
+    hint: &'static str,
+) -> StepError {
+    let (residual, tolerance) = (room.largest_residual(), settings.tolerance * room.extent);
+    let [of_positions, of_forces, way] = solved.floor;
+    // Iterations that were too few say nothing of rounding.
+    let is_stuck = solved.iterations < settings.iterations;
+    let is_lost = solved.correction <= LOST * of_positions || residual <= LOST * of_forces || way > room.extent;
+    let is_rounding = is_stuck && is_lost;
+    StepError::NotConverged {
+        integrator,
+        iterations: solved.iterations,
+        residual,
+        correction: solved.correction,
+        tolerance,
+        time,
+        beyond: None,
+        flat_cells,
+        hint: if is_rounding { hint_of_rounding(solved.floor).into() } else { hint.into() },
+    }
+}
+
+/// What helps where a step was lost in the rounding of positions and forces.
+fn hint_of_rounding([of_positions, of_forces, _]: [f64; 3]) -> String {
+    format!(
+        "positions have sixteen digits here, which leave {} m and forces of {} N open: a larger `tolerance`, a scene nearer to the \
+         origin, larger cells, or a body that is less stiff",
+        number(of_positions),
+        number(of_forces)
+    )
+}

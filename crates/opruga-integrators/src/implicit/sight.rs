@@ -1,0 +1,27 @@
+//! Where nodes are within a step, as obstacles see it.
+
+use super::balance::Balance;
+use opruga_core::system::System;
+
+/// Where nodes are within a step, and what they may meet.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sight<'a, const D: usize> {
+    pub(crate) system: &'a System<D>,
+    pub(crate) x0: &'a [f64],
+    pub(crate) u: &'a [f64],
+    pub(crate) theta: f64,
+    pub(crate) h: f64,
+    pub(crate) extent: f64,
+}
+
+impl<'a, const D: usize> Sight<'a, D> {
+    pub(crate) fn new(
+        system: &'a System<D>,
+        balance: &Balance,
+        x0: &'a [f64],
+        u: &'a [f64],
+        extent: f64,
+    ) -> Sight<'a, D> {
+        Sight { system, x0, u, theta: balance.theta, h: balance.h, extent }
+    }
+}

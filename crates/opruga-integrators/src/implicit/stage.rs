@@ -1,0 +1,158 @@
+//! A stage as it is evaluated: its forces, what is out of balance, its matrix, its incremental potential and its contacts.
+
+use super::balance::Balance;
+use super::contact::Verdict;
+use super::linear::{Mixture, is_matrix_free};
+use super::room::Room;
+use super::settings::Settings;
+use super::sight::Sight;
+use opruga_core::error::StepError;
+use opruga_core::potential::Definiteness;
+use opruga_core::system::System;
+use opruga_core::threads::each_block;
+use opruga_math::Lane;
+
+/// The rounding of an energy as a part of the terms whose difference it is in its models: of a law that takes the energy at rest away,
+/// a stiff body has more of it than energy.
+const CANCELLATION: f64 = 1e-15;
+
+/// The longest way of a node.
+pub(crate) fn longest(step: &[f64], dimension: usize) -> f64 {
+    let mut longest: f64 = 0.0;
+    for node in step.chunks_exact(dimension) {
+        longest = node.iter().map(|x| x * x).sum::<f64>().larger(longest);
+    }
+    longest.sqrt()
+}
+
+/// Looks where nodes are; says whether who is held has changed.
+pub(crate) fn look<const D: usize>(
+    system: &System<D>,
+    room: &mut Room<D>,
+    balance: &Balance,
+    impacts_slide: bool,
+) -> bool {
+    let Room { contacting, x0, u, extent, .. } = room;
+    let sight = Sight::new(system, balance, x0, u, *extent);
+    contacting.look(&sight, impacts_slide)
+}
+
+/// Decides anew who is held, and how, from what the constraints would take.
+pub(crate) fn judge<const D: usize>(
+    system: &System<D>,
+    room: &mut Room<D>,
+    balance: &Balance,
+    settings: &Settings,
+    tolerance: f64,
+    yields: bool,
+) -> Verdict {
+    let Room { contacting, reaction, x0, u, extent, linear, mass, .. } = room;
+    let sight = Sight::new(system, balance, x0, u, *extent);
+    let mixture = mixture(system, mass, balance, Definiteness::Clamped, settings);
+    contacting.judge(reaction, &sight, tolerance, &|node| {
+        if yields { linear.size_at(&mixture, node) / D as f64 } else { 0.0 }
+    })
+}
+
+pub(crate) fn mixture<'a, const D: usize>(
+    system: &'a System<D>,
+    mass: &'a [f64],
+    balance: &Balance,
+    keep: Definiteness,
+    settings: &Settings,
+) -> Mixture<'a, D> {
+    Mixture {
+        system,
+        sigma: balance.sigma,
+        beta: balance.beta,
+        load: balance.load,
+        mass,
+        stage: Room::<D>::STAGE,
+        time: balance.time,
+        keep,
+        matrix_free: is_matrix_free(settings.solver),
+    }
+}
+
+/// The forces at x₀ + u (or at the trial), and what is out of balance.
+pub(crate) fn evaluate<const D: usize>(
+    system: &mut System<D>,
+    room: &mut Room<D>,
+    balance: &Balance,
+    trial: bool,
+) -> Result<(), StepError> {
+    let u: &[f64] = if trial { &room.trial } else { &room.u };
+    Room::show(system, &room.x0, u, &room.z, balance.beta);
+    system.evaluate(Room::<D>::STAGE, balance.time, 0.0, &mut room.force)?;
+    let Room { mass, y, force, residual, trial: tried, u, way, .. } = &mut *room;
+    let u: &[f64] = if trial { tried } else { u };
+    each_block(system.threads, D, [&mut *residual], |first, [residual]| {
+        for (node, out) in (first / D..).zip(residual.as_chunks_mut::<D>().0) {
+            for d in 0..D {
+                let k = node * D + d;
+                out[d] = balance.sigma * mass[node] * (u[k] - y[k]) - force.0[d][node];
+            }
+        }
+    });
+    if balance.sigma != 0.0
+        && let Some(inertia) = &system.inertia
+    {
+        way.clear();
+        way.extend(u.iter().zip(&*y).map(|(u, y)| u - y));
+        for node in 0..system.nodes {
+            let product = inertia.product::<D>(node, way);
+            for d in 0..D {
+                residual[node * D + d] += balance.sigma * product[d];
+            }
+        }
+    }
+    if balance.load != 1.0 {
+        system.outer_forces(Room::<D>::STAGE, balance.time, &mut room.outer);
+        for node in 0..system.nodes {
+            for d in 0..D {
+                room.residual[node * D + d] += (1.0 - balance.load) * room.outer.0[d][node];
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The rounding of the energies of the models [J].
+pub(super) fn rounding_of_models<const D: usize>(system: &System<D>) -> f64 {
+    CANCELLATION * system.members.iter().map(|member| member.potential.energy_parts()).sum::<f64>()
+}
+
+/// The incremental potential and the size of its parts [J].
+pub(super) fn potential<const D: usize>(
+    system: &System<D>,
+    room: &Room<D>,
+    balance: &Balance,
+    trial: bool,
+) -> Option<(f64, f64)> {
+    let energy = system.potential_energy(Room::<D>::STAGE, balance.time)?;
+    let u = if trial { &room.trial } else { &room.u };
+    let mut inertia = 0.0;
+    for (node, mass) in room.mass.iter().enumerate() {
+        for k in node * D..(node + 1) * D {
+            let way = u[k] - room.y[k];
+            inertia += mass * way * way;
+        }
+    }
+    if balance.sigma != 0.0
+        && let Some(coupled) = &system.inertia
+    {
+        // The forces were evaluated last, and with them the way.
+        inertia += coupled.square::<D>(&room.way);
+    }
+    inertia *= 0.5 * balance.sigma;
+    let mut lifted = 0.0;
+    if balance.load != 1.0 {
+        // What the missing part of the weight would have given.
+        for node in 0..system.nodes {
+            for d in 0..D {
+                lifted += (1.0 - balance.load) * room.outer.0[d][node] * u[node * D + d];
+            }
+        }
+    }
+    Some((energy + inertia + lifted, energy.abs() + inertia + lifted.abs()))
+}
