@@ -95,6 +95,7 @@ impl<const D: usize> BodyBlueprint<D> {
             velocity: [0.0; D],
             angular_velocity: Vec::new(),
             velocity_gradient: [[0.0; D]; D],
+            node_velocities: Arc::from([]),
             mass,
             thickness: 1.0,
             integrator: None,

@@ -7,7 +7,8 @@ use opruga::{Options, Registry, World};
 #[allow(dead_code)]
 mod ball_in_code;
 
-const SPEC: Spec = Spec { kind: "taylor", summary: "a parabola", documentation: "", dimensions: &[2], fields: &[] };
+const SPEC: Spec =
+    Spec { kind: "taylor", summary: "a parabola", documentation: "", dimensions: &[2], fields: &[], roles: &[] };
 
 #[derive(Debug)]
 struct Taylor;

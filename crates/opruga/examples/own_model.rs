@@ -5,7 +5,8 @@ use opruga::extend::*;
 use opruga::{Options, Registry, World, mesh::Mesh};
 
 const K: Field = Field::new("stiffness", Allowed::POSITIVE, "N/m", Default::Required, "Stiffness k of every node.");
-const SPEC: Spec = Spec { kind: "bed", summary: "a bed", documentation: "", dimensions: &[2], fields: &[K] };
+const SPEC: Spec =
+    Spec { kind: "bed", summary: "a bed", documentation: "", dimensions: &[2], fields: &[K], roles: &[] };
 
 struct BedModel;
 impl Model<2> for BedModel {

@@ -45,7 +45,7 @@ pub(super) const EPSILON: f64 = 0.5 * f64::EPSILON;
 
 /// A solution with a matrix whose stiffness is q times its mass knows the motions of the whole to about q ε of themselves. Above this they
 /// are solved for apart. Larger, and a fall by a rule's closed form is off by as much in every step that the iteration ends with
-/// (`tests/stiff_bodies.rs`); steel in cells of a centimetre is at 1e-9.
+/// (`tests/all/stiff_bodies.rs`); steel in cells of a centimetre is at 1e-9.
 pub(super) const UNSURE: f64 = 1e-6;
 
 /// What a matrix is made of.

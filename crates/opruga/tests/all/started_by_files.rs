@@ -137,12 +137,12 @@ fn a_body_that_starts_with_velocities_of_nodes_goes_on_from_a_snapshot() {
         + SPRINGS;
     for (number, text) in [body("velocity = { of_nodes = \"wind\" }\n") + SPRINGS, added].into_iter().enumerate() {
         let mut whole = plane(&text, &square(&wind()));
-        common::frames(&mut whole, 5);
+        crate::common::frames(&mut whole, 5);
         let state = whole.snapshot();
-        common::frames(&mut whole, 15);
+        crate::common::frames(&mut whole, 15);
         let mut again = plane(&text, &square(&wind()));
         again.restore(&state).expect("a state");
-        common::frames(&mut again, 15);
+        crate::common::frames(&mut again, 15);
         assert_eq!(again.frame_hash(), whole.frame_hash());
         assert!(velocities(&whole, number).iter().flatten().any(|v| v.abs() > 0.5), "the body moves as the file says");
     }
@@ -156,7 +156,7 @@ fn a_frame_in_vtk_xml_is_the_start_of_another_run() {
                 shape = { kind = \"grid\", size = [1, 2, 1], cells = [2, 3, 1] }\nsimplices = true\nmodels = [{ kind = \"fem\", youngs_modulus = 1e6 }]\n";
     let Ok(AnyBlueprint::Space(blueprint)) = read(text) else { panic!("a scene of space") };
     let mut world = World::new(blueprint, Options::default()).expect("a world");
-    common::frames(&mut world, 7);
+    crate::common::frames(&mut world, 7);
     let (at, fast) = (
         |world: &World<3>| -> Vec<[f64; 3]> {
             (0..world.node_count(0) as u32).map(|node| world.position(0, node)).collect()
