@@ -122,7 +122,9 @@ pub(crate) fn run(arguments: &[String]) -> Result<(), String> {
     }
     print!("{}", comparison::table(&differences, [&base.name, &present.name]));
     let subjects: BTreeSet<&str> = differences.iter().map(|difference| difference.subject.as_str()).collect();
-    Err(format!("{} of {} scenes and {rows} verify rows differ", subjects.len(), names.len()))
+    let scenes = names.iter().filter(|name| subjects.contains(name.as_str())).count();
+    let cases = subjects.len() - scenes;
+    Err(format!("{scenes} of {} scenes differ, and {cases} of {rows} verify rows", names.len()))
 }
 
 /// The scenes of a tree: what they are called, and how the program is told of them. A scene that comes with the program goes by its
