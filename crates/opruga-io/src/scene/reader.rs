@@ -3,15 +3,12 @@
 use super::Options;
 use crate::catalogue::{Catalogue, find};
 use crate::document::{Data, Entry, Node, Place};
-use crate::problem::{Notice, SceneError, visible};
+use crate::problem::{MOST_SHOWN, Notice, SceneError, visible};
 use crate::source::Source;
 use opruga_core::spec::{Default, ONE_OF, Spec, Values, nearest, one_of};
 use opruga_world::schema::{self, Child, Section};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
-
-/// More errors than this are counted, not listed: finding a place takes time.
-pub(crate) const MOST_ERRORS: usize = crate::problem::MOST_SHOWN;
 
 /// What every part of the reader needs.
 pub(crate) struct Reader<'a> {
@@ -59,7 +56,7 @@ impl<'a> Reader<'a> {
 
     /// Adds an error with its place.
     pub(crate) fn report(&mut self, place: Place, error: SceneError) {
-        if self.errors.len() >= MOST_ERRORS {
+        if self.errors.len() >= MOST_SHOWN {
             self.more += 1;
             return;
         }
@@ -69,7 +66,7 @@ impl<'a> Reader<'a> {
 
     /// Adds an error that is made only if it will be listed: words that are near to another one take time to find.
     fn report_lazily(&mut self, place: Place, error: impl FnOnce() -> SceneError) {
-        if self.errors.len() >= MOST_ERRORS {
+        if self.errors.len() >= MOST_SHOWN {
             self.more += 1;
         } else {
             self.report(place, error());
@@ -116,7 +113,7 @@ impl<'a> Reader<'a> {
             self.notices.iter_mut().find(|n| n.about.code == about.code && n.about.message == about.message)
         {
             first.count += 1;
-        } else if self.notices.len() < MOST_ERRORS {
+        } else if self.notices.len() < MOST_SHOWN {
             let about = self.placed(place, about);
             self.notices.push(Notice { about, count: 1 });
         } else {
@@ -232,7 +229,7 @@ impl<'a> Reader<'a> {
         };
         match self.options.lenient {
             // Each has a message of its own: behind the last that is listed there is nothing to look for.
-            true if self.notices.len() >= MOST_ERRORS => self.more_notices += 1,
+            true if self.notices.len() >= MOST_SHOWN => self.more_notices += 1,
             true => self.notice(entry.place, error()),
             false => self.report_lazily(entry.place, error),
         }
@@ -246,7 +243,7 @@ impl<'a> Reader<'a> {
         }
         let unknown = node.entries().iter().filter(|entry| !names(section, tag).any(|name| name == entry.key));
         // Those that are listed; of the others nobody reads what they may have meant.
-        unknown.take(MOST_ERRORS).filter_map(|entry| nearest(&entry.key, names(section, tag))).collect()
+        unknown.take(MOST_SHOWN).filter_map(|entry| nearest(&entry.key, names(section, tag))).collect()
     }
 
     /// Tells of fields that are written and have no say among the others.
