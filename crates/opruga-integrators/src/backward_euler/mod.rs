@@ -16,10 +16,10 @@
 mod tests;
 
 use crate::implicit::balance::Balance;
-use crate::implicit::room::Room;
 use crate::implicit::rule::Rule;
 use crate::implicit::settings::fields;
 use crate::implicit::step::Implicit;
+use crate::implicit::workspace::Workspace;
 use opruga_core::error::BuildError;
 use opruga_core::integrator::{Amplification, Integrator, IntegratorKind};
 use opruga_core::spec::{Role, Spec, Values};
@@ -68,17 +68,17 @@ impl<const D: usize> Rule<D> for BackwardEuler {
         let (of_x, of_v) = (-h * square * factor, factor);
         Amplification::new([[1.0 + h * of_x, h * of_v], [of_x, of_v]])
     }
-    fn begin(&self, _system: &System<D>, room: &mut Room<D>, h: f64) -> Balance {
-        for (y, v) in room.y.iter_mut().zip(&room.v0) {
+    fn begin(&self, _system: &System<D>, workspace: &mut Workspace<D>, h: f64) -> Balance {
+        for (y, v) in workspace.y.iter_mut().zip(&workspace.v0) {
             *y = h * v;
         }
-        room.z.fill(0.0);
+        workspace.z.fill(0.0);
         Balance { sigma: 1.0 / (h * h), beta: 1.0 / h, theta: 1.0, time: h, h, load: 1.0, impulse: 1.0, echo: 0.0 }
     }
-    fn end(&self, _system: &System<D>, room: &mut Room<D>, balance: &Balance, _h: f64) {
-        for k in 0..room.u.len() {
-            room.u1[k] = room.u[k];
-            room.v1[k] = balance.beta * room.u[k];
+    fn end(&self, _system: &System<D>, workspace: &mut Workspace<D>, balance: &Balance, _h: f64) {
+        for k in 0..workspace.u.len() {
+            workspace.u1[k] = workspace.u[k];
+            workspace.v1[k] = balance.beta * workspace.u[k];
         }
     }
 }

@@ -19,10 +19,10 @@
 mod tests;
 
 use crate::implicit::balance::Balance;
-use crate::implicit::room::Room;
 use crate::implicit::rule::Rule;
 use crate::implicit::settings::fields;
 use crate::implicit::step::Implicit;
+use crate::implicit::workspace::Workspace;
 use opruga_core::error::BuildError;
 use opruga_core::integrator::{Amplification, HistorySize, Integrator, IntegratorKind};
 use opruga_core::spec::{Spec, Values};
@@ -72,36 +72,41 @@ impl<const D: usize> Rule<D> for Bdf2 {
         let factor = 1.0 / (1.0 + g * c + g * g * square);
         let third = 1.0 / 3.0;
         let v = [-g * square * factor, 4.0 * third * factor, -g * square * third * factor, -third * factor];
-        let way = [g * v[0], g * v[1], third + g * v[2], g * v[3]];
-        Amplification::new([[1.0 + way[0], way[1], way[2], way[3]], v, way, [0.0, 1.0, 0.0, 0.0]])
+        let displacement = [g * v[0], g * v[1], third + g * v[2], g * v[3]];
+        Amplification::new([
+            [1.0 + displacement[0], displacement[1], displacement[2], displacement[3]],
+            v,
+            displacement,
+            [0.0, 1.0, 0.0, 0.0],
+        ])
     }
-    fn begin(&self, system: &System<D>, room: &mut Room<D>, h: f64) -> Balance {
+    fn begin(&self, system: &System<D>, workspace: &mut Workspace<D>, h: f64) -> Balance {
         // With the ratio r = h/h₋: x₁ = x₀ + r²(x₀ − x₋₁)/(1 + 2r) + γ h v₁, γ = (1 + r)/(1 + 2r); r = 0 is backward Euler.
         let last = system.history.numbers[0];
         let r = if last > 0.0 { h / last } else { 0.0 };
         let (share, span) = (r * r / (1.0 + 2.0 * r), h * (1.0 + r) / (1.0 + 2.0 * r));
-        let [way, before] = [&system.history.columns[0], &system.history.columns[1]];
+        let [displacement, before] = [&system.history.columns[0], &system.history.columns[1]];
         for node in 0..system.nodes {
             for d in 0..D {
                 let k = node * D + d;
-                let velocity = room.v0[k];
+                let velocity = workspace.v0[k];
                 // A jump of velocity by pins is one of all that is remembered too: the difference across it is no force.
-                let jump = room.kick.get(k).copied().unwrap_or(0.0);
-                room.z[k] = share * (way.0[d][node] + last * jump);
-                room.y[k] = room.z[k] + span * (velocity + share * (velocity - before.0[d][node] - jump));
+                let jump = workspace.kick.get(k).copied().unwrap_or(0.0);
+                workspace.z[k] = share * (displacement.0[d][node] + last * jump);
+                workspace.y[k] = workspace.z[k] + span * (velocity + share * (velocity - before.0[d][node] - jump));
             }
         }
         if system.inertia.is_some() {
             // What pins hold goes on as if it had always moved as it does in this step; its neighbours would feel more.
             system.held_axes(&mut |node, d| {
                 let k = node * D + d;
-                room.z[k] = share * last * room.v0[k];
-                room.y[k] = room.z[k] + span * room.v0[k];
+                workspace.z[k] = share * last * workspace.v0[k];
+                workspace.y[k] = workspace.z[k] + span * workspace.v0[k];
             });
         }
         if r == 0.0 {
-            for k in 0..room.z.len() {
-                (room.z[k], room.y[k]) = (0.0, span * room.v0[k]);
+            for k in 0..workspace.z.len() {
+                (workspace.z[k], workspace.y[k]) = (0.0, span * workspace.v0[k]);
             }
         }
         Balance {
@@ -115,29 +120,29 @@ impl<const D: usize> Rule<D> for Bdf2 {
             echo: 0.5 * span / h,
         }
     }
-    fn end(&self, _system: &System<D>, room: &mut Room<D>, balance: &Balance, _h: f64) {
-        for k in 0..room.u.len() {
-            room.u1[k] = room.u[k];
-            room.v1[k] = balance.beta * (room.u[k] - room.z[k]);
+    fn end(&self, _system: &System<D>, workspace: &mut Workspace<D>, balance: &Balance, _h: f64) {
+        for k in 0..workspace.u.len() {
+            workspace.u1[k] = workspace.u[k];
+            workspace.v1[k] = balance.beta * (workspace.u[k] - workspace.z[k]);
         }
     }
-    fn remembered(&self, room: &Room<D>, k: usize, _h: f64) -> f64 {
-        0.5 * (room.v1[k] - room.v0[k])
+    fn remembered(&self, workspace: &Workspace<D>, k: usize, _h: f64) -> f64 {
+        0.5 * (workspace.v1[k] - workspace.v0[k])
     }
-    fn remember(&self, system: &mut System<D>, room: &Room<D>, h: f64) {
+    fn remember(&self, system: &mut System<D>, workspace: &Workspace<D>, h: f64) {
         // Behind them may be what the real-time setting remembers.
-        let [way, before, ..] = &mut system.history.columns[..] else { return };
+        let [displacement, before, ..] = &mut system.history.columns[..] else { return };
         for node in 0..system.nodes {
             for d in 0..D {
                 let k = node * D + d;
-                (way.0[d][node], before.0[d][node]) = (room.u1[k], room.v0[k]);
+                (displacement.0[d][node], before.0[d][node]) = (workspace.u1[k], workspace.v0[k]);
             }
         }
-        for struck in &room.struck {
+        for struck in &workspace.struck {
             for d in 0..D {
-                let (velocity, node) = (room.v1[struck.node * D + d], struck.node);
+                let (velocity, node) = (workspace.v1[struck.node * D + d], struck.node);
                 // The differences that are left say how the motion along the surface goes on.
-                way.0[d][node] = h * (velocity - struck.memory[d]);
+                displacement.0[d][node] = h * (velocity - struck.memory[d]);
                 before.0[d][node] = velocity - 2.0 * struck.memory[d];
             }
         }

@@ -9,12 +9,12 @@
 
 use super::{COMPLETE, Equilibrium, Reached, SPEC};
 use crate::implicit::balance::{Balance, Solved};
+use crate::implicit::contact_query::ContactQuery;
 use crate::implicit::convergence::report;
 use crate::implicit::direction::wanted_forces;
 use crate::implicit::linear::Filter;
-use crate::implicit::room::Room;
-use crate::implicit::sight::Sight;
 use crate::implicit::stage::{evaluate, judge, look, mixture};
+use crate::implicit::workspace::Workspace;
 use opruga_core::error::StepError;
 use opruga_core::potential::Definiteness;
 use opruga_core::system::System;
@@ -31,26 +31,26 @@ const LEAST_COSINE: f64 = 0.5;
 const ITERATIONS: u32 = 25;
 const ITERATIONS_ON_OBSTACLES: u32 = 60;
 
-/// Goes a way along the curve from the state at the start of the step and `load`; `room.u` is then the displacement. Gives
+/// Goes a way along the curve from the state at the start of the step and `load`; `workspace.u` is then the displacement. Gives
 /// the load, which is 1 where the end was reached.
 pub(super) fn follow<const D: usize>(
     rule: &Equilibrium,
     system: &mut System<D>,
-    room: &mut Room<D>,
+    workspace: &mut Workspace<D>,
     length: f64,
     load: f64,
     h: f64,
 ) -> Result<f64, StepError> {
     if load == 0.0 && system.contacts.is_some() {
         // A body that begins in an obstacle comes to its surface before there is any load.
-        rule.balance(system, room, Reached { load, held: 1.0, time: h }, h)?;
+        rule.balance(system, workspace, Reached { load, held: 1.0, time: h }, h)?;
     }
-    let start = room.u.clone();
-    let mut way = length * (system.nodes as f64).sqrt();
+    let start = workspace.u.clone();
+    let mut displacement = length * (system.nodes as f64).sqrt();
     let mut tried = Tried::default();
     for _ in 0..=MOST_HALVINGS {
-        room.u.copy_from_slice(&start);
-        if let Some(reached) = one_step(rule, system, room, way, load, h, &mut tried)? {
+        workspace.u.copy_from_slice(&start);
+        if let Some(reached) = one_step(rule, system, workspace, displacement, load, h, &mut tried)? {
             system.work.solver.steps += 1;
             system.work.solver.iterations += u64::from(tried.solved.iterations);
             system.work.solver.linear_iterations += u64::from(tried.solved.iterations);
@@ -58,7 +58,7 @@ pub(super) fn follow<const D: usize>(
                 return Ok(reached);
             }
             // Past the end: the equilibrium under the whole load is near.
-            rule.balance(system, room, Reached { load: 1.0, held: 1.0, time: h }, h)?;
+            rule.balance(system, workspace, Reached { load: 1.0, held: 1.0, time: h }, h)?;
             system.history.numbers[COMPLETE] = 1.0;
             return Ok(1.0);
         }
@@ -70,7 +70,7 @@ pub(super) fn follow<const D: usize>(
             );
             return Err(StepError::Model { model: SPEC.kind, message });
         }
-        way *= 0.5;
+        displacement *= 0.5;
     }
     if tried.turned {
         let message = format!(
@@ -81,7 +81,7 @@ pub(super) fn follow<const D: usize>(
         );
         return Err(StepError::Model { model: SPEC.kind, message });
     }
-    report(SPEC.kind, &rule.settings, system, room, &Solved { converged: false, ..tried.solved })?;
+    report(SPEC.kind, &rule.settings, system, workspace, &Solved { converged: false, ..tried.solved })?;
     Ok(load)
 }
 
@@ -105,34 +105,34 @@ fn agree(a: &[f64], b: &[f64]) -> bool {
 fn one_step<const D: usize>(
     rule: &Equilibrium,
     system: &mut System<D>,
-    room: &mut Room<D>,
-    way: f64,
+    workspace: &mut Workspace<D>,
+    displacement: f64,
     load: f64,
     h: f64,
     tried: &mut Tried,
 ) -> Result<Option<f64>, StepError> {
     let Tried { solved, turned, unloaded } = tried;
     (*turned, *unloaded) = (false, false);
-    let start = room.u.clone();
+    let start = workspace.u.clone();
     // Of what is free: what pins move does not tell how the curve goes on.
-    let free = |k: usize| if room.held[k].is_nan() { 1.0 } else { 0.0 };
+    let free = |k: usize| if workspace.held[k].is_nan() { 1.0 } else { 0.0 };
     let last: Vec<f64> = (0..start.len()).map(|k| free(k) * system.history.columns[0].0[k % D][k / D]).collect();
     let mut now = load;
     let mut gone = vec![0.0; start.len()];
-    let goal = rule.settings.tolerance * room.extent;
-    room.contacting.clear(system.nodes);
+    let goal = rule.settings.tolerance * workspace.extent;
+    workspace.contacting.clear(system.nodes);
     // Whether the step ends at the whole load, and not after its way.
     let mut ends = false;
     for iteration in 0..if system.contacts.is_some() { ITERATIONS_ON_OBSTACLES } else { ITERATIONS } {
         solved.iterations += 1;
         let balance = Balance { sigma: 0.0, beta: 0.0, theta: 1.0, time: h, h, load: now, impulse: 1.0, echo: 0.0 };
-        if evaluate(system, room, &balance, false).is_err() {
+        if evaluate(system, workspace, &balance, false).is_err() {
             return Ok(None);
         }
-        system.outer_forces(Room::<D>::STAGE, h, &mut room.outer);
-        let mut changed = look(system, room, &balance, true);
-        let Ok((correction, tangent)) = directions(rule, system, room, &balance) else { return Ok(None) };
-        let leans = room.contacting.any();
+        system.outer_forces(Workspace::<D>::STAGE, h, &mut workspace.outer);
+        let mut changed = look(system, workspace, &balance, true);
+        let Ok((correction, tangent)) = directions(rule, system, workspace, &balance) else { return Ok(None) };
+        let leans = workspace.contacting.any();
         let mut step;
         if iteration == 0 {
             // On from where the last step has led; the first step puts load on.
@@ -141,14 +141,14 @@ fn one_step<const D: usize>(
                 *unloaded = size == 0.0;
                 return Ok(None);
             }
-            step = if dot(&last, &tangent) < 0.0 { -way / size } else { way / size };
+            step = if dot(&last, &tangent) < 0.0 { -displacement / size } else { displacement / size };
         } else {
             // 2 Δu·(δu + δλ u_t) = way² − |Δu|²
             let across = dot(&gone, &tangent);
             if across == 0.0 && !leans {
                 return Ok(None);
             }
-            step = (0.5 * (way * way - dot(&gone, &gone)) - dot(&gone, &correction)) / across;
+            step = (0.5 * (displacement * displacement - dot(&gone, &gone)) - dot(&gone, &correction)) / across;
         }
         // What leans on obstacles may not get so far, whatever the load: then the step puts on what is left of it.
         ends |= leans && (now + step > 1.0 || step.is_nan());
@@ -159,27 +159,30 @@ fn one_step<const D: usize>(
         for k in 0..gone.len() {
             let change = correction[k] + step * tangent[k];
             largest = if change.abs() > largest { change.abs() } else { largest };
-            room.step[k] = change;
+            workspace.step[k] = change;
             gone[k] += change;
         }
         if iteration > 0 {
             solved.correction = largest;
         }
         now += step;
-        if !now.is_finite() || gone.iter().any(|x| !x.is_finite()) || dot(&gone, &gone) > 100.0 * way * way {
+        if !now.is_finite()
+            || gone.iter().any(|x| !x.is_finite())
+            || dot(&gone, &gone) > 100.0 * displacement * displacement
+        {
             return Ok(None);
         }
         for k in 0..gone.len() {
-            room.u[k] = start[k] + gone[k];
+            workspace.u[k] = start[k] + gone[k];
         }
         if system.contacts.is_some() {
             // What the constraints take after the step: r + K Δu − Δλ F_outer.
-            let mixture = mixture(system, &room.mass, &balance, Definiteness::Exact, &rule.settings);
-            room.linear.multiply(&mixture, &room.step, &mut room.reaction);
+            let mixture = mixture(system, &workspace.mass, &balance, Definiteness::Exact, &rule.settings);
+            workspace.linear.multiply(&mixture, &workspace.step, &mut workspace.reaction);
             for k in 0..gone.len() {
-                room.reaction[k] += room.residual[k] - step * room.outer.0[k % D][k / D];
+                workspace.reaction[k] += workspace.residual[k] - step * workspace.outer.0[k % D][k / D];
             }
-            let verdict = judge(system, room, &balance, &rule.settings, rule.settings.tolerance, true);
+            let verdict = judge(system, workspace, &balance, &rule.settings, rule.settings.tolerance, true);
             changed |= verdict.anew || verdict.unsettled;
         }
         if iteration > 0 && !changed && solved.correction <= goal {
@@ -192,7 +195,7 @@ fn one_step<const D: usize>(
                 }
             }
             let balance = Balance { load: now, ..balance };
-            return Ok(evaluate(system, room, &balance, false).is_ok().then_some(now));
+            return Ok(evaluate(system, workspace, &balance, false).is_ok().then_some(now));
         }
     }
     Ok(None)
@@ -203,29 +206,29 @@ fn one_step<const D: usize>(
 fn directions<const D: usize>(
     rule: &Equilibrium,
     system: &System<D>,
-    room: &mut Room<D>,
+    workspace: &mut Workspace<D>,
     balance: &Balance,
 ) -> Result<(Vec<f64>, Vec<f64>), Indefinite> {
-    let Room { contacting, linear, mass, free, projectors, prescribed, residual, outer, .. } = room;
-    let farthest = contacting.hold(&room.u, 1.0, &room.held, &room.x0, free, projectors, prescribed);
+    let Workspace { contacting, linear, mass, free, projectors, prescribed, residual, outer, .. } = workspace;
+    let farthest = contacting.hold(&workspace.u, 1.0, &workspace.held, &workspace.x0, free, projectors, prescribed);
     let mixture = mixture(system, mass, balance, Definiteness::Exact, &rule.settings);
     linear.assemble(&mixture);
-    let sight = Sight::new(system, balance, &room.x0, &room.u, room.extent);
-    contacting.derivatives(&sight, false, &mut |node, block| linear.add_block(&mixture, node, &block));
+    let contact_query = ContactQuery::new(system, balance, &workspace.x0, &workspace.u, workspace.extent);
+    contacting.derivatives(&contact_query, false, &mut |node, block| linear.add_block(&mixture, node, &block));
     let filter = Filter { free, projectors };
     linear.factor(&filter)?;
-    let ways = (farthest > 0.0).then_some(&**prescribed);
-    let room_for = [&mut room.trial[..], &mut room.right[..]];
-    wanted_forces(system.threads, &mixture, linear, contacting, residual, ways, room_for);
-    let mut correction = room.right.clone();
+    let displacements = (farthest > 0.0).then_some(&**prescribed);
+    let room_for = [&mut workspace.trial[..], &mut workspace.right[..]];
+    wanted_forces(system.threads, &mixture, linear, contacting, residual, displacements, room_for);
+    let mut correction = workspace.right.clone();
     let mut tangent: Vec<f64> = (0..correction.len()).map(|k| outer.0[k % D][k / D]).collect();
     for vector in [&mut correction, &mut tangent] {
         filter.apply(vector);
         linear.solve_by_factors(vector)?;
         filter.apply(vector);
     }
-    for (way, prescribed) in correction.iter_mut().zip(&*prescribed) {
-        *way += prescribed;
+    for (displacement, prescribed) in correction.iter_mut().zip(&*prescribed) {
+        *displacement += prescribed;
     }
     Ok((correction, tangent))
 }

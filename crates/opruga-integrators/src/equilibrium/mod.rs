@@ -38,16 +38,16 @@ mod slack;
 #[cfg(test)]
 mod tests;
 
-use crate::implicit::approach::{leaves_nodes_inside, lift_out};
 use crate::implicit::balance::{Balance, Solved};
 use crate::implicit::convergence::report;
 use crate::implicit::memory;
 use crate::implicit::minimiser::Minimiser;
 use crate::implicit::newton::Newton;
-use crate::implicit::room::Room;
 use crate::implicit::settings::{Otherwise, Settings, Solver, fields};
 use crate::implicit::standstill;
 use crate::implicit::step::{MOST_HALVINGS, commit};
+use crate::implicit::step_limit::{leaves_nodes_inside, lift_out};
+use crate::implicit::workspace::Workspace;
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::integrator::{Amplification, HistorySize, Integrator, IntegratorKind};
 use opruga_core::memory::Counts;
@@ -155,13 +155,13 @@ impl Equilibrium {
     fn go<const D: usize>(
         &self,
         system: &mut System<D>,
-        room: &mut Room<D>,
+        workspace: &mut Workspace<D>,
         (from, to): (Reached, Reached),
         h: f64,
         halvings: u32,
     ) -> Result<(), StepError> {
-        room.u1.copy_from_slice(&room.u);
-        let outcome = self.balance(system, room, to, h);
+        workspace.u1.copy_from_slice(&workspace.u);
+        let outcome = self.balance(system, workspace, to, h);
         let too_far = match &outcome {
             Err(StepError::NotConverged { .. }) => true,
             // Nearer a model may have a meaning; what nothing holds stays so.
@@ -175,13 +175,13 @@ impl Equilibrium {
             let solver = &mut system.work.solver;
             solver.halved += 1;
             solver.deepest = solver.deepest.max(u64::from(halvings) + 1);
-            room.hold(system, from.held, h);
-            for k in 0..room.u.len() {
-                room.u[k] = if room.held[k].is_nan() { room.u1[k] } else { room.held[k] };
+            workspace.hold(system, from.held, h);
+            for k in 0..workspace.u.len() {
+                workspace.u[k] = if workspace.held[k].is_nan() { workspace.u1[k] } else { workspace.held[k] };
             }
             let middle = from.midway(to);
-            self.go(system, room, (from, middle), h, halvings + 1)?;
-            return self.go(system, room, (middle, to), h, halvings + 1);
+            self.go(system, workspace, (from, middle), h, halvings + 1)?;
+            return self.go(system, workspace, (middle, to), h, halvings + 1);
         }
         outcome.map_err(|error| self.told(error, system, (from.load > 0.0 && from.load < 1.0).then_some(from)))
     }
@@ -205,15 +205,15 @@ impl Equilibrium {
         error
     }
 
-    /// Looks for the displacement at which the forces balance under a part of the load, from that in `room.u` on.
+    /// Looks for the displacement at which the forces balance under a part of the load, from that in `workspace.u` on.
     fn balance<const D: usize>(
         &self,
         system: &mut System<D>,
-        room: &mut Room<D>,
+        workspace: &mut Workspace<D>,
         at: Reached,
         h: f64,
     ) -> Result<(), StepError> {
-        room.hold(system, at.held, h);
+        workspace.hold(system, at.held, h);
         let balance =
             Balance { sigma: 0.0, beta: 0.0, theta: 1.0, time: at.time, h, load: at.load, impulse: 1.0, echo: 0.0 };
         let mut solved = Solved::default();
@@ -226,27 +226,36 @@ impl Equilibrium {
             }
             let before = solved;
             let settings = Settings { iterations: most - before.iterations, ..self.settings };
-            solved = Newton(settings).minimise(system, room, &balance)?;
+            solved = Newton(settings).minimise(system, workspace, &balance)?;
             solved.iterations += before.iterations;
             solved.products += before.products;
             if loose {
-                self.refuse_what_is_free(system, room)?;
+                self.refuse_what_is_free(system, workspace)?;
             }
         }
-        solved.converged &= !leaves_nodes_inside(system, room, h);
-        report(SPEC.kind, &self.settings, system, room, &solved)
+        solved.converged &= !leaves_nodes_inside(system, workspace, h);
+        report(SPEC.kind, &self.settings, system, workspace, &solved)
     }
 
     /// Names the motions of the whole that neither pins nor the contacts of the last iteration hold.
-    fn refuse_what_is_free<const D: usize>(&self, system: &System<D>, room: &Room<D>) -> Result<(), StepError> {
+    fn refuse_what_is_free<const D: usize>(
+        &self,
+        system: &System<D>,
+        workspace: &Workspace<D>,
+    ) -> Result<(), StepError> {
         let mut x = system.state.x.clone();
-        for (node, (from, way)) in nodes::<D>(&room.x0).iter().zip(nodes::<D>(&room.u)).enumerate() {
-            x.set(node, core::array::from_fn(|d| from[d] + way[d]));
+        for (node, (from, displacement)) in nodes::<D>(&workspace.x0).iter().zip(nodes::<D>(&workspace.u)).enumerate() {
+            x.set(node, core::array::from_fn(|d| from[d] + displacement[d]));
         }
-        rigid::refuse_what_contact_leaves_free(system, &x, &room.contacting.directions())
+        rigid::refuse_what_contact_leaves_free(system, &x, &workspace.contacting.directions())
     }
 
-    fn attempt<const D: usize>(&self, system: &mut System<D>, room: &mut Room<D>, h: f64) -> Result<(), StepError> {
+    fn attempt<const D: usize>(
+        &self,
+        system: &mut System<D>,
+        workspace: &mut Workspace<D>,
+        h: f64,
+    ) -> Result<(), StepError> {
         let begun = system.work;
         system.begin_implicit();
         let moving = system.kinetic_energy();
@@ -254,34 +263,34 @@ impl Equilibrium {
         for column in &mut system.state.v.0 {
             column.fill(0.0);
         }
-        room.load(system);
-        system.evaluate(Stage::Current, 0.0, 0.0, &mut room.force)?;
+        workspace.load(system);
+        system.evaluate(Stage::Current, 0.0, 0.0, &mut workspace.force)?;
         let before = system.stored_energy(Stage::Current, 0.0) + moving;
         let (mut load, complete) = (system.history.numbers[LOAD], system.history.numbers[COMPLETE] > 0.0);
-        room.contacting.clear(system.nodes);
-        room.y.fill(0.0);
-        room.z.fill(0.0);
-        room.hold(system, 1.0, h);
-        for k in 0..room.u.len() {
-            room.u[k] = if room.held[k].is_nan() { 0.0 } else { room.held[k] };
+        workspace.contacting.clear(system.nodes);
+        workspace.y.fill(0.0);
+        workspace.z.fill(0.0);
+        workspace.hold(system, 1.0, h);
+        for k in 0..workspace.u.len() {
+            workspace.u[k] = if workspace.held[k].is_nan() { 0.0 } else { workspace.held[k] };
         }
-        lift_out(system, room, h);
+        lift_out(system, workspace, h);
         let whole = Reached { load: 1.0, held: 1.0, time: h };
         match self.arc_length {
             Some(length) if !complete => {
-                load = arc::follow(self, system, room, length, load, h)
+                load = arc::follow(self, system, workspace, length, load, h)
                     .map_err(|error| self.told(error, system, Some(Reached { load, ..whole })))?;
             }
             _ if complete => {
                 let start = Reached { held: 0.0, time: 0.0, ..whole };
-                self.go(system, room, (start, whole), h, 0)?;
+                self.go(system, workspace, (start, whole), h, 0)?;
             }
             _ => {
                 let mut from = Reached { load: 0.0, held: 0.0, time: 0.0 };
                 for part in 1..=self.load_steps {
                     load = f64::from(part) / f64::from(self.load_steps);
                     let to = Reached { load, ..whole };
-                    self.go(system, room, (from, to), h, 0)?;
+                    self.go(system, workspace, (from, to), h, 0)?;
                     from = to;
                 }
             }
@@ -289,20 +298,20 @@ impl Equilibrium {
         // A shape that is none of the body's own is left.
         let mut times = 0;
         let solver = system.work.solver;
-        while self.arc_length.is_none() && standstill::disturb_balance(system, room, times) {
-            self.balance(system, room, whole, h).map_err(|error| self.told(error, system, None))?;
+        while self.arc_length.is_none() && standstill::disturb_balance(system, workspace, times) {
+            self.balance(system, workspace, whole, h).map_err(|error| self.told(error, system, None))?;
             times += 1;
         }
         if times > 0 {
             standstill::forget_wrong_turns(system, &solver);
         }
-        room.u1.copy_from_slice(&room.u);
-        room.v1.fill(0.0);
-        commit(system, room);
+        workspace.u1.copy_from_slice(&workspace.u);
+        workspace.v1.fill(0.0);
+        commit(system, workspace);
         if self.arc_length.is_some() {
             for d in 0..D {
                 for node in 0..system.nodes {
-                    system.history.columns[0].0[d][node] = room.u1[node * D + d];
+                    system.history.columns[0].0[d][node] = workspace.u1[node * D + d];
                 }
             }
         }
@@ -314,7 +323,7 @@ impl Equilibrium {
         }
         // The hand that leads the body from balance to balance does what its energy changes by, but for what a gas is given: loads,
         // pins and whatever slows the way down are all in it. Nothing moves, so pins give and take no motion.
-        system.evaluate(Stage::Current, 0.0, 0.0, &mut room.force)?;
+        system.evaluate(Stage::Current, 0.0, 0.0, &mut workspace.force)?;
         let after = system.stored_energy(Stage::Current, 0.0);
         let given: f64 = system.work.gas.iter().sum::<f64>() - begun.gas.iter().sum::<f64>();
         (system.work.user, system.work.damping) = (begun.user, begun.damping);
@@ -372,16 +381,16 @@ impl<const D: usize> Integrator<D> for Equilibrium {
         true
     }
     fn step(&self, system: &mut System<D>, h: f64) -> Result<(), StepError> {
-        let mut room = system.room.take::<Room<D>>();
+        let mut workspace = system.room.take::<Workspace<D>>();
         let (work, velocities) = (system.work, system.state.v.clone());
-        let outcome = self.attempt(system, &mut room, h);
+        let outcome = self.attempt(system, &mut workspace, h);
         if outcome.is_err() {
             let solver = system.work.solver;
             system.work = work;
             system.work.solver = solver;
             system.state.v = velocities;
         }
-        system.room.put(room);
+        system.room.put(workspace);
         outcome
     }
 }

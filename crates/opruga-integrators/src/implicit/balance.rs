@@ -30,7 +30,7 @@ pub(crate) struct Solved {
     pub(crate) correction: f64,
     pub(crate) converged: bool,
     /// What is left of the forces would still move a node by [m], where it is rounding and that is much.
-    pub(crate) blur: f64,
+    pub(crate) error_estimate: f64,
     /// The forces that rounding of positions makes, over the loads, where they matter.
     pub(crate) conditioning: f64,
     /// The rounding of positions [m], the largest of a force [N] and what that would move a node by [m], where it did not converge.

@@ -10,8 +10,8 @@
 //! force that the constraint would take. A contact that changes sides too often slips, or is released, for the rest of the
 //! step: no force leaves Coulomb's cone, and the last word is that no node may be inside.
 
+use super::contact_query::ContactQuery;
 use super::mixing::Mixing;
-use super::sight::Sight;
 use opruga_core::contacts::Touch;
 use opruga_math::Lane;
 use opruga_solve::blocks::{Block, isotropic, nodes};
@@ -81,7 +81,7 @@ pub(super) fn dot<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
 }
 
 impl<const D: usize> Contact<D> {
-    pub(super) fn is_held(&self) -> bool {
+    pub(super) fn is_active(&self) -> bool {
         self.hold != Hold::Released
     }
     /// Whether it slips against friction.
@@ -119,13 +119,13 @@ impl<const D: usize> Contacting<D> {
     }
     /// Whether any node is held.
     pub(crate) fn any(&self) -> bool {
-        self.contacts.iter().any(Contact::is_held)
+        self.contacts.iter().any(Contact::is_active)
     }
 
     /// The directions in which nodes are held, or would be by friction.
     pub(crate) fn directions(&self) -> Vec<(usize, [f64; D])> {
         let mut out = Vec::new();
-        for contact in self.contacts.iter().filter(|contact| contact.is_held()) {
+        for contact in self.contacts.iter().filter(|contact| contact.is_active()) {
             out.push((contact.node, contact.touch.normal));
             for d in 0..if contact.touch.friction > 0.0 { D } else { 0 } {
                 let mut axis = [0.0; D];
@@ -138,13 +138,13 @@ impl<const D: usize> Contacting<D> {
     /// Whether nodes are held, and all by surfaces that do not move.
     pub(crate) fn any_at_rest(&self) -> bool {
         let rests = |contact: &Contact<D>| contact.touch.velocity.iter().all(|speed| *speed == 0.0);
-        self.any() && self.contacts.iter().filter(|contact| contact.is_held()).all(rests)
+        self.any() && self.contacts.iter().filter(|contact| contact.is_active()).all(rests)
     }
 
     /// Looks where nodes are that start at x₀ and end displaced by u/θ; nodes that are inside are held from now
     /// on. Depths below a billionth of the extent do not count. Nodes that impact are first thought to stick, or to slide.
-    pub(crate) fn look(&mut self, sight: &Sight<'_, D>, impacts_slide: bool) -> bool {
-        let Sight { system, x0, u, theta, h, extent } = *sight;
+    pub(crate) fn look(&mut self, contact_query: &ContactQuery<'_, D>, impacts_slide: bool) -> bool {
+        let ContactQuery { system, x0, u, theta, h, extent } = *contact_query;
         let Some(obstacles) = &system.contacts else {
             self.contacts.clear();
             return false;
@@ -189,7 +189,7 @@ impl<const D: usize> Contacting<D> {
                 match old.iter().find(|contact| contact.touch.surface == touch.surface) {
                     Some(contact) => {
                         let mut contact = Contact { touch: *touch, ..*contact };
-                        if !contact.is_held() && touch.gap < -depth && contact.changes < MOST_CHANGES {
+                        if !contact.is_active() && touch.gap < -depth && contact.changes < MOST_CHANGES {
                             contact.hold = if touch.friction > 0.0 { Hold::Stick } else { Hold::Slip };
                             contact.changes += 1;
                             changed = true;
@@ -223,8 +223,8 @@ impl<const D: usize> Contacting<D> {
             }
             // What is out of sight is released, and known: a node whose way just grazes a surface may come back to it.
             for contact in old.iter().filter(|old| !self.found.iter().any(|t| t.surface == old.touch.surface)) {
-                let lost = u8::from(contact.is_held());
-                changed |= contact.is_held();
+                let lost = u8::from(contact.is_active());
+                changed |= contact.is_active();
                 let changes = contact.changes.saturating_add(lost);
                 self.contacts.push(Contact { hold: Hold::Released, normal_force: 0.0, changes, ..*contact });
             }
@@ -261,8 +261,8 @@ impl<const D: usize> Contacting<D> {
             // Orthonormal directions that are held, and how far to go along each.
             let mut basis = [[0.0; D]; D];
             let mut rank = 0;
-            let mut way = [0.0; D];
-            let mut require = |direction: &[f64; D], distance: f64, way: &mut [f64; D]| {
+            let mut displacement = [0.0; D];
+            let mut require = |direction: &[f64; D], distance: f64, displacement: &mut [f64; D]| {
                 let mut rest = *direction;
                 for known in &basis[..rank] {
                     let along = dot(direction, known);
@@ -275,10 +275,10 @@ impl<const D: usize> Contacting<D> {
                 if rank == D || size < 1e-6 {
                     return;
                 }
-                let missing = (distance - dot(direction, way)) / size;
+                let missing = (distance - dot(direction, displacement)) / size;
                 for d in 0..D {
                     rest[d] /= size;
-                    way[d] += missing * rest[d];
+                    displacement[d] += missing * rest[d];
                 }
                 basis[rank] = rest;
                 rank += 1;
@@ -287,12 +287,12 @@ impl<const D: usize> Contacting<D> {
                 if !held[at + d].is_nan() {
                     let mut axis = [0.0; D];
                     axis[d] = 1.0;
-                    require(&axis, held[at + d] - u[at + d], &mut way);
+                    require(&axis, held[at + d] - u[at + d], &mut displacement);
                 }
             }
             let contacts = &self.contacts[first..next];
-            for contact in contacts.iter().filter(|contact| contact.is_held()) {
-                require(&contact.touch.normal, -theta * contact.touch.gap, &mut way);
+            for contact in contacts.iter().filter(|contact| contact.is_active()) {
+                require(&contact.touch.normal, -theta * contact.touch.gap, &mut displacement);
             }
             for contact in contacts.iter().filter(|contact| contact.hold == Hold::Stick) {
                 // Where the surface would take the node.
@@ -302,7 +302,7 @@ impl<const D: usize> Contacting<D> {
                     let mut axis = [0.0; D];
                     axis[d] = 1.0;
                     let axis = contact.along(&axis);
-                    require(&axis, dot(&axis, &slide), &mut way);
+                    require(&axis, dot(&axis, &slide), &mut displacement);
                 }
             }
             if rank == 0 {
@@ -319,8 +319,8 @@ impl<const D: usize> Contacting<D> {
             }
             projectors[node] = projector;
             for d in 0..D {
-                prescribed[at + d] = way[d];
-                farthest = if way[d].abs() > farthest { way[d].abs() } else { farthest };
+                prescribed[at + d] = displacement[d];
+                farthest = if displacement[d].abs() > farthest { displacement[d].abs() } else { farthest };
             }
         }
         farthest
@@ -343,19 +343,19 @@ impl<const D: usize> Contacting<D> {
     pub(crate) fn judge(
         &mut self,
         reaction: &[f64],
-        sight: &Sight<'_, D>,
+        contact_query: &ContactQuery<'_, D>,
         tolerance: f64,
         stiffness: &dyn Fn(usize) -> f64,
     ) -> Verdict {
-        let moves = |node: usize| tolerance * sight.extent * stiffness(node);
-        let Sight { x0, u, theta, extent, .. } = *sight;
+        let moves = |node: usize| tolerance * contact_query.extent * stiffness(node);
+        let ContactQuery { x0, u, theta, extent, .. } = *contact_query;
         let small = SMALL * extent;
         let mut verdict = Verdict::default();
         for contacts in self.contacts.chunk_by_mut(|a, b| a.node == b.node) {
             let node = contacts[0].node;
             let force = nodes::<D>(reaction)[node];
             let normal_forces = split(contacts, &force);
-            for (k, contact) in contacts.iter_mut().enumerate().filter(|(_, c)| c.is_held()) {
+            for (k, contact) in contacts.iter_mut().enumerate().filter(|(_, c)| c.is_active()) {
                 let normal_force = normal_forces[k.min(D - 1)];
                 if normal_force < 0.0 {
                     contact.hold = Hold::Released;
@@ -454,13 +454,13 @@ impl<const D: usize> Contacting<D> {
 /// The forces along the normals of the held contacts of one node that together make up what is normal in a force.
 pub(super) fn split<const D: usize>(contacts: &[Contact<D>], force: &[f64; D]) -> [f64; D] {
     let mut out = [0.0; D];
-    let is_held = |k: &usize| contacts[*k].is_held();
-    let mut all = (0..contacts.len().min(D)).filter(is_held);
+    let is_active = |k: &usize| contacts[*k].is_active();
+    let mut all = (0..contacts.len().min(D)).filter(is_active);
     if let (Some(only), None) = (all.next(), all.next()) {
         out[only] = dot(force, &contacts[only].touch.normal);
         return out;
     }
-    let held: Vec<usize> = (0..contacts.len().min(D)).filter(is_held).collect();
+    let held: Vec<usize> = (0..contacts.len().min(D)).filter(is_active).collect();
     let n = held.len();
     let normal = |k: usize| &contacts[held[k]].touch.normal;
     let gram: Vec<f64> = (0..n * n).map(|k| dot(normal(k / n), normal(k % n))).collect();

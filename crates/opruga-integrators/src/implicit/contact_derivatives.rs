@@ -1,7 +1,7 @@
 //! What the forces of contacts change by with the positions of their nodes.
 
 use super::contact::{Contact, Contacting, SMALL, dot};
-use super::sight::Sight;
+use super::contact_query::ContactQuery;
 use opruga_solve::blocks::{Block, isotropic};
 
 /// A direction of friction that turns by less than this in an iteration is followed by the next.
@@ -16,7 +16,7 @@ const BESIDE: f64 = 1e-5;
 /// Normals that turn by more than this within that distance belong to an edge.
 const EDGE: f64 = 1e-2;
 
-impl<const D: usize> Sight<'_, D> {
+impl<const D: usize> ContactQuery<'_, D> {
     /// ∂n/∂x along the surface, by differences; nothing at edges.
     fn turn_of_normal(&self, contact: &Contact<D>) -> Option<Block<D>> {
         let obstacles = self.system.contacts.as_ref()?;
@@ -51,17 +51,22 @@ impl<const D: usize> Contacting<D> {
     /// Calls back with blocks −∂f/∂u of the forces of held contacts: of friction, whose direction follows the slide w, µλ/|w|
     /// across it, and of the constraint, whose direction follows the surface, −λ ∂n/∂x. Where `clamped`, only blocks without
     /// negative eigenvalues.
-    pub(crate) fn derivatives(&self, sight: &Sight<'_, D>, clamped: bool, visit: &mut dyn FnMut(usize, Block<D>)) {
+    pub(crate) fn derivatives(
+        &self,
+        contact_query: &ContactQuery<'_, D>,
+        clamped: bool,
+        visit: &mut dyn FnMut(usize, Block<D>),
+    ) {
         for contact in self.contacts.iter().filter(|contact| contact.normal_force > 0.0) {
             let normal = &contact.touch.normal;
             if contact.rubs() && D > 2 {
-                let slide = contact.slide(sight.u, sight.theta, sight.x0);
+                let slide = contact.slide(contact_query.u, contact_query.theta, contact_query.x0);
                 // A slide that turns far has no direction yet that could be followed.
                 let size = dot(&slide, &slide).sqrt();
                 let strength = contact.touch.friction * contact.normal_force / size;
                 if dot(&slide, &contact.push) < 0.0
-                    && size > SMALL * sight.extent
-                    && (contact.turn < FOLLOWED || size > SLIDING * sight.extent)
+                    && size > SMALL * contact_query.extent
+                    && (contact.turn < FOLLOWED || size > SLIDING * contact_query.extent)
                 {
                     let mut block = isotropic::<D>(strength);
                     for i in 0..D {
@@ -72,8 +77,8 @@ impl<const D: usize> Contacting<D> {
                     visit(contact.node, block);
                 }
             }
-            if let Some(turn) = sight.turn_of_normal(contact) {
-                let factor = -contact.normal_force / sight.theta;
+            if let Some(turn) = contact_query.turn_of_normal(contact) {
+                let factor = -contact.normal_force / contact_query.theta;
                 let trace: f64 = (0..D).map(|d| turn[d][d]).sum();
                 if trace != 0.0 && !(clamped && factor * trace < 0.0) {
                     visit(contact.node, turn.map(|row| row.map(|entry| factor * entry)));

@@ -1,9 +1,9 @@
 //! The guard of convergence: counts how searches went, and refuses steps that did not converge.
 
 use super::balance::Solved;
-use super::room::Room;
 use super::settings::{Otherwise, Settings};
 use super::standstill;
+use super::workspace::Workspace;
 use opruga_core::error::StepError;
 use opruga_core::system::System;
 use opruga_math::Lane;
@@ -17,12 +17,12 @@ pub(crate) fn report<const D: usize>(
     integrator: &'static str,
     settings: &Settings,
     system: &mut System<D>,
-    room: &Room<D>,
+    workspace: &Workspace<D>,
     solved: &Solved,
 ) -> Result<(), StepError> {
     count(system, solved);
-    finish(system, room);
-    if solved.converged { Ok(()) } else { accept_or_refuse(integrator, settings, system, room, solved) }
+    finish(system, workspace);
+    if solved.converged { Ok(()) } else { accept_or_refuse(integrator, settings, system, workspace, solved) }
 }
 
 /// Enters how a search went.
@@ -30,17 +30,17 @@ pub(super) fn count<const D: usize>(system: &mut System<D>, solved: &Solved) {
     let work = &mut system.work.solver;
     work.iterations += u64::from(solved.iterations);
     work.linear_iterations += u64::from(solved.products);
-    work.blurred += u64::from(solved.blur > 0.0);
-    work.blur = solved.blur.larger(work.blur);
+    work.blurred += u64::from(solved.error_estimate > 0.0);
+    work.blur = solved.error_estimate.larger(work.blur);
     work.conditioned += u64::from(solved.conditioning > 1.0);
     work.conditioning = solved.conditioning.larger(work.conditioning);
 }
 
 /// Enters what a step that counts leaves out of balance.
-pub(super) fn finish<const D: usize>(system: &mut System<D>, room: &Room<D>) {
+pub(super) fn finish<const D: usize>(system: &mut System<D>, workspace: &Workspace<D>) {
     let work = &mut system.work.solver;
     work.steps += 1;
-    work.residual = room.largest_residual().larger(work.residual);
+    work.residual = workspace.largest_residual().larger(work.residual);
 }
 
 /// Counts a step that has not converged, or refuses it.
@@ -48,7 +48,7 @@ pub(super) fn accept_or_refuse<const D: usize>(
     integrator: &'static str,
     settings: &Settings,
     system: &mut System<D>,
-    room: &Room<D>,
+    workspace: &Workspace<D>,
     solved: &Solved,
 ) -> Result<(), StepError> {
     if settings.otherwise == Otherwise::Accept {
@@ -56,23 +56,24 @@ pub(super) fn accept_or_refuse<const D: usize>(
         return Ok(());
     }
     let flat_cells = standstill::flat_cells(system);
-    Err(refusal(integrator, settings, room, solved, (system.time, flat_cells), settings.hint()))
+    Err(refusal(integrator, settings, workspace, solved, (system.time, flat_cells), settings.hint()))
 }
 
 /// The error of a step that did not converge, with its time [s] and the cells that it found flat or inside out.
 pub(super) fn refusal<const D: usize>(
     integrator: &'static str,
     settings: &Settings,
-    room: &Room<D>,
+    workspace: &Workspace<D>,
     solved: &Solved,
     (time, flat_cells): (f64, Option<[usize; 2]>),
     hint: &'static str,
 ) -> StepError {
-    let (residual, tolerance) = (room.largest_residual(), settings.tolerance * room.extent);
-    let [of_positions, of_forces, way] = solved.floor;
+    let (residual, tolerance) = (workspace.largest_residual(), settings.tolerance * workspace.extent);
+    let [of_positions, of_forces, displacement] = solved.floor;
     // Iterations that were too few say nothing of rounding.
     let is_stuck = solved.iterations < settings.iterations;
-    let is_lost = solved.correction <= LOST * of_positions || residual <= LOST * of_forces || way > room.extent;
+    let is_lost =
+        solved.correction <= LOST * of_positions || residual <= LOST * of_forces || displacement > workspace.extent;
     let is_rounding = is_stuck && is_lost;
     StepError::NotConverged {
         integrator,

@@ -2,12 +2,12 @@
 
 use super::balance::Balance;
 use super::contact::Contacting;
-use super::linear::{Filter, LINEAR_TOLERANCE, Linear, Mixture, is_unsure};
+use super::contact_query::ContactQuery;
+use super::linear::{Filter, LINEAR_TOLERANCE, Linear, Mixture, hides_rigid_motions};
 use super::rigid::Stage;
-use super::room::Room;
 use super::settings::Settings;
-use super::sight::Sight;
 use super::stage::mixture;
+use super::workspace::Workspace;
 use opruga_core::potential::Definiteness;
 use opruga_core::system::System;
 use opruga_core::threads::each_block;
@@ -69,19 +69,19 @@ pub(crate) fn wanted_forces<const D: usize>(
     });
 }
 
-/// Solves for `room.step`, what is prescribed included; `room.reaction` is then what the constraints take, and friction goes by
+/// Solves for `workspace.step`, what is prescribed included; `workspace.reaction` is then what the constraints take, and friction goes by
 /// it. Gives the number of products, and the slope along the step of the incremental potential less the work of friction and
 /// of the constraints.
 pub(super) fn find_direction<const D: usize>(
     system: &System<D>,
-    room: &mut Room<D>,
+    workspace: &mut Workspace<D>,
     balance: &Balance,
     settings: &Settings,
     keep: Keep,
     moves: bool,
     first_norm: &mut f64,
 ) -> Result<(u32, f64), u32> {
-    let Room {
+    let Workspace {
         linear,
         mass,
         free,
@@ -100,16 +100,17 @@ pub(super) fn find_direction<const D: usize>(
         rigid,
         y,
         ..
-    } = room;
+    } = workspace;
     let mixture = mixture(system, mass, balance, keep.definiteness(), settings);
     linear.assemble(&mixture);
-    let sight = Sight::new(system, balance, x0, u, *extent);
-    contacting.derivatives(&sight, keep != Keep::Exact, &mut |node, block| linear.add_block(&mixture, node, &block));
+    let contact_query = ContactQuery::new(system, balance, x0, u, *extent);
+    contacting
+        .derivatives(&contact_query, keep != Keep::Exact, &mut |node, block| linear.add_block(&mixture, node, &block));
     if let Keep::Raised(part) = keep {
         linear.raise(part);
     }
-    let ways = moves.then_some(&**prescribed);
-    wanted_forces(system.threads, &mixture, linear, contacting, residual, ways, [&mut *trial, &mut *right]);
+    let displacements = moves.then_some(&**prescribed);
+    wanted_forces(system.threads, &mixture, linear, contacting, residual, displacements, [&mut *trial, &mut *right]);
     let filter = Filter { free, projectors };
     filter.apply(right);
     let norm = dot(right, right).sqrt();
@@ -119,7 +120,7 @@ pub(super) fn find_direction<const D: usize>(
     let tolerance = LINEAR_TOLERANCE * share;
     let mut products = linear.solve(&mixture, &filter, settings, tolerance, right, step).map_err(|_| 0u32)?;
     filter.apply(step);
-    if is_unsure(linear, &mixture) {
+    if hides_rigid_motions(linear, &mixture) {
         rigid.correct(&Stage { mixture, x0, u, y, filter, contacting }, step);
     }
     let mut slope = -dot(right, step);

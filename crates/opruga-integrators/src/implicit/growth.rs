@@ -1,7 +1,7 @@
 //! What steps that count though they did not converge may do: a body that such steps have blown up is refused.
 
 use super::balance::Solved;
-use super::room::Room;
+use super::workspace::Workspace;
 use opruga_core::error::StepError;
 use opruga_core::system::System;
 use opruga_math::Lane;
@@ -13,27 +13,27 @@ pub(crate) const NUMBERS: usize = 1;
 /// How large a body may become by steps that did not converge, in its sizes when it was first stepped.
 const LARGEST: f64 = 100.0;
 
-/// Refuses the end of a step, in `room.u1`, that did not converge and is beyond every measure; `slot` is the place of what is
+/// Refuses the end of a step, in `workspace.u1`, that did not converge and is beyond every measure; `slot` is the place of what is
 /// remembered.
 pub(crate) fn check<const D: usize>(
     system: &mut System<D>,
-    room: &Room<D>,
+    workspace: &Workspace<D>,
     slot: usize,
     solved: &Solved,
     refused: impl FnOnce(&'static str) -> StepError,
 ) -> Result<(), StepError> {
     let size = &mut system.history.numbers[slot];
     if *size <= 0.0 {
-        *size = room.extent;
+        *size = workspace.extent;
     }
     if solved.converged {
         return Ok(());
     }
     let (mut low, mut high) = ([f64::INFINITY; D], [f64::NEG_INFINITY; D]);
-    for (from, way) in nodes::<D>(&room.x0).iter().zip(nodes::<D>(&room.u1)) {
+    for (from, displacement) in nodes::<D>(&workspace.x0).iter().zip(nodes::<D>(&workspace.u1)) {
         for d in 0..D {
-            low[d] = (from[d] + way[d]).smaller(low[d]);
-            high[d] = (from[d] + way[d]).larger(high[d]);
+            low[d] = (from[d] + displacement[d]).smaller(low[d]);
+            high[d] = (from[d] + displacement[d]).larger(high[d]);
         }
     }
     let largest = LARGEST * *size;

@@ -109,8 +109,8 @@ pub fn accelerations<const D: usize>(system: &System<D>, held: &[bool], force: &
     let mut out = vec![0.0; held.len()];
     // The matrix of masses is as well conditioned as a cell: some tens of products are enough for all digits.
     let solved = lumped.update(blocks.iter()).and_then(|()| {
-        let mut room = Directions::default();
-        conjugate_gradients(multiply, &lumped, &right, &mut out, 1e-14, 1000, &mut room)
+        let mut workspace = Directions::default();
+        conjugate_gradients(multiply, &lumped, &right, &mut out, 1e-14, 1000, &mut workspace)
     });
     if solved.is_ok() {
         for k in (0..out.len()).filter(|k| !held[*k]) {

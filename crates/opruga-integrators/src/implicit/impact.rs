@@ -53,11 +53,11 @@ impl<const D: usize> Contacting<D> {
         struck: &mut Vec<Struck<D>>,
     ) {
         struck.clear();
-        for contacts in self.contacts.chunk_by(|a, b| a.node == b.node).filter(|c| c.iter().any(Contact::is_held)) {
+        for contacts in self.contacts.chunk_by(|a, b| a.node == b.node).filter(|c| c.iter().any(Contact::is_active)) {
             let node = contacts[0].node;
             let at = node * D;
-            let whole = ending.part(node, ending.reaction);
-            let normal_forces = split(contacts, &whole);
+            let total = ending.part(node, ending.reaction);
+            let normal_forces = split(contacts, &total);
             let mut motion = Motion {
                 mass: ending.mass[node],
                 velocity: ending.part(node, v1),
@@ -65,12 +65,12 @@ impl<const D: usize> Contacting<D> {
                 kept: isotropic(1.0),
                 fresh: false,
             };
-            let alone = contacts.iter().filter(|contact| contact.is_held()).count() == 1;
-            for (k, contact) in contacts.iter().enumerate().filter(|(_, contact)| contact.is_held()) {
-                let force = Force { normal: normal_forces[k.min(D - 1)], whole };
+            let alone = contacts.iter().filter(|contact| contact.is_active()).count() == 1;
+            for (k, contact) in contacts.iter().enumerate().filter(|(_, contact)| contact.is_active()) {
+                let force = Force { normal: normal_forces[k.min(D - 1)], total };
                 motion.meet(&mut system.work, ending, contact, &force, alone);
             }
-            ending.enter_forces(&mut system.work, contacts, &normal_forces, &whole, &motion, &ending.part(node, v1));
+            ending.enter_forces(&mut system.work, contacts, &normal_forces, &total, &motion, &ending.part(node, v1));
             v1[at..at + D].copy_from_slice(&motion.velocity);
             if motion.fresh {
                 let Motion { kept, memory, .. } = motion;
@@ -124,7 +124,7 @@ impl<const D: usize> Ending<'_, D> {
         let beyond = |share: f64, work: f64| (share - self.balance.impulse) * work;
         let mut rest = *force;
         let mut carrier = None;
-        for (k, contact) in contacts.iter().enumerate().filter(|(_, contact)| contact.is_held()) {
+        for (k, contact) in contacts.iter().enumerate().filter(|(_, contact)| contact.is_active()) {
             let normal_force = normal_forces[k.min(D - 1)];
             let Touch { normal, carried, .. } = &contact.touch;
             let ride: [f64; D] = core::array::from_fn(|d| carried[d] - x0[d]);
@@ -149,7 +149,7 @@ impl<const D: usize> Ending<'_, D> {
 /// The force of a contact: along its normal, and all that the node takes [N].
 struct Force<const D: usize> {
     normal: f64,
-    whole: [f64; D],
+    total: [f64; D],
 }
 
 /// The motion of a node at the end of a step, and what its rule will still add to its velocity.
@@ -178,7 +178,8 @@ impl<const D: usize> Motion<D> {
         let surface: [f64; D] = core::array::from_fn(|d| 2.0 / h * (touch.carried[d] - x0[d]) - touch.velocity[d]);
         let beside: [f64; D] = core::array::from_fn(|d| v0[d] - surface[d]);
         let turned: [f64; D] = core::array::from_fn(|d| touch.velocity[d] - surface[d]);
-        let still = |way: f64, own: f64| way.abs() <= MOVES_ALONG * own.abs() + SMALL * ending.extent / h;
+        let still =
+            |displacement: f64, own: f64| displacement.abs() <= MOVES_ALONG * own.abs() + SMALL * ending.extent / h;
         let size = |vector: &[f64; D]| dot(vector, vector).sqrt();
 
         // Along the normal: what the node brings is lost, or a part of it returns; no surface pulls.
@@ -204,7 +205,7 @@ impl<const D: usize> Motion<D> {
         // Along the surface.
         let slide_after = if contact.hold == Hold::Stick {
             let memory = contact.along(&self.memory);
-            let pull = contact.along(&force.whole);
+            let pull = contact.along(&force.total);
             let free: [f64; D] = core::array::from_fn(|d| slide[d] + memory[d] - h * (impulse + echo) * pull[d] / mass);
             let (pace, most) = (size(&free), touch.friction * (held + change) / mass);
             let own = size(&contact.along(&turned));

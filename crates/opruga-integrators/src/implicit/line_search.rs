@@ -2,8 +2,8 @@
 
 use super::balance::Balance;
 use super::linear::Filter;
-use super::room::Room;
 use super::stage::{evaluate, potential, rounding_of_models};
+use super::workspace::Workspace;
 use opruga_core::error::StepError;
 use opruga_core::system::System;
 use opruga_math::Lane;
@@ -36,26 +36,26 @@ const MOST_TRIALS: usize = 14;
 /// has not risen; gives the part of the step that was gone.
 pub(super) fn line_search<const D: usize>(
     system: &mut System<D>,
-    room: &mut Room<D>,
+    workspace: &mut Workspace<D>,
     balance: &Balance,
     slope: f64,
     stretches: Stretches,
 ) -> Result<f64, StepError> {
     // Damping has no potential; friction and constraints are taken as the forces that they are expected to be.
-    let before = if system.is_damped() { None } else { potential(system, room, balance, false) };
-    let given = given_along(room);
+    let before = if system.is_damped() { None } else { potential(system, workspace, balance, false) };
+    let given = given_along(workspace);
     let cancelled = rounding_of_models(system);
     let mut length = 1.0;
     for _ in 0..MOST_TRIALS {
-        for k in 0..room.u.len() {
-            room.trial[k] = room.u[k] + length * room.step[k];
+        for k in 0..workspace.u.len() {
+            workspace.trial[k] = workspace.u[k] + length * workspace.step[k];
         }
-        let allowed = evaluate(system, room, balance, true).is_ok();
-        let now = if allowed { slope_along(room) } else { f64::NAN };
+        let allowed = evaluate(system, workspace, balance, true).is_ok();
+        let now = if allowed { slope_along(workspace) } else { f64::NAN };
         // Differences of energies are lost in rounding where the step is small.
         let risen = match before {
             Some((energy, magnitude)) if allowed => {
-                potential(system, room, balance, true).is_none_or(|(after, size)| {
+                potential(system, workspace, balance, true).is_none_or(|(after, size)| {
                     let rounding = ROUNDING * (magnitude + size + (length * given).abs()) + cancelled;
                     let risen = after - length * given - energy;
                     risen.is_nan() || risen > rounding
@@ -64,10 +64,10 @@ pub(super) fn line_search<const D: usize>(
             _ => false,
         };
         if allowed && now.is_finite() && now <= SLOPE_LEFT * slope.abs() && !risen {
-            room.u.copy_from_slice(&room.trial);
+            workspace.u.copy_from_slice(&workspace.trial);
             if length == 1.0 && stretches != Stretches::No && now < -STEEP * slope.abs() {
                 let before = before.map(|(energy, _)| (energy, given));
-                return stretch(system, room, balance, (slope, now), before, stretches);
+                return stretch(system, workspace, balance, (slope, now), before, stretches);
             }
             return Ok(length);
         }
@@ -75,7 +75,7 @@ pub(super) fn line_search<const D: usize>(
         length *= if secant.is_finite() && !risen { secant.larger(0.1).smaller(0.6) } else { 0.4 };
     }
     // No progress: the state stays where it was, and with it the forces.
-    evaluate(system, room, balance, false)?;
+    evaluate(system, workspace, balance, false)?;
     Ok(0.0)
 }
 
@@ -83,7 +83,7 @@ pub(super) fn line_search<const D: usize>(
 /// too stiff where a body buckles or turns right side out. Gives how far it went, in steps.
 fn stretch<const D: usize>(
     system: &mut System<D>,
-    room: &mut Room<D>,
+    workspace: &mut Workspace<D>,
     balance: &Balance,
     (slope, mut now): (f64, f64),
     before: Option<(f64, f64)>,
@@ -94,18 +94,18 @@ fn stretch<const D: usize>(
         Stretches::UpTo(longest) => (longest, ROUNDING),
         _ => (LONGEST_STRETCH, 0.0),
     };
-    let mut last = before.and_then(|(_, given)| Some(potential(system, room, balance, false)?.0 - given));
+    let mut last = before.and_then(|(_, given)| Some(potential(system, workspace, balance, false)?.0 - given));
     loop {
         // The secant of the slopes, but no more than twice as far.
         let left = slope.abs() + now;
         let longer = length * if left > 0.0 { (slope.abs() / left).smaller(2.0) } else { 2.0 };
-        for k in 0..room.u.len() {
-            room.trial[k] = room.u[k] + (longer - length) * room.step[k];
+        for k in 0..workspace.u.len() {
+            workspace.trial[k] = workspace.u[k] + (longer - length) * workspace.step[k];
         }
-        let allowed = longer <= longest && evaluate(system, room, balance, true).is_ok();
-        let beyond = if allowed { slope_along(room) } else { f64::NAN };
+        let allowed = longer <= longest && evaluate(system, workspace, balance, true).is_ok();
+        let beyond = if allowed { slope_along(workspace) } else { f64::NAN };
         let energy = match before {
-            Some((_, given)) if allowed => potential(system, room, balance, true).map(|(e, _)| e - longer * given),
+            Some((_, given)) if allowed => potential(system, workspace, balance, true).map(|(e, _)| e - longer * given),
             _ => None,
         };
         let falls = match (energy, last) {
@@ -113,10 +113,10 @@ fn stretch<const D: usize>(
             _ => before.is_none(),
         };
         if !(falls && beyond <= STEEP * slope.abs()) {
-            evaluate(system, room, balance, false)?;
+            evaluate(system, workspace, balance, false)?;
             return Ok(length);
         }
-        room.u.copy_from_slice(&room.trial);
+        workspace.u.copy_from_slice(&workspace.trial);
         (length, now, last) = (longer, beyond, energy);
         if now >= -STEEP * slope.abs() {
             return Ok(length);
@@ -125,15 +125,15 @@ fn stretch<const D: usize>(
 }
 
 /// The slope along the step of the incremental potential less the work of friction and of the constraints.
-pub(super) fn slope_along<const D: usize>(room: &mut Room<D>) -> f64 {
-    let given = given_along(room);
-    dot(&room.residual, &room.step) - given
+pub(super) fn slope_along<const D: usize>(workspace: &mut Workspace<D>) -> f64 {
+    let given = given_along(workspace);
+    dot(&workspace.residual, &workspace.step) - given
 }
 
 /// The work along the step of friction, and of the constraints by the forces that they are expected to take.
-fn given_along<const D: usize>(room: &mut Room<D>) -> f64 {
+fn given_along<const D: usize>(workspace: &mut Workspace<D>) -> f64 {
     // r − friction in the directions that are held.
-    let Room { right, reaction, contacting, free, projectors, step, .. } = room;
+    let Workspace { right, reaction, contacting, free, projectors, step, .. } = workspace;
     right.copy_from_slice(reaction);
     contacting.subtract_friction(right);
     let mut work = dot(right, step);

@@ -14,7 +14,7 @@ use opruga_solve::{
 #[derive(Debug, Default)]
 pub(crate) struct Linear<const D: usize> {
     /// The matrix with nothing taken out.
-    whole: BlockMatrix<D>,
+    full: BlockMatrix<D>,
     /// The same without the directions that are held.
     constrained: BlockMatrix<D>,
     /// The diagonal blocks alone, where there is no matrix, and what was added to them.
@@ -46,7 +46,7 @@ pub(super) const EPSILON: f64 = 0.5 * f64::EPSILON;
 /// A solution with a matrix whose stiffness is q times its mass knows the motions of the whole to about q ε of themselves. Above this they
 /// are solved for apart. Larger, and a fall by a rule's closed form is off by as much in every step that the iteration ends with
 /// (`tests/all/stiff_bodies.rs`); steel in cells of a centimetre is at 1e-9.
-pub(super) const UNSURE: f64 = 1e-6;
+pub(super) const HIDDEN: f64 = 1e-6;
 
 /// What a matrix is made of.
 #[derive(Clone, Copy, Debug)]
@@ -186,7 +186,7 @@ impl<const D: usize> Linear<D> {
             return;
         }
         let script = usize::from(mixture.keep == Definiteness::Clamped);
-        self.whole.assemble(mixture.mass.len(), script, |matrix| {
+        self.full.assemble(mixture.mass.len(), script, |matrix| {
             mixture.deliver(matrix, BlockMatrix::scale);
             for (node, mass) in mixture.mass.iter().enumerate() {
                 matrix.add_diagonal(node, mixture.sigma * mass);
@@ -197,7 +197,7 @@ impl<const D: usize> Linear<D> {
     /// Adds a block to the diagonal of a node.
     pub(crate) fn add_block(&mut self, mixture: &Mixture<D>, node: usize, block: &Block<D>) {
         if !mixture.matrix_free {
-            return self.whole.block(node, node, *block);
+            return self.full.block(node, node, *block);
         }
         self.added.push((node, *block));
         for i in 0..D {
@@ -209,10 +209,10 @@ impl<const D: usize> Linear<D> {
 
     /// Raises the diagonal by a part of itself.
     pub(crate) fn raise(&mut self, part: f64) {
-        for node in 0..self.whole.rows() {
-            let block = self.whole.diagonal_block(node);
+        for node in 0..self.full.rows() {
+            let block = self.full.diagonal_block(node);
             let size = (0..D).map(|d| block[d][d].abs()).sum::<f64>() / D as f64;
-            self.whole.add_diagonal(node, part * if size > 0.0 { size } else { 1.0 });
+            self.full.add_diagonal(node, part * if size > 0.0 { size } else { 1.0 });
         }
         // Without a matrix the products have to learn of it as well.
         for (node, block) in self.diagonal.iter_mut().enumerate() {
@@ -228,7 +228,7 @@ impl<const D: usize> Linear<D> {
     /// y = A x with nothing taken out.
     pub(crate) fn multiply(&self, mixture: &Mixture<D>, x: &[f64], y: &mut [f64]) {
         if !mixture.matrix_free {
-            return self.whole.multiply(x, y);
+            return self.full.multiply(x, y);
         }
         let (x, y) = (nodes::<D>(x), nodes_mut::<D>(y));
         for ((y, x), mass) in y.iter_mut().zip(x).zip(mixture.mass) {
@@ -243,7 +243,7 @@ impl<const D: usize> Linear<D> {
 
     /// The size of the diagonal block of a node.
     pub(crate) fn size_at(&self, mixture: &Mixture<D>, node: usize) -> f64 {
-        let block = if mixture.matrix_free { &self.diagonal[node] } else { self.whole.diagonal_block(node) };
+        let block = if mixture.matrix_free { &self.diagonal[node] } else { self.full.diagonal_block(node) };
         let mut size = 0.0;
         for d in 0..D {
             size += block[d][d].abs();
@@ -269,7 +269,7 @@ impl<const D: usize> Linear<D> {
         } else {
             self.constrain(filter);
             self.is_filled = false;
-            if settings.solver.is_direct::<D>(self.whole.rows()) {
+            if settings.solver.is_direct::<D>(self.full.rows()) {
                 self.cholesky.update(&self.constrained)?;
             } else {
                 self.is_filled = self.is_slow && self.filled.update(&self.constrained).is_ok();
@@ -301,7 +301,7 @@ impl<const D: usize> Linear<D> {
             let ended = conjugate_gradients(multiply, &self.jacobi, b, out, tolerance, most, &mut directions);
             self.directions = directions;
             ended?.iterations
-        } else if settings.solver.is_direct::<D>(self.whole.rows()) {
+        } else if settings.solver.is_direct::<D>(self.full.rows()) {
             out.copy_from_slice(b);
             self.cholesky.solve(out);
             1
@@ -331,8 +331,8 @@ impl<const D: usize> Linear<D> {
     }
 
     /// The matrix with nothing taken out.
-    pub(crate) fn whole(&self) -> &BlockMatrix<D> {
-        &self.whole
+    pub(crate) fn full(&self) -> &BlockMatrix<D> {
+        &self.full
     }
     /// The matrix without what the last filter held.
     pub(crate) fn constrained(&self) -> &BlockMatrix<D> {
@@ -341,7 +341,7 @@ impl<const D: usize> Linear<D> {
 
     /// Takes the directions that are held out of the matrix.
     pub(crate) fn constrain(&mut self, filter: &Filter<D>) {
-        self.constrained.copy_from(&self.whole);
+        self.constrained.copy_from(&self.full);
         self.constrained.constrain(filter.free, filter.projectors);
     }
 
@@ -371,6 +371,6 @@ pub(super) fn contrast<const D: usize>(linear: &Linear<D>, mixture: &Mixture<D>)
 }
 
 /// Whether a solution with a matrix says too little of the motions of the whole.
-pub(super) fn is_unsure<const D: usize>(linear: &Linear<D>, mixture: &Mixture<D>) -> bool {
-    mixture.sigma != 0.0 && EPSILON * contrast(linear, mixture) > UNSURE
+pub(super) fn hides_rigid_motions<const D: usize>(linear: &Linear<D>, mixture: &Mixture<D>) -> bool {
+    mixture.sigma != 0.0 && EPSILON * contrast(linear, mixture) > HIDDEN
 }

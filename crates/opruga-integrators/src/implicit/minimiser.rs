@@ -4,7 +4,7 @@
 //! stage. The guards of a step (`step`) wrap any of them.
 
 use super::balance::{Balance, Solved};
-use super::room::Room;
+use super::workspace::Workspace;
 use opruga_core::error::StepError;
 use opruga_core::integrator::HistorySize;
 use opruga_core::system::System;
@@ -12,21 +12,26 @@ use opruga_core::system::System;
 /// Finds the stage in which forces balance the change of motion: where they have a potential, the minimum of the incremental
 /// potential Φ.
 pub(crate) trait Minimiser<const D: usize>: core::fmt::Debug {
-    /// Finds the stage from the displacement in `room.u` on; on success forces and residual belong to what is found.
+    /// Finds the stage from the displacement in `workspace.u` on; on success forces and residual belong to what is found.
     ///
     /// # Errors
     /// [`StepError`] where a model has no meaning, or the caller broke the step off. A search that does not converge is no error.
-    fn minimise(&self, system: &mut System<D>, room: &mut Room<D>, balance: &Balance) -> Result<Solved, StepError>;
+    fn minimise(
+        &self,
+        system: &mut System<D>,
+        workspace: &mut Workspace<D>,
+        balance: &Balance,
+    ) -> Result<Solved, StepError>;
     /// What it remembers from step to step, behind what the rule does.
     fn history(&self) -> HistorySize {
         HistorySize::default()
     }
-    /// Improves the displacement in `room.u`, which the motion of the last step leads to, by what it remembers.
-    fn predict(&self, _system: &System<D>, _room: &mut Room<D>, _balance: &Balance) {}
+    /// Improves the displacement in `workspace.u`, which the motion of the last step leads to, by what it remembers.
+    fn predict(&self, _system: &System<D>, _room: &mut Workspace<D>, _balance: &Balance) {}
     /// Discards what it reuses from step to step, where a guard refuses the stage that it found.
-    fn discard(&self, _system: &mut System<D>, _room: &Room<D>) {}
+    fn discard(&self, _system: &mut System<D>, _room: &Workspace<D>) {}
     /// Remembers a step of h [s] that counts.
-    fn remember(&self, _system: &mut System<D>, _room: &Room<D>, _h: f64) {}
+    fn remember(&self, _system: &mut System<D>, _room: &Workspace<D>, _h: f64) {}
     /// Whether a step that does not converge is halved whatever the scene says.
     fn always_halves(&self) -> bool {
         false

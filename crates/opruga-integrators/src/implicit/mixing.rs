@@ -26,7 +26,7 @@ pub(crate) struct Mixing {
     change: Vec<f64>,
     /// Differences of changes and of states + changes, the oldest first.
     changes: Vec<Vec<f64>>,
-    ways: Vec<Vec<f64>>,
+    displacements: Vec<Vec<f64>>,
     known: usize,
     /// The same, made orthogonal; and what is left of a change.
     across: Vec<Vec<f64>>,
@@ -38,7 +38,7 @@ impl Mixing {
     /// Begins anew, with room for states of so many numbers at most.
     pub(crate) fn begin(&mut self, most: usize) {
         self.forget();
-        for list in [&mut self.changes, &mut self.ways, &mut self.across, &mut self.combined] {
+        for list in [&mut self.changes, &mut self.displacements, &mut self.across, &mut self.combined] {
             list.resize_with(MOST, Vec::new);
             list.iter_mut().for_each(|vector| reserve(vector, most));
         }
@@ -63,16 +63,16 @@ impl Mixing {
         if self.state.len() == state.len() {
             if self.known == MOST {
                 self.changes.rotate_left(1);
-                self.ways.rotate_left(1);
+                self.displacements.rotate_left(1);
                 self.known -= 1;
             }
-            let (changes, ways) = (&mut self.changes[self.known], &mut self.ways[self.known]);
+            let (changes, displacements) = (&mut self.changes[self.known], &mut self.displacements[self.known]);
             changes.clear();
-            ways.clear();
+            displacements.clear();
             for k in 0..state.len() {
                 let of_change = change[k] - self.change[k];
                 changes.push(of_change);
-                ways.push(state[k] - self.state[k] + of_change);
+                displacements.push(state[k] - self.state[k] + of_change);
             }
             self.known += 1;
         }
@@ -82,21 +82,21 @@ impl Mixing {
 
     /// Takes what the iterations before make superfluous out of a change that has been noted.
     pub(crate) fn mix(&mut self, change: &mut [f64]) {
-        let Mixing { changes, ways, known, across, combined, rest, .. } = self;
+        let Mixing { changes, displacements, known, across, combined, rest, .. } = self;
         refill(rest, change);
         // Orthogonal differences of changes, the newest first, and the same combinations of ways.
         let mut found = 0;
         for k in (0..*known).rev() {
             let (before, others) = across.split_at_mut(found);
-            let (ways_before, other_ways) = combined.split_at_mut(found);
-            let (own, way) = (&mut others[0], &mut other_ways[0]);
+            let (displacements_before, other_displacements) = combined.split_at_mut(found);
+            let (own, displacement) = (&mut others[0], &mut other_displacements[0]);
             refill(own, &changes[k]);
-            refill(way, &ways[k]);
+            refill(displacement, &displacements[k]);
             let whole = dot(own, own);
-            for (other, its_way) in before.iter().zip(&*ways_before) {
+            for (other, its_displacement) in before.iter().zip(&*displacements_before) {
                 let part = dot(own, other);
                 subtract(own, part, other);
-                subtract(way, part, its_way);
+                subtract(displacement, part, its_displacement);
             }
             let left = dot(own, own);
             if left.is_nan() || left <= NOTHING_NEW * NOTHING_NEW * whole {
@@ -104,10 +104,10 @@ impl Mixing {
             }
             let size = left.sqrt();
             own.iter_mut().for_each(|x| *x /= size);
-            way.iter_mut().for_each(|x| *x /= size);
+            displacement.iter_mut().for_each(|x| *x /= size);
             let part = dot(rest, own);
             subtract(rest, part, own);
-            subtract(change, part, way);
+            subtract(change, part, displacement);
             found += 1;
         }
     }

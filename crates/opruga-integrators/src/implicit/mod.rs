@@ -19,18 +19,18 @@
 //! | `theta` | the θ-method, which rules that damp nothing turn to in contact |
 //! | `newton` | the exact iteration: derivatives, direction, line search |
 //! | `direction` | one direction of it |
-//! | `beginning` | where that begins |
+//! | `initial_guess` | where that begins |
 //! | `line_search` | how far a step is gone |
 //! | `rounding` | balances whose forces are as small as their rounding |
 //! | `rigid` | the motions of a body as a whole, whose balance rounding does not hide |
-//! | `whole` | whether that holds where an iteration ends |
+//! | `rigid_balance` | whether that holds where an iteration ends |
 //! | `mixing` | what the matrix leaves out, from the iterations before |
 //! | `real_time` | the iteration with a fixed budget |
-//! | `kept` | the matrix that it keeps from step to step |
+//! | `reused_matrix` | the matrix that it keeps from step to step |
 //! | `linear` | the direction: conjugate gradients or sparse Cholesky |
-//! | `approach` | what keeps statics, without inertia, out of obstacles |
+//! | `step_limit` | what keeps statics, without inertia, out of obstacles |
 //! | `contact` | which nodes obstacles hold, and whether they stick or slip |
-//! | `sight` | where nodes are within a step, as obstacles see it |
+//! | `contact_query` | where nodes are within a step, as obstacles see it |
 //! | `contact_derivatives` | what the forces of contacts change by with positions |
 //! | `growth` | refuses what accepted steps blow up |
 //! | `slenderness` | for which bodies the real-time setting factors its matrix |
@@ -51,19 +51,18 @@
 //! force along the normal that the direction itself brings about. Velocities are dealt with at the end of the step: what a node
 //! brings along the normal is lost or returned by the restitution, and friction takes µ times that change as well.
 
-pub(crate) mod approach;
 pub(crate) mod balance;
-mod beginning;
 pub(crate) mod contact;
 mod contact_derivatives;
+pub(crate) mod contact_query;
 pub(crate) mod convergence;
 pub(crate) mod direction;
 mod energy;
-mod falling;
 mod growth;
 pub(crate) mod holding;
 pub(crate) mod impact;
-mod kept;
+mod initial_guess;
+mod instability;
 mod line_search;
 pub(crate) mod linear;
 pub(crate) mod memory;
@@ -72,15 +71,16 @@ mod mixing;
 pub(crate) mod newton;
 mod own_loss;
 mod real_time;
+mod reused_matrix;
 mod rigid;
-pub(crate) mod room;
+mod rigid_balance;
 mod rounding;
 pub(crate) mod rule;
 pub(crate) mod settings;
-pub(crate) mod sight;
 mod slenderness;
 pub(crate) mod stage;
 pub(crate) mod standstill;
 pub(crate) mod step;
+pub(crate) mod step_limit;
 pub(crate) mod theta;
-mod whole;
+pub(crate) mod workspace;

@@ -1,18 +1,18 @@
 //! Newton's method on the balance of forces of a stage.
 
-use super::approach::part_without_inertia;
 use super::balance::{Balance, Solved};
-use super::beginning::begin;
 use super::direction::{Keep, find_direction};
-use super::falling::Falling;
+use super::initial_guess::begin;
+use super::instability::Instability;
 use super::line_search::{Stretches, line_search, slope_along};
 use super::linear::Filter;
 use super::minimiser::Minimiser;
-use super::room::Room;
-use super::rounding::{at_rounding, carries, chance, in_doubt, most_rounding, settle, visible};
+use super::rigid_balance;
+use super::rounding::{at_rounding, carries, in_doubt, most_rounding, random_error, settle, visible};
 use super::settings::Settings;
 use super::stage::{evaluate, judge, longest, look};
-use super::whole;
+use super::step_limit::part_without_inertia;
+use super::workspace::Workspace;
 use opruga_core::error::StepError;
 use opruga_core::system::System;
 use opruga_math::Lane;
@@ -31,28 +31,35 @@ const MOST_AT_ROUNDING: u32 = 50;
 pub(crate) struct Newton(pub(crate) Settings);
 
 impl<const D: usize> Minimiser<D> for Newton {
-    fn minimise(&self, system: &mut System<D>, room: &mut Room<D>, balance: &Balance) -> Result<Solved, StepError> {
-        let mut run = Iteration::new(room, balance, &self.0);
-        let torn = begin(system, room, balance)?;
-        prepare(system, room);
+    fn minimise(
+        &self,
+        system: &mut System<D>,
+        workspace: &mut Workspace<D>,
+        balance: &Balance,
+    ) -> Result<Solved, StepError> {
+        let mut run = Iteration::new(workspace, balance, &self.0);
+        let model_error = begin(system, workspace, balance)?;
+        prepare(system, workspace);
         while run.solved.iterations < self.0.iterations {
             system.go_on()?;
             run.solved.iterations += 1;
-            let contacts = run.hold(system, room);
-            let Some((keep, slope)) = run.choose_direction(system, room, contacts.farthest > 0.0) else { break };
-            let mut correction = run.measure(system, room, keep, slope, contacts.changed);
-            run.go(system, room, &mut correction, contacts.farthest)?;
+            let contacts = run.hold(system, workspace);
+            let Some((keep, slope)) = run.choose_direction(system, workspace, contacts.farthest > 0.0) else { break };
+            let mut correction = run.measure(system, workspace, keep, slope, contacts.changed);
+            run.go(system, workspace, &mut correction, contacts.farthest)?;
             let stuck = correction.length == 0.0 && !contacts.changed;
-            if stuck && run.ends_at_rounding(system, room)? || !run.choose_derivatives(room, &correction, stuck) {
+            if stuck && run.ends_at_rounding(system, workspace)?
+                || !run.choose_derivatives(workspace, &correction, stuck)
+            {
                 break;
             }
-            let changed = contacts.changed | run.judge(system, room);
-            if !changed && !stuck && run.ends(system, room, &correction)? {
+            let changed = contacts.changed | run.judge(system, workspace);
+            if !changed && !stuck && run.ends(system, workspace, &correction)? {
                 break;
             }
         }
-        run.estimate_error(system, room);
-        torn.filter(|_| !run.solved.converged).map_or(Ok(run.solved), Err)
+        run.estimate_error(system, workspace);
+        model_error.filter(|_| !run.solved.converged).map_or(Ok(run.solved), Err)
     }
     fn same_bits_everywhere(&self, system: &System<D>) -> bool {
         !self.0.solver.is_direct::<D>(system.nodes)
@@ -60,11 +67,11 @@ impl<const D: usize> Minimiser<D> for Newton {
 }
 
 /// Begins anew what an iteration remembers.
-fn prepare<const D: usize>(system: &System<D>, room: &mut Room<D>) {
-    room.linear.begin();
-    room.rigid.begin();
-    room.mixing.begin(room.u.len());
-    room.friction.begin(if system.contacts.is_some() { system.nodes } else { 0 });
+fn prepare<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>) {
+    workspace.linear.begin();
+    workspace.rigid.begin();
+    workspace.mixing.begin(workspace.u.len());
+    workspace.friction.begin(if system.contacts.is_some() { system.nodes } else { 0 });
 }
 
 /// What the iteration knows beside the vectors.
@@ -82,7 +89,7 @@ struct Iteration<'a> {
     first: Keep,
     /// The correction of the last iteration that went all of its length [m].
     before: f64,
-    falling: Falling,
+    instability: Instability,
 }
 
 /// What obstacles do in an iteration.
@@ -112,43 +119,43 @@ struct Correction {
 }
 
 impl<'a> Iteration<'a> {
-    fn new<const D: usize>(room: &Room<D>, balance: &'a Balance, settings: &'a Settings) -> Iteration<'a> {
+    fn new<const D: usize>(workspace: &Workspace<D>, balance: &'a Balance, settings: &'a Settings) -> Iteration<'a> {
         let mut size: f64 = 0.0;
-        for x in &room.x0 {
+        for x in &workspace.x0 {
             size = x.abs().larger(size);
         }
         Iteration {
             balance,
             settings,
             solved: Solved::default(),
-            goal: settings.tolerance * room.extent,
+            goal: settings.tolerance * workspace.extent,
             size,
             first_norm: 0.0,
             first: Keep::Exact,
             before: f64::INFINITY,
-            falling: Falling::new(),
+            instability: Instability::new(),
         }
     }
 
     /// Looks which nodes are held, and how far they have to go.
-    fn hold<const D: usize>(&self, system: &System<D>, room: &mut Room<D>) -> Contacts {
-        let changed = look(system, room, self.balance, true);
-        let Room { contacting, u, held, x0, free, projectors, prescribed, .. } = room;
+    fn hold<const D: usize>(&self, system: &System<D>, workspace: &mut Workspace<D>) -> Contacts {
+        let changed = look(system, workspace, self.balance, true);
+        let Workspace { contacting, u, held, x0, free, projectors, prescribed, .. } = workspace;
         let farthest = contacting.hold(u, self.balance.theta, held, x0, free, projectors, prescribed);
         Contacts { changed, farthest }
     }
 
-    /// The direction in `room.step`, and the slope along it: of the exact derivatives as long as they are positive definite. None
+    /// The direction in `workspace.step`, and the slope along it: of the exact derivatives as long as they are positive definite. None
     /// where no derivatives lead downhill.
     fn choose_direction<const D: usize>(
         &mut self,
         system: &System<D>,
-        room: &mut Room<D>,
+        workspace: &mut Workspace<D>,
         moves: bool,
     ) -> Option<(Keep, f64)> {
         let mut keep = self.first;
         let slope = loop {
-            match find_direction(system, room, self.balance, self.settings, keep, moves, &mut self.first_norm) {
+            match find_direction(system, workspace, self.balance, self.settings, keep, moves, &mut self.first_norm) {
                 Ok((products, slope)) => {
                     self.solved.products += products;
                     if slope <= 0.0 || !moves && keep != Keep::Exact {
@@ -165,66 +172,66 @@ impl<'a> Iteration<'a> {
         Some((keep, slope))
     }
 
-    /// Measures the correction in `room.step`, shortens it in statics, and mixes in those before where they fall slowly.
+    /// Measures the correction in `workspace.step`, shortens it in statics, and mixes in those before where they fall slowly.
     fn measure<const D: usize>(
         &mut self,
         system: &System<D>,
-        room: &mut Room<D>,
+        workspace: &mut Workspace<D>,
         keep: Keep,
         mut slope: f64,
         changed: bool,
     ) -> Correction {
-        let plain = longest(&room.step, D);
+        let plain = longest(&workspace.step, D);
         self.solved.correction = plain;
         let mut gone = plain;
         if self.balance.sigma == 0.0 {
             // Without inertia a soft direction leads far.
-            let part = part_without_inertia(system, room, self.balance, plain);
-            room.step.iter_mut().for_each(|s| *s *= part);
+            let part = part_without_inertia(system, workspace, self.balance, plain);
+            workspace.step.iter_mut().for_each(|s| *s *= part);
             gone *= part;
             slope *= part;
         }
         // What the matrix leaves out shows where corrections fall slowly.
         if changed {
-            room.mixing.forget();
+            workspace.mixing.forget();
         }
-        let mixed = mix(room, plain > SLOW * self.before, &mut slope);
+        let mixed = mix(workspace, plain > SLOW * self.before, &mut slope);
         // With inertia rounding is reached where a correction does not halve the one before any more.
         let halves = self.solved.iterations == 1 || self.before.is_finite() && plain <= 0.5 * self.before;
         let nears = self.balance.sigma != 0.0 && halves;
         self.before = plain;
-        self.falling.note(plain, keep != Keep::Exact && !mixed);
+        self.instability.note(plain, keep != Keep::Exact && !mixed);
         Correction { keep, slope, plain, gone, mixed, nears, length: 1.0 }
     }
 
-    /// Goes the correction in `room.step`, as far as the line search allows where it is no short one.
+    /// Goes the correction in `workspace.step`, as far as the line search allows where it is no short one.
     fn go<const D: usize>(
         &mut self,
         system: &mut System<D>,
-        room: &mut Room<D>,
+        workspace: &mut Workspace<D>,
         correction: &mut Correction,
         farthest: f64,
     ) -> Result<(), StepError> {
         let Correction { keep, slope, plain, .. } = *correction;
         if plain <= self.goal {
-            return full_step(system, room, self.balance);
+            return full_step(system, workspace, self.balance);
         }
         // What is too stiff and has not far to go to obstacles may go on, unless it falls towards them without inertia.
         let falls = self.balance.sigma == 0.0 && system.contacts.is_some();
         let stiff = keep != Keep::Exact && !falls;
-        let stretches = if stiff && farthest <= 1e-3 * room.extent && !room.contacting.any_turns() {
-            self.falling.stretches(room.extent)
+        let stretches = if stiff && farthest <= 1e-3 * workspace.extent && !workspace.contacting.any_turns() {
+            self.instability.stretches(workspace.extent)
         } else {
             Stretches::No
         };
-        let length = line_search(system, room, self.balance, slope, stretches)?;
+        let length = line_search(system, workspace, self.balance, slope, stretches)?;
         correction.length = length;
         correction.gone *= length;
         if length > 1.0 {
-            self.falling.stretched();
+            self.instability.stretched();
         }
         if length != 1.0 {
-            room.mixing.forget();
+            workspace.mixing.forget();
             self.before = f64::INFINITY;
         }
         Ok(())
@@ -234,23 +241,28 @@ impl<'a> Iteration<'a> {
     fn ends_at_rounding<const D: usize>(
         &mut self,
         system: &mut System<D>,
-        room: &mut Room<D>,
+        workspace: &mut Workspace<D>,
     ) -> Result<bool, StepError> {
         let Iteration { balance, settings, size, .. } = *self;
-        if at_rounding(system, room, balance, settings, size)
-            && whole::accepts(system, room, balance, settings, size, true)?
+        if at_rounding(system, workspace, balance, settings, size)
+            && rigid_balance::accepts(system, workspace, balance, settings, size, true)?
         {
             self.solved.converged = true;
-            self.solved.blur = settle(system, room, balance, settings)?;
+            self.solved.error_estimate = settle(system, workspace, balance, settings)?;
         }
         Ok(self.solved.converged)
     }
 
     /// Chooses what the next direction is made of; gives whether there is one.
-    fn choose_derivatives<const D: usize>(&mut self, room: &Room<D>, correction: &Correction, stuck: bool) -> bool {
+    fn choose_derivatives<const D: usize>(
+        &mut self,
+        workspace: &Workspace<D>,
+        correction: &Correction,
+        stuck: bool,
+    ) -> bool {
         let Correction { keep, mixed, gone, .. } = *correction;
         if !stuck {
-            if keep != Keep::Exact && gone <= 1e-2 * room.extent {
+            if keep != Keep::Exact && gone <= 1e-2 * workspace.extent {
                 // Derivatives that were not positive may be so near the solution.
                 self.first = Keep::Exact;
             }
@@ -266,13 +278,13 @@ impl<'a> Iteration<'a> {
     }
 
     /// Decides by what the constraints would take who stays held; gives whether that has changed.
-    fn judge<const D: usize>(&self, system: &System<D>, room: &mut Room<D>) -> bool {
+    fn judge<const D: usize>(&self, system: &System<D>, workspace: &mut Workspace<D>) -> bool {
         if system.contacts.is_none() || self.solved.iterations >= MOST_DECISIONS {
             return false;
         }
-        let verdict = judge(system, room, self.balance, self.settings, self.settings.tolerance, true);
+        let verdict = judge(system, workspace, self.balance, self.settings, self.settings.tolerance, true);
         if verdict.anew {
-            room.mixing.forget();
+            workspace.mixing.forget();
         }
         verdict.anew || verdict.unsettled
     }
@@ -281,41 +293,41 @@ impl<'a> Iteration<'a> {
     fn ends<const D: usize>(
         &mut self,
         system: &mut System<D>,
-        room: &mut Room<D>,
+        workspace: &mut Workspace<D>,
         correction: &Correction,
     ) -> Result<bool, StepError> {
         let Iteration { balance, settings, size, .. } = *self;
-        if correction.plain <= self.goal && whole::accepts(system, room, balance, settings, size, false)? {
+        if correction.plain <= self.goal && rigid_balance::accepts(system, workspace, balance, settings, size, false)? {
             self.solved.converged = true;
             return Ok(true);
         }
         let last = self.solved.iterations >= MOST_AT_ROUNDING.min(settings.iterations);
         if (last || !correction.nears)
-            && at_rounding(system, room, balance, settings, size)
-            && (last || carries(system, room, balance))
-            && whole::accepts(system, room, balance, settings, size, true)?
+            && at_rounding(system, workspace, balance, settings, size)
+            && (last || carries(system, workspace, balance))
+            && rigid_balance::accepts(system, workspace, balance, settings, size, true)?
         {
             self.solved.converged = true;
-            self.solved.blur = settle(system, room, balance, settings)?;
+            self.solved.error_estimate = settle(system, workspace, balance, settings)?;
         }
         Ok(self.solved.converged)
     }
 
     /// Estimates how far rounding may have led from the stage, or what it hides where the iteration did not converge.
-    fn estimate_error<const D: usize>(&mut self, system: &mut System<D>, room: &mut Room<D>) {
+    fn estimate_error<const D: usize>(&mut self, system: &mut System<D>, workspace: &mut Workspace<D>) {
         let Iteration { balance, settings, size, .. } = *self;
         if !self.solved.converged {
-            self.solved.floor = most_rounding(system, room, balance, settings, size);
+            self.solved.floor = most_rounding(system, workspace, balance, settings, size);
             return;
         }
-        self.solved.conditioning = room.rigid.conditioning;
-        let doubt = in_doubt(system, room, balance, settings, size);
-        let suspected = doubt.way.larger(self.solved.blur);
+        self.solved.conditioning = workspace.rigid.conditioning;
+        let doubt = in_doubt(system, workspace, balance, settings, size);
+        let suspected = doubt.displacement.larger(self.solved.error_estimate);
         if suspected > 0.0 {
-            let left = left_over(system, room, balance, settings);
-            let chance = if doubt.lost { chance(system, room, balance, settings, size) } else { 0.0 };
-            self.solved.blur =
-                left.map_or(suspected, |left| visible(left.larger(chance.smaller(suspected)), room.extent));
+            let left = left_over(system, workspace, balance, settings);
+            let random_error = if doubt.lost { random_error(system, workspace, balance, settings, size) } else { 0.0 };
+            self.solved.error_estimate =
+                left.map_or(suspected, |left| visible(left.larger(random_error.smaller(suspected)), workspace.extent));
         }
     }
 }
@@ -324,42 +336,46 @@ impl<'a> Iteration<'a> {
 /// an earlier one. Nothing without a positive one, or on obstacles.
 fn left_over<const D: usize>(
     system: &System<D>,
-    room: &mut Room<D>,
+    workspace: &mut Workspace<D>,
     balance: &Balance,
     settings: &Settings,
 ) -> Option<f64> {
-    if room.contacting.any() {
+    if workspace.contacting.any() {
         return None;
     }
-    find_direction(system, room, balance, settings, Keep::Exact, false, &mut 0.0).ok()?;
-    Some(longest(&room.step, D))
+    find_direction(system, workspace, balance, settings, Keep::Exact, false, &mut 0.0).ok()?;
+    Some(longest(&workspace.step, D))
 }
 
 /// Notes an iteration and, where that is asked for, makes of its step the one that it and those before lead to; says whether
 /// it did.
-fn mix<const D: usize>(room: &mut Room<D>, wanted: bool, slope: &mut f64) -> bool {
-    room.mixing.note(&room.u, &room.step);
-    if !wanted || room.mixing.is_empty() {
+fn mix<const D: usize>(workspace: &mut Workspace<D>, wanted: bool, slope: &mut f64) -> bool {
+    workspace.mixing.note(&workspace.u, &workspace.step);
+    if !wanted || workspace.mixing.is_empty() {
         return false;
     }
-    room.trial.copy_from_slice(&room.step);
-    room.mixing.mix(&mut room.step);
-    Filter { free: &room.free, projectors: &room.projectors }.apply(&mut room.step);
-    for (s, p) in room.step.iter_mut().zip(&room.prescribed) {
+    workspace.trial.copy_from_slice(&workspace.step);
+    workspace.mixing.mix(&mut workspace.step);
+    Filter { free: &workspace.free, projectors: &workspace.projectors }.apply(&mut workspace.step);
+    for (s, p) in workspace.step.iter_mut().zip(&workspace.prescribed) {
         *s += p;
     }
-    let found = slope_along(room);
+    let found = slope_along(workspace);
     if found < 0.0 {
         *slope = found;
         return true;
     }
-    room.step.copy_from_slice(&room.trial);
+    workspace.step.copy_from_slice(&workspace.trial);
     false
 }
 
-fn full_step<const D: usize>(system: &mut System<D>, room: &mut Room<D>, balance: &Balance) -> Result<(), StepError> {
-    for (u, s) in room.u.iter_mut().zip(&room.step) {
+fn full_step<const D: usize>(
+    system: &mut System<D>,
+    workspace: &mut Workspace<D>,
+    balance: &Balance,
+) -> Result<(), StepError> {
+    for (u, s) in workspace.u.iter_mut().zip(&workspace.step) {
         *u += s;
     }
-    evaluate(system, room, balance, false)
+    evaluate(system, workspace, balance, false)
 }

@@ -26,7 +26,7 @@
 //! What pins hold does not count: their work is entered with the kinetic energy of held nodes.
 
 use super::balance::Balance;
-use super::room::Room;
+use super::workspace::Workspace;
 use opruga_core::system::{System, Work8};
 use opruga_math::WIDTH;
 
@@ -44,8 +44,8 @@ pub(super) fn add_given(work: &mut Work8, before: &[f64; WIDTH]) {
 }
 
 /// Takes v̄·J, before obstacles change velocities at the end of the step. What is out of balance is that of the stage.
-pub(super) fn take_impulses<const D: usize>(system: &mut System<D>, room: &mut Room<D>, balance: &Balance) {
-    let Room { v0, v1, held, mass, residual, trial: change, .. } = room;
+pub(super) fn take_impulses<const D: usize>(system: &mut System<D>, workspace: &mut Workspace<D>, balance: &Balance) {
+    let Workspace { v0, v1, held, mass, residual, trial: change, .. } = workspace;
     let span = balance.h * balance.impulse;
     if system.inertia.is_some() {
         // What pins hold has the velocity of the step throughout.

@@ -11,10 +11,10 @@ use super::direction::wanted_forces;
 use super::linear::{Filter, Mixture};
 use super::minimiser::Minimiser;
 use super::newton::Newton;
-use super::room::Room;
+use super::rigid_balance::settles;
 use super::settings::Settings;
 use super::stage::{evaluate, judge, look, potential, rounding_of_models};
-use super::whole::settles;
+use super::workspace::Workspace;
 use opruga_core::error::StepError;
 use opruga_core::integrator::HistorySize;
 use opruga_core::potential::Definiteness;
@@ -27,7 +27,7 @@ use opruga_solve::Indefinite;
 const LINEAR: f64 = 0.05;
 
 /// The part with which the matrix is made anew in the next step.
-const WORN: f64 = 0.2;
+const STALE: f64 = 0.2;
 
 /// The part that the linear solver leaves of bodies that are free or near obstacles; an iteration is enough with its square.
 const LOOSE: f64 = 1e-3;
@@ -76,15 +76,15 @@ fn is_loose<const D: usize>(system: &System<D>) -> bool {
     system.contacts.is_some() || system.pins.is_empty()
 }
 
-/// Where the body would come to under the acceleration of the last step, less x₀: in `room.u`.
-fn predict<const D: usize>(system: &System<D>, room: &mut Room<D>, theta: f64, h: f64) {
-    let last = system.history.numbers[room.own.numbers + 1];
+/// Where the body would come to under the acceleration of the last step, less x₀: in `workspace.u`.
+fn predict<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, theta: f64, h: f64) {
+    let last = system.history.numbers[workspace.own.numbers + 1];
     if last <= 0.0 || is_loose(system) {
         return;
     }
-    let before = &system.history.columns[room.own.columns + 1];
+    let before = &system.history.columns[workspace.own.columns + 1];
     let share = theta * theta * h * h / last;
-    let Room { u, held, v0, .. } = room;
+    let Workspace { u, held, v0, .. } = workspace;
     each_block(system.threads, D, [u], |first, [u]| {
         for (node, u) in (first / D..).zip(u.as_chunks_mut::<D>().0) {
             for d in 0..D {
@@ -98,21 +98,21 @@ fn predict<const D: usize>(system: &System<D>, room: &mut Room<D>, theta: f64, h
 }
 
 /// Keeps the velocities at the start of a step; nodes that met an obstacle go on as they do then.
-fn remember<const D: usize>(system: &mut System<D>, room: &Room<D>, h: f64) {
+fn remember<const D: usize>(system: &mut System<D>, workspace: &Workspace<D>, h: f64) {
     // The acceleration of an impact leads nowhere.
-    system.history.numbers[room.own.numbers + 1] = if room.struck.is_empty() { h } else { 0.0 };
-    let before = &mut system.history.columns[room.own.columns + 1];
+    system.history.numbers[workspace.own.numbers + 1] = if workspace.struck.is_empty() { h } else { 0.0 };
+    let before = &mut system.history.columns[workspace.own.columns + 1];
     let columns = before.0.each_mut().map(|column| &mut column[..system.nodes]);
     each_block(system.threads, 1, columns, |first, columns| {
         for (d, column) in columns.into_iter().enumerate() {
             for (node, before) in (first..).zip(column) {
-                *before = room.v0[node * D + d];
+                *before = workspace.v0[node * D + d];
             }
         }
     });
-    for contact in &room.contacting.contacts {
+    for contact in &workspace.contacting.contacts {
         for d in 0..D {
-            before.0[d][contact.node] = room.v1[contact.node * D + d];
+            before.0[d][contact.node] = workspace.v1[contact.node * D + d];
         }
     }
 }
@@ -132,7 +132,7 @@ impl Task<'_> {
             beta: self.balance.beta,
             load: 1.0,
             mass,
-            stage: Room::<D>::STAGE,
+            stage: Workspace::<D>::STAGE,
             time: self.balance.time,
             keep: Definiteness::Clamped,
             matrix_free: false,
@@ -140,42 +140,52 @@ impl Task<'_> {
     }
 
     /// Makes the matrix of the reference shape, which was evaluated last.
-    fn make<const D: usize>(&self, system: &System<D>, room: &mut Room<D>) {
-        let kind = system.history.numbers[room.own.numbers];
-        let Room { kept, linear, mass, own, .. } = room;
+    fn make<const D: usize>(&self, system: &System<D>, workspace: &mut Workspace<D>) {
+        let kind = system.history.numbers[workspace.own.numbers];
+        let Workspace { reused, linear, mass, own, .. } = workspace;
         let mixture = self.mixture(system, mass);
-        kept.make(linear, &mixture, raised(kind), &system.history.columns[own.columns]);
+        reused.make(linear, &mixture, raised(kind), &system.history.columns[own.columns]);
     }
 
     /// Makes the matrix of the present shape, which becomes the reference.
-    fn make_here<const D: usize>(&self, system: &mut System<D>, room: &mut Room<D>, kind: f64) {
+    fn make_here<const D: usize>(&self, system: &mut System<D>, workspace: &mut Workspace<D>, kind: f64) {
         let System { history, state, nodes, .. } = system;
-        history.numbers[room.own.numbers] = kind;
-        for (own, column) in history.columns[room.own.columns].0.iter_mut().zip(&state.work[0][0].0) {
+        history.numbers[workspace.own.numbers] = kind;
+        for (own, column) in history.columns[workspace.own.columns].0.iter_mut().zip(&state.work[0][0].0) {
             own[..*nodes].copy_from_slice(&column[..*nodes]);
         }
-        self.make(system, room);
+        self.make(system, workspace);
     }
 
     /// Makes the matrix of the reference shape that the state remembers, if it is not at hand; none where there is none.
-    fn recall<const D: usize>(&self, system: &mut System<D>, room: &mut Room<D>) -> Result<bool, StepError> {
-        let kind = system.history.numbers[room.own.numbers];
+    fn recall<const D: usize>(&self, system: &mut System<D>, workspace: &mut Workspace<D>) -> Result<bool, StepError> {
+        let kind = system.history.numbers[workspace.own.numbers];
         if kind <= 0.0 || is_loose(system) || !system.hessian_is_of_positions() {
             return Ok(false);
         }
-        let mixture = self.mixture(system, &room.mass);
-        if !room.kept.is_of(&system.history.columns[room.own.columns], &mixture, raised(kind)) {
+        let mixture = self.mixture(system, &workspace.mass);
+        if !workspace.reused.is_of(&system.history.columns[workspace.own.columns], &mixture, raised(kind)) {
             let (nodes, places) = (system.nodes, system.places());
             let System { history, state, .. } = system;
-            for (to, from) in state.work[0][0].0.iter_mut().zip(&history.columns[room.own.columns].0) {
+            for (to, from) in state.work[0][0].0.iter_mut().zip(&history.columns[workspace.own.columns].0) {
                 for place in 0..places {
                     to[place] = from[place.min(nodes - 1)];
                 }
             }
-            system.evaluate(Room::<D>::STAGE, self.balance.time, 0.0, &mut room.force)?;
-            self.make(system, room);
+            system.evaluate(Workspace::<D>::STAGE, self.balance.time, 0.0, &mut workspace.force)?;
+            self.make(system, workspace);
         }
         Ok(true)
+    }
+
+    /// Begins with the matrix that the state remembers, or with one of the shape at the start.
+    fn begin<const D: usize>(&self, system: &mut System<D>, workspace: &mut Workspace<D>) -> Result<(), StepError> {
+        let recalled = self.recall(system, workspace)?;
+        evaluate(system, workspace, self.balance, false)?;
+        if !recalled {
+            self.make_here(system, workspace, CLAMPED);
+        }
+        Ok(())
     }
 
     /// What is out of balance in the free directions, friction and what is prescribed included, as the right-hand side; gives
@@ -183,48 +193,50 @@ impl Task<'_> {
     fn out_of_balance<const D: usize>(
         &self,
         system: &System<D>,
-        room: &mut Room<D>,
+        workspace: &mut Workspace<D>,
         moves: bool,
     ) -> Result<f64, Indefinite> {
-        let Room { kept, linear, mass, free, projectors, residual, right, trial, prescribed, contacting, .. } = room;
+        let Workspace {
+            reused, linear, mass, free, projectors, residual, right, trial, prescribed, contacting, ..
+        } = workspace;
         let mixture = self.mixture(system, mass);
-        let ways = moves.then_some(&**prescribed);
-        wanted_forces(system.threads, &mixture, linear, contacting, residual, ways, [trial, &mut *right]);
+        let displacements = moves.then_some(&**prescribed);
+        wanted_forces(system.threads, &mixture, linear, contacting, residual, displacements, [trial, &mut *right]);
         let filter = Filter { free, projectors };
         each_block(system.threads, D, [&mut *right], |first, [right]| filter.apply_from(first / D, right));
-        kept.hold(system.threads, linear, &filter, self.direct)?;
-        Ok(kept.begin(system, right))
+        reused.hold(system.threads, linear, &filter, self.direct)?;
+        Ok(reused.begin(system, right))
     }
 
     /// Solves for the step of an iteration, if need be with another matrix; gives the products, and whether that worked.
     fn direction<const D: usize>(
         &self,
         system: &mut System<D>,
-        room: &mut Room<D>,
+        workspace: &mut Workspace<D>,
         moves: bool,
         goal: f64,
     ) -> (u32, bool) {
         let mut spent = 0;
         loop {
-            let Room { kept, right, step, .. } = &mut *room;
-            match kept.solve(system, right, self.direct, goal, PRODUCTS, step) {
+            let Workspace { reused, right, step, .. } = &mut *workspace;
+            match reused.solve(system, right, self.direct, goal, PRODUCTS, step) {
                 Ok((products, indefinite)) => {
                     if indefinite {
                         // What was found leads downhill; the next matrix is another one.
-                        system.history.numbers[room.own.numbers] = -CLAMPED;
+                        system.history.numbers[workspace.own.numbers] = -CLAMPED;
                     }
                     return (spent + products, true);
                 }
                 Err(Indefinite) => {
                     spent += 1;
                     // Directions without any stiffness, or a gas that pushes.
-                    let kind = system.history.numbers[room.own.numbers].abs();
+                    let kind = system.history.numbers[workspace.own.numbers].abs();
                     if kind >= MOST_RAISED {
                         return (spent, false);
                     }
-                    self.make_here(system, room, kind + 1.0);
-                    if self.out_of_balance(system, room, moves).is_err() {
-                        room.kept.forget_right_hand_side();
+                    self.make_here(system, workspace, kind + 1.0);
+                    if self.out_of_balance(system, workspace, moves).is_err() {
+                        workspace.reused.forget_right_hand_side();
                     }
                 }
             }
@@ -243,28 +255,37 @@ impl Task<'_> {
 pub(crate) struct RealTime(pub(crate) Settings);
 
 impl<const D: usize> Minimiser<D> for RealTime {
-    fn minimise(&self, system: &mut System<D>, room: &mut Room<D>, balance: &Balance) -> Result<Solved, StepError> {
+    fn minimise(
+        &self,
+        system: &mut System<D>,
+        workspace: &mut Workspace<D>,
+        balance: &Balance,
+    ) -> Result<Solved, StepError> {
         let settings = &self.0;
         let (cut_off, left) = (system.work.solver.cut_off, system.work.solver.left);
-        let outcome = iterate(system, room, balance, settings);
+        let outcome = iterate(system, workspace, balance, settings);
         let spent = match &outcome {
-            Ok((solved, Trust::Whole)) => return Ok(*solved),
-            Ok((solved, Trust::IfNoGain)) if !has_risen(system, room, balance)? => {
+            Ok((solved, Trust::Always)) => return Ok(*solved),
+            Ok((solved, Trust::IfNoGain)) if !has_risen(system, workspace, balance)? => {
                 return Ok(Solved { doubtful: true, ..*solved });
             }
-            Ok((solved, Trust::IfDownhill)) if !has_risen(system, room, balance)? => return Ok(*solved),
+            Ok((solved, Trust::IfDownhill)) if !has_risen(system, workspace, balance)? => return Ok(*solved),
             Ok((solved, _)) => *solved,
             // A law that has no meaning where the iteration led to.
             Err(StepError::Model { .. }) => Solved::default(),
             Err(_) => return outcome.map(|(solved, _)| solved),
         };
         (system.work.solver.cut_off, system.work.solver.left) = (cut_off, left);
-        distrust(system, room);
-        room.contacting.clear(system.nodes);
-        for k in 0..room.u.len() {
-            room.u[k] = if room.held[k].is_nan() { balance.theta * balance.h * room.v0[k] } else { room.held[k] };
+        mark_stale(system, workspace);
+        workspace.contacting.clear(system.nodes);
+        for k in 0..workspace.u.len() {
+            workspace.u[k] = if workspace.held[k].is_nan() {
+                balance.theta * balance.h * workspace.v0[k]
+            } else {
+                workspace.held[k]
+            };
         }
-        let mut solved = Newton(exactly(settings)).minimise(system, room, balance)?;
+        let mut solved = Newton(exactly(settings)).minimise(system, workspace, balance)?;
         solved.iterations += spent.iterations;
         solved.products += spent.products;
         Ok(solved)
@@ -272,14 +293,14 @@ impl<const D: usize> Minimiser<D> for RealTime {
     fn history(&self) -> HistorySize {
         HistorySize { columns: COLUMNS, numbers: NUMBERS }
     }
-    fn predict(&self, system: &System<D>, room: &mut Room<D>, balance: &Balance) {
-        predict(system, room, balance.theta, balance.h);
+    fn predict(&self, system: &System<D>, workspace: &mut Workspace<D>, balance: &Balance) {
+        predict(system, workspace, balance.theta, balance.h);
     }
-    fn discard(&self, system: &mut System<D>, room: &Room<D>) {
-        distrust(system, room);
+    fn discard(&self, system: &mut System<D>, workspace: &Workspace<D>) {
+        mark_stale(system, workspace);
     }
-    fn remember(&self, system: &mut System<D>, room: &Room<D>, h: f64) {
-        remember(system, room, h);
+    fn remember(&self, system: &mut System<D>, workspace: &Workspace<D>, h: f64) {
+        remember(system, workspace, h);
     }
     /// In real time nobody waits for another setting.
     fn always_halves(&self) -> bool {
@@ -299,27 +320,31 @@ pub(crate) fn exactly(settings: &Settings) -> Settings {
 }
 
 /// Lets the next step make its matrix anew.
-fn distrust<const D: usize>(system: &mut System<D>, room: &Room<D>) {
-    let kind = &mut system.history.numbers[room.own.numbers];
+fn mark_stale<const D: usize>(system: &mut System<D>, workspace: &Workspace<D>) {
+    let kind = &mut system.history.numbers[workspace.own.numbers];
     *kind = if *kind > 0.0 { -CLAMPED } else { *kind };
 }
 
 /// Whether the incremental potential of what was found is above that of the body where it was, but for what is held; not a number
 /// counts as above, and so does what forces without a potential may have done.
-fn has_risen<const D: usize>(system: &mut System<D>, room: &mut Room<D>, balance: &Balance) -> Result<bool, StepError> {
-    let Some((after, size)) = potential(system, room, balance, false) else { return Ok(true) };
+fn has_risen<const D: usize>(
+    system: &mut System<D>,
+    workspace: &mut Workspace<D>,
+    balance: &Balance,
+) -> Result<bool, StepError> {
+    let Some((after, size)) = potential(system, workspace, balance, false) else { return Ok(true) };
     if !after.is_finite() {
         return Ok(true);
     }
-    for k in 0..room.u.len() {
-        room.trial[k] = if room.held[k].is_nan() { 0.0 } else { room.held[k] };
+    for k in 0..workspace.u.len() {
+        workspace.trial[k] = if workspace.held[k].is_nan() { 0.0 } else { workspace.held[k] };
     }
     // Where a body stood where its law has no meaning there is nothing to compare with.
-    let before = match evaluate(system, room, balance, true) {
-        Ok(()) => potential(system, room, balance, true),
+    let before = match evaluate(system, workspace, balance, true) {
+        Ok(()) => potential(system, workspace, balance, true),
         Err(_) => None,
     };
-    evaluate(system, room, balance, false)?;
+    evaluate(system, workspace, balance, false)?;
     Ok(!before.is_some_and(|(before, parts)| after - before <= RISE * (size + parts) + rounding_of_models(system)))
 }
 
@@ -327,7 +352,7 @@ fn has_risen<const D: usize>(system: &mut System<D>, room: &mut Room<D>, balance
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Trust {
     /// It does.
-    Whole,
+    Always,
     /// It does unless the incremental potential has risen.
     IfDownhill,
     /// It does unless the body has more energy at the end of the step than before.
@@ -337,31 +362,32 @@ enum Trust {
 }
 
 /// Whether the matrix is factored: found out once, and again where the scene asks for another solver.
-fn is_direct<const D: usize>(system: &System<D>, room: &mut Room<D>, settings: &Settings) -> bool {
-    let direct = match room.direct {
+fn is_direct<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, settings: &Settings) -> bool {
+    let direct = match workspace.direct {
         Some((solver, direct)) if solver == settings.solver => direct,
         _ => settings.solver.is_direct_in_real_time(system),
     };
-    room.direct = Some((settings.solver, direct));
+    workspace.direct = Some((settings.solver, direct));
     direct
+}
+
+/// The parts of what is out of balance that an iteration is good enough with, and that the linear solver may leave.
+fn aims<const D: usize>(system: &System<D>, settings: &Settings) -> (f64, f64) {
+    let aim = settings.leaves[0];
+    if is_loose(system) { (LOOSE * LOOSE, LOOSE) } else { (aim, LINEAR.smaller(0.5 * aim)) }
 }
 
 /// Three iterations, or as many as the scene says, and whether what they leave may count.
 fn iterate<const D: usize>(
     system: &mut System<D>,
-    room: &mut Room<D>,
+    workspace: &mut Workspace<D>,
     balance: &Balance,
     settings: &Settings,
 ) -> Result<(Solved, Trust), StepError> {
-    let task = Task { balance, direct: is_direct(system, room, settings) };
-    room.rigid.begin();
+    let task = Task { balance, direct: is_direct(system, workspace, settings) };
+    workspace.rigid.begin();
     let mut solved = Solved { converged: true, ..Solved::default() };
-    // Whether the matrix is of this step.
-    let fresh = !task.recall(system, room)?;
-    evaluate(system, room, balance, false)?;
-    if fresh {
-        task.make_here(system, room, CLAMPED);
-    }
+    task.begin(system, workspace)?;
     let (mut first, mut undecided, mut slow, mut remade) = (0.0, false, false, false);
     loop {
         system.go_on()?;
@@ -369,45 +395,43 @@ fn iterate<const D: usize>(
         // Which nodes are held, and how far they have to go.
         let mut moves = false;
         if !last {
-            undecided |= look(system, room, balance, false);
-            let Room { contacting, u, held, x0, free, projectors, prescribed, .. } = &mut *room;
+            undecided |= look(system, workspace, balance, false);
+            let Workspace { contacting, u, held, x0, free, projectors, prescribed, .. } = &mut *workspace;
             moves = contacting.hold(u, balance.theta, held, x0, free, projectors, prescribed) > 0.0;
         }
-        let mut size = task.out_of_balance(system, room, moves).unwrap_or(f64::NAN);
+        let mut size = task.out_of_balance(system, workspace, moves).unwrap_or(f64::NAN);
         if solved.iterations == 0 {
             first = size;
         }
-        let floor = NOTHING * room.extent * room.kept.stiffness().sqrt();
+        let floor = NOTHING * workspace.extent * workspace.reused.stiffness().sqrt();
         let settled = !undecided && !moves;
-        let [aim, most] = settings.leaves;
-        let held = (aim, LINEAR.smaller(0.5 * aim));
-        let (enough, linear) = if is_loose(system) { (LOOSE * LOOSE, LOOSE) } else { held };
+        let (enough, linear) = aims(system, settings);
         let enough = if solved.iterations > 0 { (enough * first).larger(floor) } else { floor };
         if last || settled && size <= enough {
-            let end = End { size, first, floor, most, slow, remade };
-            return conclude(system, room, balance, settings, solved, &end);
+            let end = End { size, first, floor, most: settings.leaves[1], slow, remade };
+            return conclude(system, workspace, balance, settings, solved, &end);
         }
-        if solved.iterations > 0 && (is_loose(system) || size > WORN * first) {
+        if solved.iterations > 0 && (is_loose(system) || size > STALE * first) {
             // The matrix of another shape does not lead there.
             remade = true;
-            task.make_here(system, room, CLAMPED);
-            size = task.out_of_balance(system, room, moves).unwrap_or(f64::NAN);
+            task.make_here(system, workspace, CLAMPED);
+            size = task.out_of_balance(system, workspace, moves).unwrap_or(f64::NAN);
         }
         if size.is_nan() {
-            room.kept.forget_right_hand_side();
+            workspace.reused.forget_right_hand_side();
         }
         solved.iterations += 1;
-        let (products, found) = task.direction(system, room, moves, (linear * first).larger(floor));
+        let (products, found) = task.direction(system, workspace, moves, (linear * first).larger(floor));
         solved.products += products;
         slow |= products > MANY_PRODUCTS;
         if !found {
             solved.converged = false;
             return Ok((solved, Trust::None));
         }
-        go(system, room, &task, moves, &mut solved)?;
+        go(system, workspace, &task, moves, &mut solved)?;
         undecided = false;
         if system.contacts.is_some() {
-            let verdict = judge(system, room, balance, settings, 0.0, false);
+            let verdict = judge(system, workspace, balance, settings, 0.0, false);
             undecided = verdict.anew || verdict.unsettled;
         }
     }
@@ -430,47 +454,49 @@ struct End {
 /// Ends the iterations of a step: counts what they leave, and says whether it may count.
 fn conclude<const D: usize>(
     system: &mut System<D>,
-    room: &mut Room<D>,
+    workspace: &mut Workspace<D>,
     balance: &Balance,
     settings: &Settings,
     mut solved: Solved,
     end: &End,
 ) -> Result<(Solved, Trust), StepError> {
     let End { size, first, floor, most, slow, remade } = *end;
-    let number = room.own.numbers;
-    if size > (WORN * first).larger(floor) && system.history.numbers[number] > 0.0 {
+    let number = workspace.own.numbers;
+    if size > (STALE * first).larger(floor) && system.history.numbers[number] > 0.0 {
         system.history.numbers[number] = -CLAMPED;
     }
     let as_promised = size <= (most * first).larger(floor);
     if slow || !as_promised {
-        let left = size / room.kept.stiffness().sqrt();
+        let left = size / workspace.reused.stiffness().sqrt();
         let work = &mut system.work.solver;
         work.cut_off += 1;
         work.left = left.larger(work.left);
     }
     // A part of what was torn at first is still torn; what is no number is not short.
-    let short = solved.correction <= SHORT * room.extent;
+    let short = solved.correction <= SHORT * workspace.extent;
     let trust = match (is_loose(system), as_promised) {
         (true, _) if !short => Trust::None,
-        (true, _) if room.contacting.any() => Trust::IfNoGain,
-        (false, true) if !remade && short => Trust::Whole,
+        (true, _) if workspace.contacting.any() => Trust::IfNoGain,
+        (false, true) if !remade && short => Trust::Always,
         _ => Trust::IfDownhill,
     };
     // What moves no node against the stiffness of the others may move them all together.
-    let trust = if settles(system, room, balance, settings, [NOTHING, LOOSE * LOOSE])? { trust } else { Trust::None };
-    solved.conditioning = room.rigid.conditioning;
+    let trust =
+        if settles(system, workspace, balance, settings, [NOTHING, LOOSE * LOOSE])? { trust } else { Trust::None };
+    solved.conditioning = workspace.rigid.conditioning;
     Ok((solved, trust))
 }
 
-/// Goes the step that was found, and what is prescribed; `room.reaction` is then what the constraints take.
+/// Goes the step that was found, and what is prescribed; `workspace.reaction` is then what the constraints take.
 fn go<const D: usize>(
     system: &mut System<D>,
-    room: &mut Room<D>,
+    workspace: &mut Workspace<D>,
     task: &Task<'_>,
     moves: bool,
     solved: &mut Solved,
 ) -> Result<(), StepError> {
-    let Room { linear, mass, free, projectors, residual, reaction, step, prescribed, contacting, u, .. } = &mut *room;
+    let Workspace { linear, mass, free, projectors, residual, reaction, step, prescribed, contacting, u, .. } =
+        &mut *workspace;
     let filter = Filter { free, projectors };
     each_block(system.threads, D, [step], |first, [step]| filter.apply_from(first / D, step));
     if moves {
@@ -495,5 +521,5 @@ fn go<const D: usize>(
             *u += s;
         }
     });
-    evaluate(system, room, task.balance, false)
+    evaluate(system, workspace, task.balance, false)
 }

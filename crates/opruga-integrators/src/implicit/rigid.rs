@@ -80,21 +80,21 @@ impl<const D: usize> Motion<D> {
     const NONE: Motion<D> = Motion { translation: [0.0; D], rotation: [0.0; 3] };
 
     /// What it moves a node by that is so far from the centre.
-    fn way(&self, arm: &[f64; D]) -> [f64; D] {
+    fn displacement(&self, arm: &[f64; D]) -> [f64; D] {
         let turned = cross(&self.rotation, arm);
         core::array::from_fn(|d| self.translation[d] + turned[d])
     }
     /// The same of a finite turn: R − 1 = α (ω× + ½ ω×ω×), α = 1/(1 + ¼ω²), about the axis that the motion leaves in place, and
     /// straight on along that.
     fn finite_way(&self, arm: &[f64; D]) -> [f64; D] {
-        let (way, turn) = (self.way(arm), &self.rotation);
-        let again = cross(turn, &way);
+        let (displacement, turn) = (self.displacement(arm), &self.rotation);
+        let again = cross(turn, &displacement);
         let square: f64 = turn.iter().map(|w| w * w).sum();
         let along: f64 = if D == 2 { 0.0 } else { (0..D).map(|d| turn[d] * self.translation[d]).sum() };
         let alpha = 1.0 / (1.0 + 0.25 * square);
         core::array::from_fn(|d| {
             let screw = if D == 2 { 0.0 } else { 0.25 * along * turn[d] };
-            alpha * (way[d] + 0.5 * again[d] + screw)
+            alpha * (displacement[d] + 0.5 * again[d] + screw)
         })
     }
     fn add(&mut self, share: f64, other: &Motion<D>) {
@@ -170,16 +170,16 @@ impl<const D: usize> Rigid<D> {
             );
         }
         self.pieces.clear();
-        let mut ways = vec![[0.0; D]; mixture.mass.len() * MOST];
+        let mut displacements = vec![[0.0; D]; mixture.mass.len() * MOST];
         let mut owner = vec![0; mixture.mass.len()];
         for (number, nodes) in self.nodes.iter().enumerate() {
             let piece = Piece::free(nodes, mixture, x0, u, filter);
             for node in nodes {
                 owner[*node] = number;
                 for (p, motion) in piece.motions.iter().enumerate() {
-                    let way = motion.way(&arm(x0, u, *node, &piece.center));
-                    ways[node * MOST + p] =
-                        if filter.free[*node] { way } else { times(&filter.projectors[*node], &way) };
+                    let displacement = motion.displacement(&arm(x0, u, *node, &piece.center));
+                    displacements[node * MOST + p] =
+                        if filter.free[*node] { displacement } else { times(&filter.projectors[*node], &displacement) };
                 }
             }
             self.pieces.push(piece);
@@ -187,7 +187,7 @@ impl<const D: usize> Rigid<D> {
         let mut sink = Resistance {
             factor: 1.0,
             owner: &owner,
-            ways: &ways,
+            displacements: &displacements,
             of: vec![[[[0.0; 2]; MOST]; MOST]; self.pieces.len()],
         };
         let (system, view) = (mixture.system, mixture.system.view(mixture.stage, mixture.system.time + mixture.time));
@@ -222,8 +222,8 @@ impl<const D: usize> Rigid<D> {
     pub(super) fn residual(&self, stage: &Stage<'_, D>) -> Vec<f64> {
         let Stage { mixture, u, y, filter, contacting, .. } = stage;
         let system = mixture.system;
-        let way: Vec<f64> = u.iter().zip(*y).map(|(u, y)| u - y).collect();
-        let mut out = momenta::<D>(mixture.mass, system.inertia.as_ref(), &way);
+        let displacement: Vec<f64> = u.iter().zip(*y).map(|(u, y)| u - y).collect();
+        let mut out = momenta::<D>(mixture.mass, system.inertia.as_ref(), &displacement);
         let view = system.view(mixture.stage, system.time + mixture.time);
         let mut force = vec![[0.0; D]; mixture.mass.len()];
         for (node, force) in force.iter_mut().enumerate() {
@@ -252,8 +252,8 @@ impl<const D: usize> Rigid<D> {
             for motion in &piece.motions {
                 let mut sum = Sum::default();
                 for node in nodes {
-                    let way = motion.way(&arm(x0, u, *node, &piece.center));
-                    (0..D).for_each(|d| sum.add(way[d] * force[node * D + d]));
+                    let displacement = motion.displacement(&arm(x0, u, *node, &piece.center));
+                    (0..D).for_each(|d| sum.add(displacement[d] * force[node * D + d]));
                 }
                 out.push(sum.value());
             }
@@ -286,12 +286,12 @@ impl<const D: usize> Rigid<D> {
     }
 
     /// The finite ways of all nodes by shares of the motions.
-    pub(super) fn finite_ways(&self, x0: &[f64], u: &[f64], shares: &[f64], out: &mut [f64]) {
+    pub(super) fn finite_displacements(&self, x0: &[f64], u: &[f64], shares: &[f64], out: &mut [f64]) {
         out.fill(0.0);
         for ((motion, piece), nodes) in self.motions(shares).iter().zip(&self.pieces).zip(&self.nodes) {
             for node in nodes {
-                let way = motion.finite_way(&arm(x0, u, *node, &piece.center));
-                out[node * D..][..D].copy_from_slice(&way);
+                let displacement = motion.finite_way(&arm(x0, u, *node, &piece.center));
+                out[node * D..][..D].copy_from_slice(&displacement);
             }
         }
     }
@@ -309,10 +309,11 @@ impl<const D: usize> Rigid<D> {
         for (((found, wanted), piece), nodes) in motions.zip(&self.pieces).zip(&self.nodes) {
             for node in nodes {
                 let arm = arm(x0, u, *node, &piece.center);
-                let (from, to) = (found.way(&arm), wanted.finite_way(&arm));
-                let way = core::array::from_fn(|d| to[d] - from[d]);
-                let way = if filter.free[*node] { way } else { times(&filter.projectors[*node], &way) };
-                (0..D).for_each(|d| step[node * D + d] += way[d]);
+                let (from, to) = (found.displacement(&arm), wanted.finite_way(&arm));
+                let displacement = core::array::from_fn(|d| to[d] - from[d]);
+                let displacement =
+                    if filter.free[*node] { displacement } else { times(&filter.projectors[*node], &displacement) };
+                (0..D).for_each(|d| step[node * D + d] += displacement[d]);
             }
         }
     }
@@ -370,12 +371,15 @@ impl<const D: usize> Piece<D> {
         let product = |a: &Motion<D>, b: &Motion<D>| {
             let mut sum = Sum::default();
             for node in nodes {
-                let (way, mut moved) = (a.way(&arms(*node)), b.way(&arms(*node)).map(|way| mass[*node] * way));
+                let (displacement, mut moved) = (
+                    a.displacement(&arms(*node)),
+                    b.displacement(&arms(*node)).map(|displacement| mass[*node] * displacement),
+                );
                 for (other, mass) in inertia.iter().flat_map(|inertia| inertia.row(*node)) {
-                    let beside = b.way(&arms(other));
+                    let beside = b.displacement(&arms(other));
                     (0..D).for_each(|d| moved[d] += mass * beside[d]);
                 }
-                (0..D).for_each(|d| sum.add(way[d] * moved[d]));
+                (0..D).for_each(|d| sum.add(displacement[d] * moved[d]));
             }
             sum.value()
         };
@@ -419,16 +423,16 @@ fn unheld<const D: usize>(
         (rest, size)
     };
     for node in nodes.iter().filter(|node| !filter.free[**node]) {
-        let ways: Vec<[f64; D]> = all
+        let displacements: Vec<[f64; D]> = all
             .iter()
             .map(|motion| {
-                let way = motion.way(&arm(*node));
-                let free = times(&filter.projectors[*node], &way);
-                core::array::from_fn(|d| way[d] - free[d])
+                let displacement = motion.displacement(&arm(*node));
+                let free = times(&filter.projectors[*node], &displacement);
+                core::array::from_fn(|d| displacement[d] - free[d])
             })
             .collect();
         for d in 0..D {
-            let row: Vec<f64> = ways.iter().map(|way| way[d]).collect();
+            let row: Vec<f64> = displacements.iter().map(|displacement| displacement[d]).collect();
             let whole = row.iter().map(|x| x * x).sum::<f64>().sqrt();
             let (rest, size) = reduced(&row, &rows);
             if size > SAME && size > SAME * whole && rows.len() < n {
@@ -465,7 +469,7 @@ fn unheld<const D: usize>(
 struct Resistance<'a, const D: usize> {
     factor: f64,
     owner: &'a [usize],
-    ways: &'a [[f64; D]],
+    displacements: &'a [[f64; D]],
     of: Vec<[[[f64; 2]; MOST]; MOST]>,
 }
 
@@ -473,13 +477,13 @@ impl<const D: usize> Sink<D> for Resistance<'_, D> {
     fn block(&mut self, a: usize, b: usize, value: Block<D>) {
         let out = &mut self.of[self.owner[a]];
         for q in 0..MOST {
-            let way = &self.ways[b * MOST + q];
-            let pulled = times(&value, way);
-            let most: [f64; D] = core::array::from_fn(|i| (0..D).map(|j| (value[i][j] * way[j]).abs()).sum());
+            let displacement = &self.displacements[b * MOST + q];
+            let pulled = times(&value, displacement);
+            let most: [f64; D] = core::array::from_fn(|i| (0..D).map(|j| (value[i][j] * displacement[j]).abs()).sum());
             for p in 0..MOST {
-                let way = &self.ways[a * MOST + p];
-                out[p][q][0] += self.factor * along(way, &pulled);
-                out[p][q][1] += self.factor * (0..D).map(|i| way[i].abs() * most[i]).sum::<f64>();
+                let displacement = &self.displacements[a * MOST + p];
+                out[p][q][0] += self.factor * along(displacement, &pulled);
+                out[p][q][1] += self.factor * (0..D).map(|i| displacement[i].abs() * most[i]).sum::<f64>();
             }
         }
     }
@@ -489,7 +493,7 @@ impl<const D: usize> Sink<D> for Resistance<'_, D> {
         let (mut sums, mut sizes) = ([0.0; MOST], [0.0; MOST]);
         for (place, entry) in u {
             for p in 0..MOST {
-                let part = along(entry, &self.ways[place * MOST + p]);
+                let part = along(entry, &self.displacements[place * MOST + p]);
                 sums[p] += part;
                 sizes[p] += part.abs();
             }

@@ -2,9 +2,9 @@
 
 use super::balance::Balance;
 use super::linear::{Filter, LINEAR_TOLERANCE, Linear, Mixture};
-use super::room::Room;
 use super::settings::Settings;
 use super::stage::{evaluate, longest, mixture};
+use super::workspace::Workspace;
 use opruga_core::error::StepError;
 use opruga_core::potential::Definiteness;
 use opruga_core::system::System;
@@ -16,7 +16,7 @@ const ROUNDING: f64 = 4e-15;
 
 /// What another iteration would move nodes by is made smaller, and told, from these parts of the extent on.
 const LEFT: f64 = 1e-8;
-const BLURRED: f64 = 1e-7;
+const VISIBLE: f64 = 1e-7;
 
 /// The part of the loads that statics may leave out of balance.
 const UNCARRIED: f64 = 1e-2;
@@ -33,46 +33,46 @@ const MOST_ROUNDS: usize = 8;
 /// Whether what is out of balance is no more than the rounding of the forces.
 pub(super) fn at_rounding<const D: usize>(
     system: &System<D>,
-    room: &mut Room<D>,
+    workspace: &mut Workspace<D>,
     balance: &Balance,
     settings: &Settings,
     size: f64,
 ) -> bool {
-    take_residual(room);
-    let mixture = mixture(system, &room.mass, balance, Definiteness::Exact, settings);
-    room.right.as_chunks::<D>().0.iter().enumerate().all(|(node, rest)| {
-        let floor = floor(&room.linear, &mixture, node, size);
+    take_residual(workspace);
+    let mixture = mixture(system, &workspace.mass, balance, Definiteness::Exact, settings);
+    workspace.right.as_chunks::<D>().0.iter().enumerate().all(|(node, rest)| {
+        let floor = floor(&workspace.linear, &mixture, node, size);
         rest.iter().all(|r| r.abs() <= floor)
     })
 }
 
 /// Goes on in statics as long as what is out of balance, though it is as small as rounding, would still visibly move a node, and every
 /// further correction halves that: little of a stout body, and much of one that is stiff along and soft across. Gives how far it would
-/// move one in the end [m]; zero where that is not seen. After [`at_rounding`], which leaves what is out of balance in `room.right`.
+/// move one in the end [m]; zero where that is not seen. After [`at_rounding`], which leaves what is out of balance in `workspace.right`.
 pub(super) fn settle<const D: usize>(
     system: &mut System<D>,
-    room: &mut Room<D>,
+    workspace: &mut Workspace<D>,
     balance: &Balance,
     settings: &Settings,
 ) -> Result<f64, StepError> {
     if balance.sigma != 0.0 {
         return Ok(0.0);
     }
-    let Some(mut left) = correction(system, room, balance, settings) else { return Ok(0.0) };
+    let Some(mut left) = correction(system, workspace, balance, settings) else { return Ok(0.0) };
     for _ in 0..MOST_ROUNDS {
-        if left <= LEFT * room.extent {
+        if left <= LEFT * workspace.extent {
             return Ok(0.0);
         }
-        room.trial.copy_from_slice(&room.u);
-        for (u, step) in room.u.iter_mut().zip(&room.step) {
+        workspace.trial.copy_from_slice(&workspace.u);
+        for (u, step) in workspace.u.iter_mut().zip(&workspace.step) {
             *u -= step;
         }
-        evaluate(system, room, balance, false)?;
-        take_residual(room);
-        let next = correction(system, room, balance, settings).filter(|next| *next < left);
+        evaluate(system, workspace, balance, false)?;
+        take_residual(workspace);
+        let next = correction(system, workspace, balance, settings).filter(|next| *next < left);
         let Some(next) = next else {
-            room.u.copy_from_slice(&room.trial);
-            evaluate(system, room, balance, false)?;
+            workspace.u.copy_from_slice(&workspace.trial);
+            evaluate(system, workspace, balance, false)?;
             break;
         };
         let halved = next <= 0.5 * left;
@@ -81,30 +81,30 @@ pub(super) fn settle<const D: usize>(
             break;
         }
     }
-    Ok(visible(left, room.extent))
+    Ok(visible(left, workspace.extent))
 }
 
 /// A way that is seen in a body of an extent, or zero.
-pub(super) fn visible(way: f64, extent: f64) -> f64 {
-    if way > BLURRED * extent { way } else { 0.0 }
+pub(super) fn visible(displacement: f64, extent: f64) -> f64 {
+    if displacement > VISIBLE * extent { displacement } else { 0.0 }
 }
 
 /// Whether what statics leaves out of balance is a small part of the loads. Where it is not it may be rounding, which far from the
 /// origin is as large as they are: further iterations average it out, or [`settle`] what is left.
-pub(super) fn carries<const D: usize>(system: &mut System<D>, room: &mut Room<D>, balance: &Balance) -> bool {
+pub(super) fn carries<const D: usize>(system: &mut System<D>, workspace: &mut Workspace<D>, balance: &Balance) -> bool {
     if balance.sigma != 0.0 {
         return true;
     }
-    let loads = loads(system, room, balance);
-    take_residual(room);
-    loads == 0.0 || dot(&room.right, &room.right).sqrt() <= UNCARRIED * loads
+    let loads = loads(system, workspace, balance);
+    take_residual(workspace);
+    loads == 0.0 || dot(&workspace.right, &workspace.right).sqrt() <= UNCARRIED * loads
 }
 
 /// Whether statics leaves the loads themselves out of balance: rounding goes this way and that, and not along them.
-fn leaves<const D: usize>(room: &mut Room<D>, loads: f64) -> bool {
-    take_residual(room);
-    let nodes = room.right.as_chunks::<D>().0.iter().enumerate();
-    let along: f64 = nodes.map(|(node, rest)| dot(rest, &room.outer.at(node))).sum();
+fn leaves<const D: usize>(workspace: &mut Workspace<D>, loads: f64) -> bool {
+    take_residual(workspace);
+    let nodes = workspace.right.as_chunks::<D>().0.iter().enumerate();
+    let along: f64 = nodes.map(|(node, rest)| dot(rest, &workspace.outer.at(node))).sum();
     along.abs() > UNCARRIED * loads * loads
 }
 
@@ -112,7 +112,7 @@ fn leaves<const D: usize>(room: &mut Room<D>, loads: f64) -> bool {
 #[derive(Clone, Copy, Default)]
 pub(super) struct Doubt {
     /// The longest way of a node, of which nothing may be sure [m]; zero without a doubt.
-    pub(super) way: f64,
+    pub(super) displacement: f64,
     /// Whether the loads are so small that they are lost in the rounding of forces.
     pub(super) lost: bool,
 }
@@ -121,55 +121,59 @@ pub(super) struct Doubt {
 /// matrix that was made stiffer by hand led nowhere.
 pub(super) fn in_doubt<const D: usize>(
     system: &mut System<D>,
-    room: &mut Room<D>,
+    workspace: &mut Workspace<D>,
     balance: &Balance,
     settings: &Settings,
     size: f64,
 ) -> Doubt {
-    let way = longest(&room.u, D);
-    let loads = if balance.sigma == 0.0 && way > BLURRED * room.extent { loads(system, room, balance) } else { 0.0 };
+    let displacement = longest(&workspace.u, D);
+    let loads = if balance.sigma == 0.0 && displacement > VISIBLE * workspace.extent {
+        loads(system, workspace, balance)
+    } else {
+        0.0
+    };
     if loads == 0.0 {
         return Doubt::default();
     }
-    let lost = loads < LOST * most_rounding(system, room, balance, settings, size)[1];
-    if lost || leaves(room, loads) { Doubt { way, lost } } else { Doubt::default() }
+    let lost = loads < LOST * most_rounding(system, workspace, balance, settings, size)[1];
+    if lost || leaves(workspace, loads) { Doubt { displacement, lost } } else { Doubt::default() }
 }
 
 /// The rounding of positions [m], the largest of the force of a node [N] and how far that would move one against its inertia [m], in a body
 /// so far from the origin.
 pub(super) fn most_rounding<const D: usize>(
     system: &System<D>,
-    room: &Room<D>,
+    workspace: &Workspace<D>,
     balance: &Balance,
     settings: &Settings,
     size: f64,
 ) -> [f64; 3] {
-    let mixture = mixture(system, &room.mass, balance, Definiteness::Exact, settings);
-    let (mut force, mut way): (f64, f64) = (0.0, 0.0);
-    for (node, mass) in room.mass.iter().enumerate() {
-        let floor = floor(&room.linear, &mixture, node, size);
+    let mixture = mixture(system, &workspace.mass, balance, Definiteness::Exact, settings);
+    let (mut force, mut displacement): (f64, f64) = (0.0, 0.0);
+    for (node, mass) in workspace.mass.iter().enumerate() {
+        let floor = floor(&workspace.linear, &mixture, node, size);
         force = floor.larger(force);
-        way = (floor / (balance.sigma * mass)).larger(way);
+        displacement = (floor / (balance.sigma * mass)).larger(displacement);
     }
-    [f64::EPSILON * size, force, if balance.sigma == 0.0 { 0.0 } else { way }]
+    [f64::EPSILON * size, force, if balance.sigma == 0.0 { 0.0 } else { displacement }]
 }
 
 /// How far rounding may move a node by the matrix of what was found [m]: forces of about its size, of either sign.
-pub(super) fn chance<const D: usize>(
+pub(super) fn random_error<const D: usize>(
     system: &System<D>,
-    room: &mut Room<D>,
+    workspace: &mut Workspace<D>,
     balance: &Balance,
     settings: &Settings,
     size: f64,
 ) -> f64 {
-    let mixture = mixture(system, &room.mass, balance, Definiteness::Exact, settings);
-    for (number, force) in room.right.iter_mut().enumerate() {
+    let mixture = mixture(system, &workspace.mass, balance, Definiteness::Exact, settings);
+    for (number, force) in workspace.right.iter_mut().enumerate() {
         // The highest bit of a product with the golden ratio: signs without order, and always the same.
         let sign = if (number as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 63 == 0 { 1.0 } else { -1.0 };
-        *force = sign * TYPICAL * floor(&room.linear, &mixture, number / D, size);
+        *force = sign * TYPICAL * floor(&workspace.linear, &mixture, number / D, size);
     }
-    Filter { free: &room.free, projectors: &room.projectors }.apply(&mut room.right);
-    correction(system, room, balance, settings).unwrap_or(f64::INFINITY)
+    Filter { free: &workspace.free, projectors: &workspace.projectors }.apply(&mut workspace.right);
+    correction(system, workspace, balance, settings).unwrap_or(f64::INFINITY)
 }
 
 /// How far a force that is all rounding would move a node that is stiffer than its mass by a factor, against its inertia [m].
@@ -183,26 +187,26 @@ fn floor<const D: usize>(linear: &Linear<D>, mixture: &Mixture<D>, node: usize, 
 }
 
 /// The loads and the weight, as the root of the sum of their squares [N].
-fn loads<const D: usize>(system: &mut System<D>, room: &mut Room<D>, balance: &Balance) -> f64 {
-    system.outer_forces(Room::<D>::STAGE, balance.time, &mut room.outer);
-    (0..system.nodes).flat_map(|node| room.outer.at(node)).map(|f| f * f).sum::<f64>().sqrt()
+fn loads<const D: usize>(system: &mut System<D>, workspace: &mut Workspace<D>, balance: &Balance) -> f64 {
+    system.outer_forces(Workspace::<D>::STAGE, balance.time, &mut workspace.outer);
+    (0..system.nodes).flat_map(|node| workspace.outer.at(node)).map(|f| f * f).sum::<f64>().sqrt()
 }
 
-/// What is out of balance in the free directions, into `room.right`.
-fn take_residual<const D: usize>(room: &mut Room<D>) {
-    room.right.copy_from_slice(&room.residual);
-    room.contacting.subtract_friction(&mut room.right);
-    Filter { free: &room.free, projectors: &room.projectors }.apply(&mut room.right);
+/// What is out of balance in the free directions, into `workspace.right`.
+fn take_residual<const D: usize>(workspace: &mut Workspace<D>) {
+    workspace.right.copy_from_slice(&workspace.residual);
+    workspace.contacting.subtract_friction(&mut workspace.right);
+    Filter { free: &workspace.free, projectors: &workspace.projectors }.apply(&mut workspace.right);
 }
 
-/// How far the last matrix would move what is out of balance, into `room.step`: the longest way of a node [m].
+/// How far the last matrix would move what is out of balance, into `workspace.step`: the longest way of a node [m].
 fn correction<const D: usize>(
     system: &System<D>,
-    room: &mut Room<D>,
+    workspace: &mut Workspace<D>,
     balance: &Balance,
     settings: &Settings,
 ) -> Option<f64> {
-    let Room { linear, mass, free, projectors, right, step, .. } = room;
+    let Workspace { linear, mass, free, projectors, right, step, .. } = workspace;
     let mixture = mixture(system, mass, balance, Definiteness::Exact, settings);
     let filter = Filter { free, projectors };
     linear.solve_again(&mixture, &filter, settings, LINEAR_TOLERANCE, right, step).ok()?;

@@ -1,7 +1,7 @@
 //! What an implicit rule says: which balance holds in the stage of a step, and what its end is.
 
 use super::balance::Balance;
-use super::room::Room;
+use super::workspace::Workspace;
 use opruga_core::integrator::{Amplification, HistorySize};
 use opruga_core::system::System;
 
@@ -31,14 +31,14 @@ pub(crate) trait Rule<const D: usize>: Copy + core::fmt::Debug + Send + Sync + '
     /// What one step makes of the damped oscillator, as [`Integrator::amplification`].
     fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification;
     /// Works y, z out of the state and the history, both less x₀, and the numbers of the balance.
-    fn begin(&self, system: &System<D>, room: &mut Room<D>, h: f64) -> Balance;
+    fn begin(&self, system: &System<D>, workspace: &mut Workspace<D>, h: f64) -> Balance;
     /// Works displacement `u1` and velocity `v1` of the end out of the stage.
-    fn end(&self, system: &System<D>, room: &mut Room<D>, balance: &Balance, h: f64);
+    fn end(&self, system: &System<D>, workspace: &mut Workspace<D>, balance: &Balance, h: f64);
     /// What a step after this one of the same length will add to the velocity of a coordinate out of what is remembered,
     /// besides the forces [m/s]: v₁ and this together change by h F/m in every step.
-    fn remembered(&self, _room: &Room<D>, _k: usize, _h: f64) -> f64 {
+    fn remembered(&self, _room: &Workspace<D>, _k: usize, _h: f64) -> f64 {
         0.0
     }
-    /// Moves the history on, after obstacles have had their say; `room.struck` names the nodes that met one.
-    fn remember(&self, _system: &mut System<D>, _room: &Room<D>, _h: f64) {}
+    /// Moves the history on, after obstacles have had their say; `workspace.struck` names the nodes that met one.
+    fn remember(&self, _system: &mut System<D>, _room: &Workspace<D>, _h: f64) {}
 }

@@ -2,10 +2,10 @@
 
 use super::balance::Balance;
 use super::contact::Verdict;
+use super::contact_query::ContactQuery;
 use super::linear::{Mixture, is_matrix_free};
-use super::room::Room;
 use super::settings::Settings;
-use super::sight::Sight;
+use super::workspace::Workspace;
 use opruga_core::error::StepError;
 use opruga_core::potential::Definiteness;
 use opruga_core::system::System;
@@ -28,28 +28,28 @@ pub(crate) fn longest(step: &[f64], dimension: usize) -> f64 {
 /// Looks where nodes are; says whether who is held has changed.
 pub(crate) fn look<const D: usize>(
     system: &System<D>,
-    room: &mut Room<D>,
+    workspace: &mut Workspace<D>,
     balance: &Balance,
     impacts_slide: bool,
 ) -> bool {
-    let Room { contacting, x0, u, extent, .. } = room;
-    let sight = Sight::new(system, balance, x0, u, *extent);
-    contacting.look(&sight, impacts_slide)
+    let Workspace { contacting, x0, u, extent, .. } = workspace;
+    let contact_query = ContactQuery::new(system, balance, x0, u, *extent);
+    contacting.look(&contact_query, impacts_slide)
 }
 
 /// Decides anew who is held, and how, from what the constraints would take.
 pub(crate) fn judge<const D: usize>(
     system: &System<D>,
-    room: &mut Room<D>,
+    workspace: &mut Workspace<D>,
     balance: &Balance,
     settings: &Settings,
     tolerance: f64,
     yields: bool,
 ) -> Verdict {
-    let Room { contacting, reaction, x0, u, extent, linear, mass, .. } = room;
-    let sight = Sight::new(system, balance, x0, u, *extent);
+    let Workspace { contacting, reaction, x0, u, extent, linear, mass, .. } = workspace;
+    let contact_query = ContactQuery::new(system, balance, x0, u, *extent);
     let mixture = mixture(system, mass, balance, Definiteness::Clamped, settings);
-    contacting.judge(reaction, &sight, tolerance, &|node| {
+    contacting.judge(reaction, &contact_query, tolerance, &|node| {
         if yields { linear.size_at(&mixture, node) / D as f64 } else { 0.0 }
     })
 }
@@ -67,7 +67,7 @@ pub(crate) fn mixture<'a, const D: usize>(
         beta: balance.beta,
         load: balance.load,
         mass,
-        stage: Room::<D>::STAGE,
+        stage: Workspace::<D>::STAGE,
         time: balance.time,
         keep,
         matrix_free: is_matrix_free(settings.solver),
@@ -77,14 +77,14 @@ pub(crate) fn mixture<'a, const D: usize>(
 /// The forces at x₀ + u (or at the trial), and what is out of balance.
 pub(crate) fn evaluate<const D: usize>(
     system: &mut System<D>,
-    room: &mut Room<D>,
+    workspace: &mut Workspace<D>,
     balance: &Balance,
     trial: bool,
 ) -> Result<(), StepError> {
-    let u: &[f64] = if trial { &room.trial } else { &room.u };
-    Room::show(system, &room.x0, u, &room.z, balance.beta);
-    system.evaluate(Room::<D>::STAGE, balance.time, 0.0, &mut room.force)?;
-    let Room { mass, y, force, residual, trial: tried, u, way, .. } = &mut *room;
+    let u: &[f64] = if trial { &workspace.trial } else { &workspace.u };
+    Workspace::show(system, &workspace.x0, u, &workspace.z, balance.beta);
+    system.evaluate(Workspace::<D>::STAGE, balance.time, 0.0, &mut workspace.force)?;
+    let Workspace { mass, y, force, residual, trial: tried, u, displacement, .. } = &mut *workspace;
     let u: &[f64] = if trial { tried } else { u };
     each_block(system.threads, D, [&mut *residual], |first, [residual]| {
         for (node, out) in (first / D..).zip(residual.as_chunks_mut::<D>().0) {
@@ -97,20 +97,20 @@ pub(crate) fn evaluate<const D: usize>(
     if balance.sigma != 0.0
         && let Some(inertia) = &system.inertia
     {
-        way.clear();
-        way.extend(u.iter().zip(&*y).map(|(u, y)| u - y));
+        displacement.clear();
+        displacement.extend(u.iter().zip(&*y).map(|(u, y)| u - y));
         for node in 0..system.nodes {
-            let product = inertia.product::<D>(node, way);
+            let product = inertia.product::<D>(node, displacement);
             for d in 0..D {
                 residual[node * D + d] += balance.sigma * product[d];
             }
         }
     }
     if balance.load != 1.0 {
-        system.outer_forces(Room::<D>::STAGE, balance.time, &mut room.outer);
+        system.outer_forces(Workspace::<D>::STAGE, balance.time, &mut workspace.outer);
         for node in 0..system.nodes {
             for d in 0..D {
-                room.residual[node * D + d] += (1.0 - balance.load) * room.outer.0[d][node];
+                workspace.residual[node * D + d] += (1.0 - balance.load) * workspace.outer.0[d][node];
             }
         }
     }
@@ -123,26 +123,26 @@ pub(super) fn rounding_of_models<const D: usize>(system: &System<D>) -> f64 {
 }
 
 /// The incremental potential and the size of its parts [J].
-pub(super) fn potential<const D: usize>(
+pub(crate) fn potential<const D: usize>(
     system: &System<D>,
-    room: &Room<D>,
+    workspace: &Workspace<D>,
     balance: &Balance,
     trial: bool,
 ) -> Option<(f64, f64)> {
-    let energy = system.potential_energy(Room::<D>::STAGE, balance.time)?;
-    let u = if trial { &room.trial } else { &room.u };
+    let energy = system.potential_energy(Workspace::<D>::STAGE, balance.time)?;
+    let u = if trial { &workspace.trial } else { &workspace.u };
     let mut inertia = 0.0;
-    for (node, mass) in room.mass.iter().enumerate() {
+    for (node, mass) in workspace.mass.iter().enumerate() {
         for k in node * D..(node + 1) * D {
-            let way = u[k] - room.y[k];
-            inertia += mass * way * way;
+            let displacement = u[k] - workspace.y[k];
+            inertia += mass * displacement * displacement;
         }
     }
     if balance.sigma != 0.0
         && let Some(coupled) = &system.inertia
     {
         // The forces were evaluated last, and with them the way.
-        inertia += coupled.square::<D>(&room.way);
+        inertia += coupled.square::<D>(&workspace.displacement);
     }
     inertia *= 0.5 * balance.sigma;
     let mut lifted = 0.0;
@@ -150,7 +150,7 @@ pub(super) fn potential<const D: usize>(
         // What the missing part of the weight would have given.
         for node in 0..system.nodes {
             for d in 0..D {
-                lifted += (1.0 - balance.load) * room.outer.0[d][node] * u[node * D + d];
+                lifted += (1.0 - balance.load) * workspace.outer.0[d][node] * u[node * D + d];
             }
         }
     }

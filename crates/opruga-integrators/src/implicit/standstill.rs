@@ -24,7 +24,7 @@
 //!
 //! Bodies of models without cells, such as springs, are left alone.
 
-use super::room::{Room, write};
+use super::workspace::{Workspace, write};
 use opruga_core::error::StepError;
 use opruga_core::potential::{Account, CellState};
 use opruga_core::state::Columns;
@@ -35,7 +35,7 @@ use opruga_solve::dense::symmetric_eigen;
 
 /// Steps between two looks, and steps more after a look that found nothing: a look costs about as much as evaluating forces.
 const PERIOD: f64 = 24.0;
-const LEISURE: f64 = 72.0;
+const IDLE: f64 = 72.0;
 
 /// Kinetic energy, and what is given to damping in the time to leave, that count as rest, as parts of the stored energy.
 const REST: f64 = 1e-3;
@@ -67,7 +67,7 @@ pub(crate) const NUMBERS: usize = 5;
 /// Looks at a body at the end of a step of h [s], now and then; `first` is the place of what is remembered.
 pub(crate) fn look<const D: usize>(
     system: &mut System<D>,
-    room: &mut Room<D>,
+    workspace: &mut Workspace<D>,
     first: usize,
     h: f64,
 ) -> Result<(), StepError> {
@@ -77,15 +77,15 @@ pub(crate) fn look<const D: usize>(
         return Ok(());
     }
     system.history.numbers[first] = 0.0;
-    let Some(size) = odd_size(system, Stage::Current) else {
+    let Some(size) = degenerate_size(system, Stage::Current) else {
         let times = if system.time > until { 0.0 } else { times };
-        system.history.numbers[first..first + NUMBERS].copy_from_slice(&[-LEISURE, times, last, 0.0, until]);
+        system.history.numbers[first..first + NUMBERS].copy_from_slice(&[-IDLE, times, last, 0.0, until]);
         return Ok(());
     };
     let flat = if is_flat(system) { flat + 1.0 } else { 0.0 };
     system.history.numbers[first + 3] = flat;
-    let energy = stored(system, &mut room.force)?;
-    let Motion { kinetic, push, mass, fading } = motion(system, room, h)?;
+    let energy = stored(system, &mut workspace.force)?;
+    let Motion { kinetic, push, mass, fading } = motion(system, workspace, h)?;
     let patience = PATIENCE * size * (mass / energy).sqrt();
     // Numbers of the state are finite; what holds no energy has for ever to leave.
     let until = system.time + patience;
@@ -104,24 +104,28 @@ pub(crate) fn look<const D: usize>(
     system.history.numbers[first + 1] = times + 1.0;
     system.history.numbers[first + 2] = system.time;
     match SIZES.get(times as usize) {
-        Some(part) => disturb_state(system, &mut room.force, part * size, times as u64)?,
+        Some(part) => disturb_state(system, &mut workspace.force, part * size, times as u64)?,
         None => system.work.solver.odd_rests += 1,
     }
     Ok(())
 }
 
-/// Displaces a balance that was looked for, in `room.u`, if it is none of the body's own; `times` is how often that was done.
+/// Displaces a balance that was looked for, in `workspace.u`, if it is none of the body's own; `times` is how often that was done.
 /// Gives whether it did.
-pub(crate) fn disturb_balance<const D: usize>(system: &mut System<D>, room: &mut Room<D>, times: usize) -> bool {
-    let Some(size) = odd_size(system, Room::<D>::STAGE) else { return false };
+pub(crate) fn disturb_balance<const D: usize>(
+    system: &mut System<D>,
+    workspace: &mut Workspace<D>,
+    times: usize,
+) -> bool {
+    let Some(size) = degenerate_size(system, Workspace::<D>::STAGE) else { return false };
     let Some(part) = SIZES.get(times) else {
         system.work.solver.odd_rests += 1;
         return false;
     };
     system.work.solver.disturbed += 1;
-    for k in 0..room.u.len() {
-        if room.held[k].is_nan() {
-            room.u[k] += part * size * chance(k, times as u64);
+    for k in 0..workspace.u.len() {
+        if workspace.held[k].is_nan() {
+            workspace.u[k] += part * size * random_error(k, times as u64);
         }
     }
     true
@@ -131,7 +135,7 @@ pub(crate) fn disturb_balance<const D: usize>(system: &mut System<D>, room: &mut
 /// folded between them was a wrong turn on the way from one balance to the next, and no shape in which the body stood still.
 pub(crate) fn forget_wrong_turns<const D: usize>(system: &mut System<D>, before: &SolverWork) {
     let ends_well = system.work.solver.odd_rests == before.odd_rests;
-    if ends_well && odd_size(system, Stage::Current).is_none() {
+    if ends_well && degenerate_size(system, Stage::Current).is_none() {
         system.work.solver.disturbed = before.disturbed;
     }
 }
@@ -149,16 +153,16 @@ struct Motion {
 }
 
 /// The motion of a body; of a free one as seen from its centre of mass, and from axes that turn with it: what spins stands still
-/// too. After [`stored`], which leaves the forces of the state in `room.force`.
-fn motion<const D: usize>(system: &mut System<D>, room: &mut Room<D>, h: f64) -> Result<Motion, StepError> {
+/// too. After [`stored`], which leaves the forces of the state in `workspace.force`.
+fn motion<const D: usize>(system: &mut System<D>, workspace: &mut Workspace<D>, h: f64) -> Result<Motion, StepError> {
     let damped = system.is_damped();
     if damped {
-        undamped(system, &mut room.outer)?;
+        undamped(system, &mut workspace.outer)?;
     }
-    let (system, room) = (&*system, &*room);
+    let (system, workspace) = (&*system, &*workspace);
     let mut mass = 0.0;
     let (mut center, mut speed, mut change) = ([0.0; D], [0.0; D], [0.0; D]);
-    let old = nodes::<D>(&room.v0);
+    let old = nodes::<D>(&workspace.v0);
     for (node, old) in old.iter().enumerate() {
         let (x, v, m) = (system.state.x.at(node), system.state.v.at(node), system.mass.at(node));
         mass += m;
@@ -192,13 +196,13 @@ fn motion<const D: usize>(system: &mut System<D>, room: &mut Room<D>, h: f64) ->
         let m = system.mass.at(node);
         let (own, left) = (velocity(node), acceleration(node));
         let (turning, turned_more) = (turned(&spin, &arm(node)), turned(&tumble, &arm(node)));
-        let (all, rest) = (room.force.at(node), room.outer.at(node));
+        let (all, rest) = (workspace.force.at(node), workspace.outer.at(node));
         for d in 0..D {
             let own = own[d] - turning[d];
             kinetic += 0.5 * m * own * own;
             push += m * (left[d] - turned_more[d]).abs();
             // Held nodes are led by others.
-            if damped && room.held[node * D + d].is_nan() {
+            if damped && workspace.held[node * D + d].is_nan() {
                 fading -= (all[d] - rest[d]) * own;
             }
         }
@@ -211,7 +215,7 @@ fn undamped<const D: usize>(system: &mut System<D>, out: &mut Columns<D>) -> Res
     let (places, nodes, threads) = (system.places(), system.nodes, system.threads);
     let State { x, work, .. } = &mut system.state;
     write(places, nodes, threads, work[0].each_mut(), |k| [x.0[k % D][k / D], 0.0]);
-    system.evaluate(Room::<D>::STAGE, 0.0, 0.0, out)
+    system.evaluate(Workspace::<D>::STAGE, 0.0, 0.0, out)
 }
 
 /// The angular velocity [rad/s] of the rotation about the centre that is nearest to the velocities of a body beyond their mean; of
@@ -226,12 +230,12 @@ fn rotation<const D: usize>(
     let (mut inertia, mut momentum) = (vec![0.0; n * n], vec![0.0; n]);
     for node in 0..system.nodes {
         let (v, m, arm) = (field(node), system.mass.at(node), arm(node));
-        let ways: Vec<[f64; D]> = turns.iter().map(|turn| turned(turn, &arm)).collect();
+        let displacements: Vec<[f64; D]> = turns.iter().map(|turn| turned(turn, &arm)).collect();
         for p in 0..n {
             for d in 0..D {
-                momentum[p] += m * ways[p][d] * v[d];
+                momentum[p] += m * displacements[p][d] * v[d];
                 for q in 0..n {
-                    inertia[p * n + q] += m * ways[p][d] * ways[q][d];
+                    inertia[p * n + q] += m * displacements[p][d] * displacements[q][d];
                 }
             }
         }
@@ -261,16 +265,16 @@ fn turned<const D: usize>(spin: &[f64; 3], arm: &[f64; D]) -> [f64; D] {
 }
 
 /// The size of a body that is flat, inside out or strained by nothing; none where its shape is one of its own.
-fn odd_size<const D: usize>(system: &System<D>, stage: Stage) -> Option<f64> {
+fn degenerate_size<const D: usize>(system: &System<D>, stage: Stage) -> Option<f64> {
     let view = system.view(stage, system.time);
-    let (mut volume, mut odd) = (0.0, false);
+    let (mut volume, mut degenerate) = (0.0, false);
     let alone = is_left_alone(system);
     for member in &system.members {
         let cells = member.potential.cell_states(&view, 0);
-        odd |= cells.iter().any(|cell| is_odd(cell, alone));
+        degenerate |= cells.iter().any(|cell| is_degenerate(cell, alone));
         volume += cells.iter().map(|cell| cell.measure).sum::<f64>();
     }
-    odd.then(|| if D == 2 { volume.sqrt() } else { Lane::exp(Lane::ln(volume) / 3.0) })
+    degenerate.then(|| if D == 2 { volume.sqrt() } else { Lane::exp(Lane::ln(volume) / 3.0) })
 }
 
 /// How many cells of the state are flat or inside out, and how many there are; none where none is.
@@ -279,7 +283,7 @@ pub(crate) fn flat_cells<const D: usize>(system: &System<D>) -> Option<[usize; 2
     let (mut flat, mut all) = (0, 0);
     for member in &system.members {
         let cells = member.potential.cell_states(&view, 0);
-        flat += cells.iter().filter(|cell| is_odd(cell, false)).count();
+        flat += cells.iter().filter(|cell| is_degenerate(cell, false)).count();
         all += cells.len();
     }
     (flat > 0).then_some([flat, all])
@@ -293,7 +297,7 @@ fn is_flat<const D: usize>(system: &System<D>) -> bool {
 }
 
 /// Whether a cell of a body that stands still has no shape of its own; `alone` says that nothing acts on the body.
-fn is_odd(cell: &CellState, alone: bool) -> bool {
+fn is_degenerate(cell: &CellState, alone: bool) -> bool {
     // Written so that what is no number is odd.
     let solid = cell.smallest_volume_ratio > FLAT;
     !solid || alone && (cell.volume_ratio - 1.0).abs() > STRAINED
@@ -323,7 +327,7 @@ fn disturb_state<const D: usize>(
     for node in 0..system.nodes {
         let mut x = kept.at(node);
         for d in 0..D {
-            x[d] += size * chance(node * D + d, times);
+            x[d] += size * random_error(node * D + d, times);
         }
         system.state.x.set(node, x);
     }
@@ -350,7 +354,7 @@ fn stored<const D: usize>(system: &mut System<D>, force: &mut Columns<D>) -> Res
 }
 
 /// A number from −1 to 1 that belongs to a coordinate and a time of asking.
-fn chance(coordinate: usize, times: u64) -> f64 {
+fn random_error(coordinate: usize, times: u64) -> f64 {
     let mut state = (coordinate as u64 + 1) ^ (times << 48);
     for _ in 0..3 {
         // Knuth's linear congruential generator, and the mixing of its upper bits into the lower ones.

@@ -27,10 +27,10 @@ use super::minimiser::Minimiser;
 use super::newton::Newton;
 use super::own_loss::{self, given};
 use super::real_time::{self, RealTime};
-use super::room::{Room, write};
 use super::rule::Rule;
 use super::settings::{Otherwise, Settings};
 use super::standstill;
+use super::workspace::{Workspace, write};
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::integrator::{Amplification, HistorySize, Integrator};
 use opruga_core::memory::Counts;
@@ -100,13 +100,26 @@ impl<R: Rule<D>, const D: usize> Integrator<D> for Implicit<R> {
         memory::of_body::<D>(&self.settings, counts, couplings)
     }
     fn step(&self, system: &mut System<D>, h: f64) -> Result<(), StepError> {
-        let mut room = system.room.take::<Room<D>>();
-        room.own = self.rule.history();
-        let outcome = self.with_minimiser(|minimiser| {
-            let method = Method { rule: self.rule, settings: &self.settings, minimiser };
-            method.advance(system, &mut room, h, 0)
-        });
-        system.room.put(room);
+        self.with_minimiser(|minimiser| self.step_by(minimiser, system, h))
+    }
+}
+
+impl<R> Implicit<R> {
+    /// Makes a step with the stage that a minimiser finds.
+    pub(crate) fn step_by<const D: usize>(
+        &self,
+        minimiser: &dyn Minimiser<D>,
+        system: &mut System<D>,
+        h: f64,
+    ) -> Result<(), StepError>
+    where
+        R: Rule<D>,
+    {
+        let mut workspace = system.room.take::<Workspace<D>>();
+        workspace.own = self.rule.history();
+        let method = Method { rule: self.rule, settings: &self.settings, minimiser };
+        let outcome = method.advance(system, &mut workspace, h, 0);
+        system.room.put(workspace);
         outcome
     }
 }
@@ -116,10 +129,10 @@ pub(crate) const MOST_HALVINGS: u32 = 8;
 
 /// What makes a step: a rule, and the minimiser that finds its stage.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Method<'a, R, const D: usize> {
-    pub(crate) rule: R,
-    pub(crate) settings: &'a Settings,
-    pub(crate) minimiser: &'a dyn Minimiser<D>,
+struct Method<'a, R, const D: usize> {
+    rule: R,
+    settings: &'a Settings,
+    minimiser: &'a dyn Minimiser<D>,
 }
 
 /// A stage that has passed the guards, and the rule by which it was found.
@@ -138,16 +151,16 @@ struct Ledger {
 
 impl<R: Rule<D>, const D: usize> Method<'_, R, D> {
     /// Makes a step of h, or two of half the length where it does not converge: the outermost guard.
-    pub(crate) fn advance(
+    fn advance(
         &self,
         system: &mut System<D>,
-        room: &mut Room<D>,
+        workspace: &mut Workspace<D>,
         h: f64,
         halvings: u32,
     ) -> Result<(), StepError> {
         let work = system.work;
-        let velocities = holding::take_hold(system, &mut room.kick, h);
-        let outcome = self.attempt(system, room, h);
+        let velocities = holding::take_hold(system, &mut workspace.kick, h);
+        let outcome = self.attempt(system, workspace, h);
         if outcome.is_err() {
             // Nothing has been written but the ledger, and velocities that pins have changed.
             if let Some(before) = velocities {
@@ -162,56 +175,56 @@ impl<R: Rule<D>, const D: usize> Method<'_, R, D> {
                 let solver = &mut system.work.solver;
                 solver.halved += 1;
                 solver.deepest = solver.deepest.max(u64::from(halvings) + 1);
-                self.advance(system, room, 0.5 * h, halvings + 1)?;
-                return self.advance(system, room, 0.5 * h, halvings + 1);
+                self.advance(system, workspace, 0.5 * h, halvings + 1)?;
+                return self.advance(system, workspace, 0.5 * h, halvings + 1);
             }
         }
         outcome
     }
 
     /// Makes a step of h from start to ledger.
-    fn attempt(&self, system: &mut System<D>, room: &mut Room<D>, h: f64) -> Result<(), StepError> {
-        let ledger = open_ledger::<R, D>(system, room, h)?;
-        let found = self.find_end(system, room, h)?;
-        self.refuse_growth(system, room, &found)?;
-        finish(system, room);
-        enter_stage(system, room, &found, &ledger);
-        commit(system, room);
-        enter_end(system, room, &found)?;
-        found.rule.remember(system, room, h);
-        self.minimiser.remember(system, room, h);
+    fn attempt(&self, system: &mut System<D>, workspace: &mut Workspace<D>, h: f64) -> Result<(), StepError> {
+        let ledger = open_ledger::<R, D>(system, workspace, h)?;
+        let found = self.find_end(system, workspace, h)?;
+        self.refuse_growth(system, workspace, &found)?;
+        finish(system, workspace);
+        enter_stage(system, workspace, &found, &ledger);
+        commit(system, workspace);
+        enter_end(system, workspace, &found)?;
+        found.rule.remember(system, workspace, h);
+        self.minimiser.remember(system, workspace, h);
         system.end_implicit(h);
-        let first = room.own.numbers + self.minimiser.history().numbers + growth::NUMBERS;
-        standstill::look(system, room, first, h)
+        let first = workspace.own.numbers + self.minimiser.history().numbers + growth::NUMBERS;
+        standstill::look(system, workspace, first, h)
     }
 
     /// Finds the stage and the end of a step. The guards are asked in this order: contact, convergence, obstacles at the end of the
     /// step, energy of a minimiser that is not exact, energy of the rule. One that refuses says what makes the step instead.
-    fn find_end(&self, system: &mut System<D>, room: &mut Room<D>, h: f64) -> Result<Found<R>, StepError> {
+    fn find_end(&self, system: &mut System<D>, workspace: &mut Workspace<D>, h: f64) -> Result<Found<R>, StepError> {
         let in_contact = self.rule.in_contact();
-        let mut rule = in_contact.filter(|_| touches(system, room, h)).unwrap_or(self.rule);
+        let mut rule = in_contact.filter(|_| touches(system, workspace, h)).unwrap_or(self.rule);
         let exact = Newton(real_time::exactly(self.settings));
         let mut minimiser = self.minimiser;
         let mut energy = None;
         loop {
-            let (balance, solved) = find_stage(rule, minimiser, system, room, h)?;
-            if let Some(other) = in_contact.filter(|_| rule.in_contact().is_some() && room.contacting.any()) {
+            let (balance, solved) = find_stage(rule, minimiser, system, workspace, h)?;
+            if let Some(other) = in_contact.filter(|_| rule.in_contact().is_some() && workspace.contacting.any()) {
                 // A contact that nobody has foreseen.
                 rule = other;
                 continue;
             }
             if !solved.converged {
-                accept_or_refuse(R::NAME, self.settings, system, room, &solved)?;
+                accept_or_refuse(R::NAME, self.settings, system, workspace, &solved)?;
             }
             let work = system.work;
-            end(rule, system, room, &balance, h);
-            if solved.doubtful && energy::gains_in_doubt(system, room, &balance)? {
+            end(rule, system, workspace, &balance, h);
+            if solved.doubtful && energy::gains_in_doubt(system, workspace, &balance)? {
                 system.work = work;
-                minimiser.discard(system, room);
+                minimiser.discard(system, workspace);
                 minimiser = &exact;
                 continue;
             }
-            let Some(calmed) = energy::calmer_rule(rule, &mut energy, system, room, &balance)? else {
+            let Some(calmed) = energy::calmer_rule(rule, &mut energy, system, workspace, &balance)? else {
                 return Ok(Found { rule, balance, solved });
             };
             system.work = work;
@@ -220,25 +233,30 @@ impl<R: Rule<D>, const D: usize> Method<'_, R, D> {
     }
 
     /// The guard of growth: refuses a body that steps which have not converged have blown up.
-    fn refuse_growth(&self, system: &mut System<D>, room: &Room<D>, found: &Found<R>) -> Result<(), StepError> {
-        let slot = room.own.numbers + self.minimiser.history().numbers;
+    fn refuse_growth(
+        &self,
+        system: &mut System<D>,
+        workspace: &Workspace<D>,
+        found: &Found<R>,
+    ) -> Result<(), StepError> {
+        let slot = workspace.own.numbers + self.minimiser.history().numbers;
         let (time, solved) = (system.time, &found.solved);
-        let refused = |hint| refusal(R::NAME, self.settings, room, solved, (time, None), hint);
-        growth::check(system, room, slot, solved, refused)
+        let refused = |hint| refusal(R::NAME, self.settings, workspace, solved, (time, None), hint);
+        growth::check(system, workspace, slot, solved, refused)
     }
 }
 
 /// Takes the state at the start of a step, and enters the works of rules that go by the mean of start and end.
 fn open_ledger<R: Rule<D>, const D: usize>(
     system: &mut System<D>,
-    room: &mut Room<D>,
+    workspace: &mut Workspace<D>,
     h: f64,
 ) -> Result<Ledger, StepError> {
     system.begin_implicit();
-    room.load(system);
+    workspace.load(system);
     let before = system.work;
     if R::TRAPEZOID {
-        system.evaluate(Stage::Current, 0.0, 0.5 * h, &mut room.force)?;
+        system.evaluate(Stage::Current, 0.0, 0.5 * h, &mut workspace.force)?;
     }
     own_loss::add_given(&mut system.work, &given(&before));
     Ok(Ledger { before, begun: system.work })
@@ -247,7 +265,7 @@ fn open_ledger<R: Rule<D>, const D: usize>(
 /// Enters the works of rules that go by the stage, which was evaluated last, and those of coupled masses.
 fn enter_stage<R: Rule<D>, const D: usize>(
     system: &mut System<D>,
-    room: &mut Room<D>,
+    workspace: &mut Workspace<D>,
     found: &Found<R>,
     ledger: &Ledger,
 ) {
@@ -258,12 +276,12 @@ fn enter_stage<R: Rule<D>, const D: usize>(
     let entered = given(&system.work);
     if by_stage {
         // Damping, loads and pins by the forces of the stage.
-        system.evaluate_again(Room::<D>::STAGE, found.balance.time, found.balance.h, &mut room.force);
+        system.evaluate_again(Workspace::<D>::STAGE, found.balance.time, found.balance.h, &mut workspace.force);
     }
     own_loss::add_given(&mut system.work, &entered);
     if system.inertia.is_some() {
         // Where held nodes are coupled, they have the velocity of the step to its end.
-        let Room { v0, v1, .. } = &mut *room;
+        let Workspace { v0, v1, .. } = &mut *workspace;
         system.held_axes(&mut |node, d| v1[node * D + d] = v0[node * D + d]);
         holding::enter_work(system, v0, v1);
     }
@@ -272,14 +290,14 @@ fn enter_stage<R: Rule<D>, const D: usize>(
 /// Enters the works at the end of a step of rules that go by the mean of start and end.
 fn enter_end<R: Rule<D>, const D: usize>(
     system: &mut System<D>,
-    room: &mut Room<D>,
+    workspace: &mut Workspace<D>,
     found: &Found<R>,
 ) -> Result<(), StepError> {
     if found.rule.is_trapezoid() {
         let h = found.balance.h;
         system.hold(Stage::Current, h);
         let entered = given(&system.work);
-        system.evaluate(Stage::Current, h, 0.5 * h, &mut room.force)?;
+        system.evaluate(Stage::Current, h, 0.5 * h, &mut workspace.force)?;
         own_loss::add_given(&mut system.work, &entered);
     }
     Ok(())
@@ -300,57 +318,63 @@ fn find_stage<R: Rule<D>, const D: usize>(
     rule: R,
     minimiser: &dyn Minimiser<D>,
     system: &mut System<D>,
-    room: &mut Room<D>,
+    workspace: &mut Workspace<D>,
     h: f64,
 ) -> Result<(Balance, Solved), StepError> {
-    room.contacting.clear(system.nodes);
-    let balance = rule.begin(system, room, h);
-    room.hold(system, balance.theta, h);
+    workspace.contacting.clear(system.nodes);
+    let balance = rule.begin(system, workspace, h);
+    workspace.hold(system, balance.theta, h);
     // Held axes are where they have to be.
-    let Room { u, held, v0, .. } = &mut *room;
+    let Workspace { u, held, v0, .. } = &mut *workspace;
     each_block(system.threads, D, [u], |first, [u]| {
         for (k, u) in (first..).zip(u) {
             *u = if held[k].is_nan() { balance.theta * h * v0[k] } else { held[k] };
         }
     });
-    minimiser.predict(system, room, &balance);
-    let solved = minimiser.minimise(system, room, &balance)?;
+    minimiser.predict(system, workspace, &balance);
+    let solved = minimiser.minimise(system, workspace, &balance)?;
     count(system, &solved);
     Ok((balance, solved))
 }
 
 /// Works out the end of a step: displacement and velocity, with what obstacles do to them.
-fn end<R: Rule<D>, const D: usize>(rule: R, system: &mut System<D>, room: &mut Room<D>, balance: &Balance, h: f64) {
-    rule.end(system, room, balance, h);
-    own_loss::take_impulses(system, room, balance);
-    room.struck.clear();
+fn end<R: Rule<D>, const D: usize>(
+    rule: R,
+    system: &mut System<D>,
+    workspace: &mut Workspace<D>,
+    balance: &Balance,
+    h: f64,
+) {
+    rule.end(system, workspace, balance, h);
+    own_loss::take_impulses(system, workspace, balance);
+    workspace.struck.clear();
     if system.contacts.is_none() {
         return;
     }
-    for k in 0..room.memory.len() {
-        room.memory[k] = rule.remembered(room, k, h);
+    for k in 0..workspace.memory.len() {
+        workspace.memory[k] = rule.remembered(workspace, k, h);
     }
-    let Room { contacting, mass, residual, x0, v0, u1, v1, memory, struck, extent, .. } = room;
+    let Workspace { contacting, mass, residual, x0, v0, u1, v1, memory, struck, extent, .. } = workspace;
     contacting.expel(system, x0, u1, residual, h, *extent);
     let ending = Ending { mass, reaction: residual, x0, v0, balance, extent: *extent };
     contacting.end(system, &ending, v1, memory, struck);
 }
 
 /// Whether any node would be on an obstacle at the end of the step, or in it, by its velocity alone.
-fn touches<const D: usize>(system: &System<D>, room: &Room<D>, h: f64) -> bool {
+fn touches<const D: usize>(system: &System<D>, workspace: &Workspace<D>, h: f64) -> bool {
     let Some(obstacles) = &system.contacts else { return false };
-    nodes::<D>(&room.x0).iter().zip(nodes::<D>(&room.v0)).any(|(from, velocity)| {
+    nodes::<D>(&workspace.x0).iter().zip(nodes::<D>(&workspace.v0)).any(|(from, velocity)| {
         let to: [f64; D] = core::array::from_fn(|d| from[d] + h * velocity[d]);
         let mut near = false;
-        let reach = SMALL * room.extent;
+        let reach = SMALL * workspace.extent;
         obstacles.touch(from, &to, system.time + h, h, reach, &mut |touch| near |= touch.gap <= touch.rounding + reach);
         near
     })
 }
 
 /// Writes the end of the step into the state.
-pub(crate) fn commit<const D: usize>(system: &mut System<D>, room: &Room<D>) {
+pub(crate) fn commit<const D: usize>(system: &mut System<D>, workspace: &Workspace<D>) {
     let (places, nodes, threads) = (system.places(), system.nodes, system.threads);
     let state = [&mut system.state.x, &mut system.state.v];
-    write(places, nodes, threads, state, |k| [room.x0[k] + room.u1[k], room.v1[k]]);
+    write(places, nodes, threads, state, |k| [workspace.x0[k] + workspace.u1[k], workspace.v1[k]]);
 }

@@ -4,7 +4,7 @@
 //! a step, an oscillation with small hω by (θ − ½) h²ω² (Hughes 1987, 8.2).
 
 use super::balance::Balance;
-use super::room::Room;
+use super::workspace::Workspace;
 
 /// Where the stage is, as a part of the step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,21 +26,21 @@ impl Theta {
     }
 
     /// Works y, z out of the state.
-    pub(crate) fn begin<const D: usize>(self, room: &mut Room<D>, h: f64) -> Balance {
+    pub(crate) fn begin<const D: usize>(self, workspace: &mut Workspace<D>, h: f64) -> Balance {
         let span = self.0 * h;
-        for (y, v) in room.y.iter_mut().zip(&room.v0) {
+        for (y, v) in workspace.y.iter_mut().zip(&workspace.v0) {
             *y = span * v;
         }
-        room.z.fill(0.0);
+        workspace.z.fill(0.0);
         let sigma = 1.0 / (span * span);
         Balance { sigma, beta: 1.0 / span, theta: self.0, time: span, h, load: 1.0, impulse: 1.0, echo: 0.0 }
     }
 
     /// Works the end of the step out of the stage.
-    pub(crate) fn end<const D: usize>(self, room: &mut Room<D>, balance: &Balance) {
-        for k in 0..room.u.len() {
-            room.u1[k] = room.u[k] / self.0;
-            room.v1[k] = room.v0[k] + (balance.beta * room.u[k] - room.v0[k]) / self.0;
+    pub(crate) fn end<const D: usize>(self, workspace: &mut Workspace<D>, balance: &Balance) {
+        for k in 0..workspace.u.len() {
+            workspace.u1[k] = workspace.u[k] / self.0;
+            workspace.v1[k] = workspace.v0[k] + (balance.beta * workspace.u[k] - workspace.v0[k]) / self.0;
         }
     }
 }

@@ -21,11 +21,11 @@
 mod tests;
 
 use crate::implicit::balance::Balance;
-use crate::implicit::room::Room;
 use crate::implicit::rule::Rule;
 use crate::implicit::settings::fields;
 use crate::implicit::step::Implicit;
 use crate::implicit::theta::Theta;
+use crate::implicit::workspace::Workspace;
 use opruga_core::error::BuildError;
 use opruga_core::integrator::{Amplification, Integrator, IntegratorKind};
 use opruga_core::spec::{Spec, Values};
@@ -49,7 +49,7 @@ pub struct ImplicitMidpointKind;
 
 /// The implicit midpoint rule, or in contact its stage a little later than in the middle.
 #[derive(Clone, Copy, Debug)]
-pub struct ImplicitMidpoint(Theta);
+pub struct ImplicitMidpoint(pub(crate) Theta);
 
 impl<const D: usize> IntegratorKind<D> for ImplicitMidpointKind {
     fn spec(&self) -> &'static Spec {
@@ -79,10 +79,10 @@ impl<const D: usize> Rule<D> for ImplicitMidpoint {
         let (of_x, of_v) = (-theta * h * square * factor, factor);
         Amplification::new([[1.0 + h * of_x, h * of_v], [of_x / theta, 1.0 + (of_v - 1.0) / theta]])
     }
-    fn begin(&self, _system: &System<D>, room: &mut Room<D>, h: f64) -> Balance {
-        self.0.begin(room, h)
+    fn begin(&self, _system: &System<D>, workspace: &mut Workspace<D>, h: f64) -> Balance {
+        self.0.begin(workspace, h)
     }
-    fn end(&self, _system: &System<D>, room: &mut Room<D>, balance: &Balance, _h: f64) {
-        self.0.end(room, balance);
+    fn end(&self, _system: &System<D>, workspace: &mut Workspace<D>, balance: &Balance, _h: f64) {
+        self.0.end(workspace, balance);
     }
 }

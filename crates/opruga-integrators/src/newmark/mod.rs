@@ -21,11 +21,11 @@ mod tests;
 
 use crate::implicit::balance::Balance;
 use crate::implicit::holding::{accelerations, held};
-use crate::implicit::room::Room;
 use crate::implicit::rule::Rule;
 use crate::implicit::settings::fields;
 use crate::implicit::step::Implicit;
 use crate::implicit::theta::Theta;
+use crate::implicit::workspace::Workspace;
 use opruga_core::error::BuildError;
 use opruga_core::integrator::{Amplification, HistorySize, Integrator, IntegratorKind};
 use opruga_core::spec::{Allowed, Default, Field, Spec, Values};
@@ -83,7 +83,7 @@ impl<const D: usize> IntegratorKind<D> for NewmarkKind {
 }
 
 impl Newmark {
-    fn new(values: &Values) -> Newmark {
+    pub(crate) fn new(values: &Values) -> Newmark {
         values.number("spectral_radius").map_or(Newmark::of(0.0, 0.0), Newmark::of_radius)
     }
     /// The generalised-α method with a spectral radius.
@@ -130,15 +130,15 @@ impl<const D: usize> Rule<D> for Newmark {
             a,
         ])
     }
-    fn begin(&self, system: &System<D>, room: &mut Room<D>, h: f64) -> Balance {
+    fn begin(&self, system: &System<D>, workspace: &mut Workspace<D>, h: f64) -> Balance {
         if let Some(theta) = self.theta {
-            return theta.begin(room, h);
+            return theta.begin(workspace, h);
         }
         let Newmark { alpha_m, alpha_f, beta, gamma, .. } = *self;
         let begun = system.history.numbers[0] > 0.0;
         let theta = 1.0 - alpha_f;
         let rate = gamma / (beta * h);
-        first_acceleration(system, room);
+        first_acceleration(system, workspace);
         // What pins have just taken hold of is not accelerated any more; its neighbours would feel it.
         let stopped = if begun && system.inertia.is_some() { held(system) } else { Vec::new() };
         for node in 0..system.nodes {
@@ -147,14 +147,14 @@ impl<const D: usize> Rule<D> for Newmark {
                 let a = match stopped.get(k) {
                     Some(true) => 0.0,
                     _ if begun => system.history.columns[0].0[d][node],
-                    _ => room.a0[k],
+                    _ => workspace.a0[k],
                 };
-                let v = room.v0[k];
-                room.a0[k] = a;
-                let way = h * v + h * h * (0.5 - beta) * a;
-                room.y[k] = theta * (way - alpha_m * beta * h * h / (1.0 - alpha_m) * a);
+                let v = workspace.v0[k];
+                workspace.a0[k] = a;
+                let displacement = h * v + h * h * (0.5 - beta) * a;
+                workspace.y[k] = theta * (displacement - alpha_m * beta * h * h / (1.0 - alpha_m) * a);
                 // v_s = rate (u − z)
-                room.z[k] = theta * way - (theta * (v + h * (1.0 - gamma) * a) + alpha_f * v) / rate;
+                workspace.z[k] = theta * displacement - (theta * (v + h * (1.0 - gamma) * a) + alpha_f * v) / rate;
             }
         }
         Balance {
@@ -168,23 +168,23 @@ impl<const D: usize> Rule<D> for Newmark {
             echo: 1.0 - gamma / (1.0 - alpha_m),
         }
     }
-    fn end(&self, _system: &System<D>, room: &mut Room<D>, balance: &Balance, h: f64) {
+    fn end(&self, _system: &System<D>, workspace: &mut Workspace<D>, balance: &Balance, h: f64) {
         if let Some(theta) = self.theta {
-            return theta.end(room, balance);
+            return theta.end(workspace, balance);
         }
-        for k in 0..room.u.len() {
-            room.u1[k] = room.u[k] / balance.theta;
-            let a1 = self.acceleration(room, k, h);
-            room.v1[k] = room.v0[k] + h * ((1.0 - self.gamma) * room.a0[k] + self.gamma * a1);
+        for k in 0..workspace.u.len() {
+            workspace.u1[k] = workspace.u[k] / balance.theta;
+            let a1 = self.acceleration(workspace, k, h);
+            workspace.v1[k] = workspace.v0[k] + h * ((1.0 - self.gamma) * workspace.a0[k] + self.gamma * a1);
         }
     }
-    fn remembered(&self, room: &Room<D>, k: usize, h: f64) -> f64 {
+    fn remembered(&self, workspace: &Workspace<D>, k: usize, h: f64) -> f64 {
         if self.theta.is_some() {
             return 0.0;
         }
-        h * (0.5 - self.alpha_f) * self.acceleration(room, k, h)
+        h * (0.5 - self.alpha_f) * self.acceleration(workspace, k, h)
     }
-    fn remember(&self, system: &mut System<D>, room: &Room<D>, h: f64) {
+    fn remember(&self, system: &mut System<D>, workspace: &Workspace<D>, h: f64) {
         if self.theta.is_some() {
             // The next step begins with F/M, which is what average acceleration would have remembered.
             system.history.numbers[0] = 0.0;
@@ -192,16 +192,16 @@ impl<const D: usize> Rule<D> for Newmark {
         }
         for node in 0..system.nodes {
             for d in 0..D {
-                system.history.columns[0].0[d][node] = self.acceleration(room, node * D + d, h);
+                system.history.columns[0].0[d][node] = self.acceleration(workspace, node * D + d, h);
             }
         }
-        for struck in &room.struck {
+        for struck in &workspace.struck {
             let a = times(&struck.kept, &system.history.columns[0].at(struck.node));
             system.history.columns[0].set(struck.node, a);
         }
         // What an obstacle or a pin holds is not accelerated where it is held.
-        for node in (0..system.nodes).filter(|node| !room.free[*node]) {
-            let along = times(&room.projectors[node], &system.history.columns[0].at(node));
+        for node in (0..system.nodes).filter(|node| !workspace.free[*node]) {
+            let along = times(&workspace.projectors[node], &system.history.columns[0].at(node));
             system.history.columns[0].set(node, along);
         }
         system.history.numbers[0] = 1.0;
@@ -209,8 +209,8 @@ impl<const D: usize> Rule<D> for Newmark {
 }
 
 /// M a₀ = F at the start; where nodes are coupled, those that are held do not accelerate.
-fn first_acceleration<const D: usize>(system: &System<D>, room: &mut Room<D>) {
-    let Room { a0, force, right, .. } = room;
+fn first_acceleration<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>) {
+    let Workspace { a0, force, right, .. } = workspace;
     a0.clear();
     a0.resize(right.len(), 0.0);
     if system.inertia.is_none() {
@@ -225,7 +225,7 @@ fn first_acceleration<const D: usize>(system: &System<D>, room: &mut Room<D>) {
 
 impl Newmark {
     /// a₁ from the displacement of the step.
-    fn acceleration<const D: usize>(&self, room: &Room<D>, k: usize, h: f64) -> f64 {
-        (room.u1[k] - h * room.v0[k] - h * h * (0.5 - self.beta) * room.a0[k]) / (self.beta * h * h)
+    fn acceleration<const D: usize>(&self, workspace: &Workspace<D>, k: usize, h: f64) -> f64 {
+        (workspace.u1[k] - h * workspace.v0[k] - h * h * (0.5 - self.beta) * workspace.a0[k]) / (self.beta * h * h)
     }
 }

@@ -1,6 +1,7 @@
 //! What the tests of all integrators share: small problems with closed forms, and measurements on them.
 
 mod contract;
+mod minimisers;
 mod own_losses;
 pub(crate) mod problems;
 mod real_time;

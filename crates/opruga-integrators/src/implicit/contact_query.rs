@@ -5,7 +5,7 @@ use opruga_core::system::System;
 
 /// Where nodes are within a step, and what they may meet.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Sight<'a, const D: usize> {
+pub(crate) struct ContactQuery<'a, const D: usize> {
     pub(crate) system: &'a System<D>,
     pub(crate) x0: &'a [f64],
     pub(crate) u: &'a [f64],
@@ -14,14 +14,14 @@ pub(crate) struct Sight<'a, const D: usize> {
     pub(crate) extent: f64,
 }
 
-impl<'a, const D: usize> Sight<'a, D> {
+impl<'a, const D: usize> ContactQuery<'a, D> {
     pub(crate) fn new(
         system: &'a System<D>,
         balance: &Balance,
         x0: &'a [f64],
         u: &'a [f64],
         extent: f64,
-    ) -> Sight<'a, D> {
-        Sight { system, x0, u, theta: balance.theta, h: balance.h, extent }
+    ) -> ContactQuery<'a, D> {
+        ContactQuery { system, x0, u, theta: balance.theta, h: balance.h, extent }
     }
 }

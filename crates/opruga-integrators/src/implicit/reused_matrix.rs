@@ -11,7 +11,7 @@ use opruga_solve::{Cholesky, Indefinite, Packed};
 
 /// What the matrix at hand was made of, and what solves with it.
 #[derive(Debug)]
-pub(crate) struct Kept<const D: usize> {
+pub(crate) struct ReusedMatrix<const D: usize> {
     /// Whether there is one.
     there: bool,
     sigma: f64,
@@ -27,9 +27,9 @@ pub(crate) struct Kept<const D: usize> {
     cholesky: Cholesky,
 }
 
-impl<const D: usize> Default for Kept<D> {
+impl<const D: usize> Default for ReusedMatrix<D> {
     fn default() -> Self {
-        Kept {
+        ReusedMatrix {
             there: false,
             sigma: 0.0,
             beta: 0.0,
@@ -44,7 +44,7 @@ impl<const D: usize> Default for Kept<D> {
     }
 }
 
-impl<const D: usize> Kept<D> {
+impl<const D: usize> ReusedMatrix<D> {
     /// Whether the matrix at hand is the one of a shape, of factors and of a way to keep it definite.
     pub(crate) fn is_of(&self, reference: &Columns<D>, mixture: &Mixture<D>, raised: f64) -> bool {
         let nodes = mixture.mass.len();
@@ -59,7 +59,7 @@ impl<const D: usize> Kept<D> {
         if raised > 0.0 {
             linear.raise(raised);
         }
-        self.packed.take(linear.whole(), mixture.system.threads);
+        self.packed.take(linear.full(), mixture.system.threads);
         (self.there, self.ready) = (true, false);
         (self.sigma, self.beta, self.raised) = (mixture.sigma, mixture.beta, raised);
         for (own, column) in self.reference.0.iter_mut().zip(&reference.0) {
@@ -82,7 +82,7 @@ impl<const D: usize> Kept<D> {
             return Ok(());
         }
         self.ready = false;
-        self.packed.hold(threads, linear.whole(), filter.free, filter.projectors)?;
+        self.packed.hold(threads, linear.full(), filter.free, filter.projectors)?;
         if direct {
             linear.constrain(filter);
             self.cholesky.update(linear.constrained())?;

@@ -18,17 +18,17 @@ const REACH: f64 = 1e-2;
 
 /// How the corrections of a matrix without negative eigenvalues change from one to the next.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Falling {
+pub(super) struct Instability {
     /// The last correction [m].
     last: f64,
     /// How often in a row they have grown.
     grown: u32,
 }
 
-impl Falling {
+impl Instability {
     /// Before the first correction.
-    pub(super) fn new() -> Falling {
-        Falling { last: f64::INFINITY, grown: 0 }
+    pub(super) fn new() -> Instability {
+        Instability { last: f64::INFINITY, grown: 0 }
     }
 
     /// Notes a correction [m], and whether it is one of those that may fall off: of a matrix that is too stiff, and of that alone.

@@ -1,12 +1,12 @@
 //! Whether what an iteration ended with balances a body as a whole, and how it is made to (`rigid`).
 
 use super::balance::Balance;
-use super::linear::{EPSILON, Filter, UNSURE, contrast};
+use super::linear::{EPSILON, Filter, HIDDEN, contrast};
 use super::rigid::{Rigid, Stage};
-use super::room::Room;
 use super::rounding::{at_rounding, roundings_of};
 use super::settings::Settings;
 use super::stage::{evaluate, longest, mixture};
+use super::workspace::Workspace;
 use opruga_core::error::StepError;
 use opruga_core::potential::Definiteness;
 use opruga_core::system::System;
@@ -19,7 +19,7 @@ const MOST_MOVES: usize = 8;
 /// knows them too little or in what was taken for rounding, they are balanced first. With the size of coordinates [m].
 pub(super) fn accepts<const D: usize>(
     system: &mut System<D>,
-    room: &mut Room<D>,
+    workspace: &mut Workspace<D>,
     balance: &Balance,
     settings: &Settings,
     size: f64,
@@ -28,94 +28,94 @@ pub(super) fn accepts<const D: usize>(
     if balance.sigma == 0.0 {
         return Ok(true);
     }
-    let goal = settings.tolerance * room.extent;
+    let goal = settings.tolerance * workspace.extent;
     let stiff = {
-        let mixture = mixture(system, &room.mass, balance, Definiteness::Exact, settings);
-        contrast(&room.linear, &mixture)
+        let mixture = mixture(system, &workspace.mass, balance, Definiteness::Exact, settings);
+        contrast(&workspace.linear, &mixture)
     };
     // How far what counts as rounding on every node would move the whole.
     let hidden = by_rounding && roundings_of(stiff, size) > goal;
-    if !hidden && EPSILON * stiff <= UNSURE {
+    if !hidden && EPSILON * stiff <= HIDDEN {
         return Ok(true);
     }
-    let Some(moved) = balance_whole(system, room, balance, settings, size, 0.0)? else { return Ok(false) };
-    Ok(moved <= goal || at_rounding(system, room, balance, settings, size))
+    let Some(moved) = balance_rigid_motions(system, workspace, balance, settings, size, 0.0)? else { return Ok(false) };
+    Ok(moved <= goal || at_rounding(system, workspace, balance, settings, size))
 }
 
 /// Moves the pieces of a body until what is out of balance as a whole does not halve any more, which is its rounding; those that would
 /// not move by more than `least` [m] stay. Gives how far they went [m]; none where nothing brought them nearer to a balance.
-pub(super) fn balance_whole<const D: usize>(
+pub(super) fn balance_rigid_motions<const D: usize>(
     system: &mut System<D>,
-    room: &mut Room<D>,
+    workspace: &mut Workspace<D>,
     balance: &Balance,
     settings: &Settings,
     size: f64,
     least: f64,
 ) -> Result<Option<f64>, StepError> {
-    let mut rigid = core::mem::take(&mut room.rigid);
-    let outcome = balance_with(&mut rigid, system, room, balance, settings, size, least);
-    room.rigid = rigid;
+    let mut rigid = core::mem::take(&mut workspace.rigid);
+    let outcome = balance_with(&mut rigid, system, workspace, balance, settings, size, least);
+    workspace.rigid = rigid;
     outcome
 }
 
 fn balance_with<const D: usize>(
     rigid: &mut Rigid<D>,
     system: &mut System<D>,
-    room: &mut Room<D>,
+    workspace: &mut Workspace<D>,
     balance: &Balance,
     settings: &Settings,
     size: f64,
     least: f64,
 ) -> Result<Option<f64>, StepError> {
-    rigid.find(&stage(system, room, balance, settings));
-    let mut left = sums(rigid, system, room, balance, settings);
+    rigid.find(&stage(system, workspace, balance, settings));
+    let mut left = sums(rigid, system, workspace, balance, settings);
     let mut moved: f64 = 0.0;
     for _ in 0..MOST_MOVES {
         let shares: Vec<f64> = rigid.shares(&left).iter().map(|share| -share).collect();
-        rigid.finite_ways(&room.x0, &room.u, &shares, &mut room.step);
-        Filter { free: &room.free, projectors: &room.projectors }.apply(&mut room.step);
-        let way = longest(&room.step, D);
+        rigid.finite_displacements(&workspace.x0, &workspace.u, &shares, &mut workspace.step);
+        Filter { free: &workspace.free, projectors: &workspace.projectors }.apply(&mut workspace.step);
+        let displacement = longest(&workspace.step, D);
         // A part of the last digit of positions is no way.
-        let moves = way > (1e-3 * EPSILON * size).larger(least);
+        let moves = displacement > (1e-3 * EPSILON * size).larger(least);
         if !moves {
             break;
         }
-        room.trial.copy_from_slice(&room.u);
-        for (u, step) in room.u.iter_mut().zip(&room.step) {
+        workspace.trial.copy_from_slice(&workspace.u);
+        for (u, step) in workspace.u.iter_mut().zip(&workspace.step) {
             *u += step;
         }
-        evaluate(system, room, balance, false)?;
-        let next = sums(rigid, system, room, balance, settings);
+        evaluate(system, workspace, balance, false)?;
+        let next = sums(rigid, system, workspace, balance, settings);
         let [before, now] = [&left, &next].map(|sums| sums.iter().map(|x| x * x).sum::<f64>());
         let falls = now < before;
         if !falls {
-            room.u.copy_from_slice(&room.trial);
-            evaluate(system, room, balance, false)?;
+            workspace.u.copy_from_slice(&workspace.trial);
+            evaluate(system, workspace, balance, false)?;
             // What is no more than the tolerance may stay, if nothing makes it less.
-            let allowed = (EPSILON * size).larger(least).larger(settings.tolerance * room.extent);
-            if moved == 0.0 && way > allowed {
+            let allowed = (EPSILON * size).larger(least).larger(settings.tolerance * workspace.extent);
+            if moved == 0.0 && displacement > allowed {
                 return Ok(None);
             }
             break;
         }
-        moved += way;
+        moved += displacement;
         left = next;
         if now > 0.25 * before {
             break;
         }
     }
-    note(rigid, system, room, balance, settings, size);
+    note(rigid, system, workspace, balance, settings, size);
     Ok(Some(moved))
 }
 
 /// The stage that was evaluated last.
 fn stage<'a, const D: usize>(
     system: &'a System<D>,
-    room: &'a Room<D>,
+    workspace: &'a Workspace<D>,
     balance: &Balance,
     settings: &Settings,
 ) -> Stage<'a, D> {
-    let Room { mass, x0, u, y, free, projectors, contacting, .. } = room;
+    let Workspace { mass, x0, u, y, free, projectors, contacting, .. } = workspace;
     let mixture = mixture(system, mass, balance, Definiteness::Exact, settings);
     Stage { mixture, x0, u, y, filter: Filter { free, projectors }, contacting }
 }
@@ -124,37 +124,37 @@ fn stage<'a, const D: usize>(
 fn sums<const D: usize>(
     rigid: &Rigid<D>,
     system: &System<D>,
-    room: &Room<D>,
+    workspace: &Workspace<D>,
     balance: &Balance,
     settings: &Settings,
 ) -> Vec<f64> {
-    rigid.sums(&room.x0, &room.u, &rigid.residual(&stage(system, room, balance, settings)))
+    rigid.sums(&workspace.x0, &workspace.u, &rigid.residual(&stage(system, workspace, balance, settings)))
 }
 
 /// Notes the forces that rounding of positions makes over the loads, or over what holds a body together that turns.
 fn note<const D: usize>(
     rigid: &mut Rigid<D>,
     system: &mut System<D>,
-    room: &mut Room<D>,
+    workspace: &mut Workspace<D>,
     balance: &Balance,
     settings: &Settings,
     size: f64,
 ) {
-    system.outer_forces(Room::<D>::STAGE, balance.time, &mut room.outer);
+    system.outer_forces(Workspace::<D>::STAGE, balance.time, &mut workspace.outer);
     let mut mean = [0.0; D];
-    let total: f64 = room.mass.iter().sum();
-    for (node, mass) in room.mass.iter().enumerate() {
-        (0..D).for_each(|d| mean[d] += mass / total * room.v0[node * D + d]);
+    let total: f64 = workspace.mass.iter().sum();
+    for (node, mass) in workspace.mass.iter().enumerate() {
+        (0..D).for_each(|d| mean[d] += mass / total * workspace.v0[node * D + d]);
     }
-    let mixture = mixture(system, &room.mass, balance, Definiteness::Exact, settings);
+    let mixture = mixture(system, &workspace.mass, balance, Definiteness::Exact, settings);
     let (mut rounding, mut load): (f64, f64) = (0.0, 0.0);
-    for (node, mass) in room.mass.iter().enumerate() {
-        rounding = (EPSILON * size * room.linear.size_at(&mixture, node) / D as f64).larger(rounding);
-        let force: f64 = room.outer.at(node).iter().map(|f| f * f).sum();
+    for (node, mass) in workspace.mass.iter().enumerate() {
+        rounding = (EPSILON * size * workspace.linear.size_at(&mixture, node) / D as f64).larger(rounding);
+        let force: f64 = workspace.outer.at(node).iter().map(|f| f * f).sum();
         load = force.sqrt().larger(load);
-        let apart = |d: usize| room.v0[node * D + d] - mean[d];
+        let apart = |d: usize| workspace.v0[node * D + d] - mean[d];
         let square: f64 = (0..D).map(|d| apart(d) * apart(d)).sum();
-        load = (mass * square / room.extent).larger(load);
+        load = (mass * square / workspace.extent).larger(load);
     }
     if load > 0.0 {
         rigid.conditioning = rounding / load;
@@ -165,16 +165,16 @@ fn note<const D: usize>(
 /// whole is in balance.
 pub(super) fn settles<const D: usize>(
     system: &mut System<D>,
-    room: &mut Room<D>,
+    workspace: &mut Workspace<D>,
     balance: &Balance,
     settings: &Settings,
     [nothing, little]: [f64; 2],
 ) -> Result<bool, StepError> {
-    let mixture = mixture(system, &room.mass, balance, Definiteness::Exact, settings);
-    let stiff = contrast(&room.linear, &mixture);
-    if EPSILON * stiff <= UNSURE && nothing * stiff <= little {
+    let mixture = mixture(system, &workspace.mass, balance, Definiteness::Exact, settings);
+    let stiff = contrast(&workspace.linear, &mixture);
+    if EPSILON * stiff <= HIDDEN && nothing * stiff <= little {
         return Ok(true);
     }
-    let size = room.x0.iter().fold(0.0, |most: f64, x| x.abs().larger(most));
-    Ok(balance_whole(system, room, balance, settings, size, 0.0)?.is_some())
+    let size = workspace.x0.iter().fold(0.0, |most: f64, x| x.abs().larger(most));
+    Ok(balance_rigid_motions(system, workspace, balance, settings, size, 0.0)?.is_some())
 }

@@ -1,8 +1,8 @@
 //! Where an iteration begins.
 
 use super::balance::Balance;
-use super::room::Room;
 use super::stage::{evaluate, potential};
+use super::workspace::Workspace;
 use opruga_core::error::StepError;
 use opruga_core::system::System;
 
@@ -13,19 +13,19 @@ use opruga_core::system::System;
 /// iterations. What the model has said is given, for the case that these lead nowhere.
 pub(super) fn begin<const D: usize>(
     system: &mut System<D>,
-    room: &mut Room<D>,
+    workspace: &mut Workspace<D>,
     balance: &Balance,
 ) -> Result<Option<StepError>, StepError> {
-    let error = match begin_with_pins(system, room, balance) {
+    let error = match begin_with_pins(system, workspace, balance) {
         Ok(()) => return Ok(None),
         Err(error) => error,
     };
     let leads = |(held, u): (&f64, &f64)| !held.is_nan() && *u != 0.0;
-    if !(matches!(error, StepError::Model { .. }) && room.held.iter().zip(&room.u).any(leads)) {
+    if !(matches!(error, StepError::Model { .. }) && workspace.held.iter().zip(&workspace.u).any(leads)) {
         return Err(error);
     }
-    room.u.fill(0.0);
-    match evaluate(system, room, balance, false) {
+    workspace.u.fill(0.0);
+    match evaluate(system, workspace, balance, false) {
         Ok(()) => Ok(Some(error)),
         // It was not torn by the pins.
         Err(_) => Err(error),
@@ -35,30 +35,30 @@ pub(super) fn begin<const D: usize>(
 /// The same with pins where they have to be.
 fn begin_with_pins<const D: usize>(
     system: &mut System<D>,
-    room: &mut Room<D>,
+    workspace: &mut Workspace<D>,
     balance: &Balance,
 ) -> Result<(), StepError> {
     if balance.sigma == 0.0 {
-        return evaluate(system, room, balance, false);
+        return evaluate(system, workspace, balance, false);
     }
-    for k in 0..room.u.len() {
-        room.trial[k] = if room.held[k].is_nan() { 0.0 } else { room.held[k] };
+    for k in 0..workspace.u.len() {
+        workspace.trial[k] = if workspace.held[k].is_nan() { 0.0 } else { workspace.held[k] };
     }
-    let here = match evaluate(system, room, balance, true) {
-        Ok(()) => potential(system, room, balance, true).map(|(energy, _)| energy),
+    let here = match evaluate(system, workspace, balance, true) {
+        Ok(()) => potential(system, workspace, balance, true).map(|(energy, _)| energy),
         Err(_) => None,
     };
-    let there = evaluate(system, room, balance, false);
+    let there = evaluate(system, workspace, balance, false);
     let better = match (here, &there) {
         (None, _) => return there,
         (Some(_), Err(_)) => true,
-        (Some(here), Ok(())) => !potential(system, room, balance, false).is_some_and(|(there, _)| there <= here),
+        (Some(here), Ok(())) => !potential(system, workspace, balance, false).is_some_and(|(there, _)| there <= here),
     };
     if better {
-        for k in 0..room.u.len() {
-            room.u[k] = if room.held[k].is_nan() { 0.0 } else { room.held[k] };
+        for k in 0..workspace.u.len() {
+            workspace.u[k] = if workspace.held[k].is_nan() { 0.0 } else { workspace.held[k] };
         }
-        evaluate(system, room, balance, false)?;
+        evaluate(system, workspace, balance, false)?;
     }
     Ok(())
 }

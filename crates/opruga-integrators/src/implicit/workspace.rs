@@ -2,9 +2,9 @@
 
 use super::contact::Contacting;
 use super::impact::Struck;
-use super::kept::Kept;
 use super::linear::Linear;
 use super::mixing::Mixing;
+use super::reused_matrix::ReusedMatrix;
 use super::rigid::Rigid;
 use super::settings::Solver;
 use opruga_core::integrator::HistorySize;
@@ -16,7 +16,7 @@ use opruga_solve::blocks::{Block, isotropic, times};
 
 /// Room for an implicit step. Long vectors hold the coordinates of one node after the other.
 #[derive(Debug)]
-pub(crate) struct Room<const D: usize> {
+pub(crate) struct Workspace<const D: usize> {
     /// State at the start.
     pub(crate) x0: Vec<f64>,
     pub(crate) v0: Vec<f64>,
@@ -43,7 +43,7 @@ pub(crate) struct Room<const D: usize> {
     pub(crate) step: Vec<f64>,
     pub(crate) right: Vec<f64>,
     /// The displacement from y, where a mass matrix couples nodes.
-    pub(crate) way: Vec<f64>,
+    pub(crate) displacement: Vec<f64>,
     /// What held directions take of the force [N].
     pub(crate) reaction: Vec<f64>,
     pub(crate) prescribed: Vec<f64>,
@@ -60,7 +60,7 @@ pub(crate) struct Room<const D: usize> {
     /// Whether the real-time setting factors its matrix with a solver that is asked for, once that was found out.
     pub(crate) direct: Option<(Solver, bool)>,
     /// The matrix of the real-time setting.
-    pub(crate) kept: Kept<D>,
+    pub(crate) reused: ReusedMatrix<D>,
     /// Where the history of the real-time setting begins, behind that of the rule.
     pub(crate) own: HistorySize,
     pub(crate) contacting: Contacting<D>,
@@ -74,9 +74,9 @@ pub(crate) struct Room<const D: usize> {
     pub(crate) extent: f64,
 }
 
-impl<const D: usize> Default for Room<D> {
+impl<const D: usize> Default for Workspace<D> {
     fn default() -> Self {
-        Room {
+        Workspace {
             x0: Vec::new(),
             v0: Vec::new(),
             kick: Vec::new(),
@@ -93,7 +93,7 @@ impl<const D: usize> Default for Room<D> {
             trial: Vec::new(),
             step: Vec::new(),
             right: Vec::new(),
-            way: Vec::new(),
+            displacement: Vec::new(),
             reaction: Vec::new(),
             struck: Vec::new(),
             memory: Vec::new(),
@@ -103,7 +103,7 @@ impl<const D: usize> Default for Room<D> {
             projectors: Vec::new(),
             linear: Linear::default(),
             direct: None,
-            kept: Kept::default(),
+            reused: ReusedMatrix::default(),
             own: HistorySize::default(),
             contacting: Contacting::default(),
             rigid: Rigid::default(),
@@ -132,7 +132,7 @@ pub(crate) fn write<const D: usize>(
     }
 }
 
-impl<const D: usize> Room<D> {
+impl<const D: usize> Workspace<D> {
     /// Takes the state of a system at the start of a step.
     pub(crate) fn load(&mut self, system: &System<D>) {
         let size = system.nodes * D;
