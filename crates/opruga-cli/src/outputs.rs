@@ -14,7 +14,7 @@ use opruga::io::tables::{
 use opruga::math::words::{counted, number, rounded};
 use opruga::pictures::{Moment, Scenery};
 use opruga::world::NodeState;
-use opruga::{Warning, World};
+use opruga::{AnyWorld, Warning, World};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The most pictures that the view is fitted to.
@@ -286,7 +286,7 @@ fn stresses<const D: usize>(world: &World<D>, body: usize) -> Vec<Vec<f64>> {
 }
 
 /// What implicit integrators did, if there are any.
-fn solver_summary<const D: usize>(world: &World<D>) -> Option<SolverSummary> {
+fn solver_summary(world: &dyn AnyWorld) -> Option<SolverSummary> {
     let work = world.solver_work();
     (work.steps > 0).then_some(SolverSummary {
         systems: work.steps,
@@ -303,16 +303,16 @@ fn solver_summary<const D: usize>(world: &World<D>) -> Option<SolverSummary> {
 }
 
 /// How good the cells of bodies are at rest. Copies share a mesh, which is looked at once.
-pub(crate) fn cells<const D: usize>(world: &World<D>) -> Vec<CellSummary> {
+pub(crate) fn cells(world: &dyn AnyWorld) -> Vec<CellSummary> {
     let mut seen = std::collections::BTreeSet::new();
     let mut found = Vec::new();
-    for body in world.bodies().map(|body| &world.blueprint().bodies[body]) {
-        if !seen.insert(std::sync::Arc::as_ptr(&body.mesh)) {
+    for body in world.bodies().into_iter().filter_map(|body| world.scene().body(body)) {
+        if !seen.insert(core::ptr::from_ref(body.cells())) {
             continue;
         }
-        let Some(quality) = body.mesh.cell_quality() else { continue };
+        let Some(quality) = body.cell_quality() else { continue };
         found.push(CellSummary {
-            body: body.name.clone(),
+            body: body.name().into(),
             cells: quality.cells,
             smallest_angle: quality.smallest_angle.to_degrees(),
             largest_angle: quality.largest_angle.to_degrees(),

@@ -210,7 +210,7 @@ impl Job<'_> {
     fn verify<const D: usize>(
         &self,
         world: &mut World<D>,
-        playback: &mut Playback<File, D>,
+        playback: &mut Playback<File>,
         stop: &AtomicBool,
     ) -> Result<Value, Failure> {
         let (first, last) = (*self.frames.start(), *self.frames.end());
@@ -283,7 +283,7 @@ impl Job<'_> {
     fn show<const D: usize>(
         &self,
         world: &mut World<D>,
-        playback: &mut Playback<File, D>,
+        playback: &mut Playback<File>,
         stop: &AtomicBool,
         verified: Option<(OutputFolder, Value)>,
     ) -> Result<u8, Failure> {

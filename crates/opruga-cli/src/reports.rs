@@ -14,7 +14,7 @@ use opruga::io::safe_write::{safe_write, try_write};
 use opruga::io::tables::CellSummary;
 use opruga::io::{Notice, scene};
 use opruga::math::words::{counted, number, rounded};
-use opruga::{Options, Warning, World, blueprint::AnyBlueprint};
+use opruga::{AnyWorld, Options, Warning, World};
 use serde_json::json;
 use std::fmt::Write as _;
 use std::io::IsTerminal as _;
@@ -33,10 +33,7 @@ pub(crate) fn check(call: &Check) -> Result<u8, Failure> {
     let most_bytes = Some(reading.limits.memory_bytes);
     let world = Options { allow_unstable: call.allow_unstable, most_bytes, ..Options::default() };
     let Whole { blueprint, notices, .. } = source.read(&reading, &world)?;
-    let found = match blueprint {
-        AnyBlueprint::Plane(blueprint) => Found::of(&source.build(blueprint, &reading, &world)?),
-        AnyBlueprint::Space(blueprint) => Found::of(&source.build(blueprint, &reading, &world)?),
-    };
+    let found = Found::of(&*source.build_any(blueprint, &reading, &world)?);
     if call.json {
         print_data(&format!("{}\n", found.to_json(&source.file, &notices)))?;
     } else {
@@ -62,15 +59,16 @@ struct Found {
 }
 
 impl Found {
-    fn of<const D: usize>(world: &World<D>) -> Found {
+    fn of(world: &dyn AnyWorld) -> Found {
+        let bodies = world.bodies();
         Found {
-            dimension: D,
-            bodies: world.bodies().count(),
-            nodes: world.bodies().map(|b| world.node_count(b)).sum(),
+            dimension: world.scene().dimension(),
+            bodies: bodies.len(),
+            nodes: bodies.iter().map(|body| world.node_count(*body)).sum(),
             integrator: world.integrators().join(", "),
             is_static: world.is_static(),
             h: world.h(),
-            substeps: world.blueprint().time.substeps,
+            substeps: world.scene().time().substeps,
             cells: cells(world),
             stability: world.stability().to_vec(),
             warnings: world.warnings(),

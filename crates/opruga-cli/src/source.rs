@@ -8,7 +8,7 @@ use opruga::io::problem::{shown, visible};
 use opruga::io::refusals::{in_scene, of_command};
 use opruga::io::{Files, Notice, SceneError, scene};
 use opruga::math::words::number;
-use opruga::{Options, World, WorldError};
+use opruga::{AnyWorld, Options, World, WorldError};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -109,11 +109,7 @@ impl Source {
     }
 
     fn refused(&self, reading: scene::Reading, options: &scene::Options, world: &Options) -> Failure {
-        let refusals = match &reading.blueprint {
-            Some(AnyBlueprint::Plane(rest)) => World::problems(rest, world),
-            Some(AnyBlueprint::Space(rest)) => World::problems(rest, world),
-            None => Vec::new(),
-        };
+        let refusals = reading.blueprint.as_ref().map_or_else(Vec::new, |rest| rest.problems(world));
         // Statics refuses bodies that nothing holds: where that may be missing by another error, it would be a false one.
         let known = reading.knows_what_holds();
         let refusals = refusals.iter().filter(|refusal| known || !refusal.code().starts_with("static."));
@@ -136,7 +132,27 @@ impl Source {
         options: &scene::Options,
         world: &Options,
     ) -> Result<World<D>, Failure> {
-        let built = World::new(blueprint, world.clone()).map_err(|first| {
+        self.accepted(World::new(blueprint, world.clone()).map(Box::new), options, world).map(|built| *built)
+    }
+
+    /// As [`Source::build`], of a scene of either dimension.
+    pub(crate) fn build_any(
+        &self,
+        blueprint: AnyBlueprint,
+        options: &scene::Options,
+        world: &Options,
+    ) -> Result<Box<dyn AnyWorld>, Failure> {
+        self.accepted(blueprint.build(world.clone()), options, world)
+    }
+
+    /// The world that was built, unless it is refused or its warnings are errors here.
+    fn accepted<W: AnyWorld + ?Sized>(
+        &self,
+        built: Result<Box<W>, WorldError>,
+        options: &scene::Options,
+        world: &Options,
+    ) -> Result<Box<W>, Failure> {
+        let built = built.map_err(|first| {
             // The scene is read again rather than kept for the case that its world is refused.
             let reading = scene::survey(&self.bytes, &self.file, &opruga::catalogue(), options);
             match self.refused(reading, options, world) {

@@ -87,7 +87,6 @@ fn exit_code(rows: &[Row]) -> u8 {
 
 /// What the scene calls its unit of length, and whose drawings it shows.
 fn said_of(sweep: &Sweep) -> (String, String) {
-    use opruga::blueprint::AnyBlueprint;
     let options = opruga::io::scene::Options {
         lenient: sweep.lenient,
         overrides: sweep.fixed.clone(),
@@ -95,8 +94,7 @@ fn said_of(sweep: &Sweep) -> (String, String) {
         ..opruga::io::scene::Options::default()
     };
     match opruga::io::scene::read(sweep.text.as_bytes(), &sweep.file, &opruga::catalogue(), &options) {
-        Ok((AnyBlueprint::Plane(blueprint), _)) => (blueprint.length_unit, blueprint.credit),
-        Ok((AnyBlueprint::Space(blueprint), _)) => (blueprint.length_unit, blueprint.credit),
+        Ok((blueprint, _)) => (blueprint.scene().length_unit().into(), blueprint.scene().credit().into()),
         Err(_) => ("m".into(), String::new()),
     }
 }

@@ -198,7 +198,7 @@ fn a_recording_that_is_killed_at_any_moment_has_right_frames() {
             assert!(undisturbed.is(frame, hash, state), "round {round}, frame {frame}");
         }
         let Some(last) = recording.frames().next_back() else { return };
-        let mut playback = Playback::<_, 2>::of(recording, last).expect("what the program did");
+        let mut playback = Playback::<_>::of(recording, last).expect("what the program did");
         let mut world = World::new(blueprint(), Options::default()).expect("a world");
         playback.show(&mut world, last).unwrap_or_else(|error| panic!("round {round}: {error}"));
         assert!(undisturbed.is(last, world.frame_hash(), Some(&world.snapshot())), "round {round}, frame {last}");

@@ -3,7 +3,7 @@
 use crate::document::{Document, kind_table, toml};
 use crate::pair::read;
 use crate::said::Said;
-use opruga::blueprint::{AnyBlueprint, Blueprint, BodyBlueprint};
+use opruga::blueprint::AnyBlueprint;
 use opruga::core::spec::{Value, Values};
 use opruga::io::Files;
 use std::collections::{BTreeMap, BTreeSet};
@@ -128,15 +128,7 @@ fn write(scene: &mut Document, difference: &Difference) -> bool {
 
 /// The names of the bodies of a scene and where their nodes are at rest [m].
 fn rest_positions(blueprint: &AnyBlueprint) -> Vec<(String, Vec<[f64; 3]>)> {
-    fn of<const D: usize>(blueprint: &Blueprint<D>) -> Vec<(String, Vec<[f64; 3]>)> {
-        let three = |p: &[f64; D]| std::array::from_fn(|d| p.get(d).copied().unwrap_or(0.0));
-        let body = |body: &BodyBlueprint<D>| (body.name.clone(), body.mesh.positions.iter().map(three).collect());
-        blueprint.bodies.iter().map(body).collect()
-    }
-    match blueprint {
-        AnyBlueprint::Plane(blueprint) => of(blueprint),
-        AnyBlueprint::Space(blueprint) => of(blueprint),
-    }
+    blueprint.scene().bodies().map(|body| (body.name().into(), body.rest_positions())).collect()
 }
 
 /// For every point the number of the nearest of others; of several the first.

@@ -1,5 +1,7 @@
 //! Worlds of Opruga: bodies, obstacles, time, commands and what can be read of them.
 
+mod any_scene;
+mod any_world;
 pub mod blueprint;
 mod body_bytes;
 mod body_view;
@@ -42,6 +44,8 @@ mod turned;
 pub mod validity;
 mod world;
 
+pub use any_scene::{AnyBody, AnyScene};
+pub use any_world::{AnyWorld, Strided, Vectors};
 pub use body_view::BodyView;
 pub use error::WorldError;
 pub use inputs::Input;

@@ -75,7 +75,7 @@ impl<const D: usize> World<D> {
         self.slots.handle(body)
     }
     /// The island of a body that is there, and its lane in it.
-    fn island_of_body(&self, body: usize) -> Option<(&Island<D>, usize)> {
+    pub(crate) fn island_of_body(&self, body: usize) -> Option<(&Island<D>, usize)> {
         let (island, lane) = *self.place.get(body).filter(|_| self.slots.is_there(body))?;
         Some((self.islands.get(island)?, lane))
     }

@@ -10,7 +10,6 @@ use from_files::{FILLING_OF_SURFACES, SPACING_OF_FILLINGS};
 
 use opruga_core::spec::{Allowed, Bound, Default, Field, Spec, Values};
 use opruga_mesh::{LARGEST_ANGLE, MAXIMUM_NODES, MAXIMUM_SUBDIVISIONS, Mesh, MeshError};
-use std::any::Any;
 
 const fn count(least: i64) -> Allowed {
     Allowed::Integer { least, greatest: MAXIMUM_NODES as i64 }
@@ -307,12 +306,46 @@ pub struct Made<const D: usize> {
 /// # Errors
 /// What the generator refuses: crossing edges, too few points, a tube as wide as its circle …
 pub fn mesh<const D: usize>(shape: &Values, transform: &Transform<'_>) -> Result<Made<D>, MeshError> {
-    let made: Box<dyn Any> =
-        if D == 2 { Box::new(plane(shape, transform)?) } else { Box::new(space(shape, transform)?) };
-    match made.downcast::<Made<D>>() {
-        Ok(made) => Ok(*made),
-        Err(_) => Err(MeshError::Size { what: "dimension", value: D as f64, must: "2 or 3" }),
+    if D == 2 {
+        let Made { mesh, flipped, loss } = plane(shape, transform)?;
+        Ok(Made { mesh: renamed(mesh)?, flipped, loss })
+    } else {
+        let Made { mesh, flipped, loss } = space(shape, transform)?;
+        Ok(Made { mesh: renamed(mesh)?, flipped, loss })
     }
+}
+
+/// The same mesh under the name that its type has where the dimension is a parameter, or the other way round.
+fn renamed<const A: usize, const B: usize>(mesh: Mesh<A>) -> Result<Mesh<B>, MeshError> {
+    if A != B {
+        return Err(MeshError::Size { what: "dimension", value: B as f64, must: "2 or 3" });
+    }
+    let Mesh {
+        positions,
+        facets,
+        wires,
+        sheets,
+        sheet_quadrilaterals,
+        cells,
+        groups,
+        cell_groups,
+        cell_values,
+        node_values,
+        skin,
+    } = mesh;
+    Ok(Mesh {
+        positions: positions.iter().map(|position| core::array::from_fn(|d| position[d])).collect(),
+        facets: facets.iter().map(|facet| core::array::from_fn(|d| facet[d])).collect(),
+        wires,
+        sheets,
+        sheet_quadrilaterals,
+        cells,
+        groups,
+        cell_groups,
+        cell_values,
+        node_values,
+        skin,
+    })
 }
 
 /// The whole number of a field, as a count.
@@ -413,19 +446,24 @@ pub fn place<const D: usize>(mesh: &mut Mesh<D>, transform: &Transform<'_>) -> R
     if transform.scale != 1.0 {
         mesh.scale([transform.scale; D], [0.0; D])?;
     }
-    let any: &mut dyn Any = mesh;
-    if let Some(plane) = any.downcast_mut::<Mesh<2>>() {
-        match transform.rotation.first() {
-            Some(angle) if *angle != 0.0 => plane.rotate(*angle, [0.0; 2])?,
-            _ => {}
+    match transform.rotation {
+        [angle, ..] if D == 2 && *angle != 0.0 => turn(mesh, |plane: &mut Mesh<2>| plane.rotate(*angle, [0.0; 2])),
+        [x, y, z] if D == 3 => {
+            let angle = (x * x + y * y + z * z).sqrt();
+            let rotate = |space: &mut Mesh<3>| space.rotate([*x, *y, *z], angle, [0.0; 3]);
+            if angle > 0.0 { turn(mesh, rotate) } else { Ok(()) }
         }
-    } else if let Some(space) = any.downcast_mut::<Mesh<3>>()
-        && let [x, y, z] = transform.rotation
-    {
-        let angle = (x * x + y * y + z * z).sqrt();
-        if angle > 0.0 {
-            space.rotate([*x, *y, *z], angle, [0.0; 3])?;
-        }
+        _ => Ok(()),
     }
-    Ok(())
+}
+
+/// Turns a mesh whose dimension is a parameter as one whose dimension is known.
+fn turn<const D: usize, const E: usize>(
+    mesh: &mut Mesh<D>,
+    rotate: impl FnOnce(&mut Mesh<E>) -> Result<(), MeshError>,
+) -> Result<(), MeshError> {
+    let mut known = renamed(core::mem::take(mesh))?;
+    let turned = rotate(&mut known);
+    *mesh = renamed(known)?;
+    turned
 }

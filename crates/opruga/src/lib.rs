@@ -4,19 +4,18 @@
 //! word in a scene file.
 //!
 //! ```
-//! use opruga::{Options, World, blueprint::AnyBlueprint, catalogue, io::scene};
+//! use opruga::{Options, catalogue, io::scene};
 //!
 //! fn main() -> Result<(), Box<dyn std::error::Error>> {
 //!     let text = opruga::scenes::find("ball").ok_or("there is no such scene")?;
 //!     let (blueprint, _) = scene::read(text.as_bytes(), "ball.toml", &catalogue(), &scene::Options::default())
 //!         .map_err(|errors| errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))?;
-//!     let AnyBlueprint::Plane(blueprint) = blueprint else { return Err("the scene is not in the plane".into()) };
-//!     let mut world = World::new(blueprint, Options::default())?;
+//!     let mut world = blueprint.build(Options::default())?;
 //!     for _ in 0..60 {
 //!         world.frame()?; // one sixtieth of a second
 //!     }
 //!     let ball = world.body("ball").ok_or("there is no ball")?;
-//!     let top = world.position(ball, 9);
+//!     let top = world.positions(ball).at(9);
 //!     println!("t = {:.2} s: top at {:.3} m, {:.4} J", world.time(), top[1], world.energy().total());
 //!     Ok(())
 //! }
@@ -38,7 +37,8 @@ pub use opruga_mesh as mesh;
 pub use opruga_world as world;
 pub use opruga_world::shapes;
 pub use opruga_world::{
-    BodyHandle, BodyView, BreakOff, Energy, Input, Momentum, Options, Registry, Warning, World, WorldError, blueprint,
+    AnyBody, AnyScene, AnyWorld, BodyHandle, BodyView, BreakOff, Energy, Input, Momentum, Options, Registry, Warning,
+    World, WorldError, blueprint,
 };
 
 /// What scenes can name: the models, integrators and colliders of this library.

@@ -1,35 +1,34 @@
 //! Recording a world while a program steps it, and playing the recording: what the program did comes with it.
 //!
 //! ```
-//! use opruga::blueprint::{Action, AnyBlueprint, CommandBlueprint};
 //! use opruga::io::recording::{Header, Recording};
 //! use opruga::recordings::{Playback, Tape};
-//! use opruga::{Options, World, catalogue, io::scene};
+//! use opruga::{Options, catalogue, io::scene};
 //!
 //! fn main() -> Result<(), Box<dyn std::error::Error>> {
 //!     let text = opruga::scenes::find("ball").ok_or("there is no such scene")?;
 //!     let read = || scene::read(text.as_bytes(), "ball.toml", &catalogue(), &scene::Options::default());
-//!     let Ok((AnyBlueprint::Plane(blueprint), _)) = read() else { return Err("no plane scene".into()) };
+//!     let (blueprint, _) = read().map_err(|errors| errors[0].to_string())?;
 //!     let file = std::env::temp_dir().join(format!("opruga-{}.rec", std::process::id()));
-//!     let header = Header { name: "ball".into(), scene: text.into(), frame: blueprint.time.frame, ..Header::default() };
+//!     let header = Header { name: "ball".into(), scene: text.into(), frame: blueprint.scene().time().frame, ..Header::default() };
 //!
-//!     let mut world = World::new(blueprint.clone(), Options::default())?;
-//!     let mut tape = Tape::begin(&file, true, &header, &mut world)?;
+//!     let mut world = blueprint.clone().build(Options::default())?;
+//!     let mut tape = Tape::begin(&file, true, &header, &mut *world)?;
 //!     for frame in 0..20 {
 //!         if frame == 10 {
 //!             world.set("body.ball.models.mass_spring.stiffness", opruga::core::spec::Value::Number(900.0))?;
 //!         }
-//!         tape.step(&mut world)?;
+//!         tape.step(&mut *world)?;
 //!     }
-//!     tape.finish(&mut world)?;
+//!     tape.finish(&mut *world)?;
 //!
 //!     // Another world shows any frame of it, or computes it again. `Header::every` keeps fewer states: those between are
 //!     // computed as they are asked for.
-//!     let mut again = World::new(blueprint, Options::default())?;
+//!     let mut again = blueprint.build(Options::default())?;
 //!     let mut playback = Playback::of(Recording::open(std::fs::File::open(&file)?)?, 20)?;
-//!     playback.show(&mut again, 3)?;
+//!     playback.show(&mut *again, 3)?;
 //!     for frame in 4..=20 {
-//!         playback.step(&mut again, frame)?;
+//!         playback.step(&mut *again, frame)?;
 //!     }
 //!     assert_eq!(again.state_hash(), world.state_hash());
 //!     std::fs::remove_file(file)?;
@@ -37,12 +36,10 @@
 //! }
 //! ```
 
-use crate::{World, WorldError};
-use opruga_core::spec::Values;
+use crate::WorldError;
 use opruga_io::recording::{Header, Recording, RecordingError, RecordingFile};
 use opruga_io::safe_write::WriteError;
-use opruga_world::blueprint::BodyBlueprint;
-use opruga_world::{Input, Registry};
+use opruga_world::{AnyBody, AnyWorld};
 use std::io::{Read, Seek};
 use std::path::{Path, PathBuf};
 
@@ -65,37 +62,33 @@ const FARTHEST: f64 = u32::MAX as f64;
 
 /// What a frame of a world takes on a common machine, at least [ns]. It follows from the scene alone: the same run gives the
 /// same recording everywhere.
-fn work<const D: usize>(world: &World<D>) -> f64 {
-    let blueprint = world.blueprint();
-    let registry = Registry::<D>::default();
-    let implicit = |values: &Values| {
-        let built = registry.integrator(values.kind()).and_then(|kind| kind.build(values).ok());
-        built.is_some_and(|integrator| integrator.needs().hessian)
-    };
-    let step = |body: &BodyBlueprint<D>| {
-        let mesh = &body.mesh;
-        let facets = if D == 3 { mesh.facets.len() + mesh.sheets.len() } else { 0 };
-        let counts = [mesh.nodes(), mesh.cells.len(), facets].map(|count| count as f64);
+fn work(world: &dyn AnyWorld) -> f64 {
+    let scene = world.scene();
+    let dimension = scene.dimension();
+    let step = |body: &dyn AnyBody| {
+        let facets = if dimension == 3 { body.facets().len() / dimension + body.sheets().len() } else { 0 };
+        let counts = [body.nodes(), body.cells().len(), facets].map(|count| count as f64);
         let work: f64 = counts.iter().zip(WORK).map(|(count, each)| count * each).sum();
-        let rule = body.integrator.as_ref().unwrap_or(&blueprint.integrator);
-        if implicit(rule) { IMPLICIT * work } else { work }
+        let rule = body.integrator().unwrap_or(scene.integrator());
+        if world.is_implicit(rule) { IMPLICIT * work } else { work }
     };
-    FRAME + f64::from(blueprint.time.substeps) * blueprint.bodies.iter().map(step).sum::<f64>()
+    FRAME + f64::from(scene.time().substeps) * scene.bodies().map(step).sum::<f64>()
 }
 
 /// How many frames a state is to be kept, where nobody says it: so many that a run is less than a tenth slower by it and
 /// by the hashes of all frames. To see a frame that is not kept takes as many frames at most, which is some twenty times
 /// what it took to keep a state, whatever the scene: a twentieth of a second for a hundred thousand numbers.
-pub fn states_apart<const D: usize>(world: &World<D>) -> u64 {
-    let nodes: usize = world.blueprint().bodies.iter().map(|body| body.mesh.nodes()).sum();
+pub fn states_apart(world: &dyn AnyWorld) -> u64 {
+    let scene = world.scene();
+    let nodes: usize = scene.bodies().map(|body| body.nodes()).sum();
     // Positions and velocities.
-    let state = STATE + BYTE * (nodes * 2 * D * 8) as f64;
+    let state = STATE + BYTE * (nodes * 2 * scene.dimension() * 8) as f64;
     let apart = (state / (SHARE * work(world))).ceil();
     if apart < FARTHEST { apart as u64 } else { FARTHEST as u64 }
 }
 
 /// How many frames go to the system together at most: what a kill costs. One, but of small scenes a tenth of a millisecond.
-pub fn frames_together<const D: usize>(world: &World<D>) -> u64 {
+pub fn frames_together(world: &dyn AnyWorld) -> u64 {
     let together = TOGETHER / work(world);
     if together > 1.0 { together as u64 } else { 1 }
 }
@@ -135,12 +128,7 @@ impl Tape {
     ///
     /// # Errors
     /// Those of [`RecordingFile::create`].
-    pub fn begin<const D: usize>(
-        path: &Path,
-        force: bool,
-        header: &Header,
-        world: &mut World<D>,
-    ) -> Result<Tape, WriteError> {
+    pub fn begin(path: &Path, force: bool, header: &Header, world: &mut dyn AnyWorld) -> Result<Tape, WriteError> {
         let file = RecordingFile::create(path, force, header)?;
         world.keep_inputs();
         drop(world.take_inputs());
@@ -153,8 +141,8 @@ impl Tape {
     /// Steps the world through a frame and adds that.
     ///
     /// # Errors
-    /// Those of [`World::frame`] and [`Tape::push`].
-    pub fn step<const D: usize>(&mut self, world: &mut World<D>) -> Result<(), TapeError> {
+    /// Those of [`AnyWorld::frame`] and [`Tape::push`].
+    pub fn step(&mut self, world: &mut dyn AnyWorld) -> Result<(), TapeError> {
         world.frame()?;
         Ok(self.push(world)?)
     }
@@ -165,9 +153,10 @@ impl Tape {
     /// # Errors
     /// [`WriteError`] where the file cannot be written, or for what cannot be recorded: bodies and forces that the program
     /// has made itself (`recording.input`), and for a frame that is not the next one. The frames before are whole.
-    pub fn push<const D: usize>(&mut self, world: &mut World<D>) -> Result<(), WriteError> {
-        self.inputs(world, world.frames())?;
-        let frames = world.frames().saturating_sub(self.first);
+    pub fn push(&mut self, world: &mut dyn AnyWorld) -> Result<(), WriteError> {
+        let frame = world.frames();
+        self.inputs(world, frame)?;
+        let frames = frame.saturating_sub(self.first);
         if frames.is_multiple_of(self.every) {
             return self.keep(world);
         }
@@ -175,15 +164,15 @@ impl Tape {
         if frames.is_multiple_of(self.together) { self.file.flush() } else { Ok(()) }
     }
 
-    fn keep<const D: usize>(&mut self, world: &World<D>) -> Result<(), WriteError> {
+    fn keep(&mut self, world: &dyn AnyWorld) -> Result<(), WriteError> {
         self.kept = world.frames();
         self.file.keep(world.frames(), world.frame_hash(), |out| world.snapshot_into(out))
     }
 
     /// Adds what the program has done before a frame.
-    fn inputs<const D: usize>(&mut self, world: &mut World<D>, frame: u64) -> Result<(), WriteError> {
+    fn inputs(&mut self, world: &mut dyn AnyWorld, frame: u64) -> Result<(), WriteError> {
         for input in world.take_inputs() {
-            let bytes = input.to_bytes().map_err(|e| WriteError {
+            let bytes = input.map_err(|e| WriteError {
                 code: "recording.input",
                 message: e.to_string(),
                 path: self.path.clone(),
@@ -199,35 +188,36 @@ impl Tape {
     ///
     /// # Errors
     /// As [`Tape::push`].
-    pub fn finish<const D: usize>(mut self, world: &mut World<D>) -> Result<u64, WriteError> {
+    pub fn finish(mut self, world: &mut dyn AnyWorld) -> Result<u64, WriteError> {
         if world.frames() > self.kept {
             self.keep(world)?;
         }
-        self.inputs(world, world.frames() + 1)?;
+        let behind = world.frames() + 1;
+        self.inputs(world, behind)?;
         self.file.finish()
     }
 }
 
 /// A recording that is shown in a world of the same scene, or computed again.
 #[derive(Debug)]
-pub struct Playback<R, const D: usize> {
+pub struct Playback<R> {
     recording: Recording<R>,
     /// What the program did, each with the frame that followed.
-    inputs: Vec<(u64, Input<D>)>,
+    inputs: Vec<(u64, Vec<u8>)>,
     /// The frame that was shown last, and the hash of its state, where the next one may be computed from it.
     shown: Option<(u64, u64)>,
 }
 
-impl<R: Read + Seek, const D: usize> Playback<R, D> {
+impl<R: Read + Seek> Playback<R> {
     /// Reads what the program did up to a frame.
     ///
     /// # Errors
     /// [`TapeError`] where that part of the recording is damaged.
-    pub fn of(mut recording: Recording<R>, last: u64) -> Result<Playback<R, D>, TapeError> {
+    pub fn of(mut recording: Recording<R>, last: u64) -> Result<Playback<R>, TapeError> {
         let frames: Vec<u64> = recording.inputs().take_while(|frame| *frame <= last).collect();
         let mut inputs = Vec::with_capacity(frames.len());
         for (number, frame) in frames.into_iter().enumerate() {
-            inputs.push((frame, Input::from_bytes(&recording.input(number)?)?));
+            inputs.push((frame, recording.input(number)?.to_vec()));
         }
         Ok(Playback { recording, inputs, shown: None })
     }
@@ -237,7 +227,7 @@ impl<R: Read + Seek, const D: usize> Playback<R, D> {
         self.recording.kept(frame) == Ok(frame)
     }
 
-    /// The bytes of a frame whose state is kept, as [`World::snapshot`] gives them.
+    /// The bytes of a frame whose state is kept, as [`AnyWorld::snapshot`] gives them.
     ///
     /// # Errors
     /// [`RecordingError`] where there is no such state, or it is damaged.
@@ -245,7 +235,7 @@ impl<R: Read + Seek, const D: usize> Playback<R, D> {
         self.recording.read(frame)
     }
 
-    /// The hash of a frame, as [`World::frame_hash`] gives it: every frame has one.
+    /// The hash of a frame, as [`AnyWorld::frame_hash`] gives it: every frame has one.
     ///
     /// # Errors
     /// [`RecordingError`] where there is no such frame, or it is damaged.
@@ -257,7 +247,7 @@ impl<R: Read + Seek, const D: usize> Playback<R, D> {
     ///
     /// # Errors
     /// [`TapeError`]; if that is not a refused step, the world stays as it was.
-    pub fn show(&mut self, world: &mut World<D>, frame: u64) -> Result<(), TapeError> {
+    pub fn show(&mut self, world: &mut dyn AnyWorld, frame: u64) -> Result<(), TapeError> {
         let kept = self.recording.kept(frame)?;
         let here = self.shown.filter(|(at, hash)| {
             (kept..=frame).contains(at) && world.frames() == *at && world.state_hash() == *hash && *at > kept
@@ -277,7 +267,7 @@ impl<R: Read + Seek, const D: usize> Playback<R, D> {
     }
 
     /// Brings a world to a frame whose state is kept.
-    fn restore(&mut self, world: &mut World<D>, frame: u64) -> Result<(), TapeError> {
+    fn restore(&mut self, world: &mut dyn AnyWorld, frame: u64) -> Result<(), TapeError> {
         Ok(world.restore(self.recording.read(frame)?)?)
     }
 
@@ -285,7 +275,7 @@ impl<R: Read + Seek, const D: usize> Playback<R, D> {
     ///
     /// # Errors
     /// [`WorldError`] where the world refuses what the program did, or the step.
-    pub fn step(&self, world: &mut World<D>, frame: u64) -> Result<(), WorldError> {
+    pub fn step(&self, world: &mut dyn AnyWorld, frame: u64) -> Result<(), WorldError> {
         let before = self.inputs.iter().filter(|(before, _)| *before == frame);
         before.into_iter().try_for_each(|(_, input)| world.repeat(input))?;
         world.frame()

@@ -92,7 +92,7 @@ fn a_kill_costs_no_more_frames_than_go_to_the_system_together() {
         most = most.max(last);
         // All that is there is right.
         let mut world = World::new(blueprint(), Options::default()).expect("a world");
-        let mut playback = Playback::<_, 2>::of(recording, last).expect("whole");
+        let mut playback = Playback::of(recording, last).expect("whole");
         for frame in 1..=last.min(60) {
             playback.step(&mut world, frame).expect("a frame");
             assert_eq!(playback.hash(frame), Ok(world.frame_hash()), "round {round}, frame {frame}");

@@ -4,10 +4,9 @@
 use super::{Machine, median, processor_time};
 use crate::arguments::BenchLoad;
 use crate::failure::{Failure, print_data};
-use opruga::blueprint::AnyBlueprint;
 use opruga::io::{Files, SceneError, scene};
 use opruga::mesh::Mesh;
-use opruga::{Options, Simd, World};
+use opruga::{Options, Simd};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -71,18 +70,13 @@ fn of_file(call: &BenchLoad, path: &Path) -> Result<u8, Failure> {
         let (blueprint, _) = scene::read(text.as_bytes(), &shown, &opruga::catalogue(), &options)?;
         wall.push(start.elapsed().as_secs_f64());
         processor.push(processor_time() - before);
-        if let AnyBlueprint::Space(blueprint) = &blueprint
-            && let [body] = &blueprint.bodies[..]
-        {
-            (found[1], found[2]) = (body.mesh.facets.len(), body.mesh.nodes());
+        if let Some(body) = blueprint.scene().body(0) {
+            (found[1], found[2]) = (body.facets().len() / 3, body.nodes());
         }
-        if let AnyBlueprint::Space(blueprint) = blueprint {
-            let before = processor_time();
-            let made =
-                World::new(blueprint, world.clone()).map_err(|error| Failure::Scene(vec![SceneError::from(&error)]))?;
-            built.push(processor_time() - before);
-            drop(made);
-        }
+        let before = processor_time();
+        let made = blueprint.build(world.clone()).map_err(|error| Failure::Scene(vec![SceneError::from(&error)]))?;
+        built.push(processor_time() - before);
+        drop(made);
     }
     let [bytes, triangles, nodes] = found;
     let [plain, wall, processor, built] = [&plain, &wall, &processor, &built].map(|times| median(times));

@@ -3,7 +3,6 @@
 use super::Session;
 use super::edits::shift;
 use crate::pair::read;
-use opruga::blueprint::{AnyBlueprint, BodyBlueprint};
 use opruga::draw::ColliderPicture;
 use toml_edit::InlineTable;
 
@@ -122,14 +121,10 @@ impl Session {
 
     /// The box around a body as its table sets it down; none where that cannot be read.
     fn box_of(&self, table: &InlineTable) -> Option<Ends> {
-        fn of<const D: usize>(body: &BodyBlueprint<D>) -> Ends {
-            let at = |d: usize, point: &[f64; D]| if d < D { point[d] + body.translation[d] } else { 0.0 };
-            around(body.mesh.positions.iter().map(|point| [0, 1, 2].map(|d| at(d, point))))
-        }
-        match read(&self.document.alone(table), &self.files).ok()?.0 {
-            AnyBlueprint::Plane(scene) => scene.bodies.last().map(of),
-            AnyBlueprint::Space(scene) => scene.bodies.last().map(of),
-        }
+        let (blueprint, _) = read(&self.document.alone(table), &self.files).ok()?;
+        let body = blueprint.scene().bodies().last()?;
+        let translation = body.translation();
+        Some(around(body.rest_positions().into_iter().map(|point| [0, 1, 2].map(|d| point[d] + translation[d]))))
     }
 }
 

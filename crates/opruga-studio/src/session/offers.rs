@@ -5,7 +5,6 @@ use crate::document::Document;
 use crate::pair::read;
 use crate::said::Said;
 use crate::shown::{Offer, Severity, Shown};
-use opruga::blueprint::AnyBlueprint;
 use opruga::core::spec::{Role, Spec, Value, Values};
 use opruga::io::Files;
 use opruga::world::schema::MOST_SUBSTEPS;
@@ -152,8 +151,7 @@ impl Session {
         let now = self.nodes_now();
         let of = |document: &Document, files: &Files| -> Vec<usize> {
             match read(document, files) {
-                Ok((AnyBlueprint::Plane(scene), _)) => scene.bodies.iter().map(|body| body.mesh.nodes()).collect(),
-                Ok((AnyBlueprint::Space(scene), _)) => scene.bodies.iter().map(|body| body.mesh.nodes()).collect(),
+                Ok((blueprint, _)) => blueprint.scene().bodies().map(|body| body.nodes()).collect(),
                 Err(_) => Vec::new(),
             }
         };

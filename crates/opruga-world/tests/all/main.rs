@@ -1,6 +1,7 @@
 //! Every test of this crate that needs no process of its own, in one program: it is linked once.
 
 mod acting;
+mod any_world;
 mod ball;
 mod blueprints_of_programs;
 mod common;

@@ -3,8 +3,8 @@
 use opruga_core::spec::nearest;
 use opruga_io::SceneError;
 use opruga_io::problem::visible;
-use opruga_world::World;
-use opruga_world::blueprint::{Blueprint, Recorded};
+use opruga_world::blueprint::Recorded;
+use opruga_world::{AnyScene, AnyWorld};
 
 /// The words for what can be measured, and what they mean.
 pub const WORDS: [(&str, &str); 5] = [
@@ -84,7 +84,7 @@ impl Metric {
     ///
     /// # Errors
     /// `sweep.metric` where there is no such body or no such column of a probe.
-    pub fn check<const D: usize>(&self, blueprint: &Blueprint<D>) -> Result<(), SceneError> {
+    pub fn check(&self, scene: &dyn AnyScene) -> Result<(), SceneError> {
         let missing = |what: &str, name: &str, known: Vec<String>| {
             let allowed = if known.is_empty() { "the scene has none".to_string() } else { known.join(", ") };
             Err(SceneError::new("sweep.metric", format!("there is no {what} `{}`", visible(name)))
@@ -94,13 +94,13 @@ impl Metric {
         };
         match &self.quantity {
             Quantity::BounceHeight(body) | Quantity::EquilibriumRadius(body) => {
-                let names: Vec<String> = blueprint.bodies.iter().map(|b| b.name.clone()).collect();
+                let names: Vec<String> = scene.bodies().map(|body| body.name().to_string()).collect();
                 match body {
                     Some(name) if !names.contains(name) => return missing("body", name, names),
                     None if names.is_empty() => return missing("body", "", names),
                     _ => {}
                 }
-                if matches!(self.quantity, Quantity::BounceHeight(_)) && upwards(blueprint).is_none() {
+                if matches!(self.quantity, Quantity::BounceHeight(_)) && upwards(scene).is_none() {
                     return Err(SceneError::new("sweep.metric", "nothing says what is up")
                         .value(visible(&self.name))
                         .allowed("scenes with gravity or a half-space"));
@@ -108,7 +108,7 @@ impl Metric {
                 Ok(())
             }
             Quantity::Probe(column, _) => {
-                let columns = probe_columns(blueprint);
+                let columns = scene.probe_columns().concat();
                 if columns.contains(column) { Ok(()) } else { missing("column of a probe", column, columns) }
             }
             _ => Ok(()),
@@ -154,40 +154,30 @@ fn unknown(text: &str) -> SceneError {
         .nearest(nearest(text.split('.').next().unwrap_or(text), words.iter().copied()))
 }
 
-/// The names of the columns of all probes, as tables have them.
-fn probe_columns<const D: usize>(blueprint: &Blueprint<D>) -> Vec<String> {
-    let mut out = Vec::new();
-    for probe in &blueprint.probes {
-        for what in &probe.record {
-            out.extend(what.columns(D).iter().map(|column| format!("{}.{column}", probe.name)));
-        }
-    }
-    out
-}
-
 /// The direction of up: against gravity; without gravity that out of the first half-space.
-fn upwards<const D: usize>(blueprint: &Blueprint<D>) -> Option<[f64; D]> {
-    let unit = |vector: [f64; D]| {
+fn upwards(scene: &dyn AnyScene) -> Option<[f64; 3]> {
+    let unit = |vector: [f64; 3]| {
         let length = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
         (length > 0.0).then(|| vector.map(|x| x / length))
     };
-    unit(blueprint.surroundings.gravity.map(|g| -g)).or_else(|| {
-        let floor = blueprint.colliders.iter().find(|c| c.values.kind() == "half_space")?;
+    let gravity = scene.gravity();
+    unit(core::array::from_fn(|d| gravity.get(d).map_or(0.0, |g| -g))).or_else(|| {
+        let floor = scene.colliders().iter().find(|c| c.values.kind() == "half_space")?;
         unit(floor.values.vector("normal"))
     })
 }
 
 /// Watches a run and measures it.
-pub(crate) struct Meter<const D: usize> {
-    gauges: Vec<Gauge<D>>,
+pub(crate) struct Meter {
+    gauges: Vec<Gauge>,
     /// The frames of the whole run.
     frames: u64,
 }
 
-enum Gauge<const D: usize> {
+enum Gauge {
     Bounce {
         body: Option<String>,
-        up: [f64; D],
+        up: [f64; 3],
         lowest: f64,
         rise: f64,
     },
@@ -216,15 +206,15 @@ enum Gauge<const D: usize> {
     },
 }
 
-impl<const D: usize> Meter<D> {
-    pub(crate) fn new(metrics: &[Metric], world: &World<D>, frames: u64) -> Meter<D> {
-        let blueprint = world.blueprint();
+impl Meter {
+    pub(crate) fn new(metrics: &[Metric], scene: &dyn AnyScene, frames: u64) -> Meter {
+        let probes = scene.probe_columns();
         let gauges = metrics
             .iter()
             .map(|metric| match &metric.quantity {
                 Quantity::BounceHeight(body) => Gauge::Bounce {
                     body: body.clone(),
-                    up: upwards(blueprint).unwrap_or([0.0; D]),
+                    up: upwards(scene).unwrap_or([0.0; 3]),
                     lowest: f64::INFINITY,
                     rise: 0.0,
                 },
@@ -233,16 +223,10 @@ impl<const D: usize> Meter<D> {
                 Quantity::EnergyDrift => Gauge::Drift { drift: 0.0 },
                 Quantity::NanosecondsPerStep => Gauge::Speed,
                 Quantity::Probe(column, statistic) => {
-                    let mut place = probe_columns(blueprint).iter().position(|c| c == column).unwrap_or(usize::MAX);
-                    let mut number = 0;
-                    while let Some(probe) = blueprint.probes.get(number) {
-                        let columns: usize = probe.record.iter().map(|what| what.columns(D).len()).sum();
-                        if place < columns {
-                            break;
-                        }
-                        place -= columns;
-                        number += 1;
-                    }
+                    let find = |(number, columns): (usize, &Vec<String>)| {
+                        columns.iter().position(|c| c == column).map(|place| (number, place))
+                    };
+                    let (number, place) = probes.iter().enumerate().find_map(find).unwrap_or((usize::MAX, usize::MAX));
                     Gauge::Probe {
                         number,
                         place,
@@ -265,14 +249,13 @@ impl<const D: usize> Meter<D> {
     }
 
     /// Looks at the world within a frame.
-    pub(crate) fn look(&mut self, world: &World<D>) {
+    pub(crate) fn look(&mut self, world: &dyn AnyWorld) {
         for gauge in &mut self.gauges {
             let Gauge::Bounce { body, up, lowest, rise } = gauge else { continue };
             let Some(body) = found(world, body.as_deref()) else { continue };
             let mut height = f64::INFINITY;
-            for node in 0..world.node_count(body) as u32 {
-                let x = world.position(body, node);
-                let along = (0..D).map(|d| x[d] * up[d]).sum::<f64>();
+            for x in world.positions(body).iter() {
+                let along = x.iter().zip(&*up).map(|(x, up)| x * up).sum::<f64>();
                 if along < height {
                     height = along;
                 }
@@ -287,7 +270,7 @@ impl<const D: usize> Meter<D> {
     }
 
     /// Looks at the world at the start and at the end of each frame.
-    pub(crate) fn frame(&mut self, world: &mut World<D>) {
+    pub(crate) fn frame(&mut self, world: &mut dyn AnyWorld) {
         self.look(world);
         let late = world.frames() * 10 >= self.frames * 9;
         for gauge in &mut self.gauges {
@@ -336,26 +319,21 @@ impl<const D: usize> Meter<D> {
 }
 
 /// A body by its name; without a name the first one that is there.
-fn found<const D: usize>(world: &World<D>, name: Option<&str>) -> Option<usize> {
+fn found(world: &dyn AnyWorld, name: Option<&str>) -> Option<usize> {
     match name {
         Some(name) => world.body(name),
-        None => world.bodies().next(),
+        None => world.bodies().first().copied(),
     }
 }
 
 /// The mean distance of the nodes of a body from their middle.
-fn radius<const D: usize>(world: &World<D>, body: usize) -> f64 {
-    let nodes = world.node_count(body) as u32;
-    let mut middle = [0.0; D];
-    for node in 0..nodes {
-        let x = world.position(body, node);
-        (0..D).for_each(|d| middle[d] += x[d] / f64::from(nodes));
-    }
-    let distance = |node| {
-        let x = world.position(body, node);
-        (0..D).map(|d| (x[d] - middle[d]) * (x[d] - middle[d])).sum::<f64>().sqrt()
-    };
-    (0..nodes).map(distance).sum::<f64>() / f64::from(nodes)
+fn radius(world: &dyn AnyWorld, body: usize) -> f64 {
+    let positions = world.positions(body);
+    let nodes = positions.len() as f64;
+    let mut middle = [0.0; 3];
+    positions.iter().for_each(|x| (0..3).for_each(|d| middle[d] += x[d] / nodes));
+    let distance = |x: [f64; 3]| (0..3).map(|d| (x[d] - middle[d]) * (x[d] - middle[d])).sum::<f64>().sqrt();
+    positions.iter().map(distance).sum::<f64>() / nodes
 }
 
 /// The first of these times from which on the kinetic energy stays below its part; none where it does not settle.

@@ -42,10 +42,11 @@ pub use plots::plots;
 pub use question::Question;
 pub use table::{Row, Status, head, line, read_rows};
 
-use crate::{Options, Simd, World, WorldError};
+use crate::{Options, Simd, WorldError};
 use metrics::Meter;
 use opruga_io::{Files, SceneError, scene};
-use opruga_world::blueprint::{AnyBlueprint, Blueprint};
+use opruga_world::blueprint::AnyBlueprint;
+use opruga_world::{AnyScene, AnyWorld};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Processor time after which a speed is known well enough [s].
@@ -102,14 +103,13 @@ impl Sweep {
         let points = grid::points(&self.axes, self.design).map_err(|e| errors.push(e)).unwrap_or_default();
         match self.read(&vec![None; self.axes.len()]) {
             Err(mut of_scene) => errors.append(&mut of_scene),
-            Ok(AnyBlueprint::Plane(blueprint)) => self.check(&blueprint, &points, &mut errors),
-            Ok(AnyBlueprint::Space(blueprint)) => self.check(&blueprint, &points, &mut errors),
+            Ok(blueprint) => self.check(blueprint.scene(), &points, &mut errors),
         }
         if errors.is_empty() { Ok(points) } else { Err(errors) }
     }
 
-    fn check<const D: usize>(&self, blueprint: &Blueprint<D>, points: &[Point], errors: &mut Vec<SceneError>) {
-        errors.extend(self.metrics.iter().filter_map(|metric| metric.check(blueprint).err()));
+    fn check(&self, scene: &dyn AnyScene, points: &[Point], errors: &mut Vec<SceneError>) {
+        errors.extend(self.metrics.iter().filter_map(|metric| metric.check(scene).err()));
         for place in 0..self.axes.len() {
             // The first value of each parameter by itself: a path that leads nowhere does so for all of them.
             let Some(value) = points.iter().find_map(|point| point[place].clone()) else { continue };
@@ -149,8 +149,7 @@ impl Sweep {
             Options { threads: 1, simd, allow_unstable: self.allow_unstable, most_bytes, ..Options::default() };
         let run = Run { sweep: self, options, clock, stop };
         let outcome = match self.read(point) {
-            Ok(AnyBlueprint::Plane(blueprint)) => run.measure(&blueprint),
-            Ok(AnyBlueprint::Space(blueprint)) => run.measure(&blueprint),
+            Ok(blueprint) => run.measure(&blueprint),
             Err(errors) => {
                 let first = errors.into_iter().next();
                 Err(first.map_or_else(|| Failed::of("scene", ""), Failed::from))
@@ -203,19 +202,18 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    fn measure<const D: usize>(&self, blueprint: &Blueprint<D>) -> Result<Vec<Option<f64>>, Failed> {
-        let frames = (blueprint.time.seconds / blueprint.time.frame - 1e-9).ceil();
-        let frames = if frames > 0.0 { frames as u64 } else { 0 };
-        let mut world = World::new(blueprint.clone(), self.options.clone())?;
-        let mut meter = Meter::new(&self.sweep.metrics, &world, frames);
+    fn measure(&self, blueprint: &AnyBlueprint) -> Result<Vec<Option<f64>>, Failed> {
+        let frames = blueprint.scene().time().frames();
+        let mut world = blueprint.clone().build(self.options.clone())?;
+        let mut meter = Meter::new(&self.sweep.metrics, world.scene(), frames);
         if meter.looks_within() {
             world.keep_looks(1);
         }
-        meter.frame(&mut world);
+        meter.frame(&mut *world);
         while world.frames() < frames {
-            self.frame(&mut world)?;
-            world.look_within(|world| meter.look(world));
-            meter.frame(&mut world);
+            self.frame(&mut *world)?;
+            world.look_within(&mut |world| meter.look(world));
+            meter.frame(&mut *world);
         }
         let mut numbers = meter.finish();
         if self.sweep.metrics.iter().any(Metric::is_timing) {
@@ -229,7 +227,7 @@ impl Run<'_> {
         Ok(numbers)
     }
 
-    fn frame<const D: usize>(&self, world: &mut World<D>) -> Result<(), Failed> {
+    fn frame(&self, world: &mut dyn AnyWorld) -> Result<(), Failed> {
         if self.stop.load(Ordering::Relaxed) {
             return Err(Failed::Stopped);
         }
@@ -238,15 +236,15 @@ impl Run<'_> {
 
     /// Processor time of a substep [ns]: that of the fastest of as many runs as fit a tenth of a second, at least of one.
     /// They are runs of their own, which nobody looks at.
-    fn speed<const D: usize>(&self, blueprint: &Blueprint<D>, frames: u64) -> Result<Option<f64>, Failed> {
-        let steps = frames as f64 * f64::from(blueprint.time.substeps);
+    fn speed(&self, blueprint: &AnyBlueprint, frames: u64) -> Result<Option<f64>, Failed> {
+        let steps = frames as f64 * f64::from(blueprint.scene().time().substeps);
         let (mut fastest, mut spent) = (f64::INFINITY, 0.0);
         // A clock that stands still is read a few times only.
         for _ in 0..50 {
-            let mut world = World::new(blueprint.clone(), self.options.clone())?;
+            let mut world = blueprint.clone().build(self.options.clone())?;
             let start = (self.clock)();
             while world.frames() < frames {
-                self.frame(&mut world)?;
+                self.frame(&mut *world)?;
             }
             let took = (self.clock)() - start;
             spent += took;

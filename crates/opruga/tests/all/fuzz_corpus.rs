@@ -127,7 +127,7 @@ fn the_corpus_is_that_of_this_version() {
                 let recording = Recording::open(Cursor::new(&bytes[..])).expect("a recording");
                 assert_eq!(matches!(recording.ending(), Ending::Closed), kind != "killed", "{name}");
                 let last = recording.frames().end - 1;
-                let mut playback = Playback::<_, 2>::of(recording, last).expect("whole");
+                let mut playback = Playback::of(recording, last).expect("whole");
                 let mut again = world();
                 playback.show(&mut again, last).expect("the last frame");
                 assert_eq!(playback.hash(last), Ok(again.frame_hash()), "{name}");

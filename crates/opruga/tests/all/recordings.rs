@@ -82,7 +82,7 @@ fn is_done_again(every: u64) {
     tape.finish(&mut recorded).expect("an end");
     let open = || {
         let recording = Recording::open(std::fs::File::open(&path).expect("a file")).expect("a recording");
-        Playback::<_, 2>::of(recording, frames).expect("whole")
+        Playback::of(recording, frames).expect("whole")
     };
     // Computed again, every frame has the same bits; without what the program did it has not.
     let (mut playback, mut again) = (open(), world("pressures"));
@@ -140,7 +140,7 @@ fn is_replayed<const D: usize>(name: &str, blueprint: &Blueprint<D>) {
     }
     tape.finish(&mut run).expect("an end");
     let recording = Recording::open(std::fs::File::open(&path).expect("a file")).expect("a recording");
-    let mut playback = Playback::<_, D>::of(recording, frames as u64).expect("whole");
+    let mut playback = Playback::of(recording, frames as u64).expect("whole");
     let mut again = new();
     for frame in (0..=frames).rev() {
         playback.show(&mut again, frame as u64).unwrap_or_else(|error| panic!("{name}: {error}"));

@@ -1,0 +1,195 @@
+//! A scene without a dimension in its type: what readers of either dimension ask of it.
+
+use crate::any_world::three;
+use crate::blueprint::{AnyBlueprint, Blueprint, BodyBlueprint, ColliderBlueprint, Time};
+use crate::world::{Options, World};
+use crate::{AnyWorld, WorldError};
+use opruga_core::spec::Values;
+use opruga_mesh::{CellQuality, Cells, EdgeSet, Skin};
+
+/// A scene in the plane or in space.
+pub trait AnyScene {
+    /// The number of coordinates of a node: 2 or 3.
+    fn dimension(&self) -> usize;
+    /// The name of the scene.
+    fn name(&self) -> &str;
+    /// A sentence for lists and pictures.
+    fn title(&self) -> &str;
+    /// What pictures and plots call the unit of length.
+    fn length_unit(&self) -> &str;
+    /// Whose drawings, maps and surfaces the scene shows, and under which licence.
+    fn credit(&self) -> &str;
+    /// How time passes.
+    fn time(&self) -> Time;
+    /// Acceleration of gravity, one number per coordinate [m/s²].
+    fn gravity(&self) -> &[f64];
+    /// The integrator and its parameters.
+    fn integrator(&self) -> &Values;
+    /// Rigid obstacles.
+    fn colliders(&self) -> &[ColliderBlueprint];
+    /// How many numbers of bodies there are; a number may belong to a body that is gone.
+    fn body_count(&self) -> usize;
+    /// A body by its number; none where there is no such number.
+    fn body(&self, number: usize) -> Option<&dyn AnyBody>;
+    /// The names of the columns of every probe, in the order of [`AnyWorld::probe`].
+    fn probe_columns(&self) -> Vec<Vec<String>>;
+}
+
+impl dyn AnyScene + '_ {
+    /// All bodies, in the order of their numbers.
+    pub fn bodies(&self) -> impl Iterator<Item = &dyn AnyBody> {
+        (0..self.body_count()).filter_map(|number| self.body(number))
+    }
+}
+
+impl<const D: usize> AnyScene for Blueprint<D> {
+    fn dimension(&self) -> usize {
+        D
+    }
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn title(&self) -> &str {
+        &self.title
+    }
+    fn length_unit(&self) -> &str {
+        &self.length_unit
+    }
+    fn credit(&self) -> &str {
+        &self.credit
+    }
+    fn time(&self) -> Time {
+        self.time
+    }
+    fn gravity(&self) -> &[f64] {
+        &self.surroundings.gravity
+    }
+    fn integrator(&self) -> &Values {
+        &self.integrator
+    }
+    fn colliders(&self) -> &[ColliderBlueprint] {
+        &self.colliders
+    }
+    fn body_count(&self) -> usize {
+        self.bodies.len()
+    }
+    fn body(&self, number: usize) -> Option<&dyn AnyBody> {
+        self.bodies.get(number).map(|body| body as &dyn AnyBody)
+    }
+    fn probe_columns(&self) -> Vec<Vec<String>> {
+        let columns = |probe: &crate::blueprint::ProbeBlueprint<D>| {
+            let names = probe.record.iter().flat_map(|what| what.columns(D));
+            names.map(|column| format!("{}.{column}", probe.name)).collect()
+        };
+        self.probes.iter().map(columns).collect()
+    }
+}
+
+/// A body of a scene in the plane or in space.
+pub trait AnyBody {
+    /// Its name.
+    fn name(&self) -> &str;
+    /// Its models and their parameters.
+    fn models(&self) -> &[Values];
+    /// Its own integrator; none: that of the scene.
+    fn integrator(&self) -> Option<&Values>;
+    /// Depth out of the plane in 2D; in 3D the thickness of a sheet or the width of a wire [m].
+    fn thickness(&self) -> f64;
+    /// The number of nodes of its rest shape.
+    fn nodes(&self) -> usize;
+    /// Where its nodes are at rest, before it is moved to its place [m]; z is 0 in the plane.
+    fn rest_positions(&self) -> Vec<[f64; 3]>;
+    /// Where its rest shape lies at the start [m]; z is 0 in the plane.
+    fn translation(&self) -> [f64; 3];
+    /// The rest shape's node numbers of the boundary, one row of as many numbers as coordinates per facet.
+    fn facets(&self) -> &[u32];
+    /// The triangles of an open surface.
+    fn sheets(&self) -> &[[u32; 3]];
+    /// The filled interior.
+    fn cells(&self) -> &Cells;
+    /// What is drawn instead of the boundary.
+    fn skin(&self) -> Option<&Skin>;
+    /// The pairs of nodes that its elements join.
+    fn edges(&self) -> Vec<[u32; 2]>;
+    /// The smallest and largest angles and edges of its cells; none where it has no cells.
+    fn cell_quality(&self) -> Option<CellQuality>;
+}
+
+impl<const D: usize> AnyBody for BodyBlueprint<D> {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn models(&self) -> &[Values] {
+        &self.models
+    }
+    fn integrator(&self) -> Option<&Values> {
+        self.integrator.as_ref()
+    }
+    fn thickness(&self) -> f64 {
+        self.thickness
+    }
+    fn nodes(&self) -> usize {
+        self.mesh.nodes()
+    }
+    fn rest_positions(&self) -> Vec<[f64; 3]> {
+        self.mesh.positions.iter().map(|position| three(*position)).collect()
+    }
+    fn translation(&self) -> [f64; 3] {
+        three(self.translation)
+    }
+    fn facets(&self) -> &[u32] {
+        self.mesh.facets.as_flattened()
+    }
+    fn sheets(&self) -> &[[u32; 3]] {
+        &self.mesh.sheets
+    }
+    fn cells(&self) -> &Cells {
+        &self.mesh.cells
+    }
+    fn skin(&self) -> Option<&Skin> {
+        self.mesh.skin.as_ref()
+    }
+    fn edges(&self) -> Vec<[u32; 2]> {
+        self.mesh.edges(EdgeSet::All)
+    }
+    fn cell_quality(&self) -> Option<CellQuality> {
+        self.mesh.cell_quality()
+    }
+}
+
+impl AnyBlueprint {
+    /// What readers of either dimension ask of the scene.
+    pub fn scene(&self) -> &dyn AnyScene {
+        match self {
+            AnyBlueprint::Plane(blueprint) => blueprint,
+            AnyBlueprint::Space(blueprint) => blueprint,
+        }
+    }
+
+    /// Gives the scene another name.
+    pub fn rename(&mut self, name: &str) {
+        match self {
+            AnyBlueprint::Plane(blueprint) => name.clone_into(&mut blueprint.name),
+            AnyBlueprint::Space(blueprint) => name.clone_into(&mut blueprint.name),
+        }
+    }
+
+    /// Builds the world of the scene.
+    ///
+    /// # Errors
+    /// As [`World::new`].
+    pub fn build(self, options: Options) -> Result<Box<dyn AnyWorld>, WorldError> {
+        Ok(match self {
+            AnyBlueprint::Plane(blueprint) => Box::new(World::new(blueprint, options)?),
+            AnyBlueprint::Space(blueprint) => Box::new(World::new(blueprint, options)?),
+        })
+    }
+
+    /// Everything that a world of the scene would refuse.
+    pub fn problems(&self, options: &Options) -> Vec<WorldError> {
+        match self {
+            AnyBlueprint::Plane(blueprint) => World::problems(blueprint, options),
+            AnyBlueprint::Space(blueprint) => World::problems(blueprint, options),
+        }
+    }
+}
