@@ -168,7 +168,7 @@ fn other_simd() -> Option<WarningSummary> {
 }
 
 /// That a run ends at another time than it was asked for, since frames are whole.
-fn whole_frames(frames: u64, frame: f64, seconds: f64) -> Option<String> {
+pub(crate) fn whole_frames(frames: u64, frame: f64, seconds: f64) -> Option<String> {
     let reached = frames as f64 * frame;
     // Rounding apart.
     ((reached - seconds).abs() > 1e-6 * frame).then(|| {

@@ -39,10 +39,13 @@ pub(crate) fn sweep(call: &Call) -> Result<u8, Failure> {
     let known = known_rows(&folder, &sweep, &points)?;
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let threads = call.threads.map_or(cores.min(256), usize::from);
+    let Said { length_unit, credit, ends } = said_of(&sweep);
+    if !call.json {
+        ends.iter().for_each(|said| eprintln!("{said}"));
+    }
     let work = Work { sweep: &sweep, points: &points, folder: &folder, threads, simd };
     let start = Instant::now();
     let rows = work.all(known)?;
-    let (length_unit, credit) = said_of(&sweep);
     let mut files = vec![TABLE.to_string(), QUESTION.into()];
     match plots(&sweep, &rows, &length_unit, &credit) {
         Ok(plots) => {
@@ -85,8 +88,17 @@ fn exit_code(rows: &[Row]) -> u8 {
     rows.iter().map(code).max().unwrap_or(0)
 }
 
-/// What the scene calls its unit of length, and whose drawings it shows.
-fn said_of(sweep: &Sweep) -> (String, String) {
+/// What the scene of a sweep says about all of its runs.
+struct Said {
+    /// What it calls its unit of length.
+    length_unit: String,
+    /// Whose drawings it shows.
+    credit: String,
+    /// That runs end at another time than was asked for, unless that differs between them.
+    ends: Option<String>,
+}
+
+fn said_of(sweep: &Sweep) -> Said {
     let options = opruga::io::scene::Options {
         lenient: sweep.lenient,
         overrides: sweep.fixed.clone(),
@@ -94,8 +106,14 @@ fn said_of(sweep: &Sweep) -> (String, String) {
         ..opruga::io::scene::Options::default()
     };
     match opruga::io::scene::read(sweep.text.as_bytes(), &sweep.file, &opruga::catalogue(), &options) {
-        Ok((blueprint, _)) => (blueprint.scene().length_unit().into(), blueprint.scene().credit().into()),
-        Err(_) => ("m".into(), String::new()),
+        Ok((blueprint, _)) => {
+            let scene = blueprint.scene();
+            let time = scene.time();
+            let varies = sweep.axes.iter().any(|axis| axis.path.starts_with("time."));
+            let ends = crate::run::whole_frames(time.frames(), time.frame, time.seconds).filter(|_| !varies);
+            Said { length_unit: scene.length_unit().into(), credit: scene.credit().into(), ends }
+        }
+        Err(_) => Said { length_unit: "m".into(), credit: String::new(), ends: None },
     }
 }
 

@@ -1,6 +1,5 @@
 //! A scene without a dimension in its type: what readers of either dimension ask of it.
 
-use crate::any_world::three;
 use crate::blueprint::{AnyBlueprint, Blueprint, BodyBlueprint, ColliderBlueprint, Time};
 use crate::world::{Options, World};
 use crate::{AnyWorld, WorldError};
@@ -192,4 +191,9 @@ impl AnyBlueprint {
             AnyBlueprint::Space(blueprint) => World::problems(blueprint, options),
         }
     }
+}
+
+/// A vector with 0 where it has no coordinate.
+pub(crate) fn three<const D: usize>(vector: [f64; D]) -> [f64; 3] {
+    core::array::from_fn(|d| vector.get(d).copied().unwrap_or(0.0))
 }

@@ -1,6 +1,6 @@
 //! A world without a dimension in its type: stepping, commands, state, readings and columns.
 
-use crate::any_scene::AnyScene;
+use crate::any_scene::{AnyScene, three};
 use crate::blueprint::Time;
 use crate::error::WorldError;
 use crate::inputs::Input;
@@ -208,13 +208,6 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     fn forces(&mut self, body: usize, account: Option<Account>) -> Vec<[f64; 3]>;
 }
 
-impl dyn AnyWorld + '_ {
-    /// How many frames the scene lasts.
-    pub fn frames_of_scene(&self) -> u64 {
-        self.scene().time().frames()
-    }
-}
-
 impl Time {
     /// How many whole frames it takes until the end.
     pub fn frames(&self) -> u64 {
@@ -222,11 +215,6 @@ impl Time {
         let frames = (self.seconds / self.frame - 1e-9).ceil();
         if frames > 0.0 { frames as u64 } else { 0 }
     }
-}
-
-/// A vector with 0 where it has no coordinate.
-pub(crate) fn three<const D: usize>(vector: [f64; D]) -> [f64; 3] {
-    core::array::from_fn(|d| vector.get(d).copied().unwrap_or(0.0))
 }
 
 const NOTHING: Strided<'static> = Strided { column: &[], stride: 1 };

@@ -66,6 +66,29 @@ fn a_run_whose_last_frame_ends_elsewhere_than_asked_for_says_when() {
 }
 
 #[test]
+fn a_sweep_whose_last_frames_end_elsewhere_than_asked_for_says_when() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let sweep = |seconds: &str| {
+        let call = [
+            "sweep",
+            "ball",
+            "--set",
+            "body.ball.mass=1,2",
+            "--metric",
+            "bounce_height",
+            "--force",
+            "--seconds",
+            seconds,
+        ];
+        opruga(folder.path(), &call)
+    };
+    let output = sweep("0.04");
+    let says = "note: frames are whole: the run ends at t = 0.05 s, not at 0.04 s";
+    assert!(said(&output).contains(says), "{}", said(&output));
+    assert!(!said(&sweep("0.05")).contains("frames are whole"));
+}
+
+#[test]
 fn the_vector_instructions_that_run_are_those_that_the_summary_names() {
     let folder = tempfile::tempdir().expect("a folder");
     let run = |simd: &str| {

@@ -23,7 +23,7 @@ use opruga_core::potential::Definiteness;
 use opruga_core::spec::{Spec, Values};
 use opruga_core::state::{Columns, Layout, Parameter};
 use opruga_core::system::System;
-use opruga_math::Simd;
+use opruga_math::{Lane, Simd};
 
 /// Gradient descent: each node by the mean diagonal of its own block alone, with a line search by energy.
 #[derive(Debug)]
@@ -48,7 +48,7 @@ impl Minimiser<2> for GradientDescent {
                 .map(|k| -workspace.residual[k] / (0.5 * linear.size_at(&mixture, k / 2)))
                 .collect();
             let slope: f64 = step.iter().zip(&workspace.residual).map(|(s, r)| s * r).sum();
-            solved.correction = step.iter().fold(0.0, |most: f64, s| most.max(s.abs()));
+            solved.correction = step.iter().fold(0.0, |most: f64, s| s.abs().larger(most));
             solved.converged = solved.correction <= 1e-12 * workspace.extent;
             let mut length = 1.0;
             loop {
