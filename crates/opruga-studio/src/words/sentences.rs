@@ -313,9 +313,9 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
         "izabrani čvorovi ne drže nijednu cijelu stranicu granice; dopušteno: barem svi čvorovi jedne stranice",
     ),
     (
-        "cell {} belongs to the models {} and {} of the body, whose stiffness would add up; allowed: every cell in one `fem` \
+        "cell {} belongs to the models {} and {} of the body, whose stiffness would add up; allowed: every cell in one `{}` \
          model. Name groups without common cells by `cells`",
-        "ćelija {} pripada modelima {} i {} tijela, čije bi se krutosti zbrojile; dopušteno: svaka ćelija u jednom modelu `fem`. \
+        "ćelija {} pripada modelima {} i {} tijela, čije bi se krutosti zbrojile; dopušteno: svaka ćelija u jednom modelu `{}`. \
          S `cells` imenuj skupine bez zajedničkih ćelija",
     ),
     (

@@ -238,6 +238,7 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     ("the values `{}` are left out", "vrijednosti `{}` su izostavljene"),
     ("the colours `{}` are left out", "boje `{}` su izostavljene"),
     ("{} values for {} cells", "vrijednosti: {}, a ćelija: {}"),
+    ("`{}` has {} numbers, {} a node, for {} nodes", "`{}` ima brojeva: {}, po čvoru {}, a čvorova: {}"),
     ("{} values for {} points", "vrijednosti: {}, a točaka: {}"),
     ("a field of texts cannot be read", "polje tekstova ne može se pročitati"),
     ("`{}` stands before CELL_DATA and POINT_DATA", "`{}` stoji prije CELL_DATA i POINT_DATA"),

@@ -162,6 +162,8 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     ("{} has {} numbers a node", "{} ima brojeva po čvoru: {}"),
     ("{} has {} number a node", "{} ima brojeva po čvoru: {}"),
     ("2, or 3 of which the last is 0", "2, ili 3 od kojih je zadnji 0"),
+    ("{} nodes have a velocity", "brzinu ima čvorova: {}"),
+    ("none, or each of {} nodes", "nijedan, ili svaki od čvorova, kojih je {}"),
     ("a velocity is a vector", "brzina je vektor"),
     ("{} of node {} is {}", "{} čvora {} iznosi {}"),
     ("finite numbers for every node", "konačni brojevi za svaki čvor"),
