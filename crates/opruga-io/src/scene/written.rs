@@ -1,4 +1,4 @@
-//! Commands, models and integrators as a scene writes them: the other direction of [`super::actions`].
+//! Commands, models and integrators as a scene writes them: the other direction of `actions`.
 
 use opruga_core::spec::{Value, Values};
 use opruga_world::blueprint::{Action, CommandBlueprint, Selector};
