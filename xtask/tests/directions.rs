@@ -84,7 +84,7 @@ fn physics_crates_do_no_input_or_output() {
     }
 }
 
-/// Layers above models and integrators ask for a role (`Spec::plays`) and know no kind by its word. Benchmarks choose theirs by name.
+/// Layers above models and integrators ask for a role (`Spec::has_role`) and know no kind by its word. Benchmarks choose theirs by name.
 #[test]
 fn layers_above_compare_no_model_and_no_integrator_by_name() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the workspace");

@@ -97,7 +97,7 @@ fn has_real_time<const D: usize>(library: &Registry<D>, rule: &Values) -> bool {
 
 /// The explicit rule that is offered, and the substeps at which it would be stable, if these are not many.
 fn explicit_substeps<const D: usize>(world: &World<D>, library: &Registry<D>) -> Option<(&'static str, f64)> {
-    let kind = library.integrator_that(Role::OfferedExplicit)?;
+    let kind = library.integrator_with(Role::OfferedExplicit)?;
     let rule = kind.build(&Values::defaults(kind.spec(), D)).ok()?;
     let mut limit = f64::INFINITY;
     for (_, stability) in world.stability() {

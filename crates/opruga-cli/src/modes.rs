@@ -52,7 +52,7 @@ pub(crate) fn modes(call: &Modes) -> Result<u8, Failure> {
 /// one that it had: the tolerance, the number of iterations, the linear solver.
 fn look_for_equilibrium<const D: usize>(call: &Modes, blueprint: &mut Blueprint<D>) {
     let registry = Registry::<D>::default();
-    let Some(spec) = registry.integrator_that(Role::Statics).map(|kind| kind.spec()).filter(|_| call.equilibrium)
+    let Some(spec) = registry.integrator_with(Role::Statics).map(|kind| kind.spec()).filter(|_| call.equilibrium)
     else {
         return;
     };
@@ -72,11 +72,11 @@ fn look_for_equilibrium<const D: usize>(call: &Modes, blueprint: &mut Blueprint<
 fn leave_statics<const D: usize>(call: &Modes, blueprint: &mut Blueprint<D>) {
     let registry = Registry::<D>::default();
     let runs = call.equilibrium || call.after > 0.0;
-    let Some(spec) = registry.integrator_that(Role::OfferedImplicit).map(|kind| kind.spec()).filter(|_| !runs) else {
+    let Some(spec) = registry.integrator_with(Role::OfferedImplicit).map(|kind| kind.spec()).filter(|_| !runs) else {
         return;
     };
     let own = blueprint.bodies.iter_mut().filter_map(|body| body.integrator.as_mut());
-    for values in own.chain([&mut blueprint.integrator]).filter(|values| values.spec().plays(Role::Statics)) {
+    for values in own.chain([&mut blueprint.integrator]).filter(|values| values.spec().has_role(Role::Statics)) {
         *values = Values::defaults(spec, D);
     }
 }

@@ -141,7 +141,7 @@ impl Recorder {
         // Bodies that commands will add have theirs from the start: the head of the table is written for the whole run.
         let (mut bodies, mut meanings) = (Vec::new(), Vec::new());
         let mut add = |body: &BodyBlueprint<D>, readings: Vec<Cow<'static, str>>| {
-            let published = body.models.iter().any(|model| model.spec().plays(Role::Published));
+            let published = body.models.iter().any(|model| model.spec().has_role(Role::Published));
             columns.extend(readings.iter().map(|what| format!("{}.{what}", body.name)));
             meanings.push((body.name.clone(), body.thickness, published));
             bodies.push((body.name.clone(), readings.len()));

@@ -60,7 +60,7 @@ pub fn one_of(set: &[&str]) -> String {
 
 impl Spec {
     /// Whether it has a role.
-    pub fn plays(&self, role: Role) -> bool {
+    pub fn has_role(&self, role: Role) -> bool {
         self.roles.contains(&role)
     }
     /// The sets of fields of which exactly one is given, each once.

@@ -165,14 +165,6 @@ impl AnyBlueprint {
         }
     }
 
-    /// Gives the scene another name.
-    pub fn rename(&mut self, name: &str) {
-        match self {
-            AnyBlueprint::Plane(blueprint) => name.clone_into(&mut blueprint.name),
-            AnyBlueprint::Space(blueprint) => name.clone_into(&mut blueprint.name),
-        }
-    }
-
     /// Builds the world of the scene.
     ///
     /// # Errors

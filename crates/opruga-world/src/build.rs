@@ -301,7 +301,9 @@ impl<const D: usize> Builder<'_, D> {
         let mut owner = vec![None; body.mesh.cells.len()];
         let mut groups = Vec::new();
         let mut kind = "";
-        for (number, model) in body.models.iter().enumerate().filter(|(_, model)| model.spec().plays(Role::OwnsCells)) {
+        for (number, model) in
+            body.models.iter().enumerate().filter(|(_, model)| model.spec().has_role(Role::OwnsCells))
+        {
             kind = model.kind();
             let group = model.text("cells");
             let own: Vec<u32> = match group {
@@ -375,7 +377,7 @@ impl<const D: usize> Builder<'_, D> {
         mass: &Parameter,
     ) -> Result<(), WorldError> {
         let refuse = |source| WorldError::Build { place: "world".into(), source };
-        let Some(model) = self.registry.model_that(Role::WorldDrag) else { return Ok(()) };
+        let Some(model) = self.registry.model_with(Role::WorldDrag) else { return Ok(()) };
         let mut values = Values::defaults(model.spec(), D);
         let rate = Value::Number(self.blueprint.surroundings.drag);
         values

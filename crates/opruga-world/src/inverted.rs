@@ -23,8 +23,9 @@ enum Found {
 
 impl<const D: usize> World<D> {
     pub(crate) fn inverted_cells_here(&self) -> Option<Warning> {
-        let solid =
-            |body: &usize| self.blueprint.bodies[*body].models.iter().any(|model| model.spec().plays(Role::OwnsCells));
+        let solid = |body: &usize| {
+            self.blueprint.bodies[*body].models.iter().any(|model| model.spec().has_role(Role::OwnsCells))
+        };
         let mut first: Option<(usize, u32, Found)> = None;
         let (mut count, mut near) = (0, 0);
         for body in self.bodies().filter(solid) {
@@ -89,7 +90,7 @@ impl<const D: usize> World<D> {
 
     /// What else than more substeps turns cells of a body right side out: no law that it already has.
     fn what_rights_cells(&self, body: usize) -> &'static str {
-        let solids = self.blueprint.bodies[body].models.iter().filter(|model| model.spec().plays(Role::OwnsCells));
+        let solids = self.blueprint.bodies[body].models.iter().filter(|model| model.spec().has_role(Role::OwnsCells));
         let laws: Vec<&str> = solids.filter_map(|model| model.text("material")).collect();
         match laws.as_slice() {
             laws if laws.iter().all(|law| *law == "fixed_corotated") => "smaller cells, or less that crushes them",

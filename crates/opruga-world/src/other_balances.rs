@@ -122,7 +122,7 @@ impl<const D: usize> World<D> {
     /// Whether a body is of finite elements all of which turn: small strain has one shape that holds nothing, and no other balance.
     fn is_judged(&self, body: usize) -> bool {
         let mut solids =
-            self.blueprint.bodies[body].models.iter().filter(|model| model.spec().plays(Role::OwnsCells)).peekable();
+            self.blueprint.bodies[body].models.iter().filter(|model| model.spec().has_role(Role::OwnsCells)).peekable();
         solids.peek().is_some() && solids.all(|model| model.text("material") != Some("linear"))
     }
 

@@ -40,12 +40,12 @@ impl<const D: usize> Registry<D> {
         self.models.iter().find(|m| m.spec().kind == kind).map(|m| &**m)
     }
     /// The first model with a role.
-    pub fn model_that(&self, role: Role) -> Option<&dyn Model<D>> {
-        self.models.iter().find(|m| m.spec().plays(role)).map(|m| &**m)
+    pub fn model_with(&self, role: Role) -> Option<&dyn Model<D>> {
+        self.models.iter().find(|m| m.spec().has_role(role)).map(|m| &**m)
     }
     /// The first integrator with a role.
-    pub fn integrator_that(&self, role: Role) -> Option<&dyn IntegratorKind<D>> {
-        self.integrators.iter().find(|m| m.spec().plays(role)).map(|m| &**m)
+    pub fn integrator_with(&self, role: Role) -> Option<&dyn IntegratorKind<D>> {
+        self.integrators.iter().find(|m| m.spec().has_role(role)).map(|m| &**m)
     }
     /// The integrator of a name.
     pub fn integrator(&self, kind: &str) -> Option<&dyn IntegratorKind<D>> {

@@ -93,7 +93,7 @@ impl Slender {
 
 fn slender<const D: usize>(body: &BodyBlueprint<D>) -> Option<Slender> {
     let mesh = &*body.mesh;
-    let solid = body.models.iter().any(|model| model.spec().plays(Role::OwnsCells));
+    let solid = body.models.iter().any(|model| model.spec().has_role(Role::OwnsCells));
     if !solid || mesh.cells.iter().all(|(element, ..)| limit(element).is_none()) {
         return None;
     }

@@ -34,7 +34,7 @@ impl<const D: usize> World<D> {
             let models = &self.blueprint.bodies[body].models;
             if models
                 .iter()
-                .any(|model| model.spec().plays(Role::OwnsCells) && model.text("material") == Some("linear"))
+                .any(|model| model.spec().has_role(Role::OwnsCells) && model.text("material") == Some("linear"))
                 && self.handle(body).is_some()
                 && let Some(turned) = self.farthest_turned(body)
             {
@@ -73,7 +73,7 @@ impl<const D: usize> World<D> {
         let own = &self.blueprint.bodies[body];
         let mut worst: Option<Turned> = None;
         for model in
-            own.models.iter().filter(|m| m.spec().plays(Role::OwnsCells) && m.text("material") == Some("linear"))
+            own.models.iter().filter(|m| m.spec().has_role(Role::OwnsCells) && m.text("material") == Some("linear"))
         {
             let group = model.text("cells").and_then(|name| own.mesh.cell_groups.get(name));
             for (cell, (_, _, nodes)) in own.mesh.cells.iter().enumerate() {

@@ -2,12 +2,11 @@
 
 use super::{best, processor_time};
 use crate::failure::Failure;
-use opruga::blueprint::{Blueprint, BodyBlueprint, ColliderBlueprint, Mass, Surroundings, Time};
+use opruga::blueprint::{Blueprint, BodyBlueprint, ColliderBlueprint, Mass, Time};
 use opruga::core::spec::{Value, Values};
 use opruga::io::problem::visible;
 use opruga::math::calibration::inverse_roots;
 use opruga::{Options, Simd, World, mesh};
-use std::sync::Arc;
 use std::time::Instant;
 
 /// One row of the benchmark.
@@ -78,56 +77,28 @@ pub(crate) fn rings(bodies: usize, vertices: usize, integrator: &str) -> Result<
     let rule = spec(registry.integrator(integrator).map(|i| i.spec()))?;
     let floor = spec(opruga::collide::all(2).into_iter().find(|s| s.kind == "half_space"))?;
     let radius = vertices as f64 * 0.1 / (2.0 * std::f64::consts::PI);
-    let ring = Arc::new(mesh::Mesh::ring(radius, vertices as u32, [0.0, 0.0], 0.0).map_err(|e| e.to_string())?);
+    let ring = mesh::Mesh::ring(radius, vertices as u32, [0.0, 0.0], 0.0).map_err(|e| e.to_string())?;
     let models = vec![
         values(springs, &[("stiffness", Value::Number(1600.0)), ("damping", Value::Number(40.0))]),
         values(gas, &[("nRT", Value::Number(160.0 / radius * std::f64::consts::PI * radius * radius))]),
     ];
+    let only = BodyBlueprint::new("ring", ring, Mass::Node(1.0), models);
     let body = |number: usize| BodyBlueprint {
         name: format!("ring[{number}]"),
-        mesh: Arc::clone(&ring),
         translation: [number as f64 * 3.0 * radius, radius + 60.0],
-        velocity: [0.0, 0.0],
-        angular_velocity: Vec::new(),
-        velocity_gradient: [[0.0; 2]; 2],
-        node_velocities: Arc::from([]),
-        mass: Mass::Node(1.0),
-        thickness: 1.0,
-        integrator: None,
-        models: models.clone(),
-        pins: Vec::new(),
+        ..only.clone()
     };
-    Ok(Blueprint {
-        name: format!("{bodies} x {vertices}"),
-        title: String::new(),
-        length_unit: "m".into(),
-        credit: String::new(),
-        picture: Default::default(),
-        seed: 0,
-        time: Time { seconds: 1.0, frame: 16.0 / 1000.0, substeps: 16 },
-        surroundings: Surroundings {
-            gravity: [0.0, -9.8],
-            drag: 0.0,
-            largest_force: None,
-            largest_velocity: None,
-            largest_distance: None,
-        },
-        integrator: Values::defaults(rule, 2),
-        bodies: (0..bodies).map(body).collect(),
-        colliders: vec![ColliderBlueprint {
-            values: values(
-                floor,
-                &[
-                    ("point", Value::Numbers(vec![0.0, 0.0])),
-                    ("normal", Value::Numbers(vec![0.0, 1.0])),
-                    ("restitution", Value::Number(0.1)),
-                ],
-            ),
-        }],
-        loads: Vec::new(),
-        commands: Vec::new(),
-        probes: Vec::new(),
-    })
+    let at_the_floor = [
+        ("point", Value::Numbers(vec![0.0, 0.0])),
+        ("normal", Value::Numbers(vec![0.0, 1.0])),
+        ("restitution", Value::Number(0.1)),
+    ];
+    let mut scene = Blueprint::new(&format!("{bodies} x {vertices}"), Values::defaults(rule, 2));
+    scene.time = Time { seconds: 1.0, frame: 16.0 / 1000.0, substeps: 16 };
+    scene.surroundings.gravity = [0.0, -9.8];
+    scene.bodies = (0..bodies).map(body).collect();
+    scene.colliders = vec![ColliderBlueprint { values: values(floor, &at_the_floor) }];
+    Ok(scene)
 }
 
 /// Times one row; `draw` is called once a frame.

@@ -27,11 +27,11 @@ pub(crate) trait Minimiser<const D: usize>: core::fmt::Debug {
         HistorySize::default()
     }
     /// Improves the displacement in `workspace.u`, which the motion of the last step leads to, by what it remembers.
-    fn predict(&self, _system: &System<D>, _room: &mut Workspace<D>, _balance: &Balance) {}
+    fn predict(&self, _system: &System<D>, _workspace: &mut Workspace<D>, _balance: &Balance) {}
     /// Discards what it reuses from step to step, where a guard refuses the stage that it found.
-    fn discard(&self, _system: &mut System<D>, _room: &Workspace<D>) {}
+    fn discard(&self, _system: &mut System<D>, _workspace: &Workspace<D>) {}
     /// Remembers a step of h [s] that counts.
-    fn remember(&self, _system: &mut System<D>, _room: &Workspace<D>, _h: f64) {}
+    fn remember(&self, _system: &mut System<D>, _workspace: &Workspace<D>, _h: f64) {}
     /// Whether a step that does not converge is halved whatever the scene says.
     fn always_halves(&self) -> bool {
         false

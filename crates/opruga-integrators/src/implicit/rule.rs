@@ -36,9 +36,9 @@ pub(crate) trait Rule<const D: usize>: Copy + core::fmt::Debug + Send + Sync + '
     fn end(&self, system: &System<D>, workspace: &mut Workspace<D>, balance: &Balance, h: f64);
     /// What a step after this one of the same length will add to the velocity of a coordinate out of what is remembered,
     /// besides the forces [m/s]: v₁ and this together change by h F/m in every step.
-    fn remembered(&self, _room: &Workspace<D>, _k: usize, _h: f64) -> f64 {
+    fn remembered(&self, _workspace: &Workspace<D>, _k: usize, _h: f64) -> f64 {
         0.0
     }
     /// Moves the history on, after obstacles have had their say; `workspace.struck` names the nodes that met one.
-    fn remember(&self, _system: &mut System<D>, _room: &Workspace<D>, _h: f64) {}
+    fn remember(&self, _system: &mut System<D>, _workspace: &Workspace<D>, _h: f64) {}
 }

@@ -10,8 +10,8 @@
 //! | energy of the minimiser | a gain of energy by a doubtful stage: Newton's method | `energy` |
 //! | impact | nodes that end inside obstacles: they are put onto them | `impact` |
 //! | convergence | a search that did not end, unless the scene accepts it | `convergence` |
-//! | contact | a contact that nobody has foreseen: the rule in contact | `Method::find_end` |
-//! | rounding | a stage that rounding hides: iterations of the exact minimiser go on | `rounding`, `whole` |
+//! | contact | an unforeseen contact: the rule in contact | `Method::find_end` |
+//! | rounding | a stage that rounding hides: iterations of the exact minimiser go on | `rounding`, `rigid_balance` |
 //!
 //! Slenderness (`slenderness`) chooses the linear solver of the real-time minimiser, and refuses nothing.
 

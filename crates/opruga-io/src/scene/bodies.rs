@@ -44,7 +44,7 @@ struct Draft<'n, const D: usize> {
 impl<const D: usize> Draft<'_, D> {
     /// Whether a model of it owns its cells.
     fn owns_cells(&self) -> bool {
-        self.models.iter().any(|model| model.spec().plays(Role::OwnsCells))
+        self.models.iter().any(|model| model.spec().has_role(Role::OwnsCells))
     }
 }
 

@@ -202,7 +202,7 @@ fn body(look: &Look<'_>, kept: &mut Kept, map: &Colours, number: (usize, &BodyPi
         }
     }
     // Springs along an outline make it thick; a body that has none has the same outline without them.
-    let sprung = |body: &crate::shown::BodyShown| body.models.iter().any(|model| model.spec().plays(Role::Edges));
+    let sprung = |body: &crate::shown::BodyShown| body.models.iter().any(|model| model.spec().has_role(Role::Edges));
     let thin = !show.springs && shown.bodies.get(place).is_some_and(sprung);
     let width = if wide { 3.2 } else { 2.2 } - if thin { 1.2 } else { 0.0 };
     for line in closed {

@@ -12,7 +12,7 @@ use opruga::{Registry, WorldError};
 
 /// The integrator that is offered instead of one without a stable step: it costs as little.
 pub fn steady() -> Option<&'static Spec> {
-    Registry::<2>::default().integrator_that(Role::OfferedExplicit).map(|kind| kind.spec())
+    Registry::<2>::default().integrator_with(Role::OfferedExplicit).map(|kind| kind.spec())
 }
 
 /// What a frame may take before a person is told of it [s].

@@ -244,7 +244,7 @@ impl Scenery {
     /// Adds the arrows of a body: the pressure of its gas at some of its nodes, or without gas the force on them.
     fn push_arrows<const D: usize>(&self, world: &mut World<D>, body: usize, arrows: &mut Vec<ArrowPicture>) {
         let fixed = &self.bodies[body];
-        let gas = world.blueprint().bodies[body].models.iter().any(|model| model.spec().plays(Role::Gas));
+        let gas = world.blueprint().bodies[body].models.iter().any(|model| model.spec().has_role(Role::Gas));
         let mut forces = world.node_forces(body, gas.then_some(Account::Gas));
         let kind = if gas {
             // The force on a node over the surface that belongs to it.

@@ -47,7 +47,7 @@ impl Quantity {
         if areas.any(|area| area.colour.is_some()) {
             return Quantity::Plain;
         }
-        let solid = |body: &BodyBlueprint<D>| body.models.iter().any(|model| model.spec().plays(Role::OwnsCells));
+        let solid = |body: &BodyBlueprint<D>| body.models.iter().any(|model| model.spec().has_role(Role::OwnsCells));
         if !bodies.is_empty() && bodies.iter().all(solid) { Quantity::VonMises } else { Quantity::Strain }
     }
 

@@ -12,7 +12,7 @@ const SHARP: f64 = 0.8;
 /// it bends around there; in statics, any body.
 pub(super) fn is_shown<const D: usize>(body: &BodyBlueprint<D>, integrator: &str) -> bool {
     let held = body.pins.iter().any(|pin| pin.motion.is_empty());
-    let solid = body.models.iter().any(|model| model.spec().plays(Role::OwnsCells));
+    let solid = body.models.iter().any(|model| model.spec().has_role(Role::OwnsCells));
     body.mesh.skin.is_none() && (integrator == "equilibrium" || held && solid)
 }
 

@@ -5,7 +5,6 @@ use opruga_core::spec::{Spec, Value, Values};
 use opruga_mesh::Mesh;
 use opruga_world::Registry;
 use opruga_world::blueprint::*;
-use std::sync::Arc;
 
 /// A word as a value.
 pub(crate) fn text(value: &str) -> Value {
@@ -28,40 +27,12 @@ pub(crate) fn solid<const D: usize>(
     material: &[(&str, Value)],
 ) -> Blueprint<D> {
     let registry = Registry::<D>::default();
+    let models = vec![values::<D>(registry.model("fem").expect("a model").spec(), material)];
+    let integrator = values::<D>(registry.integrator(rule).expect("an integrator").spec(), of_rule);
     Blueprint {
-        name: "test".into(),
-        title: String::new(),
-        length_unit: "m".into(),
-        credit: String::new(),
-        picture: Default::default(),
-        seed: 0,
         time: Time { seconds: 1e3, frame: 1.0 / 60.0, substeps: 1 },
-        surroundings: Surroundings {
-            gravity: [0.0; D],
-            drag: 0.0,
-            largest_force: None,
-            largest_velocity: None,
-            largest_distance: None,
-        },
-        integrator: values::<D>(registry.integrator(rule).expect("an integrator").spec(), of_rule),
-        bodies: vec![BodyBlueprint {
-            name: "body".into(),
-            mesh: Arc::new(mesh),
-            translation: [0.0; D],
-            velocity: [0.0; D],
-            angular_velocity: Vec::new(),
-            velocity_gradient: [[0.0; D]; D],
-            node_velocities: Arc::from([]),
-            mass: Mass::Density(1000.0),
-            thickness: 1.0,
-            integrator: None,
-            models: vec![values::<D>(registry.model("fem").expect("a model").spec(), material)],
-            pins: Vec::new(),
-        }],
-        colliders: Vec::new(),
-        loads: Vec::new(),
-        commands: Vec::new(),
-        probes: Vec::new(),
+        bodies: vec![BodyBlueprint::new("body", mesh, Mass::Density(1000.0), models)],
+        ..Blueprint::new("test", integrator)
     }
 }
 
