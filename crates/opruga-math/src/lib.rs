@@ -8,6 +8,7 @@ pub mod lane;
 #[cfg(target_arch = "x86_64")]
 mod logarithm;
 pub mod matrix;
+pub mod message;
 mod portable;
 mod registers;
 pub mod rotation;
