@@ -2,7 +2,7 @@
 
 use opruga_core::check::{Options, conformance};
 use opruga_core::error::BuildError;
-use opruga_core::potential::{Definiteness, Ingredients, Model, Potential, Sink, Views};
+use opruga_core::potential::{Definiteness, Ingredients, Model, Observe, Potential, Properties, Sink};
 use opruga_core::spec::Spec;
 use opruga_core::state::{Layout, View};
 use opruga_core::tile::Tile;
@@ -212,14 +212,11 @@ impl Model<2> for Faulty {
 }
 
 impl Potential<2> for FaultySprings {
-    fn name(&self) -> &'static str {
-        "faulty"
+    fn properties(&self) -> Properties {
+        Properties::new("faulty", self.2.properties().views)
     }
-    fn views(&self) -> Views {
-        self.2.views()
-    }
-    fn spans(&self, visit: &mut dyn FnMut(u32, u32)) {
-        self.2.spans(visit);
+    fn stencils(&self, visit: &mut dyn FnMut(&[u32])) {
+        self.2.stencils(visit);
     }
     fn add_force(&self, simd: Simd, view: &View<2>, scratch: &[f64], tile: &mut Tile<2>) {
         self.2.add_force(simd, view, scratch, tile);
@@ -250,6 +247,8 @@ impl Potential<2> for FaultySprings {
         }
     }
 }
+
+impl Observe<2> for FaultySprings {}
 
 #[test]
 fn faults_are_found() {
