@@ -108,6 +108,9 @@ impl<const D: usize> Potential<D> for Solid<D> {
     }
     fn stencils(&self, visit: &mut dyn FnMut(&[u32])) {
         self.parts.iter().for_each(|part| part.stencils(visit));
+        if let Some(volumes) = &self.volumes {
+            volumes.stencils(visit);
+        }
     }
     fn inertia(&self) -> &[(u32, u32, f64)] {
         &self.inertia
