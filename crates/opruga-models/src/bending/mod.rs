@@ -25,7 +25,7 @@ mod turn;
 
 pub use spec::SPEC;
 
-use angle::{cross, dot, in_space, minus};
+use crate::vectors::{cross, dot, in_space, minus};
 use hinge::Hinge;
 use opruga_core::error::BuildError;
 use opruga_core::memory::{Counts, Need};
