@@ -6,6 +6,7 @@
 mod balloons;
 mod beams;
 mod contact;
+mod finite_differences;
 mod heat;
 mod integrators;
 mod ledgers;
@@ -44,6 +45,7 @@ pub fn cases() -> impl Iterator<Item = &'static Case> {
         beams::CASES,
         springs::CASES,
         solids::CASES,
+        finite_differences::CASES,
         heat::CASES,
         materials::CASES,
         pressure::CASES,

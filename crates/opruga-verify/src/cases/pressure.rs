@@ -126,7 +126,7 @@ fn gas_law(lab: &Lab, gamma: f64) -> Result<f64, Trouble> {
 }
 
 /// Three pins that leave a round ring its swelling and hold it as a whole.
-fn ring_pins(n: u32) -> String {
+pub(super) fn ring_pins(n: u32) -> String {
     format!(
         "pin = [{{ select = {{ nodes = [0, {}] }}, axes = \"y\" }}, {{ select = {{ node = {} }}, axes = \"x\" }}]",
         n / 2,
