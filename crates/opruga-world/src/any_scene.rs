@@ -1,9 +1,9 @@
 //! A scene without a dimension in its type: what readers of either dimension ask of it.
 
-use crate::blueprint::{AnyBlueprint, Blueprint, BodyBlueprint, ColliderBlueprint, Time};
+use crate::blueprint::{AnyBlueprint, Blueprint, BodyBlueprint, ColliderBlueprint, Pictured, Recorded, Time};
 use crate::world::{Options, World};
 use crate::{AnyWorld, WorldError};
-use opruga_core::spec::Values;
+use opruga_core::spec::{Role, Values};
 use opruga_mesh::{CellQuality, Cells, EdgeSet, Skin};
 
 /// A scene in the plane or in space.
@@ -18,10 +18,14 @@ pub trait AnyScene {
     fn length_unit(&self) -> &str;
     /// Whose drawings, maps and surfaces the scene shows, and under which licence.
     fn credit(&self) -> &str;
+    /// What pictures of the scene show; z is 0 in the plane.
+    fn pictured(&self) -> Pictured<3>;
     /// How time passes.
     fn time(&self) -> Time;
     /// Acceleration of gravity, one number per coordinate [m/s²].
     fn gravity(&self) -> &[f64];
+    /// Drag per unit of mass [1/s].
+    fn drag(&self) -> f64;
     /// The integrator and its parameters.
     fn integrator(&self) -> &Values;
     /// Rigid obstacles.
@@ -32,6 +36,8 @@ pub trait AnyScene {
     fn body(&self, number: usize) -> Option<&dyn AnyBody>;
     /// The names of the columns of every probe, in the order of [`AnyWorld::probe`].
     fn probe_columns(&self) -> Vec<Vec<String>>;
+    /// What every probe records.
+    fn probe_records(&self) -> Vec<&[Recorded]>;
 }
 
 impl dyn AnyScene + '_ {
@@ -57,11 +63,18 @@ impl<const D: usize> AnyScene for Blueprint<D> {
     fn credit(&self) -> &str {
         &self.credit
     }
+    fn pictured(&self) -> Pictured<3> {
+        let Pictured { panels, region, azimuth, elevation } = self.picture;
+        Pictured { panels, region: region.map(|corners| corners.map(three)), azimuth, elevation }
+    }
     fn time(&self) -> Time {
         self.time
     }
     fn gravity(&self) -> &[f64] {
         &self.surroundings.gravity
+    }
+    fn drag(&self) -> f64 {
+        self.surroundings.drag
     }
     fn integrator(&self) -> &Values {
         &self.integrator
@@ -81,6 +94,9 @@ impl<const D: usize> AnyScene for Blueprint<D> {
             names.map(|column| format!("{}.{column}", probe.name)).collect()
         };
         self.probes.iter().map(columns).collect()
+    }
+    fn probe_records(&self) -> Vec<&[Recorded]> {
+        self.probes.iter().map(|probe| &*probe.record).collect()
     }
 }
 
@@ -104,14 +120,27 @@ pub trait AnyBody {
     fn facets(&self) -> &[u32];
     /// The triangles of an open surface.
     fn sheets(&self) -> &[[u32; 3]];
+    /// The lines that are drawn of a body with a surface.
+    fn wires(&self) -> &[[u32; 2]];
     /// The filled interior.
     fn cells(&self) -> &Cells;
     /// What is drawn instead of the boundary.
     fn skin(&self) -> Option<&Skin>;
     /// The pairs of nodes that its elements join.
     fn edges(&self) -> Vec<[u32; 2]>;
+    /// The nodes that its own pins hold or move, in rising order.
+    fn pinned_nodes(&self) -> Vec<u32>;
+    /// Whether one of its own pins holds nodes at rest.
+    fn is_held(&self) -> bool;
     /// The smallest and largest angles and edges of its cells; none where it has no cells.
     fn cell_quality(&self) -> Option<CellQuality>;
+}
+
+impl dyn AnyBody + '_ {
+    /// Whether one of its models has a role.
+    pub fn has_role(&self, role: Role) -> bool {
+        self.models().iter().any(|model| model.spec().has_role(role))
+    }
 }
 
 impl<const D: usize> AnyBody for BodyBlueprint<D> {
@@ -142,6 +171,9 @@ impl<const D: usize> AnyBody for BodyBlueprint<D> {
     fn sheets(&self) -> &[[u32; 3]] {
         &self.mesh.sheets
     }
+    fn wires(&self) -> &[[u32; 2]] {
+        &self.mesh.wires
+    }
     fn cells(&self) -> &Cells {
         &self.mesh.cells
     }
@@ -150,6 +182,16 @@ impl<const D: usize> AnyBody for BodyBlueprint<D> {
     }
     fn edges(&self) -> Vec<[u32; 2]> {
         self.mesh.edges(EdgeSet::All)
+    }
+    fn pinned_nodes(&self) -> Vec<u32> {
+        let pins = self.pins.iter();
+        let mut nodes: Vec<u32> = pins.flat_map(|pin| pin.select.resolve(&self.mesh, &self.translation)).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+    fn is_held(&self) -> bool {
+        self.pins.iter().any(|pin| pin.motion.is_empty())
     }
     fn cell_quality(&self) -> Option<CellQuality> {
         self.mesh.cell_quality()

@@ -1,12 +1,13 @@
 //! A world without a dimension in its type: stepping, commands, state, readings and columns.
 
-use crate::any_scene::{AnyScene, three};
+use crate::any_scene::{AnyBody, AnyScene, three};
 use crate::blueprint::Time;
 use crate::error::WorldError;
 use crate::inputs::Input;
 use crate::ledger::Energy;
 use crate::slots::BodyHandle;
 use crate::world::{Warning, World};
+use opruga_collide::Picture;
 use opruga_core::potential::{Account, CellState, Reading};
 use opruga_core::spec::{Value, Values};
 use opruga_core::stability::Stability;
@@ -80,6 +81,9 @@ impl<'w> Vectors<'w> {
 pub trait AnyWorld: core::fmt::Debug + Send {
     /// The scene, with all changes since.
     fn scene(&self) -> &dyn AnyScene;
+
+    /// Bodies that commands of the scene will add, in the order of time.
+    fn coming_bodies(&self) -> Vec<&dyn AnyBody>;
 
     /// Steps through one frame.
     ///
@@ -206,6 +210,13 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     fn node_mass(&self, body: usize, node: u32) -> f64;
     /// The forces of the models of one account on the nodes of a body, or of all models [N]: computed by every call.
     fn forces(&mut self, body: usize, account: Option<Account>) -> Vec<[f64; 3]>;
+    /// Pulls that act at present: held point [m], pointer [m], force [N].
+    fn pulls(&self) -> Vec<[[f64; 3]; 3]>;
+    /// The obstacles at the present time, in the order of the scene.
+    fn obstacles(&self) -> Vec<Picture<3>>;
+    /// The pairs of nodes that springs of a body join; none where there is no such body, or a model refuses it. Numbers behind those
+    /// of the scene stand for [`AnyWorld::coming_bodies`].
+    fn springs_of(&self, body: usize) -> Option<Vec<[u32; 2]>>;
 }
 
 impl Time {
@@ -237,6 +248,9 @@ impl<const D: usize> World<D> {
 impl<const D: usize> AnyWorld for World<D> {
     fn scene(&self) -> &dyn AnyScene {
         self.blueprint()
+    }
+    fn coming_bodies(&self) -> Vec<&dyn AnyBody> {
+        self.coming_bodies().map(|body| body as &dyn AnyBody).collect()
     }
 
     fn frame(&mut self) -> Result<(), WorldError> {
@@ -387,5 +401,16 @@ impl<const D: usize> AnyWorld for World<D> {
     }
     fn forces(&mut self, body: usize, account: Option<Account>) -> Vec<[f64; 3]> {
         self.node_forces(body, account).into_iter().map(three).collect()
+    }
+    fn pulls(&self) -> Vec<[[f64; 3]; 3]> {
+        self.pulls().into_iter().map(|(point, pointer, force)| [point, pointer, force].map(three)).collect()
+    }
+    fn obstacles(&self) -> Vec<Picture<3>> {
+        let pictures = self.colliders().map_or_else(Vec::new, |colliders| colliders.pictures(self.time()));
+        pictures.into_iter().map(Picture::in_space).collect()
+    }
+    fn springs_of(&self, body: usize) -> Option<Vec<[u32; 2]>> {
+        let mut bodies = self.blueprint().bodies.iter().chain(self.coming_bodies());
+        self.springs(bodies.nth(body)?).ok()
     }
 }
