@@ -2,9 +2,11 @@
 
 use crate::blueprint::{AnyBlueprint, Blueprint, BodyBlueprint, ColliderBlueprint, Pictured, Recorded, Time};
 use crate::world::{Options, World};
-use crate::{AnyWorld, WorldError};
+use crate::{AnyWorld, Registries, WorldError};
 use opruga_core::spec::{Role, Values};
 use opruga_mesh::{CellQuality, Cells, EdgeSet, Skin};
+use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// A scene in the plane or in space.
 pub trait AnyScene {
@@ -101,7 +103,9 @@ impl<const D: usize> AnyScene for Blueprint<D> {
 }
 
 /// A body of a scene in the plane or in space.
-pub trait AnyBody {
+pub trait AnyBody: core::fmt::Debug {
+    /// The number of coordinates of a node: 2 or 3.
+    fn dimension(&self) -> usize;
     /// Its name.
     fn name(&self) -> &str;
     /// Its models and their parameters.
@@ -124,8 +128,14 @@ pub trait AnyBody {
     fn wires(&self) -> &[[u32; 2]];
     /// The filled interior.
     fn cells(&self) -> &Cells;
+    /// Values of the cells by name.
+    fn cell_values(&self) -> &BTreeMap<String, Vec<f64>>;
+    /// Numbers of cells by the name of their group.
+    fn cell_groups(&self) -> &BTreeMap<String, Vec<u32>>;
     /// What is drawn instead of the boundary.
     fn skin(&self) -> Option<&Skin>;
+    /// The signed volume that its facets enclose where its nodes are at some positions [m³, m² in the plane]; none without facets.
+    fn enclosed_volume(&self, positions: &[[f64; 3]]) -> Option<f64>;
     /// The pairs of nodes that its elements join.
     fn edges(&self) -> Vec<[u32; 2]>;
     /// The nodes that its own pins hold or move, in rising order.
@@ -144,6 +154,9 @@ impl dyn AnyBody + '_ {
 }
 
 impl<const D: usize> AnyBody for BodyBlueprint<D> {
+    fn dimension(&self) -> usize {
+        D
+    }
     fn name(&self) -> &str {
         &self.name
     }
@@ -177,8 +190,18 @@ impl<const D: usize> AnyBody for BodyBlueprint<D> {
     fn cells(&self) -> &Cells {
         &self.mesh.cells
     }
+    fn cell_values(&self) -> &BTreeMap<String, Vec<f64>> {
+        &self.mesh.cell_values
+    }
+    fn cell_groups(&self) -> &BTreeMap<String, Vec<u32>> {
+        &self.mesh.cell_groups
+    }
     fn skin(&self) -> Option<&Skin> {
         self.mesh.skin.as_ref()
+    }
+    fn enclosed_volume(&self, positions: &[[f64; 3]]) -> Option<f64> {
+        let positions: Vec<[f64; D]> = positions.iter().map(|position| core::array::from_fn(|d| position[d])).collect();
+        (!self.mesh.facets.is_empty()).then(|| opruga_mesh::signed_volume(&self.mesh.facets, &positions))
     }
     fn edges(&self) -> Vec<[u32; 2]> {
         self.mesh.edges(EdgeSet::All)
@@ -207,14 +230,44 @@ impl AnyBlueprint {
         }
     }
 
-    /// Builds the world of the scene.
+    /// Gives the scene another name.
+    pub fn rename(&mut self, name: &str) {
+        let own = match self {
+            AnyBlueprint::Plane(blueprint) => &mut blueprint.name,
+            AnyBlueprint::Space(blueprint) => &mut blueprint.name,
+        };
+        *own = name.to_string();
+    }
+
+    /// The integrators of the bodies that have their own, then that of the scene.
+    pub fn integrators_mut(&mut self) -> Vec<&mut Values> {
+        fn of<const D: usize>(blueprint: &mut Blueprint<D>) -> Vec<&mut Values> {
+            let own = blueprint.bodies.iter_mut().filter_map(|body| body.integrator.as_mut());
+            own.chain([&mut blueprint.integrator]).collect()
+        }
+        match self {
+            AnyBlueprint::Plane(blueprint) => of(blueprint),
+            AnyBlueprint::Space(blueprint) => of(blueprint),
+        }
+    }
+
+    /// Builds the world of the scene with the models and integrators of this library.
     ///
     /// # Errors
     /// As [`World::new`].
     pub fn build(self, options: Options) -> Result<Box<dyn AnyWorld>, WorldError> {
+        self.build_with(options, &Registries::default())
+    }
+
+    /// Builds the world of the scene.
+    ///
+    /// # Errors
+    /// As [`World::new`].
+    pub fn build_with(self, options: Options, registries: &Registries) -> Result<Box<dyn AnyWorld>, WorldError> {
+        let Registries { plane, space } = registries;
         Ok(match self {
-            AnyBlueprint::Plane(blueprint) => Box::new(World::new(blueprint, options)?),
-            AnyBlueprint::Space(blueprint) => Box::new(World::new(blueprint, options)?),
+            AnyBlueprint::Plane(blueprint) => Box::new(World::with_registry(blueprint, options, Arc::clone(plane))?),
+            AnyBlueprint::Space(blueprint) => Box::new(World::with_registry(blueprint, options, Arc::clone(space))?),
         })
     }
 
