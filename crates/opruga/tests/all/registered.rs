@@ -22,6 +22,9 @@ impl<const D: usize> Model<D> for BedModel {
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
+    fn views(&self) -> Views {
+        Views::default()
+    }
     fn build(&self, of: &Ingredients<D>) -> Result<Box<dyn Potential<D>>, BuildError> {
         Ok(Box::new(Bed(of.values[0].number("tightness").unwrap_or(0.0), of.mesh.positions.clone())))
     }
@@ -31,13 +34,9 @@ impl<const D: usize> Model<D> for BedModel {
 #[derive(Debug)]
 struct Bed<const D: usize>(f64, Vec<[f64; D]>);
 impl<const D: usize> Potential<D> for Bed<D> {
-    fn name(&self) -> &'static str {
-        SPEC.kind
+    fn properties(&self) -> Properties {
+        Properties::new(SPEC.kind, Views::default())
     }
-    fn views(&self) -> Views {
-        Views::default()
-    }
-    fn spans(&self, _visit: &mut dyn FnMut(u32, u32)) {}
     fn add_force(&self, _: Simd, view: &View<D>, _: &[f64], tile: &mut Tile<D>) {
         for node in tile.range.start..tile.range.end.min(self.1.len()) {
             for d in 0..D {
@@ -46,6 +45,8 @@ impl<const D: usize> Potential<D> for Bed<D> {
         }
     }
 }
+
+impl<const D: usize> Observe<D> for Bed<D> {}
 
 fn registries() -> Registries {
     let (mut plane, mut space) = (Registry::default(), Registry::default());
@@ -94,7 +95,7 @@ fn a_registered_model_is_offered_where_a_scene_misspells_it() {
         |text: &str, catalogue| scene::read(text.as_bytes(), "a.toml", catalogue, &options).err().unwrap_or_default();
     let errors = refused(&text(2, "bed_of_a_tset"), &known);
     let said: Vec<String> = errors.iter().map(ToString::to_string).collect();
-    assert!(said.iter().any(|said| said.contains("scene.unknown_name") && said.contains("bed_of_a_test")), "{said:?}");
+    assert!(said.iter().any(|said| said.contains("scene.unknown_kind") && said.contains("bed_of_a_test")), "{said:?}");
     let range = refused(&text(2, SPEC.kind).replace("1000", "-1000"), &known);
     assert_eq!(range.iter().map(|error| error.code).collect::<Vec<_>>(), ["scene.range"]);
     assert!(!refused(&text(2, SPEC.kind), &catalogue()).is_empty());
