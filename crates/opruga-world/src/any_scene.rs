@@ -141,7 +141,7 @@ pub trait AnyBody: core::fmt::Debug {
     /// The nodes that its own pins hold or move, in rising order.
     fn pinned_nodes(&self) -> Vec<u32>;
     /// Whether one of its own pins holds nodes at rest.
-    fn is_held(&self) -> bool;
+    fn is_pinned_at_rest(&self) -> bool;
     /// The smallest and largest angles and edges of its cells; none where it has no cells.
     fn cell_quality(&self) -> Option<CellQuality>;
 }
@@ -213,7 +213,7 @@ impl<const D: usize> AnyBody for BodyBlueprint<D> {
         nodes.dedup();
         nodes
     }
-    fn is_held(&self) -> bool {
+    fn is_pinned_at_rest(&self) -> bool {
         self.pins.iter().any(|pin| pin.motion.is_empty())
     }
     fn cell_quality(&self) -> Option<CellQuality> {

@@ -190,7 +190,7 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     /// The forces of obstacles on the nodes of a body in the coming substep [N]: computed by every call.
     fn contact_forces(&mut self, body: usize) -> Vec<[f64; 3]>;
     /// The nodes of a body that pins hold now.
-    fn held_nodes(&self, body: usize) -> Vec<u32>;
+    fn pinned_now(&self, body: usize) -> Vec<u32>;
     /// The stiffness [N/m] and the largest force [N] of a pull that names neither; none where there is no such body.
     fn usual_pull(&self, body: usize) -> Option<[f64; 2]>;
     /// Pulls that act at present: held point [m], pointer [m], force [N].
@@ -397,7 +397,7 @@ impl<const D: usize> AnyWorld for World<D> {
     fn contact_forces(&mut self, body: usize) -> Vec<[f64; 3]> {
         self.contact_forces(body).into_iter().map(three).collect()
     }
-    fn held_nodes(&self, body: usize) -> Vec<u32> {
+    fn pinned_now(&self, body: usize) -> Vec<u32> {
         self.held_nodes(body)
     }
     fn usual_pull(&self, body: usize) -> Option<[f64; 2]> {

@@ -51,7 +51,7 @@ impl Living {
         for (place, &body) in living.iter().enumerate() {
             let nodes = self.world.node_count(body);
             if let Some(seen) = picture.bodies.get_mut(place).filter(|seen| !seen.pinned.is_empty()) {
-                seen.pinned = self.world.held_nodes(body);
+                seen.pinned = self.world.pinned_now(body);
             }
             let forces = if show.contacts { self.world.contact_forces(body) } else { Vec::new() };
             let (x, v) = (self.world.positions(body), self.world.velocities(body));

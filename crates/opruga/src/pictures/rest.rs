@@ -12,8 +12,8 @@ const SHARP: f64 = 0.8;
 /// it bends around there; in statics, any body.
 pub(super) fn is_shown(body: &dyn AnyBody, of_scene: &Values) -> bool {
     let integrator = body.integrator().unwrap_or(of_scene).spec();
-    let held_solid = body.is_held() && body.has_role(Role::OwnsCells);
-    body.skin().is_none() && (integrator.has_role(Role::Statics) || held_solid)
+    let pinned_solid = body.is_pinned_at_rest() && body.has_role(Role::OwnsCells);
+    body.skin().is_none() && (integrator.has_role(Role::Statics) || pinned_solid)
 }
 
 /// A body as it lies in a picture, as lines: its outline, or where its surface has edges.

@@ -76,7 +76,7 @@ fn a_registered_model_is_listed_described_and_paired_with_integrators() {
     assert_eq!(known.integrators.len(), catalogue().integrators.len());
     let pairs = [registries.plane.pairs(), registries.space.pairs()];
     for pairs in pairs {
-        let fits = |rule| pairs.iter().any(|pair| *pair == (SPEC.kind, rule, true));
+        let fits = |rule| pairs.contains(&(SPEC.kind, rule, true));
         assert!(fits("verlet") && !fits("backward_euler"), "it has forces and no second derivatives");
     }
     let page = reference::markdown(&known);
