@@ -10,9 +10,9 @@ use std::collections::BTreeMap;
 /// How many names may still have each word. Whoever renames one lowers the number; no number may rise.
 const ALLOWED: &[(&str, usize)] = &[
     ("blur", 1),
-    ("held", 124),
+    ("held", 123),
     ("near", 67),
-    ("odd", 25),
+    ("odd", 24),
     ("place", 366),
     ("places", 131),
     ("room", 47),

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::source::{Source, argument};
-use opruga::World;
+use opruga::AnyWorld;
 use opruga::io::checkpoint::{Checkpoint, CheckpointError};
 use opruga::io::output_folder::OutputFolder;
 use opruga::io::safe_write::WriteError;
@@ -221,7 +221,7 @@ impl<'a> Keeper<'a> {
 
     /// Writes the table so far and a checkpoint if it is time to. A failure on the way is told, counted, and no end of the
     /// run: the next one may succeed.
-    pub(crate) fn on_the_way<const D: usize>(&mut self, world: &mut World<D>, table: &NumberTable) -> Option<String> {
+    pub(crate) fn on_the_way(&mut self, world: &dyn AnyWorld, table: &NumberTable) -> Option<String> {
         let start = self.next.filter(|next| Instant::now() >= *next).map(|_| Instant::now())?;
         let written = self.write(world, table);
         let took = start.elapsed();
@@ -236,11 +236,7 @@ impl<'a> Keeper<'a> {
     /// Writes the table so far and a checkpoint; the checkpoint before it is kept under its second name. Returns the names of
     /// what is there then: the first time, what an earlier run left goes, since it would pass for this one's. All of it or,
     /// where it fails, nothing.
-    pub(crate) fn write<const D: usize>(
-        &mut self,
-        world: &mut World<D>,
-        table: &NumberTable,
-    ) -> Result<Vec<String>, WriteError> {
+    pub(crate) fn write(&mut self, world: &dyn AnyWorld, table: &NumberTable) -> Result<Vec<String>, WriteError> {
         let saved = SavedRun {
             name: self.source.name.clone(),
             calling: self.calling.clone(),

@@ -2,41 +2,38 @@
 
 use crate::arguments::Replay;
 use crate::failure::Failure;
-use opruga::World;
-use opruga::blueprint::BodyBlueprint;
 use opruga::io::output_folder::OutputFolder;
 use opruga::io::series::{CellField, Format, Shape};
 use opruga::io::tracks::{Track, write_glb};
+use opruga::world::Vectors;
+use opruga::{AnyBody, AnyWorld};
 use std::collections::BTreeMap;
 
 /// Whole runs are held in memory until their end: up to so many bytes of positions.
 const MOST_BYTES: usize = 2 << 30;
 
 /// Writes the present frame of a world.
-pub(crate) fn frame<const D: usize>(
-    world: &World<D>,
-    format: Format,
-    folder: &OutputFolder,
-    name: &str,
-) -> Result<(), Failure> {
-    let bodies: Vec<usize> = world.bodies().collect();
-    let of = |vector: &dyn Fn(usize, u32) -> [f64; D]| -> Vec<Vec<[f64; D]>> {
-        bodies.iter().map(|&b| (0..world.node_count(b) as u32).map(|n| vector(b, n)).collect()).collect()
+pub(crate) fn frame(world: &dyn AnyWorld, format: Format, folder: &OutputFolder, name: &str) -> Result<(), Failure> {
+    let (numbers, scene) = (world.bodies(), world.scene());
+    let all = |vectors: fn(&dyn AnyWorld, usize) -> Vectors<'_>| -> Vec<Vec<[f64; 3]>> {
+        numbers.iter().map(|&body| vectors(world, body).iter().collect()).collect()
     };
-    let (x, v) = (of(&|b, n| world.position(b, n)), of(&|b, n| world.velocity(b, n)));
-    let blueprint = world.blueprint();
+    let (x, v) = (all(|world, body| world.positions(body)), all(|world, body| world.velocities(body)));
+    let bodies = numbers.iter().filter_map(|&number| Some((number, scene.body(number)?)));
     // What finite elements say of their cells.
-    let stresses: Vec<Stresses> = bodies.iter().map(|&body| Stresses::of(world, body)).collect();
-    let fields: Vec<Vec<CellField<'_>>> = stresses.iter().map(Stresses::fields).collect();
-    let shape = |((&body, cell_fields), (positions, velocities))| {
-        let cell_fields: &Vec<CellField<'_>> = cell_fields;
-        let body: &BodyBlueprint<D> = &blueprint.bodies[body];
-        let (positions, velocities): (&Vec<[f64; D]>, &Vec<[f64; D]>) = (positions, velocities);
-        let (name, mesh, translation) = (&body.name, &*body.mesh, body.translation);
-        Shape { name, mesh, positions, velocities, translation, cell_fields }
-    };
-    let shapes: Vec<Shape<'_, D>> = bodies.iter().zip(&fields).zip(x.iter().zip(&v)).map(shape).collect();
-    folder.write(name, false, |out| format.write(out, &blueprint.name, world.time(), &shapes))?;
+    let stresses: Vec<(&dyn AnyBody, Stresses)> =
+        bodies.map(|(number, body)| (body, Stresses::of(world, number))).collect();
+    let fields: Vec<Vec<CellField<'_>>> = stresses.iter().map(|(_, stresses)| stresses.fields()).collect();
+    let rows = stresses.iter().zip(&fields).zip(x.iter().zip(&v));
+    let shapes: Vec<Shape<'_>> = rows
+        .map(|(((body, _), cell_fields), (positions, velocities))| Shape {
+            body: *body,
+            positions,
+            velocities,
+            cell_fields,
+        })
+        .collect();
+    folder.write(name, false, |out| format.write(out, scene.name(), world.time(), &shapes))?;
     Ok(())
 }
 
@@ -50,12 +47,12 @@ struct Stresses {
 
 impl Stresses {
     /// Those of a body now; cells without finite elements have no number.
-    fn of<const D: usize>(world: &World<D>, body: usize) -> Stresses {
+    fn of(world: &dyn AnyWorld, body: usize) -> Stresses {
         let states = world.cell_states(body);
         if states.is_empty() {
             return Stresses::default();
         }
-        let cells = world.blueprint().bodies[body].mesh.cells.len();
+        let cells = world.scene().body(body).map_or(0, |body| body.cells().len());
         let (cauchy, each) = (vec![f64::NAN; 9 * cells], vec![f64::NAN; cells]);
         let mut out = Stresses { cauchy, von_mises: each.clone(), volume_ratio: each };
         for state in states {
@@ -84,12 +81,11 @@ pub(crate) struct Tracks(BTreeMap<usize, Track>);
 
 impl Tracks {
     /// Adds the present frame of a world.
-    pub(crate) fn add<const D: usize>(&mut self, world: &World<D>) -> Result<(), Failure> {
-        for body in world.bodies() {
-            let of = &world.blueprint().bodies[body];
-            let track = self.0.entry(body).or_insert_with(|| Track::new(&of.name, &of.mesh));
-            let positions: Vec<[f64; D]> =
-                (0..world.node_count(body) as u32).map(|node| world.position(body, node)).collect();
+    pub(crate) fn add(&mut self, world: &dyn AnyWorld) -> Result<(), Failure> {
+        for number in world.bodies() {
+            let Some(body) = world.scene().body(number) else { continue };
+            let track = self.0.entry(number).or_insert_with(|| Track::new(body));
+            let positions: Vec<[f64; 3]> = world.positions(number).iter().collect();
             track.add(world.time(), &positions);
         }
         let bytes: usize = self.0.values().map(Track::bytes).sum();

@@ -2,7 +2,7 @@
 
 use opruga::core::spec::{Role, Value, Values};
 use opruga::math::words::{counted, rounded};
-use opruga::{Registry, World};
+use opruga::{AnyBody, AnyWorld};
 
 /// So long the first frames are measured [s].
 const MEASURED: f64 = 2.0;
@@ -20,7 +20,7 @@ pub(crate) struct Forecast {
 impl Forecast {
     /// A sentence on how long the rest of a run takes, if that is long: `wall` seconds were spent on `done` frames, and
     /// `left` frames are left.
-    pub(crate) fn of<const D: usize>(&mut self, world: &World<D>, done: u64, left: u64, wall: f64) -> Option<String> {
+    pub(crate) fn of(&mut self, world: &dyn AnyWorld, done: u64, left: u64, wall: f64) -> Option<String> {
         if self.looked || wall < MEASURED || done == 0 {
             return None;
         }
@@ -48,24 +48,33 @@ pub(crate) fn duration(seconds: f64) -> String {
     }
 }
 
-/// Whether an integrator solves for the end of its steps.
-pub(crate) fn is_implicit<const D: usize>(library: &Registry<D>, kind: &str) -> bool {
-    let rule = library.integrator(kind).and_then(|rule| rule.build(&Values::defaults(rule.spec(), D)).ok());
-    rule.is_some_and(|rule| rule.needs().hessian)
+/// Whether an integrator of some or of all bodies solves for the end of its steps.
+fn implicit(world: &dyn AnyWorld) -> impl Iterator<Item = bool> {
+    let scene = world.scene();
+    let own = world.bodies().into_iter().filter_map(|body| scene.body(body)).map(AnyBody::integrator);
+    // A world without bodies has the integrator of its scene.
+    let mut all: Vec<&Values> = own.map(|own| own.unwrap_or(scene.integrator())).collect();
+    if all.is_empty() {
+        all.push(scene.integrator());
+    }
+    all.into_iter().map(|integrator| world.is_implicit(integrator))
+}
+
+/// Whether every body has an integrator that solves for the end of its steps.
+pub(crate) fn is_implicit(world: &dyn AnyWorld) -> bool {
+    implicit(world).all(|implicit| implicit)
 }
 
 /// What would make a run shorter, the most effective first.
-fn shorter<const D: usize>(world: &World<D>) -> Vec<String> {
-    let library = Registry::<D>::default();
+fn shorter(world: &dyn AnyWorld) -> Vec<String> {
     let mut out = Vec::new();
-    let time = world.blueprint().time;
-    let rule = &world.blueprint().integrator;
-    let implicit = world.integrators().iter().any(|kind| is_implicit(&library, kind));
+    let (time, integrator) = (world.scene().time(), world.scene().integrator());
+    let implicit = implicit(world).any(|implicit| implicit);
     if implicit {
-        if has_real_time(&library, rule) {
+        if has_real_time(world, integrator) {
             out.push("--set integrator.accuracy=real_time".to_string());
         }
-        if let Some((kind, substeps)) = explicit_substeps(world, &library) {
+        if let Some((kind, substeps)) = explicit_substeps(world) {
             out.push(format!("an explicit rule, --set integrator={kind} --set time.substeps={substeps}"));
         }
         if time.substeps > 1 {
@@ -88,23 +97,18 @@ fn shorter<const D: usize>(world: &World<D>) -> Vec<String> {
 }
 
 /// Whether the integrator of a scene has a faster setting that it does not use yet.
-fn has_real_time<const D: usize>(library: &Registry<D>, rule: &Values) -> bool {
-    let Some(kind) = library.integrator(rule.kind()) else { return false };
-    let mut faster = rule.clone();
-    let set = faster.set(kind.spec(), "accuracy", Value::Text("real_time".into()), D);
-    rule.text("accuracy") == Some("exact") && set.is_ok() && kind.build(&faster).is_ok()
+fn has_real_time(world: &dyn AnyWorld, integrator: &Values) -> bool {
+    let mut faster = integrator.clone();
+    let set = faster.set(integrator.spec(), "accuracy", Value::Text("real_time".into()), world.scene().dimension());
+    integrator.text("accuracy") == Some("exact") && set.is_ok() && world.is_implicit(&faster)
 }
 
-/// The explicit rule that is offered, and the substeps at which it would be stable, if these are not many.
-fn explicit_substeps<const D: usize>(world: &World<D>, library: &Registry<D>) -> Option<(&'static str, f64)> {
-    let kind = library.integrator_with(Role::OfferedExplicit)?;
-    let rule = kind.build(&Values::defaults(kind.spec(), D)).ok()?;
-    let mut limit = f64::INFINITY;
-    for (_, stability) in world.stability() {
-        limit = limit.min(stability.spectrum.largest_stable_step(&*rule)?);
-    }
-    let substeps = (1.2 * world.blueprint().time.frame / limit).ceil().max(1.0);
-    (substeps <= MANY_SUBSTEPS).then_some((kind.spec().kind, substeps))
+/// The explicit integrator that is offered, and the substeps at which it would be stable, if these are not many.
+fn explicit_substeps(world: &dyn AnyWorld) -> Option<(&'static str, f64)> {
+    let spec = world.integrator_with(Role::OfferedExplicit)?;
+    let limit = world.stable_step_under(&Values::defaults(spec, world.scene().dimension()))?;
+    let substeps = (1.2 * world.scene().time().frame / limit).ceil().max(1.0);
+    (substeps <= MANY_SUBSTEPS).then_some((spec.kind, substeps))
 }
 
 #[cfg(test)]

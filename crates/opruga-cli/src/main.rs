@@ -11,6 +11,7 @@ mod interrupt;
 mod material;
 mod mesh;
 mod modes;
+mod opened;
 mod outputs;
 mod plots;
 mod recorder;

@@ -2,18 +2,19 @@
 
 use crate::arguments::Modes;
 use crate::failure::{Failure, print_data};
+use crate::opened::{Opened, open};
 use crate::run::default_folder;
-use crate::source::{Opened, Source, open};
+use crate::source::Source;
 use crate::uses;
-use opruga::blueprint::{AnyBlueprint, Blueprint};
-use opruga::core::spec::{Role, Values};
+use opruga::blueprint::AnyBlueprint;
+use opruga::core::spec::{Role, Spec, Values};
 use opruga::draw;
 use opruga::io::output_folder::{Existing, OutputFolder};
 use opruga::io::scene;
 use opruga::math::words::{number, rounded};
 use opruga::pictures::{Scenery, rest_of};
 use opruga::world::modes::Mode;
-use opruga::{Registry, World};
+use opruga::{AnyBody, AnyWorld};
 use serde_json::json;
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -29,39 +30,31 @@ pub(crate) fn modes(call: &Modes) -> Result<u8, Failure> {
     if !(0.0..=1e9).contains(&call.after) {
         return Err(Failure::range("--after", call.after, "0 to 1e9"));
     }
-    let Opened { source, reading, options, blueprint, files } =
+    let Opened { source, reading, options, mut blueprint, files } =
         open(&call.scene, &call.set, call.allow_outside, call.json)?;
     let mut uses = uses::of_scene(&source, &reading.files, files.iter());
     uses.folder(&folder_of(call, &source), uses::modes_writes);
     uses::apart(&uses)?;
-    match blueprint {
-        AnyBlueprint::Plane(mut blueprint) => {
-            look_for_equilibrium(call, &mut blueprint);
-            leave_statics(call, &mut blueprint);
-            of_world(call, &source, &reading, source.build(blueprint, &reading, &options)?)
-        }
-        AnyBlueprint::Space(mut blueprint) => {
-            look_for_equilibrium(call, &mut blueprint);
-            leave_statics(call, &mut blueprint);
-            of_world(call, &source, &reading, source.build(blueprint, &reading, &options)?)
-        }
-    }
+    look_for_equilibrium(call, &mut blueprint);
+    leave_statics(call, &mut blueprint);
+    of_world(call, &source, &reading, &mut *source.build(blueprint, &reading, &options)?)
+}
+
+/// The integrator with a role among those that scenes can name.
+fn integrator_with(role: Role) -> Option<&'static Spec> {
+    opruga::catalogue().integrators.into_iter().find(|spec| spec.has_role(role))
 }
 
 /// Gives every body the integrator `equilibrium` where that is asked for, with what it understands of the parameters of the
 /// one that it had: the tolerance, the number of iterations, the linear solver.
-fn look_for_equilibrium<const D: usize>(call: &Modes, blueprint: &mut Blueprint<D>) {
-    let registry = Registry::<D>::default();
-    let Some(spec) = registry.integrator_with(Role::Statics).map(|kind| kind.spec()).filter(|_| call.equilibrium)
-    else {
-        return;
-    };
-    let own = blueprint.bodies.iter_mut().filter_map(|body| body.integrator.as_mut());
-    for values in own.chain([&mut blueprint.integrator]) {
-        let mut statics = Values::defaults(spec, D);
+fn look_for_equilibrium(call: &Modes, blueprint: &mut AnyBlueprint) {
+    let dimension = blueprint.scene().dimension();
+    let Some(spec) = integrator_with(Role::Statics).filter(|_| call.equilibrium) else { return };
+    for values in blueprint.integrators_mut() {
+        let mut statics = Values::defaults(spec, dimension);
         for (name, value) in values.iter() {
             // What means nothing to it is left out.
-            let _ = statics.set(spec, name, value.clone(), D);
+            let _ = statics.set(spec, name, value.clone(), dimension);
         }
         *values = statics;
     }
@@ -69,15 +62,12 @@ fn look_for_equilibrium<const D: usize>(call: &Modes, blueprint: &mut Blueprint<
 
 /// Lets statics be where no frame is run: modes are those of a state, no integrator takes part in them, and bodies that nothing holds,
 /// which statics refuses, have modes as all others do. What takes its place goes with every body and every step.
-fn leave_statics<const D: usize>(call: &Modes, blueprint: &mut Blueprint<D>) {
-    let registry = Registry::<D>::default();
+fn leave_statics(call: &Modes, blueprint: &mut AnyBlueprint) {
+    let dimension = blueprint.scene().dimension();
     let runs = call.equilibrium || call.after > 0.0;
-    let Some(spec) = registry.integrator_with(Role::OfferedImplicit).map(|kind| kind.spec()).filter(|_| !runs) else {
-        return;
-    };
-    let own = blueprint.bodies.iter_mut().filter_map(|body| body.integrator.as_mut());
-    for values in own.chain([&mut blueprint.integrator]).filter(|values| values.spec().has_role(Role::Statics)) {
-        *values = Values::defaults(spec, D);
+    let Some(spec) = integrator_with(Role::OfferedImplicit).filter(|_| !runs) else { return };
+    for values in blueprint.integrators_mut().into_iter().filter(|values| values.spec().has_role(Role::Statics)) {
+        *values = Values::defaults(spec, dimension);
     }
 }
 
@@ -86,27 +76,24 @@ fn folder_of(call: &Modes, source: &Source) -> PathBuf {
     call.out.clone().unwrap_or_else(|| default_folder(&format!("{}-modes", source.name)))
 }
 
-fn of_world<const D: usize>(
-    call: &Modes,
-    source: &Source,
-    reading: &scene::Options,
-    mut world: World<D>,
-) -> Result<u8, Failure> {
+fn of_world(call: &Modes, source: &Source, reading: &scene::Options, world: &mut dyn AnyWorld) -> Result<u8, Failure> {
     let body = match &call.body {
-        None => world.bodies().next().ok_or_else(|| Failure::call("the scene has no body"))?,
+        None => world.bodies().first().copied().ok_or_else(|| Failure::call("the scene has no body"))?,
         Some(name) => world.body(name).ok_or_else(|| {
-            let names: Vec<&str> = world.bodies().map(|b| world.blueprint().bodies[b].name.as_str()).collect();
+            let bodies = world.bodies().into_iter().filter_map(|body| world.scene().body(body));
+            let names: Vec<&str> = bodies.map(AnyBody::name).collect();
             Failure::range("--body", format!("`{name}`"), &names.join(", "))
         })?,
     };
     // To the state about which the body swings.
-    let frames = (call.after / world.blueprint().time.frame - 1e-9).ceil() as u64;
+    let frames = (call.after / world.scene().time().frame - 1e-9).ceil() as u64;
     for _ in 0..frames.max(u64::from(call.equilibrium)) {
-        world.frame().map_err(|error| source.frame_error(&error, &world, reading))?;
+        world.frame().map_err(|error| source.frame_error(&error, world, reading))?;
     }
     let modes = world.modes(body, call.count).map_err(|error| source.run_error(&error, world.time()))?;
-    let name = world.blueprint().bodies[body].name.clone();
-    let rounding = rounding(&world);
+    let dimension = world.scene().dimension();
+    let name = world.scene().body(body).map_or("", AnyBody::name).to_string();
+    let rounding = rounding(world);
     let rows: Vec<_> = modes
         .iter()
         .enumerate()
@@ -118,10 +105,10 @@ fn of_world<const D: usize>(
     let mut files = Vec::new();
     let folder =
         OutputFolder::open(&folder_of(call, source), if call.force { Existing::Replace } else { Existing::Refuse })?;
-    folder.write("modes.csv", false, |out| out.write_all(table_of_shapes(&modes).as_bytes()))?;
+    folder.write("modes.csv", false, |out| out.write_all(table_of_shapes(&modes, dimension).as_bytes()))?;
     files.push("modes.csv");
     if !call.no_pictures
-        && let Some(png) = draw_shapes(&mut world, body, &modes, rounding)?
+        && let Some(png) = draw_shapes(world, body, &modes, rounding)?
     {
         folder.write("modes.png", false, |out| out.write_all(&png))?;
         files.push("modes.png");
@@ -140,7 +127,7 @@ fn of_world<const D: usize>(
 }
 
 /// For people: frequencies to five digits. All digits are in `modes.json` and `modes.csv`.
-fn table<const D: usize>(name: &str, time: f64, modes: &[Mode<D>], rounding: f64) -> String {
+fn table(name: &str, time: f64, modes: &[Mode<3>], rounding: f64) -> String {
     let mut text = format!("`{name}` at t = {} s\nmode  frequency [Hz]     ω [rad/s]\n", number(time));
     for (k, mode) in modes.iter().enumerate() {
         let (times_i, remark) = match (&mode.rigid, growth(mode, rounding)) {
@@ -157,23 +144,23 @@ fn table<const D: usize>(name: &str, time: f64, modes: &[Mode<D>], rounding: f64
 }
 
 /// What ω² of a mode may be by rounding alone [1/s²].
-fn rounding<const D: usize>(world: &World<D>) -> f64 {
+fn rounding(world: &dyn AnyWorld) -> f64 {
     let squares = world.stability().iter().map(|(_, stability)| stability.spectrum.omega * stability.spectrum.omega);
     ROUNDING * squares.filter(|square| square.is_finite()).max_by(f64::total_cmp).unwrap_or(0.0)
 }
 
 /// √(−ω²) of an unstable mode [1/s]: its displacement grows as exp(√(−ω²) t), since its frequency is imaginary.
-fn growth<const D: usize>(mode: &Mode<D>, rounding: f64) -> Option<f64> {
+fn growth(mode: &Mode<3>, rounding: f64) -> Option<f64> {
     (mode.rigid.is_none() && mode.square < -rounding).then(|| (-mode.square).sqrt())
 }
 
 /// `modes.csv`: the displacement of every node in every mode.
-fn table_of_shapes<const D: usize>(modes: &[Mode<D>]) -> String {
-    let axes = &["x", "y", "z"][..D];
+fn table_of_shapes(modes: &[Mode<3>], dimension: usize) -> String {
+    let axes = &["x", "y", "z"][..dimension];
     let mut text = format!("mode,frequency,node,{}\n", axes.join(","));
     for (k, mode) in modes.iter().enumerate() {
         for (node, vector) in mode.shape.iter().enumerate() {
-            let numbers: Vec<String> = vector.iter().map(|x| format!("{x:.16e}")).collect();
+            let numbers: Vec<String> = vector[..dimension].iter().map(|x| format!("{x:.16e}")).collect();
             let _ = writeln!(text, "{},{:.16e},{node},{}", k + 1, mode.frequency(), numbers.join(","));
         }
     }
@@ -181,21 +168,21 @@ fn table_of_shapes<const D: usize>(modes: &[Mode<D>]) -> String {
 }
 
 /// A panel for every mode: the body displaced along its shape.
-fn draw_shapes<const D: usize>(
-    world: &mut World<D>,
+fn draw_shapes(
+    world: &mut dyn AnyWorld,
     body: usize,
-    modes: &[Mode<D>],
+    modes: &[Mode<3>],
     rounding: f64,
 ) -> Result<Option<Vec<u8>>, Failure> {
     let failed = |e: draw::DrawError| Failure::Draw(e.to_string());
     let scenery = Scenery::new(world);
-    let start: Vec<[f64; D]> = (0..world.node_count(body) as u32).map(|n| world.position(body, n)).collect();
+    let start: Vec<[f64; 3]> = world.positions(body).iter().collect();
     let mut extent: f64 = 0.0;
-    for d in 0..D {
+    for d in 0..world.scene().dimension() {
         let column = || start.iter().map(|x| x[d]);
         extent = extent.max(column().fold(f64::MIN, f64::max) - column().fold(f64::MAX, f64::min));
     }
-    let number = world.bodies().position(|b| b == body).unwrap_or(0);
+    let number = world.bodies().into_iter().position(|b| b == body).unwrap_or(0);
     let own = |picture: draw::Picture| picture.bodies.into_iter().nth(number);
     let Some(rest) = own(scenery.picture(&scenery.capture(world, false))) else { return Ok(None) };
     let (mut pictures, mut captions) = (Vec::new(), Vec::new());
@@ -204,7 +191,7 @@ fn draw_shapes<const D: usize>(
         let factor = if most > 0.0 { AMPLITUDE * extent / most } else { 0.0 };
         for (node, (x, shape)) in start.iter().zip(&mode.shape).enumerate() {
             let place = core::array::from_fn(|d| x[d] + factor * shape[d]);
-            world.place_node(body, node as u32, place, [0.0; D]).map_err(|e| Failure::call(e.to_string()))?;
+            world.place_node(body, node as u32, place, [0.0; 3]).map_err(|e| Failure::call(e.to_string()))?;
         }
         let mut picture = scenery.picture(&scenery.capture(world, false));
         let legend = picture.legend.take().unwrap_or_default();

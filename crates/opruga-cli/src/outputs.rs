@@ -13,8 +13,8 @@ use opruga::io::tables::{
 };
 use opruga::math::words::{counted, number, rounded};
 use opruga::pictures::{Moment, Scenery};
-use opruga::world::NodeState;
-use opruga::{AnyWorld, Warning, World};
+use opruga::world::{NodeState, Vectors};
+use opruga::{AnyBody, AnyWorld, Warning};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The most pictures that the view is fitted to.
@@ -37,32 +37,31 @@ pub(crate) struct Outputs<'a> {
 
 impl Outputs<'_> {
     /// Writes every file; returns the summary as JSON.
-    pub(crate) fn write<const D: usize>(
+    pub(crate) fn write(
         &self,
-        world: &mut World<D>,
+        world: &dyn AnyWorld,
         recorder: Recorder,
         keeper: &mut Keeper<'_>,
     ) -> Result<String, Failure> {
         // The checkpoint first: pictures that cannot be written must not cost the run.
         let mut files = keeper.write(world, &recorder.table)?;
         files.push("final.csv".into());
-        let numbers: Vec<usize> = world.bodies().collect();
-        let nodes = |body: usize| 0..world.node_count(body) as u32;
-        let of = |vector: &dyn Fn(usize, u32) -> [f64; D]| -> Vec<Vec<[f64; D]>> {
-            numbers.iter().map(|&b| nodes(b).map(|n| vector(b, n)).collect()).collect()
+        let (scene, numbers) = (world.scene(), world.bodies());
+        let dimension = scene.dimension();
+        let all = |vectors: fn(&dyn AnyWorld, usize) -> Vectors<'_>| -> Vec<Vec<[f64; 3]>> {
+            numbers.iter().map(|&body| vectors(world, body).iter().collect()).collect()
         };
-        let (x, v) = (of(&|b, n| world.position(b, n)), of(&|b, n| world.velocity(b, n)));
-        let rows = numbers.iter().zip(x.iter().zip(&v)).map(|(&body, (positions, velocities))| FinalBody {
-            name: &world.blueprint().bodies[body].name,
-            positions,
-            velocities,
+        let (x, v) = (all(|world, body| world.positions(body)), all(|world, body| world.velocities(body)));
+        let rows = numbers.iter().zip(x.iter().zip(&v)).map(|(&body, (positions, velocities))| {
+            let name = scene.body(body).map_or("", AnyBody::name);
+            FinalBody { name, positions, velocities }
         });
         if self.stress {
-            let columns = [Recorded::Stress.columns(D), Recorded::VolumeRatio.columns(D)].concat();
+            let columns = [Recorded::Stress, Recorded::VolumeRatio].map(|what| what.columns(dimension)).concat();
             let rows = rows.zip(&numbers).map(|(row, &body)| (row, stresses(world, body)));
-            self.folder.write("final.csv", false, |out| write_final_with(out, &columns, rows))?;
+            self.folder.write("final.csv", false, |out| write_final_with(out, dimension, &columns, rows))?;
         } else {
-            self.folder.write("final.csv", false, |out| write_final(out, rows))?;
+            self.folder.write("final.csv", false, |out| write_final(out, dimension, rows))?;
         }
         if let Some(scenery) = &recorder.scenery {
             self.pictures(scenery, &recorder, &mut files)?;
@@ -73,25 +72,28 @@ impl Outputs<'_> {
         Ok(serde_json::to_string_pretty(&summary.to_json()).unwrap_or_default())
     }
 
-    fn summary<const D: usize>(&self, world: &World<D>, files: Vec<String>) -> Summary {
-        let blueprint = world.blueprint();
-        let nodes: usize = world.bodies().map(|b| world.node_count(b)).sum();
+    fn summary(&self, world: &dyn AnyWorld, files: Vec<String>) -> Summary {
+        let (scene, numbers) = (world.scene(), world.bodies());
+        let (dimension, time) = (scene.dimension(), scene.time());
+        let nodes: usize = numbers.iter().map(|body| world.node_count(*body)).sum();
         let e = world.energy();
-        let m = world.momentum();
-        let mut models: Vec<String> =
-            world.bodies().flat_map(|b| blueprint.bodies[b].models.iter().map(|v| v.kind().to_string())).collect();
+        let [linear, angular] = world.momentum();
+        let bodies: Vec<&dyn AnyBody> = numbers.iter().filter_map(|body| scene.body(*body)).collect();
+        let of_body =
+            |body: &&dyn AnyBody| body.models().iter().map(|model| model.kind().to_string()).collect::<Vec<_>>();
+        let mut models: Vec<String> = bodies.iter().flat_map(of_body).collect();
         models.sort();
         models.dedup();
         Summary {
-            scene: blueprint.name.clone(),
-            dimension: D,
-            bodies: world.bodies().count(),
+            scene: scene.name().to_string(),
+            dimension,
+            bodies: bodies.len(),
             nodes,
-            elements: world.bodies().map(|b| blueprint.bodies[b].mesh.edges(opruga::mesh::EdgeSet::All).len()).sum(),
+            elements: bodies.iter().map(|body| body.edges().len()).sum(),
             models,
             integrator: world.integrators().join(", "),
-            frame: blueprint.time.frame,
-            substeps: blueprint.time.substeps,
+            frame: time.frame,
+            substeps: time.substeps,
             h: world.h(),
             steps: self.steps,
             time: world.time(),
@@ -117,8 +119,8 @@ impl Outputs<'_> {
                 closure: e.closure,
             },
             momentum: MomentumSummary {
-                linear: m.linear.0.to_vec(),
-                angular: if D == 2 { vec![m.angular[2]] } else { m.angular.to_vec() },
+                linear: linear[..dimension].to_vec(),
+                angular: if dimension == 2 { vec![angular[2]] } else { angular.to_vec() },
             },
             state_hash: format!("{:016x}", world.state_hash()),
             solver: solver_summary(world),
@@ -220,7 +222,7 @@ impl Outputs<'_> {
     }
 
     /// What was odd: in the call, in the scene, on the way, in the world.
-    fn all_warnings<const D: usize>(&self, world: &World<D>) -> Vec<WarningSummary> {
+    fn all_warnings(&self, world: &dyn AnyWorld) -> Vec<WarningSummary> {
         let of_world = world.warnings_at_the_end().into_iter().map(|w| WarningSummary {
             code: w.code,
             message: w.message,
@@ -230,9 +232,9 @@ impl Outputs<'_> {
     }
 
     /// A few lines for people; warnings that were told early are not told again.
-    pub(crate) fn talk<const D: usize>(&self, world: &World<D>, early: &[Warning]) {
+    pub(crate) fn talk(&self, world: &dyn AnyWorld, early: &[Warning]) {
         let e = world.energy();
-        let nodes: usize = world.bodies().map(|b| world.node_count(b)).sum();
+        let nodes: usize = world.bodies().into_iter().map(|body| world.node_count(body)).sum();
         let from = self.resumed_at.map_or(String::new(), |t| format!("{t:.3} s to "));
         let speed = match self.nanoseconds(nodes) {
             Some(nanoseconds) => {
@@ -249,7 +251,7 @@ impl Outputs<'_> {
         eprintln!(
             "{}: {from}{:.3} s of {}{speed}\n  energy {} J; the ledger closes to {} % of the most that was in motion ({} J {} by the \
              integrator's error{})",
-            world.blueprint().name,
+            world.scene().name(),
             world.time(),
             counted(nodes as u64, "node", "nodes"),
             number(e.total()),
@@ -262,7 +264,7 @@ impl Outputs<'_> {
             .warnings_at_the_end()
             .into_iter()
             .filter(|warning| !early.contains(warning))
-            .for_each(|warning| crate::run::tell(&warning));
+            .for_each(|warning| tell(&warning));
         self.say_where();
     }
 
@@ -278,9 +280,10 @@ impl Outputs<'_> {
 }
 
 /// Stress, von Mises stress and J of every node of a body; rows without numbers where no cell of it has a stress.
-fn stresses<const D: usize>(world: &World<D>, body: usize) -> Vec<Vec<f64>> {
+fn stresses(world: &dyn AnyWorld, body: usize) -> Vec<Vec<f64>> {
+    let dimension = world.scene().dimension();
     let row = |state: Option<NodeState>| {
-        state.map_or(Vec::new(), |state| [state.components::<D>(), vec![state.volume_ratio]].concat())
+        state.map_or(Vec::new(), |state| [state.components(dimension), vec![state.volume_ratio]].concat())
     };
     world.node_states(body).into_iter().map(row).collect()
 }
@@ -321,4 +324,10 @@ pub(crate) fn cells(world: &dyn AnyWorld) -> Vec<CellSummary> {
         });
     }
     found
+}
+
+/// A warning for people.
+pub(crate) fn tell(warning: &Warning) {
+    let times = if warning.count > 1 { format!(" ({} times)", warning.count) } else { String::new() };
+    eprintln!("warning[{}]: {}{times}", warning.code, warning.message);
 }

@@ -1,12 +1,12 @@
 //! What is kept of a run while it runs: rows of tables, and moments for pictures.
 
 use crate::failure::Failure;
-use opruga::blueprint::{BodyBlueprint, Recorded};
+use opruga::blueprint::Recorded;
 use opruga::core::spec::Role;
 use opruga::io::tables::{NumberTable, WarningSummary};
 use opruga::math::words::{counted, rounded};
 use opruga::pictures::{Moment, Scenery};
-use opruga::{World, draw};
+use opruga::{AnyBody, AnyWorld, draw};
 use std::borrow::Cow;
 use std::time::{Duration, Instant};
 
@@ -119,10 +119,11 @@ pub(crate) struct Columns {
 
 impl Recorder {
     /// Prepares the columns, and pictures at the wanted rate as far as memory allows; refuses a rate that no film can have.
-    pub(crate) fn new<const D: usize>(world: &mut World<D>, wanted: Wanted, frames: u64) -> Result<Recorder, Failure> {
+    pub(crate) fn new(world: &mut dyn AnyWorld, wanted: Wanted, frames: u64) -> Result<Recorder, Failure> {
         let Wanted { fps: asked, pictures: drawn, arrows, springs, gif, notes, row_every } = wanted;
         let fps = asked.unwrap_or(USUAL_RATE);
-        let axes = &["x", "y", "z"][..D];
+        let dimension = world.scene().dimension();
+        let axes = &["x", "y", "z"][..dimension];
         let mut columns: Vec<String> =
             ["time", "kinetic", "elastic", "gas", "gravity", "work_user", "work_gas", "work_correction"]
                 .into_iter()
@@ -137,36 +138,34 @@ impl Recorder {
                 .map(String::from)
                 .collect();
         columns.extend(axes.iter().map(|a| format!("momentum.{a}")));
-        columns.extend(angular_axes::<D>().iter().map(|a| format!("angular_momentum{a}")));
+        columns.extend(angular_axes(dimension).iter().map(|a| format!("angular_momentum{a}")));
         // Bodies that commands will add have theirs from the start: the head of the table is written for the whole run.
         let (mut bodies, mut meanings) = (Vec::new(), Vec::new());
-        let mut add = |body: &BodyBlueprint<D>, readings: Vec<Cow<'static, str>>| {
-            let published = body.models.iter().any(|model| model.spec().has_role(Role::Published));
-            columns.extend(readings.iter().map(|what| format!("{}.{what}", body.name)));
-            meanings.push((body.name.clone(), body.thickness, published));
-            bodies.push((body.name.clone(), readings.len()));
+        let mut add = |body: &dyn AnyBody, readings: Vec<Cow<'static, str>>| {
+            columns.extend(readings.iter().map(|what| format!("{}.{what}", body.name())));
+            meanings.push((body.name().to_string(), body.thickness(), body.has_role(Role::Published)));
+            bodies.push((body.name().to_string(), readings.len()));
         };
-        let present = world.blueprint().bodies.len();
-        for body in 0..present.min(MOST_BODY_COLUMNS) {
-            let readings = world.readings(body).into_iter().map(|(what, _)| what).collect();
-            add(&world.blueprint().bodies[body], readings);
+        let present = world.scene().body_count();
+        for number in 0..present.min(MOST_BODY_COLUMNS) {
+            let readings = world.readings(number).into_iter().map(|(what, _)| what).collect();
+            if let Some(body) = world.scene().body(number) {
+                add(body, readings);
+            }
         }
-        for body in world.coming_bodies().take(MOST_BODY_COLUMNS.saturating_sub(present)) {
+        let coming = world.coming_bodies().into_iter().take(MOST_BODY_COLUMNS.saturating_sub(present));
+        for (number, body) in coming.enumerate() {
             // A body for which a model cannot be built is told when it comes.
-            add(body, world.reading_names(body).unwrap_or_default());
+            add(body, world.reading_names_of(present + number));
         }
-        let mut probes = Vec::new();
-        for probe in 0..world.blueprint().probes.len() {
-            columns.extend(world.probe(probe).into_iter().map(|(name, _)| name));
-            probes.extend(
-                world.blueprint().probes[probe].record.iter().flat_map(|what| what.columns(D).iter().map(|_| *what)),
-            );
-        }
-        let nodes: usize = world.bodies().map(|b| world.node_count(b)).sum();
-        let frame = world.blueprint().time.frame;
+        columns.extend(world.scene().probe_columns().into_iter().flatten());
+        let recorded = world.scene().probe_records().into_iter().flatten();
+        let probes = recorded.flat_map(|what| what.columns(dimension).iter().map(|_| *what)).collect();
+        let nodes: usize = world.bodies().into_iter().map(|body| world.node_count(body)).sum();
+        let frame = world.scene().time().frame;
         let wanted = ((1.0 / fps / frame).round() as u64).max(1);
         let pictures = frames / wanted + 1;
-        let bytes = pictures * (nodes * (D + 1) * 4) as u64;
+        let bytes = pictures * (nodes * (dimension + 1) * 4) as u64;
         let every = wanted * bytes.div_ceil(PICTURE_BYTES).max(1);
         if drawn && every > wanted {
             eprintln!(
@@ -190,7 +189,7 @@ impl Recorder {
         if springs {
             scenery.iter_mut().for_each(|scenery| scenery.show_springs(world));
         }
-        let looks = look_every(frames, world.blueprint().time.substeps, nodes as u64);
+        let looks = look_every(frames, world.scene().time().substeps, nodes as u64);
         if drawn {
             world.keep_looks(looks);
         }
@@ -201,9 +200,9 @@ impl Recorder {
             seen: NumberTable::new(columns),
             columns: Columns {
                 probes,
-                dimension: D,
-                length_unit: world.blueprint().length_unit.clone(),
-                credit: world.blueprint().credit.clone(),
+                dimension,
+                length_unit: world.scene().length_unit().to_string(),
+                credit: world.scene().credit().to_string(),
                 y_down: scenery.as_ref().is_some_and(Scenery::y_down),
                 bodies: meanings,
             },
@@ -219,10 +218,10 @@ impl Recorder {
     }
 
     /// Keeps what there is to see of the present frame, and of what was within it; says how long that took.
-    pub(crate) fn record<const D: usize>(&mut self, world: &mut World<D>) -> Duration {
+    pub(crate) fn record(&mut self, world: &mut dyn AnyWorld) -> Duration {
         let begin = Instant::now();
         let (bodies, seen) = (&self.bodies, &mut self.seen);
-        world.look_within(|world| seen.push(&row(world, bodies)));
+        world.look_within(&mut |world| seen.push(&row(world, bodies)));
         if self.rows.take(world.frames()) {
             let row = row(world, bodies);
             if self.scenery.is_some() {
@@ -239,7 +238,7 @@ impl Recorder {
     }
 
     /// Gives the last frame its row.
-    pub(crate) fn finish<const D: usize>(&mut self, world: &mut World<D>) {
+    pub(crate) fn finish(&mut self, world: &mut dyn AnyWorld) {
         if self.rows.last.is_some_and(|last| last != world.frames()) {
             let row = row(world, &self.bodies);
             self.table.push(&row);
@@ -291,9 +290,10 @@ fn look_every(frames: u64, substeps: u32, nodes: u64) -> u32 {
 }
 
 /// The row of a table for the present state.
-fn row<const D: usize>(world: &mut World<D>, bodies: &[(String, usize)]) -> Vec<f64> {
+fn row(world: &mut dyn AnyWorld, bodies: &[(String, usize)]) -> Vec<f64> {
     let e = world.energy();
-    let m = world.momentum();
+    let [linear, angular] = world.momentum();
+    let dimension = world.scene().dimension();
     let mut row = vec![
         world.time(),
         e.kinetic,
@@ -310,8 +310,8 @@ fn row<const D: usize>(world: &mut World<D>, bodies: &[(String, usize)]) -> Vec<
         e.loss_integrator,
         e.closure,
     ];
-    row.extend(m.linear.0);
-    row.extend(&m.angular[if D == 2 { 2..3 } else { 0..3 }]);
+    row.extend(&linear[..dimension]);
+    row.extend(&angular[if dimension == 2 { 2..3 } else { 0..3 }]);
     for (name, columns) in bodies {
         let body = world.body(name);
         let mut readings: Vec<f64> =
@@ -320,14 +320,14 @@ fn row<const D: usize>(world: &mut World<D>, bodies: &[(String, usize)]) -> Vec<
         readings.resize(*columns, f64::NAN);
         row.extend(readings);
     }
-    for probe in 0..world.blueprint().probes.len() {
+    for probe in 0..world.scene().probe_records().len() {
         row.extend(world.probe(probe).into_iter().map(|(_, x)| x));
     }
     row
 }
 
-fn angular_axes<const D: usize>() -> &'static [&'static str] {
-    if D == 2 { &[""] } else { &[".x", ".y", ".z"] }
+fn angular_axes(dimension: usize) -> &'static [&'static str] {
+    if dimension == 2 { &[""] } else { &[".x", ".y", ".z"] }
 }
 
 #[cfg(test)]

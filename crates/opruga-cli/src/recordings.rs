@@ -3,7 +3,7 @@
 use crate::checkpoints::Calling;
 use crate::failure::Failure;
 use crate::source::Source;
-use opruga::World;
+use opruga::AnyWorld;
 use opruga::io::recording::{Asset, Header, Recording, RecordingError};
 use opruga::io::safe_write::WriteError;
 use opruga::io::{Files, SceneError};
@@ -15,20 +15,20 @@ use std::path::Path;
 pub(crate) const PROGRAM: &str = concat!("opruga ", env!("CARGO_PKG_VERSION"));
 
 /// Begins the recording of a run: the file is there with its header before the run begins, and with its first frame.
-pub(crate) fn begin<const D: usize>(
+pub(crate) fn begin(
     path: &Path,
     force: bool,
     every: Option<u32>,
     source: &Source,
     calling: &Calling,
-    world: &mut World<D>,
+    world: &mut dyn AnyWorld,
 ) -> Result<Tape, WriteError> {
     let header = Header {
         program: PROGRAM.into(),
         name: source.name.clone(),
         file: source.file.clone(),
         scene: source.bytes.clone(),
-        frame: world.blueprint().time.frame,
+        frame: world.scene().time().frame,
         every: every.map_or_else(|| states_apart(world), u64::from),
         overrides: calling.overrides.clone(),
         lenient: calling.lenient,

@@ -11,7 +11,7 @@ use crate::run::{default_folder, simd_from_environment};
 use crate::source::Source;
 use crate::uses;
 use core::ops::RangeInclusive;
-use opruga::blueprint::{AnyBlueprint, Blueprint};
+use opruga::blueprint::AnyBlueprint;
 use opruga::io::output_folder::{Existing, OutputFolder};
 use opruga::io::recording::{Ending, Recording, RecordingError};
 use opruga::io::series::{Format, write_pvd, write_vtk_series};
@@ -19,7 +19,7 @@ use opruga::io::tables::WarningSummary;
 use opruga::io::{SceneError, scene};
 use opruga::math::words::{counted, number};
 use opruga::recordings::{Playback, TapeError};
-use opruga::{Options, World};
+use opruga::{AnyWorld, Options};
 use serde_json::{Value, json};
 use std::fs::File;
 use std::path::PathBuf;
@@ -64,10 +64,7 @@ pub(crate) fn replay(call: &Replay) -> Result<u8, Failure> {
     let blueprint = source.read(&reading, &options)?.blueprint;
     let length = header.frame;
     let job = Job { call, source: &source, reading, options, length, frames, told };
-    match blueprint {
-        AnyBlueprint::Plane(blueprint) => job.run(recording, blueprint),
-        AnyBlueprint::Space(blueprint) => job.run(recording, blueprint),
-    }
+    job.run(recording, blueprint)
 }
 
 /// Where the output goes.
@@ -161,25 +158,25 @@ struct Job<'a> {
 }
 
 impl Job<'_> {
-    fn run<const D: usize>(self, recording: Recording<File>, mut blueprint: Blueprint<D>) -> Result<u8, Failure> {
-        blueprint.name.clone_from(&self.source.name);
+    fn run(self, recording: Recording<File>, mut blueprint: AnyBlueprint) -> Result<u8, Failure> {
+        blueprint.rename(&self.source.name);
         let build = |blueprint| self.source.build(blueprint, &self.reading, &self.options);
         let stop = interrupt::asked_to_stop();
         let last = *self.frames.end();
         let play = |recording| Playback::of(recording, last).map_err(|error| self.failure(&error, last));
         if !self.call.verify {
-            return self.show(&mut build(blueprint)?, &mut play(recording)?, stop, None);
+            return self.show(&mut *build(blueprint)?, &mut play(recording)?, stop, None);
         }
         // A folder that is not free is told before the work.
         let writes = self.call.writes();
         let folder = if writes { Some(self.folder()?) } else { None };
-        let verified = self.verify(&mut build(blueprint.clone())?, &mut play(recording)?, stop)?;
+        let verified = self.verify(&mut *build(blueprint.clone())?, &mut play(recording)?, stop)?;
         let same = verified["pass"] == true;
         match folder.filter(|_| same) {
             Some(folder) => {
                 // From its first frame again, in a world that knows nothing of the last one.
                 let (again, _) = recordings::open(&self.call.file)?;
-                self.show(&mut build(blueprint)?, &mut play(again)?, stop, Some((folder, verified)))
+                self.show(&mut *build(blueprint)?, &mut play(again)?, stop, Some((folder, verified)))
             }
             None => {
                 if self.call.json {
@@ -207,9 +204,9 @@ impl Job<'_> {
 
     /// Computes every frame again, from the beginning of the scene or from the first frame that is wanted. Of each the hash
     /// is compared, and every number where its state is kept. Says what was found, as `--json` prints it.
-    fn verify<const D: usize>(
+    fn verify(
         &self,
-        world: &mut World<D>,
+        world: &mut dyn AnyWorld,
         playback: &mut Playback<File>,
         stop: &AtomicBool,
     ) -> Result<Value, Failure> {
@@ -280,9 +277,9 @@ impl Job<'_> {
 
     /// Tables, pictures and exported frames, from recorded states, and from steps between them; with what was found where the run was computed again
     /// before.
-    fn show<const D: usize>(
+    fn show(
         &self,
-        world: &mut World<D>,
+        world: &mut dyn AnyWorld,
         playback: &mut Playback<File>,
         stop: &AtomicBool,
         verified: Option<(OutputFolder, Value)>,

@@ -33,7 +33,7 @@ pub(crate) fn check(call: &Check) -> Result<u8, Failure> {
     let most_bytes = Some(reading.limits.memory_bytes);
     let world = Options { allow_unstable: call.allow_unstable, most_bytes, ..Options::default() };
     let Whole { blueprint, notices, .. } = source.read(&reading, &world)?;
-    let found = Found::of(&*source.build_any(blueprint, &reading, &world)?);
+    let found = Found::of(&*source.build(blueprint, &reading, &world)?);
     if call.json {
         print_data(&format!("{}\n", found.to_json(&source.file, &notices)))?;
     } else {

@@ -5,18 +5,18 @@ use crate::checkpoints::{self, Calling, Keeper, SavedRun};
 use crate::failure::{Failure, print_data};
 use crate::forecast::{Forecast, duration};
 use crate::interrupt;
-use crate::outputs::Outputs;
+use crate::outputs::{self, Outputs};
 use crate::recorder::Recorder;
 use crate::recordings;
 use crate::source::{Source, Whole, overrides};
 use crate::uses;
-use opruga::blueprint::{AnyBlueprint, Blueprint};
+use opruga::blueprint::AnyBlueprint;
 use opruga::io::output_folder::{Existing, OutputFolder};
 use opruga::io::safe_write::WriteError;
 use opruga::io::scene;
 use opruga::io::tables::WarningSummary;
 use opruga::math::words::{counted, number, rounded};
-use opruga::{Options, Simd, Warning};
+use opruga::{Options, Simd};
 use std::collections::BTreeMap;
 use std::io::IsTerminal as _;
 use std::path::PathBuf;
@@ -86,10 +86,7 @@ pub(crate) fn run(call: &Run) -> Result<u8, Failure> {
         told.push(WarningSummary { code: "threads.above_cores".into(), message, count: 1 });
     }
     let job = Job { call, source: &source, reading, files, world, told, resumed };
-    match blueprint {
-        AnyBlueprint::Plane(blueprint) => job.run(blueprint),
-        AnyBlueprint::Space(blueprint) => job.run(blueprint),
-    }
+    job.run(blueprint)
 }
 
 /// Where there is no screen for a bar, a line says so often how far the run is [s].
@@ -195,11 +192,11 @@ struct Job<'a> {
 }
 
 impl Job<'_> {
-    fn run<const D: usize>(self, mut blueprint: Blueprint<D>) -> Result<u8, Failure> {
+    fn run(self, mut blueprint: AnyBlueprint) -> Result<u8, Failure> {
         let (call, source) = (self.call, self.source);
-        blueprint.name.clone_from(&source.name);
-        let (seconds, frame) = (blueprint.time.seconds, blueprint.time.frame);
-        let frames = (seconds / frame - 1e-9).ceil().max(0.0) as u64;
+        blueprint.rename(&source.name);
+        let time = blueprint.scene().time();
+        let (seconds, frame, frames) = (time.seconds, time.frame, time.frames());
         if let Some(saved) = self.resumed.as_ref().filter(|saved| saved.frames >= frames) {
             return Err(at_the_end(saved, seconds));
         }
@@ -207,7 +204,7 @@ impl Job<'_> {
         if let Some(saved) = &self.resumed {
             world.restore(&saved.snapshot).map_err(|error| source.run_error(&error, saved.time))?;
         }
-        let mut recorder = Recorder::new(&mut world, call.wanted(), frames)?;
+        let mut recorder = Recorder::new(&mut *world, call.wanted(), frames)?;
         // From before the first file on, a signal ends the run with whole files.
         let stop = interrupt::asked_to_stop();
         let folder = output_folder(call, source)?;
@@ -219,13 +216,13 @@ impl Job<'_> {
         };
         let recorded = call.record.as_deref();
         let every = call.record_every;
-        let tape = recorded.map(|path| recordings::begin(path, call.force, every, source, &calling, &mut world));
+        let tape = recorded.map(|path| recordings::begin(path, call.force, every, source, &calling, &mut *world));
         let mut tape = tape.transpose()?;
         let mut keeper = Keeper::new(&folder, source, calling, call.checkpoint_every, call.resume.as_deref());
         // What is odd from the start is told before the run, the rest behind it.
         let early = world.warnings();
         if !call.json {
-            early.iter().for_each(tell);
+            early.iter().for_each(outputs::tell);
         }
         if !call.json {
             whole_frames(frames, frame, seconds).iter().for_each(|said| eprintln!("{said}"));
@@ -237,7 +234,7 @@ impl Job<'_> {
         let first = world.frames();
         let (mut failure, mut told_at, mut looked_at) = (None, 0.0, false);
         // Looking at the world is not counted as the time of its steps.
-        let mut looking = recorder.record(&mut world);
+        let mut looking = recorder.record(&mut *world);
         keeper.begin(&recorder.table)?;
         while failure.is_none() && world.frames() < frames {
             if stop.load(Ordering::Relaxed) {
@@ -245,13 +242,13 @@ impl Job<'_> {
                 break;
             }
             if let Err(error) = world.frame() {
-                failure = Some(source.frame_error(&error, &world, &self.reading));
+                failure = Some(source.frame_error(&error, &*world, &self.reading));
                 break;
             }
             looked_at = looked_at || world.look_at_steps_again();
-            failure = tape.as_mut().and_then(|tape| tape.push(&mut world).err()).map(unrecorded);
-            looking += recorder.record(&mut world);
-            if let Some(problem) = keeper.on_the_way(&mut world, &recorder.table) {
+            failure = tape.as_mut().and_then(|tape| tape.push(&mut *world).err()).map(unrecorded);
+            looking += recorder.record(&mut *world);
+            if let Some(problem) = keeper.on_the_way(&*world, &recorder.table) {
                 bar.suspend(|| eprintln!("warning: no checkpoint at t = {} s: {problem}", number(world.time())));
             }
             bar.set_position(world.frames());
@@ -261,7 +258,7 @@ impl Job<'_> {
                 bar.set_message(format!("t = {:.2} s, {} × real time", world.time(), rounded(ratio, 2)));
                 let (done, left) = (world.frames() - first, frames - world.frames());
                 if !call.json
-                    && let Some(said) = forecast.of(&world, done, left, wall)
+                    && let Some(said) = forecast.of(&*world, done, left, wall)
                 {
                     bar.suspend(|| eprintln!("{said}"));
                     told_at = wall;
@@ -278,8 +275,8 @@ impl Job<'_> {
                 }
             }
         }
-        recorder.finish(&mut world);
-        let taped = tape.and_then(|tape| tape.finish(&mut world).err()).map(unrecorded);
+        recorder.finish(&mut *world);
+        let taped = tape.and_then(|tape| tape.finish(&mut *world).err()).map(unrecorded);
         failure = failure.or(taped);
         let wall = (start.elapsed() - looking).as_secs_f64();
         bar.finish_and_clear();
@@ -287,14 +284,14 @@ impl Job<'_> {
             folder: &folder,
             source,
             wall,
-            steps: (world.frames() - first) * u64::from(world.blueprint().time.substeps),
+            steps: (world.frames() - first) * u64::from(time.substeps),
             resumed_at: self.resumed.as_ref().map(|saved| saved.time),
             told: self.told.into_iter().chain(keeper.warning()).chain(recorder.thinned()).collect(),
             stop,
             stress: call.stress,
         };
         // What was computed until a failure is written all the same: it shows how the failure came about.
-        let summary = outputs.write(&mut world, recorder, &mut keeper)?;
+        let summary = outputs.write(&*world, recorder, &mut keeper)?;
         if let Some(failure) = failure {
             if !call.json {
                 outputs.say_where();
@@ -304,7 +301,7 @@ impl Job<'_> {
         if call.json {
             print_data(&format!("{summary}\n"))?;
         } else {
-            outputs.talk(&world, &early);
+            outputs.talk(&*world, &early);
         }
         Ok(0)
     }
@@ -314,12 +311,6 @@ impl Job<'_> {
 fn unrecorded(error: WriteError) -> Failure {
     let hint = "the run has ended here; --resume goes on from its checkpoint, with --record to another file";
     Failure::Write(WriteError { hint: Some(hint.into()), ..error })
-}
-
-/// A warning for people.
-pub(crate) fn tell(warning: &Warning) {
-    let times = if warning.count > 1 { format!(" ({} times)", warning.count) } else { String::new() };
-    eprintln!("warning[{}]: {}{times}", warning.code, warning.message);
 }
 
 /// There is nothing to go on with: the checkpoint lies at the end of the run or behind it.

@@ -1,14 +1,13 @@
 //! Scenes by name: a file, or one that comes with the program; and everything that is wrong with one at once.
 
 use crate::failure::Failure;
-use crate::run::simd_from_environment;
-use opruga::blueprint::{AnyBlueprint, Blueprint};
+use opruga::blueprint::AnyBlueprint;
 use opruga::core::spec::all_near;
 use opruga::io::problem::{shown, visible};
 use opruga::io::refusals::{in_scene, of_command};
 use opruga::io::{Files, Notice, SceneError, scene};
 use opruga::math::words::number;
-use opruga::{AnyWorld, Options, World, WorldError};
+use opruga::{AnyWorld, Options, WorldError};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -33,32 +32,6 @@ pub(crate) struct Whole {
     pub(crate) notices: Vec<Notice>,
     /// The files that it names.
     pub(crate) files: BTreeMap<String, Arc<[u8]>>,
-}
-
-/// A scene of a call that has no options of its own for reading it.
-pub(crate) struct Opened {
-    pub(crate) source: Source,
-    pub(crate) reading: scene::Options,
-    pub(crate) options: Options,
-    pub(crate) blueprint: AnyBlueprint,
-    /// The names of the files that the scene names.
-    pub(crate) files: Vec<String>,
-}
-
-/// Finds and reads a scene with overrides, and tells what is odd about it unless the call wants to hear nothing.
-pub(crate) fn open(scene: &str, set: &[String], allow_outside: bool, quiet: bool) -> Result<Opened, Failure> {
-    let source = Source::find(scene)?;
-    let reading = scene::Options {
-        overrides: overrides(set)?,
-        files: source.files.clone().allow_outside(allow_outside),
-        ..scene::Options::default()
-    };
-    let options = Options { simd: simd_from_environment()?, ..Options::default() };
-    let Whole { blueprint, notices, files } = source.read(&reading, &options)?;
-    if !quiet {
-        notices.iter().for_each(|notice| eprintln!("{notice}"));
-    }
-    Ok(Opened { source, reading, options, blueprint, files: files.into_keys().collect() })
 }
 
 impl Source {
@@ -126,33 +99,13 @@ impl Source {
     }
 
     /// Builds the world of a scene that was read with these options; everything that it refuses comes at once.
-    pub(crate) fn build<const D: usize>(
-        &self,
-        blueprint: Blueprint<D>,
-        options: &scene::Options,
-        world: &Options,
-    ) -> Result<World<D>, Failure> {
-        self.accepted(World::new(blueprint, world.clone()).map(Box::new), options, world).map(|built| *built)
-    }
-
-    /// As [`Source::build`], of a scene of either dimension.
-    pub(crate) fn build_any(
+    pub(crate) fn build(
         &self,
         blueprint: AnyBlueprint,
         options: &scene::Options,
         world: &Options,
     ) -> Result<Box<dyn AnyWorld>, Failure> {
-        self.accepted(blueprint.build(world.clone()), options, world)
-    }
-
-    /// The world that was built, unless it is refused or its warnings are errors here.
-    fn accepted<W: AnyWorld + ?Sized>(
-        &self,
-        built: Result<Box<W>, WorldError>,
-        options: &scene::Options,
-        world: &Options,
-    ) -> Result<Box<W>, Failure> {
-        let built = built.map_err(|first| {
+        let built = blueprint.build(world.clone()).map_err(|first| {
             // The scene is read again rather than kept for the case that its world is refused.
             let reading = scene::survey(&self.bytes, &self.file, &opruga::catalogue(), options);
             match self.refused(reading, options, world) {
@@ -175,14 +128,9 @@ impl Source {
     }
 
     /// An error that ends a run with a frame: that of a command has its line.
-    pub(crate) fn frame_error<const D: usize>(
-        &self,
-        error: &WorldError,
-        world: &World<D>,
-        options: &scene::Options,
-    ) -> Failure {
+    pub(crate) fn frame_error(&self, error: &WorldError, world: &dyn AnyWorld, options: &scene::Options) -> Failure {
         let Some(command) = world.refused_command() else { return self.run_error(error, world.time()) };
-        let said = of_command(error, command, world.blueprint(), (self.text(), self.file.as_str()), &options.overrides);
+        let said = of_command(error, &command, (self.text(), self.file.as_str()), &options.overrides);
         Failure::Run(Box::new(timed(said, error, world.time())))
     }
 }

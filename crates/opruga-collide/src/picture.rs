@@ -60,6 +60,25 @@ pub enum Picture<const D: usize> {
     },
 }
 
+impl<const D: usize> Picture<D> {
+    /// The same in space; z is 0 where it lies in the plane.
+    pub fn in_space(self) -> Picture<3> {
+        let three = |p: [f64; D]| core::array::from_fn(|d| p.get(d).copied().unwrap_or(0.0));
+        let all = |points: Vec<[f64; D]>| points.into_iter().map(three).collect();
+        match self {
+            Picture::HalfSpace { point, normal } => Picture::HalfSpace { point: three(point), normal: three(normal) },
+            Picture::Box { corners, inside } => Picture::Box { corners: all(corners), inside },
+            Picture::Ball { center, radius, inside } => Picture::Ball { center: three(center), radius, inside },
+            Picture::Capsule { a, b, radius } => Picture::Capsule { a: three(a), b: three(b), radius },
+            Picture::Polygon { points } => Picture::Polygon { points: all(points) },
+            Picture::Polyline { points, closed } => Picture::Polyline { points: all(points), closed },
+            Picture::Triangles { points, triangles, solid } => {
+                Picture::Triangles { points: all(points), triangles, solid }
+            }
+        }
+    }
+}
+
 /// A collider at a time.
 pub(crate) fn picture<const D: usize>(collider: &Collider<D>, time: f64) -> Picture<D> {
     let pose = collider.motion.pose(time);

@@ -6,9 +6,8 @@ use crate::problem::SceneError;
 use crate::source::Source;
 use opruga_core::error::what_was_left;
 use opruga_math::words::number;
-use opruga_world::blueprint::{Action, Blueprint, CommandBlueprint};
 use opruga_world::schema::{self, MOST_SUBSTEPS};
-use opruga_world::{Warning, WorldError};
+use opruga_world::{RefusedCommand, Warning, WorldError};
 
 impl From<&WorldError> for SceneError {
     /// The same in the words of a scene: what is wrong, what is allowed, what would help. The place is that of the path;
@@ -182,17 +181,16 @@ pub fn in_scene(error: SceneError, text: &str, file: &str, overrides: &[(String,
 
 /// What a command of a scene was refused for while it ran, with the place of the command and what would help there.
 #[must_use]
-pub fn of_command<const D: usize>(
+pub fn of_command(
     error: &WorldError,
-    command: &CommandBlueprint<D>,
-    scene: &Blueprint<D>,
+    command: &RefusedCommand<'_>,
     (text, file): (&str, &str),
     overrides: &[(String, String)],
 ) -> SceneError {
     let mut said = SceneError::from(error);
-    said.message = format!("the command `{}`: {}", command.action.word(), said.message);
+    said.message = format!("the command `{}`: {}", command.word, said.message);
     (said.file, said.path) = (file.to_string(), "command".into());
-    let sets = matches!(command.action, Action::Set { .. });
+    let sets = command.sets.is_some();
     if let WorldError::UnstableStep { substeps, .. } = error
         && *substeps > MOST_SUBSTEPS
         && sets
@@ -201,16 +199,15 @@ pub fn of_command<const D: usize>(
     } else if let WorldError::UnstableStep { substeps, .. } = error
         && *substeps <= MOST_SUBSTEPS
     {
-        let of_substeps = |action: &Action<D>| matches!(action, Action::Set { path, .. } if path == "time.substeps");
         // What an override sets lasts until a command sets it.
-        let how = match scene.commands.iter().any(|before| of_substeps(&before.action) && before.at <= command.at) {
+        let how = match command.substeps_were_set {
             true => ", which a command before it sets".to_string(),
             false => format!(", such as --set time.substeps={substeps}"),
         };
-        said.hint = Some(match &command.action {
-            action if of_substeps(action) => format!("a `value` of {substeps} or more, or another integrator"),
-            Action::Set { .. } => format!("another `value`, or substeps >= {substeps} when the command begins{how}"),
-            _ => format!("a softer or heavier body, or substeps >= {substeps} when the command begins{how}"),
+        said.hint = Some(match sets {
+            true if command.sets_substeps() => format!("a `value` of {substeps} or more, or another integrator"),
+            true => format!("another `value`, or substeps >= {substeps} when the command begins{how}"),
+            false => format!("a softer or heavier body, or substeps >= {substeps} when the command begins{how}"),
         });
     }
     let source = Source { file, text: text.strip_prefix('\u{feff}').unwrap_or(text) };
@@ -229,7 +226,7 @@ pub fn of_command<const D: usize>(
 }
 
 /// The table of a command in a scene, and its number; none for one that a program has given.
-fn written<'n, const D: usize>(root: &'n Node, command: &CommandBlueprint<D>) -> Option<(usize, &'n Node)> {
+fn written<'n>(root: &'n Node, command: &RefusedCommand<'_>) -> Option<(usize, &'n Node)> {
     let Data::Array(tables) = &root.get("command")?.data else { return None };
     let begins = |node: &Node| match node.data {
         Data::Number(at, _) => at == command.at,
@@ -238,15 +235,10 @@ fn written<'n, const D: usize>(root: &'n Node, command: &CommandBlueprint<D>) ->
     };
     tables.iter().enumerate().find(|(_, table)| {
         let text = |key: &str| table.get(key).and_then(Node::text);
-        let alike = match &command.action {
-            Action::Set { path, .. } => text("path") == Some(path.as_str()),
-            Action::Remove { name } => text("body") == Some(name.as_str()),
-            Action::Add(body) => {
-                table.get("body").and_then(|added| added.get("name")).and_then(Node::text) == Some(body.name.as_str())
-            }
-            _ => true,
-        };
-        alike && text("do") == Some(command.action.word()) && table.get("at").is_some_and(begins)
+        let added = table.get("body").and_then(|body| body.get("name")).and_then(Node::text);
+        let named = |name| text("body").or(added) == Some(name);
+        let alike = command.sets.is_none_or(|path| text("path") == Some(path)) && command.body.is_none_or(named);
+        alike && text("do") == Some(command.word) && table.get("at").is_some_and(begins)
     })
 }
 

@@ -5,22 +5,18 @@ pub(crate) mod vtu;
 
 pub use vtu::write_pvd;
 
-use opruga_mesh::Mesh;
+use opruga_world::AnyBody;
 use std::io::{self, Write};
 
 /// A body in one frame.
 #[derive(Clone, Copy, Debug)]
-pub struct Shape<'a, const D: usize> {
-    /// Its name.
-    pub name: &'a str,
-    /// What spans its nodes.
-    pub mesh: &'a Mesh<D>,
-    /// Positions, node by node [m].
-    pub positions: &'a [[f64; D]],
+pub struct Shape<'a> {
+    /// Its name, what spans its nodes, and where it lay when it came: displacements are counted from there.
+    pub body: &'a dyn AnyBody,
+    /// Positions, node by node; z is 0 in the plane [m].
+    pub positions: &'a [[f64; 3]],
     /// Velocities, node by node [m/s].
-    pub velocities: &'a [[f64; D]],
-    /// Where the body's mesh was put when it came: its displacement is counted from there [m].
-    pub translation: [f64; D],
+    pub velocities: &'a [[f64; 3]],
     /// What models say of every cell, such as stress.
     pub cell_fields: &'a [CellField<'a>],
 }
@@ -64,13 +60,7 @@ impl Format {
     ///
     /// # Errors
     /// Those of the writer.
-    pub fn write<const D: usize>(
-        self,
-        out: &mut dyn Write,
-        title: &str,
-        time: f64,
-        shapes: &[Shape<'_, D>],
-    ) -> io::Result<()> {
+    pub fn write(self, out: &mut dyn Write, title: &str, time: f64, shapes: &[Shape<'_>]) -> io::Result<()> {
         match self {
             Format::Vtk => vtk(out, title, time, shapes),
             Format::Vtu => vtu::write(out, time, shapes),
@@ -107,21 +97,23 @@ const QUADRATIC_TETRAHEDRON: u8 = 24;
 
 impl Elements {
     /// Filled bodies by their cells where `filled` wants them, others by what bounds them; wires always.
-    fn of<const D: usize>(mesh: &Mesh<D>, filled: bool, first: usize) -> Elements {
+    fn of(body: &dyn AnyBody, filled: bool, first: usize) -> Elements {
+        let (cells, flat) = (body.cells(), body.dimension() == 2);
         let mut all = Vec::new();
         let mut add = |kind: u8, nodes: &[u32]| all.push((kind, nodes.iter().map(|n| first + *n as usize).collect()));
-        if !mesh.cells.is_empty() && (filled || D == 2) {
-            mesh.cells.triangles.iter().for_each(|c| add(TRIANGLE, c));
-            mesh.cells.quadrilaterals.iter().for_each(|c| add(QUADRILATERAL, c));
-            mesh.cells.tetrahedra.iter().for_each(|c| add(TETRAHEDRON, c));
-            mesh.cells.hexahedra.iter().for_each(|c| add(HEXAHEDRON, c));
-            mesh.cells.quadratic_triangles.iter().for_each(|c| add(QUADRATIC_TRIANGLE, c));
-            mesh.cells.quadratic_tetrahedra.iter().for_each(|c| add(QUADRATIC_TETRAHEDRON, c));
+        if !cells.is_empty() && (filled || flat) {
+            cells.triangles.iter().for_each(|c| add(TRIANGLE, c));
+            cells.quadrilaterals.iter().for_each(|c| add(QUADRILATERAL, c));
+            cells.tetrahedra.iter().for_each(|c| add(TETRAHEDRON, c));
+            cells.hexahedra.iter().for_each(|c| add(HEXAHEDRON, c));
+            cells.quadratic_triangles.iter().for_each(|c| add(QUADRATIC_TRIANGLE, c));
+            cells.quadratic_tetrahedra.iter().for_each(|c| add(QUADRATIC_TETRAHEDRON, c));
         } else {
-            mesh.facets.iter().for_each(|f| add(if D == 2 { LINE } else { TRIANGLE }, f));
+            let facets = body.facets().chunks_exact(body.dimension());
+            facets.for_each(|facet| add(if flat { LINE } else { TRIANGLE }, facet));
         }
-        mesh.sheets.iter().for_each(|s| add(TRIANGLE, s));
-        mesh.wires.iter().for_each(|w| add(LINE, w));
+        body.sheets().iter().for_each(|s| add(TRIANGLE, s));
+        body.wires().iter().for_each(|w| add(LINE, w));
         Elements { all }
     }
 
@@ -135,20 +127,19 @@ impl Elements {
 }
 
 /// Elements of all bodies, body by body.
-fn elements<const D: usize>(shapes: &[Shape<'_, D>], filled: bool) -> Vec<Elements> {
+fn elements(shapes: &[Shape<'_>], filled: bool) -> Vec<Elements> {
     let mut first = 0;
-    let of = |shape: &Shape<'_, D>| {
-        let elements = Elements::of(shape.mesh, filled, first);
+    let of = |shape: &Shape<'_>| {
+        let elements = Elements::of(shape.body, filled, first);
         first += shape.positions.len();
         elements
     };
     shapes.iter().map(of).collect()
 }
 
-/// Three numbers, the third zero in the plane.
-fn three<const D: usize>(x: &[f64; D]) -> String {
-    let z = x.get(2).copied().unwrap_or(0.0);
-    format!("{:e} {:e} {z:e}", x[0], x[1])
+/// Three numbers.
+fn three([x, y, z]: &[f64; 3]) -> String {
+    format!("{x:e} {y:e} {z:e}")
 }
 
 /// A text that stays on its line; spaces would end a name.
@@ -164,7 +155,7 @@ fn joined(nodes: &[usize], shift: usize) -> String {
     nodes.iter().map(|n| (n + shift).to_string()).collect::<Vec<_>>().join(" ")
 }
 
-fn vtk<const D: usize>(out: &mut dyn Write, title: &str, time: f64, shapes: &[Shape<'_, D>]) -> io::Result<()> {
+fn vtk(out: &mut dyn Write, title: &str, time: f64, shapes: &[Shape<'_>]) -> io::Result<()> {
     let elements = elements(shapes, true);
     let points: usize = shapes.iter().map(|s| s.positions.len()).sum();
     let all = || elements.iter().enumerate().flat_map(|(body, e)| e.all.iter().map(move |e| (body, e)));
@@ -196,10 +187,10 @@ fn vtk<const D: usize>(out: &mut dyn Write, title: &str, time: f64, shapes: &[Sh
     Ok(())
 }
 
-fn obj<const D: usize>(out: &mut dyn Write, title: &str, time: f64, shapes: &[Shape<'_, D>]) -> io::Result<()> {
+fn obj(out: &mut dyn Write, title: &str, time: f64, shapes: &[Shape<'_>]) -> io::Result<()> {
     writeln!(out, "# {}\n# t = {time} s", line(title))?;
     for (shape, elements) in shapes.iter().zip(elements(shapes, false)) {
-        writeln!(out, "o {}", word(shape.name))?;
+        writeln!(out, "o {}", word(shape.body.name()))?;
         for x in shape.positions {
             writeln!(out, "v {}", three(x))?;
         }
@@ -213,7 +204,7 @@ fn obj<const D: usize>(out: &mut dyn Write, title: &str, time: f64, shapes: &[Sh
     Ok(())
 }
 
-fn ply<const D: usize>(out: &mut dyn Write, title: &str, time: f64, shapes: &[Shape<'_, D>]) -> io::Result<()> {
+fn ply(out: &mut dyn Write, title: &str, time: f64, shapes: &[Shape<'_>]) -> io::Result<()> {
     let elements = elements(shapes, false);
     let points: usize = shapes.iter().map(|s| s.positions.len()).sum();
     let faces: usize = elements.iter().map(|e| e.faces().count()).sum();
@@ -240,26 +231,29 @@ fn ply<const D: usize>(out: &mut dyn Write, title: &str, time: f64, shapes: &[Sh
 #[cfg(test)]
 mod tests {
     use super::*;
+    use opruga_mesh::Mesh;
+    use opruga_world::blueprint::{BodyBlueprint, Mass};
+
+    fn body<const D: usize>(name: &str, mesh: Mesh<D>) -> BodyBlueprint<D> {
+        BodyBlueprint::new(name, mesh, Mass::Total(1.0), Vec::new())
+    }
 
     fn written(format: Format) -> String {
         let square = Mesh { positions: vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], ..Mesh::<2>::default() };
         let ring = Mesh { facets: vec![[0, 1], [1, 2], [2, 0]], ..square.clone() };
         let wire = Mesh { wires: vec![[0, 1]], positions: vec![[0.0; 2]; 2], ..Mesh::default() };
+        let (ring, wire) = (body("a ring", ring), body("wire", wire));
         let shapes = [
             Shape {
-                name: "a ring",
-                mesh: &ring,
-                positions: &ring.positions,
-                velocities: &[[0.1, -2.0]; 3],
-                translation: [0.0; 2],
+                body: &ring,
+                positions: &ring.rest_positions(),
+                velocities: &[[0.1, -2.0, 0.0]; 3],
                 cell_fields: &[],
             },
             Shape {
-                name: "wire",
-                mesh: &wire,
-                positions: &[[5.0, 1e-9], [6.0, 0.0]],
-                velocities: &[[0.0; 2]; 2],
-                translation: [0.0; 2],
+                body: &wire,
+                positions: &[[5.0, 1e-9, 0.0], [6.0, 0.0, 0.0]],
+                velocities: &[[0.0; 3]; 2],
                 cell_fields: &[],
             },
         ];
@@ -292,14 +286,9 @@ mod tests {
             ..Mesh::default()
         };
         mesh.cells.tetrahedra.push([0, 1, 2, 3]);
-        let shape = Shape {
-            name: "t",
-            mesh: &mesh,
-            positions: &mesh.positions,
-            velocities: &[[0.0; 3]; 4],
-            translation: [0.0; 3],
-            cell_fields: &[],
-        };
+        let solid = body("t", mesh);
+        let shape =
+            Shape { body: &solid, positions: &solid.mesh.positions, velocities: &[[0.0; 3]; 4], cell_fields: &[] };
         let text = |format: Format| {
             let mut out = Vec::new();
             format.write(&mut out, "", 0.0, &[shape]).expect("memory does not fail");
@@ -319,14 +308,8 @@ mod tests {
         let moved: Vec<[f64; 3]> = mesh.positions.iter().map(|x| [x[0] + 5.0, 2.0 * x[1], x[2]]).collect();
         let (still, stress) = (vec![[0.0; 3]; mesh.nodes()], vec![1.5; 9 * mesh.cells.len()]);
         let fields = [CellField { name: "Cauchy stress [Pa]", components: 9, values: &stress }];
-        let shape = Shape {
-            name: "b",
-            mesh: &mesh,
-            positions: &moved,
-            velocities: &still,
-            translation: [5.0, 0.0, 0.0],
-            cell_fields: &fields,
-        };
+        let solid = BodyBlueprint { translation: [5.0, 0.0, 0.0], ..body("b", mesh.clone()) };
+        let shape = Shape { body: &solid, positions: &moved, velocities: &still, cell_fields: &fields };
         let mut out = Vec::new();
         Format::Vtu.write(&mut out, "", 0.25, &[shape]).expect("memory does not fail");
         let text = core::str::from_utf8(&out).expect("text");

@@ -5,36 +5,38 @@ use std::io::{self, Write};
 
 /// The state of one body at the end.
 #[derive(Clone, Copy, Debug)]
-pub struct FinalBody<'a, const D: usize> {
+pub struct FinalBody<'a> {
     /// Its name.
     pub name: &'a str,
-    /// Positions, node by node [m].
-    pub positions: &'a [[f64; D]],
+    /// Positions, node by node; z is 0 in the plane [m].
+    pub positions: &'a [[f64; 3]],
     /// Velocities, node by node [m/s].
-    pub velocities: &'a [[f64; D]],
+    pub velocities: &'a [[f64; 3]],
 }
 
-/// Writes `final.csv`: `body,node,x,y[,z],vx,vy[,vz]`, 17 significant digits.
+/// Writes `final.csv` of a world of so many dimensions: `body,node,x,y[,z],vx,vy[,vz]`, 17 significant digits.
 ///
 /// # Errors
 /// Those of the writer.
-pub fn write_final<'a, const D: usize>(
+pub fn write_final<'a>(
     out: &mut dyn Write,
-    bodies: impl Iterator<Item = FinalBody<'a, D>>,
+    dimension: usize,
+    bodies: impl Iterator<Item = FinalBody<'a>>,
 ) -> io::Result<()> {
-    write_final_with(out, &[], bodies.map(|body| (body, Vec::new())))
+    write_final_with(out, dimension, &[], bodies.map(|body| (body, Vec::new())))
 }
 
 /// Writes `final.csv` with further columns: for every body its nodes, and a row of further numbers for each.
 ///
 /// # Errors
 /// Those of the writer.
-pub fn write_final_with<'a, const D: usize>(
+pub fn write_final_with<'a>(
     out: &mut dyn Write,
+    dimension: usize,
     further: &[&str],
-    bodies: impl Iterator<Item = (FinalBody<'a, D>, Vec<Vec<f64>>)>,
+    bodies: impl Iterator<Item = (FinalBody<'a>, Vec<Vec<f64>>)>,
 ) -> io::Result<()> {
-    let axes = &["x", "y", "z"][..D];
+    let axes = &["x", "y", "z"][..dimension];
     let columns = axes.iter().map(|a| (*a).to_string()).chain(axes.iter().map(|a| format!("v{a}")));
     let columns: Vec<String> = columns.chain(further.iter().map(|name| cell(name))).collect();
     writeln!(out, "body,node,{}", columns.join(","))?;
@@ -44,7 +46,7 @@ pub fn write_final_with<'a, const D: usize>(
             write!(out, "{name},{node}")?;
             let row = rows.get(node).map_or(&[][..], |row| &row[..]);
             let further = (0..further.len()).map(|k| row.get(k).unwrap_or(&f64::NAN));
-            for value in x.iter().chain(v).chain(further) {
+            for value in x[..dimension].iter().chain(&v[..dimension]).chain(further) {
                 write!(out, ",{}", Digits(*value))?;
             }
             writeln!(out)?;

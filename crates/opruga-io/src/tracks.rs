@@ -2,7 +2,8 @@
 //!
 //! A point cache holds positions alone, for a mesh with the same nodes in the same order: the OBJ series writes that. glTF brings its surface along.
 
-use opruga_mesh::{Mesh, triangle_parts};
+use opruga_mesh::triangle_parts;
+use opruga_world::AnyBody;
 use serde_json::{Value, json};
 use std::io::{self, Write};
 
@@ -25,31 +26,31 @@ pub struct Track {
 
 impl Track {
     /// A body without frames.
-    pub fn new<const D: usize>(name: &str, mesh: &Mesh<D>) -> Track {
-        let mut track = Track { name: name.to_string(), nodes: mesh.nodes(), ..Track::default() };
-        if D == 3 {
-            track.triangles = mesh.facets.iter().map(|f| [f[0], f[1], f[D - 1]]).collect();
+    pub fn new(body: &dyn AnyBody) -> Track {
+        let cells = body.cells();
+        let mut track = Track { name: body.name().to_string(), nodes: body.nodes(), ..Track::default() };
+        if body.dimension() == 3 {
+            track.triangles.extend(body.facets().as_chunks().0);
         } else {
-            track.triangles.extend(&mesh.cells.triangles);
-            for &[a, b, c, d] in &mesh.cells.quadrilaterals {
+            track.triangles.extend(&cells.triangles);
+            for &[a, b, c, d] in &cells.quadrilaterals {
                 track.triangles.extend([[a, b, c], [a, c, d]]);
             }
-            track.triangles.extend(mesh.cells.quadratic_triangles.iter().flat_map(triangle_parts));
+            track.triangles.extend(cells.quadratic_triangles.iter().flat_map(triangle_parts));
             if track.triangles.is_empty() {
-                track.lines = mesh.facets.iter().map(|f| [f[0], f[1]]).collect();
+                track.lines.extend(body.facets().as_chunks().0);
             }
         }
-        track.triangles.extend(&mesh.sheets);
-        track.lines.extend(&mesh.wires);
+        track.triangles.extend(body.sheets());
+        track.lines.extend(body.wires());
         track
     }
 
     /// Adds a frame; one of another number of nodes is left out.
-    pub fn add<const D: usize>(&mut self, time: f64, positions: &[[f64; D]]) {
+    pub fn add(&mut self, time: f64, positions: &[[f64; 3]]) {
         if positions.len() == self.nodes {
             self.times.push(time as f32);
-            let three = |x: &[f64; D]| [x[0] as f32, x[1] as f32, x.get(2).map_or(0.0, |z| *z as f32)];
-            self.positions.extend(positions.iter().map(three));
+            self.positions.extend(positions.iter().map(|x| x.map(|c| c as f32)));
         }
     }
 
@@ -232,6 +233,8 @@ pub fn write_glb(out: &mut dyn Write, title: &str, tracks: &[Track]) -> io::Resu
 #[cfg(test)]
 mod tests {
     use super::*;
+    use opruga_mesh::Mesh;
+    use opruga_world::blueprint::{BodyBlueprint, Mass};
 
     fn track() -> Track {
         let mesh = Mesh::<3> {
@@ -239,8 +242,9 @@ mod tests {
             sheets: vec![[0, 1, 2]],
             ..Mesh::default()
         };
-        let mut track = Track::new("cloth", &mesh);
-        track.add(0.0, &mesh.positions);
+        let cloth = BodyBlueprint::new("cloth", mesh, Mass::Total(1.0), Vec::new());
+        let mut track = Track::new(&cloth);
+        track.add(0.0, &cloth.mesh.positions);
         track.add(0.5, &[[0.0, 0.0, 0.25], [1.0, 0.0, 0.25], [0.0, 1.0, 0.25]]);
         track
     }

@@ -1,7 +1,7 @@
 //! In what the scene on the right differs from the one on the left, and that scene itself.
 
+use crate::document::read;
 use crate::document::{Document, kind_table, toml};
-use crate::pair::read;
 use crate::said::Said;
 use opruga::blueprint::AnyBlueprint;
 use opruga::core::spec::{Value, Values};

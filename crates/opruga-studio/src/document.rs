@@ -4,9 +4,11 @@
 mod overrides;
 mod taken_over;
 
+use opruga::Warning;
+use opruga::blueprint::AnyBlueprint;
 use opruga::core::spec::{Value, Values};
 pub use opruga::io::scene::written::{add_table, command_table, kind_table, numbers, toml};
-use opruga::io::{Files, SceneError, scene};
+use opruga::io::{Files, Notice, SceneError, scene};
 use toml_edit::{Array, ArrayOfTables, DocumentMut, InlineTable, Item, Table, Value as Toml};
 
 /// A scene's text with its comments, and where it came from.
@@ -15,6 +17,24 @@ pub struct Document {
     /// The name of the scene: that of its file, without the ending.
     pub name: String,
     text: DocumentMut,
+}
+
+/// Reads the text of a document; what is odd about it and its files is counted, but for what it asks for itself.
+///
+/// # Errors
+/// Everything that is wrong with it, as one text.
+pub fn read(document: &Document, files: &Files) -> Result<(AnyBlueprint, Vec<Warning>), String> {
+    let reading = scene::Options { files: files.clone(), ..scene::Options::default() };
+    let file = format!("{}.toml", document.name);
+    let read = scene::read(document.text().as_bytes(), &file, &opruga::catalogue(), &reading);
+    // The text has changed since anybody has seen it.
+    let (blueprint, notices) = read.map_err(|errors| without_lines(errors, &document.name, ""))?;
+    // Time goes on behind the end that the scene states for a run: every command comes about here.
+    let told = |code: &str| !Notice::is_asked_for(code) && code != "command.never";
+    let odd = notices.into_iter().filter(|notice| told(notice.about.code));
+    let warning =
+        |Notice { about, count }| Warning { code: about.code.into(), message: about.message, count: count as u64 };
+    Ok((blueprint, odd.map(warning).collect()))
 }
 
 /// The time of the last moment that a command without an end names [s].

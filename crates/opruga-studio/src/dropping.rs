@@ -2,9 +2,9 @@
 
 use crate::said::Said;
 use crate::session::Request;
+use crate::shape_file::Shape;
 use opruga::io::{Files, scene};
 use std::path::Path;
-use toml_edit::{DocumentMut, InlineTable};
 
 /// Endings of files that become bodies, with the fields of their shape.
 const SHAPES: [(&str, &str, bool); 6] = [
@@ -49,39 +49,6 @@ pub(crate) fn request(
     }
     let (text, space) = (around(file, fields, *space, &ending), *space);
     Ok(Request::Take(Shape { name, file: file.into(), text, space, files: files() }, [0.0; 3], 1.0))
-}
-
-/// A shape from a file.
-#[derive(Clone, Debug)]
-pub struct Shape {
-    /// Its name.
-    pub name: String,
-    /// Its file.
-    pub file: String,
-    /// A scene around it.
-    pub text: String,
-    /// Whether it is one of space.
-    pub space: bool,
-    /// Where its file is.
-    pub files: Files,
-}
-
-impl Shape {
-    /// Its body in a scene that others are in, of this size [m], from a file that is called so there.
-    pub fn body(&self, file: &str, size: f64) -> Option<InlineTable> {
-        let document: DocumentMut = self.text.parse().ok()?;
-        let mut body = document.get("body")?.as_array_of_tables()?.get(0)?.clone().into_inline_table();
-        body.insert("name", self.name.as_str().into());
-        // It is set down where there is room for it.
-        body.remove("position");
-        let shape = body.get_mut("shape")?.as_inline_table_mut()?;
-        shape.insert("file", file.into());
-        shape.insert("size", size.into());
-        if shape.contains_key("spacing") {
-            shape.insert("spacing", (0.05 * size).into());
-        }
-        Some(body)
-    }
 }
 
 /// A scene with one shape over a floor.

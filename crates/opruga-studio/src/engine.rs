@@ -3,15 +3,14 @@
 mod arrows;
 mod exploded;
 
-pub use exploded::Exploded;
-
 use crate::document::{FOR_EVER, command_table};
+use crate::exploded::Exploded;
 use crate::samples::Sample;
 use crate::shown::{BodyShown, EnergyShown, Extent, ObstacleShown, Show, Shown};
-use opruga::blueprint::{Action, AnyBlueprint, Blueprint, CommandBlueprint, Selector};
+use opruga::blueprint::{Action, AnyBlueprint, CommandBlueprint, Selector};
 use opruga::core::spec::{Value, Values};
 use opruga::pictures::Scenery;
-use opruga::{Options, Warning, World, WorldError};
+use opruga::{AnyBody, AnyWorld, Options, Warning, WorldError};
 use toml_edit::Table;
 
 /// A command that was given: its number in the world, and how the scene file writes it.
@@ -121,8 +120,8 @@ pub trait Engine: Send {
 }
 
 /// A world and what stays the same from picture to picture.
-struct Living<const D: usize> {
-    world: World<D>,
+struct Living {
+    world: Box<dyn AnyWorld>,
     scenery: Scenery,
     /// How many bodies the scenery knows.
     known: usize,
@@ -137,70 +136,54 @@ struct Living<const D: usize> {
 /// # Errors
 /// What the world refuses.
 pub fn build(blueprint: AnyBlueprint, odd: Vec<Warning>, options: &Options) -> Result<Box<dyn Engine>, WorldError> {
-    fn living<const D: usize>(
-        blueprint: Blueprint<D>,
-        odd: Vec<Warning>,
-        options: &Options,
-    ) -> Result<Box<dyn Engine>, WorldError> {
-        let world = World::new(blueprint, options.clone())?;
-        let (scenery, known) = (Scenery::new(&world), world.blueprint().bodies.len());
-        let size = exploded::size_of(&world);
-        Ok(Box::new(Living { world, scenery, known, odd, size }))
-    }
-    match blueprint {
-        AnyBlueprint::Plane(blueprint) => living(blueprint, odd, options),
-        AnyBlueprint::Space(blueprint) => living(blueprint, odd, options),
-    }
+    let world = blueprint.build(options.clone())?;
+    let (scenery, known) = (Scenery::new(&*world), world.scene().body_count());
+    let size = exploded::size_of(&*world);
+    Ok(Box::new(Living { world, scenery, known, odd, size }))
 }
 
 /// Whether bodies carry drawings with colours of their own.
-fn has_drawings<const D: usize>(world: &World<D>) -> bool {
-    let skins = world.bodies().filter_map(|body| world.blueprint().bodies[body].mesh.skin.as_ref());
-    D == 2 && skins.flat_map(|skin| &skin.areas).any(|area| area.colour.is_some())
-}
-
-fn cut<const D: usize>(point: [f64; 3]) -> [f64; D] {
-    core::array::from_fn(|d| point[d])
-}
-
-fn three<const D: usize>(point: [f64; D]) -> [f64; 3] {
-    let mut out = [0.0; 3];
-    out[..D].copy_from_slice(&point);
-    out
+fn has_drawings(world: &dyn AnyWorld) -> bool {
+    let skins = world.bodies().into_iter().filter_map(|body| world.scene().body(body)?.skin());
+    world.scene().dimension() == 2 && skins.flat_map(|skin| &skin.areas).any(|area| area.colour.is_some())
 }
 
 fn no_body(body: usize) -> WorldError {
     WorldError::Path { path: format!("body {body}"), message: "there is no such body".into() }
 }
 
-impl<const D: usize> Living<D> {
-    fn give(&mut self, until: f64, action: Action<D>, body: &str) -> Result<Given, WorldError> {
+impl Living {
+    fn give(&mut self, until: f64, action: Action<3>, body: &str) -> Result<Given, WorldError> {
         let at = self.world.time();
         let command = CommandBlueprint { at, until: until.max(at), action };
         let refused = || WorldError::Path { path: "command".into(), message: "it has no form in a scene".into() };
-        let table = command_table(&command, body).ok_or_else(refused)?;
-        let number = self.world.act(command)?;
+        let table = command_table(&command, self.dimension(), body).ok_or_else(refused)?;
+        let number = self.world.act(&command)?;
         Ok(Given { number, table })
     }
 
     fn body_name(&self, body: usize) -> Result<String, WorldError> {
-        self.world.handle(body).ok_or_else(|| no_body(body))?;
-        Ok(self.world.blueprint().bodies[body].name.clone())
+        Ok(self.present(body).ok_or_else(|| no_body(body))?.name().to_string())
+    }
+
+    /// A body that is there.
+    fn present(&self, body: usize) -> Option<&dyn AnyBody> {
+        self.world.handle(body).and_then(|_| self.world.scene().body(body))
     }
 
     /// The time of a coming frame [s], as the world counts it.
     fn time_of(&self, frames: u64) -> f64 {
-        frames as f64 * self.world.blueprint().time.frame
+        frames as f64 * self.frame_seconds()
     }
 
     fn row_of(&self, frames: u64, pointer: [f64; 3]) -> Vec<f64> {
         let mut row = vec![self.time_of(frames)];
-        row.extend(cut::<D>(pointer));
+        row.extend(&pointer[..self.dimension()]);
         row
     }
 }
 
-impl<const D: usize> Engine for Living<D> {
+impl Engine for Living {
     fn frame(&mut self) -> Result<(), WorldError> {
         self.world.frame()
     }
@@ -211,16 +194,16 @@ impl<const D: usize> Engine for Living<D> {
         self.world.frames()
     }
     fn frame_seconds(&self) -> f64 {
-        self.world.blueprint().time.frame
+        self.world.scene().time().frame
     }
     fn time(&self) -> f64 {
         self.world.time()
     }
     fn dimension(&self) -> usize {
-        D
+        self.world.scene().dimension()
     }
     fn substeps(&self) -> u32 {
-        self.world.blueprint().time.substeps
+        self.world.scene().time().substeps
     }
     fn snapshot(&self) -> Vec<u8> {
         self.world.snapshot()
@@ -232,7 +215,7 @@ impl<const D: usize> Engine for Living<D> {
         self.world.warnings().into_iter().chain(self.odd.iter().cloned()).collect()
     }
     fn end(&self) -> u64 {
-        let time = &self.world.blueprint().time;
+        let time = self.world.scene().time();
         (time.seconds / time.frame).round() as u64
     }
     fn warnings_at_the_end(&mut self) -> Vec<Warning> {
@@ -277,13 +260,13 @@ impl<const D: usize> Engine for Living<D> {
 
     fn push(&mut self, body: usize, node: u32, force: [f64; 3]) -> Result<Given, WorldError> {
         let name = self.body_name(body)?;
-        let action = Action::Push { body, select: Selector::Nodes(vec![node]), force: cut(force) };
+        let action = Action::Push { body, select: Selector::Nodes(vec![node]), force };
         self.give(FOR_EVER, action, &name)
     }
 
     fn pin(&mut self, body: usize, node: u32) -> Result<Given, WorldError> {
         let name = self.body_name(body)?;
-        self.give(FOR_EVER, Action::Pin { body, select: Selector::Nodes(vec![node]), axes: [true; D] }, &name)
+        self.give(FOR_EVER, Action::Pin { body, select: Selector::Nodes(vec![node]), axes: [true; 3] }, &name)
     }
 
     fn free(&mut self, body: usize, node: u32) -> Result<Given, WorldError> {
@@ -310,58 +293,47 @@ impl<const D: usize> Engine for Living<D> {
     }
 
     fn add_from(&mut self, scene: AnyBlueprint, odd: Vec<Warning>) -> Result<(), WorldError> {
-        let any: Box<dyn core::any::Any> = match scene {
-            AnyBlueprint::Plane(blueprint) => Box::new(blueprint),
-            AnyBlueprint::Space(blueprint) => Box::new(blueprint),
-        };
-        let refuse = |message: &str| WorldError::Path { path: "add".into(), message: message.into() };
-        let blueprint = any.downcast::<Blueprint<D>>().map_err(|_| refuse("the scene has another dimension"))?;
-        let now = self.world.time();
-        let due = blueprint.commands.into_iter().rfind(|c| c.at <= now && matches!(c.action, Action::Add(_)));
-        self.world.act(due.ok_or_else(|| refuse("the scene adds nothing now"))?)?;
+        self.world.act_of(&scene)?;
         self.odd = odd;
         Ok(())
     }
 
     fn nearest(&self, body: usize, point: [f64; 3]) -> Option<u32> {
         self.world.handle(body)?;
-        let point = cut::<D>(point);
-        let far = |node: &u32| -> f64 {
-            self.world.position(body, *node).iter().zip(&point).map(|(a, b)| (a - b) * (a - b)).sum()
-        };
-        (0..self.world.node_count(body) as u32).min_by(|a, b| far(a).total_cmp(&far(b)))
+        let axes = 0..self.dimension();
+        let far = |at: [f64; 3]| axes.clone().map(|d| (at[d] - point[d]) * (at[d] - point[d])).sum::<f64>();
+        let distances = self.world.positions(body).iter().map(far).zip(0..);
+        distances.min_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, node)| node)
     }
 
     fn common(&self) -> Common {
-        let (mut mass, mut moment, mut volume) = (0.0, [0.0; D], None);
+        let (mut mass, mut moment, mut volume) = (0.0, [0.0; 3], None);
         for body in self.world.bodies() {
-            let mesh = &self.world.blueprint().bodies[body].mesh;
-            let positions: Vec<[f64; D]> =
-                (0..mesh.nodes() as u32).map(|node| self.world.position(body, node)).collect();
+            let positions: Vec<[f64; 3]> = self.world.positions(body).iter().collect();
             for (node, position) in positions.iter().enumerate() {
                 let m = self.world.node_mass(body, node as u32);
                 mass += m;
-                (0..D).for_each(|d| moment[d] += m * position[d]);
+                (0..3).for_each(|d| moment[d] += m * position[d]);
             }
-            if !mesh.facets.is_empty() {
-                *volume.get_or_insert(0.0) += opruga::mesh::signed_volume(&mesh.facets, &positions);
+            if let Some(enclosed) = self.world.scene().body(body).and_then(|body| body.enclosed_volume(&positions)) {
+                *volume.get_or_insert(0.0) += enclosed;
             }
         }
-        Common { center: three(moment.map(|m| m / mass)), volume }
+        Common { center: moment.map(|m| m / mass), volume }
     }
 
     fn position(&self, body: usize, node: u32) -> Option<[f64; 3]> {
         self.world.handle(body)?;
-        ((node as usize) < self.world.node_count(body)).then(|| three(self.world.position(body, node)))
+        let positions = self.world.positions(body);
+        ((node as usize) < positions.len()).then(|| positions.at(node as usize))
     }
 
     fn positions(&self) -> Vec<[f64; 3]> {
-        let nodes = |body| (0..self.world.node_count(body) as u32).map(move |node| (body, node));
-        self.world.bodies().flat_map(nodes).map(|(body, node)| three(self.world.position(body, node))).collect()
+        self.world.bodies().into_iter().flat_map(|body| self.world.positions(body).iter()).collect()
     }
 
     fn names(&self) -> Vec<String> {
-        self.world.bodies().map(|body| self.world.blueprint().bodies[body].name.clone()).collect()
+        self.world.bodies().into_iter().filter_map(|body| self.name(body)).collect()
     }
 
     fn name(&self, body: usize) -> Option<String> {
@@ -369,55 +341,54 @@ impl<const D: usize> Engine for Living<D> {
     }
 
     fn rest_center(&self, body: usize) -> Option<([f64; 3], [f64; 3])> {
-        self.world.handle(body)?;
-        let body = &self.world.blueprint().bodies[body];
-        let mut middle = [0.0; D];
-        for point in &body.mesh.positions {
-            for d in 0..D {
-                middle[d] += point[d] / body.mesh.positions.len() as f64;
+        let body = self.present(body)?;
+        let (positions, mut middle) = (body.rest_positions(), [0.0; 3]);
+        for point in &positions {
+            for d in 0..3 {
+                middle[d] += point[d] / positions.len() as f64;
             }
         }
-        Some((three(middle), three(body.translation)))
+        Some((middle, body.translation()))
     }
 
     fn shown(&mut self, show: &Show) -> Shown {
         let picture = self.picture(show);
-        let numbers: Vec<usize> = self.world.bodies().collect();
+        let numbers = self.world.bodies();
         let mut bodies = Vec::with_capacity(numbers.len());
         for &number in &numbers {
             // What a crowd says of itself is read by nobody.
             let readings = if numbers.len() <= 64 { self.world.readings(number) } else { Vec::new() };
-            let blueprint = &self.world.blueprint().bodies[number];
+            let Some(body) = self.world.scene().body(number) else { continue };
             bodies.push(BodyShown {
                 number,
-                name: blueprint.name.clone(),
-                title: blueprint.name.clone(),
-                nodes: blueprint.mesh.nodes(),
-                models: if numbers.len() <= 64 { blueprint.models.clone() } else { Vec::new() },
-                integrator: blueprint.integrator.clone(),
+                name: body.name().to_string(),
+                title: body.name().to_string(),
+                nodes: body.nodes(),
+                models: if numbers.len() <= 64 { body.models().to_vec() } else { Vec::new() },
+                integrator: body.integrator().cloned(),
                 shape: None,
                 readings,
             });
         }
-        let blueprint = self.world.blueprint();
+        let (scene, time) = (self.world.scene(), self.world.scene().time());
         let obstacles =
-            blueprint.colliders.iter().map(|collider| ObstacleShown { values: collider.values.clone() }).collect();
+            scene.colliders().iter().map(|collider| ObstacleShown { values: collider.values.clone() }).collect();
         let estimates = self.world.stability();
         let limit = estimates.iter().filter_map(|(_, s)| s.largest_stable_step).fold(f64::INFINITY, f64::min);
-        let (e, m) = (self.world.energy(), self.world.momentum());
+        let (e, [momentum, _]) = (self.world.energy(), self.world.momentum());
         Shown {
-            dimension: D as u8,
-            title: blueprint.title.clone(),
+            dimension: scene.dimension() as u8,
+            title: scene.title().to_string(),
             time: self.world.time(),
             frames: self.world.frames(),
-            frame: blueprint.time.frame,
-            seconds: blueprint.time.seconds,
-            substeps: blueprint.time.substeps,
+            frame: time.frame,
+            seconds: time.seconds,
+            substeps: time.substeps,
             stable_step: limit,
-            gravity: three(blueprint.surroundings.gravity),
-            drag: blueprint.surroundings.drag,
-            integrator: Some(blueprint.integrator.clone()),
-            pulls: self.world.pulls().into_iter().map(|(a, b, f)| [three(a), three(b), three(f)]).collect(),
+            gravity: core::array::from_fn(|d| scene.gravity().get(d).copied().unwrap_or(0.0)),
+            drag: scene.drag(),
+            integrator: Some(scene.integrator().clone()),
+            pulls: self.world.pulls(),
             energy: EnergyShown {
                 kinetic: e.kinetic,
                 elastic: e.elastic,
@@ -428,11 +399,11 @@ impl<const D: usize> Engine for Living<D> {
                 numerical: e.loss_numerical,
                 error: e.loss_integrator,
             },
-            momentum: three(m.linear.0),
+            momentum,
             warnings: self.warnings(),
             bodies,
             obstacles,
-            has_drawings: has_drawings(&self.world),
+            has_drawings: has_drawings(&*self.world),
             extents: picture.bodies.iter().map(Extent::of).collect(),
             picture,
             ..Shown::default()
@@ -440,17 +411,17 @@ impl<const D: usize> Engine for Living<D> {
     }
 
     fn sample(&mut self) -> Sample {
-        let numbers: Vec<usize> = self.world.bodies().collect();
+        let numbers = self.world.bodies();
         let told = if numbers.len() <= 64 { &numbers[..] } else { &[] };
         let readings = told.iter().map(|body| (*body, self.world.readings(*body)));
         let readings = readings.filter(|(_, list)| !list.is_empty()).map(|(body, list)| (body, list.into())).collect();
-        let (e, m) = (self.world.energy(), self.world.momentum());
+        let (e, [momentum, _]) = (self.world.energy(), self.world.momentum());
         let losses = e.loss_damping + e.loss_friction + e.loss_contact;
         Sample {
             frame: self.world.frames(),
             time: self.world.time(),
             energy: [e.kinetic, e.elastic, e.gas, e.gravity, e.work_user, losses, e.loss_numerical, e.loss_integrator],
-            momentum: three(m.linear.0),
+            momentum,
             readings,
             ..Sample::default()
         }
@@ -473,9 +444,8 @@ impl<const D: usize> Engine for Living<D> {
         ]
         .map(|(name, x)| (name.to_string(), x))
         .to_vec();
-        let bodies: Vec<usize> = self.world.bodies().take(64).collect();
-        for body in bodies {
-            let name = self.world.blueprint().bodies[body].name.clone();
+        for body in self.world.bodies().into_iter().take(64) {
+            let name = self.name(body).unwrap_or_default();
             row.extend(self.world.readings(body).into_iter().map(|(what, x)| (format!("{name}.{what}"), x)));
         }
         row

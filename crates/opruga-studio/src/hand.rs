@@ -52,9 +52,17 @@ mod page {
     use crate::browser::{self, Chosen};
     use crate::runner::Copied;
     use crate::share::{self, Shared};
-    use crate::{page, work};
+    use crate::work;
     use opruga::io::scene::Limits;
+    use std::sync::Arc;
     use std::sync::mpsc::{Receiver, TryRecvError};
+
+    /// What a file of the browser asks for: see [`crate::dropping`].
+    fn request_of(file: &str, bytes: Vec<u8>) -> Result<Request, Said> {
+        let held: Arc<[u8]> = bytes.as_slice().into();
+        let files = || opruga::scenes::files().with([(file.to_string(), held)]);
+        crate::dropping::request(file, || Ok(bytes), files)
+    }
 
     /// A page reads files beside the interface, and holds the scene in its address.
     #[derive(Debug, Default)]
@@ -81,7 +89,7 @@ mod page {
             }
             self.files.retain(|file| match file.try_recv() {
                 Ok(file) => {
-                    arrived.push(Arrived::of(file.and_then(|(name, bytes)| page::request_of(&name, bytes))));
+                    arrived.push(Arrived::of(file.and_then(|(name, bytes)| request_of(&name, bytes))));
                     false
                 }
                 Err(TryRecvError::Empty) => true,

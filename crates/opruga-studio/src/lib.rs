@@ -7,6 +7,7 @@
 pub mod differences;
 pub mod document;
 pub mod engine;
+pub mod exploded;
 pub mod keyframes;
 pub mod pacing;
 pub mod pair;
@@ -27,6 +28,7 @@ pub mod preferences;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod rescue;
 pub mod runner;
+pub mod shape_file;
 pub mod share;
 mod taps;
 pub mod theme;

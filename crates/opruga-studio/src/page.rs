@@ -307,10 +307,3 @@ pub fn hash_after(scene_or_text: &str, frames: u32) -> Result<String, String> {
     }
     Ok(format!("{:016x}", engine.hash()))
 }
-
-/// What a file of the browser asks for: see [`crate::dropping`].
-pub(crate) fn request_of(file: &str, bytes: Vec<u8>) -> Result<Request, Said> {
-    let held: Arc<[u8]> = bytes.as_slice().into();
-    let files = || opruga::scenes::files().with([(file.to_string(), held)]);
-    crate::dropping::request(file, || Ok(bytes), files)
-}

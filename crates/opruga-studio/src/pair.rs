@@ -1,34 +1,17 @@
 //! A scene under two configurations in lock step: what is done to the one on the left is done to the one on the right.
 
 use crate::differences::{Difference, Twins, right_of};
-use crate::document::{Document, without_lines};
-use crate::engine::{self, Common, Engine, Exploded, Given};
+use crate::document::{Document, read};
+use crate::engine::{self, Common, Engine, Given};
+use crate::exploded::Exploded;
 use crate::said::Said;
 use crate::samples::Sample;
 use crate::shown::{Beside, Show, Shown};
 use opruga::blueprint::AnyBlueprint;
 use opruga::core::spec::{Value, Values};
-use opruga::io::{Files, Notice, scene};
+use opruga::io::Files;
 use opruga::{Options, Warning, WorldError};
 use std::sync::Arc;
-
-/// Reads the text of a document; what is odd about it and its files is counted, but for what it asks for itself.
-///
-/// # Errors
-/// Everything that is wrong with it, as one text.
-pub fn read(document: &Document, files: &Files) -> Result<(AnyBlueprint, Vec<Warning>), String> {
-    let reading = scene::Options { files: files.clone(), ..scene::Options::default() };
-    let file = format!("{}.toml", document.name);
-    let read = scene::read(document.text().as_bytes(), &file, &opruga::catalogue(), &reading);
-    // The text has changed since anybody has seen it.
-    let (blueprint, notices) = read.map_err(|errors| without_lines(errors, &document.name, ""))?;
-    // Time goes on behind the end that the scene states for a run: every command comes about here.
-    let told = |code: &str| !Notice::is_asked_for(code) && code != "command.never";
-    let odd = notices.into_iter().filter(|notice| told(notice.about.code));
-    let warning =
-        |Notice { about, count }| Warning { code: about.code.into(), message: about.message, count: count as u64 };
-    Ok((blueprint, odd.map(warning).collect()))
-}
 
 /// Builds the engine of a scene; with differences, also the one on its right.
 ///

@@ -1,6 +1,6 @@
 //! What is said to the person, as data: the interface puts it into words of its language ([`crate::words`]).
 
-use crate::engine::Exploded;
+use crate::exploded::Exploded;
 use crate::words::Language;
 use opruga::WorldError;
 

@@ -1,10 +1,12 @@
 //! A scene without a dimension in its type: what readers of either dimension ask of it.
 
-use crate::blueprint::{AnyBlueprint, Blueprint, BodyBlueprint, ColliderBlueprint, Time};
+use crate::blueprint::{AnyBlueprint, Blueprint, BodyBlueprint, ColliderBlueprint, Pictured, Recorded, Time};
 use crate::world::{Options, World};
-use crate::{AnyWorld, WorldError};
-use opruga_core::spec::Values;
+use crate::{AnyWorld, Registries, WorldError};
+use opruga_core::spec::{Role, Values};
 use opruga_mesh::{CellQuality, Cells, EdgeSet, Skin};
+use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// A scene in the plane or in space.
 pub trait AnyScene {
@@ -18,10 +20,14 @@ pub trait AnyScene {
     fn length_unit(&self) -> &str;
     /// Whose drawings, maps and surfaces the scene shows, and under which licence.
     fn credit(&self) -> &str;
+    /// What pictures of the scene show; z is 0 in the plane.
+    fn pictured(&self) -> Pictured<3>;
     /// How time passes.
     fn time(&self) -> Time;
     /// Acceleration of gravity, one number per coordinate [m/s²].
     fn gravity(&self) -> &[f64];
+    /// Drag per unit of mass [1/s].
+    fn drag(&self) -> f64;
     /// The integrator and its parameters.
     fn integrator(&self) -> &Values;
     /// Rigid obstacles.
@@ -32,6 +38,8 @@ pub trait AnyScene {
     fn body(&self, number: usize) -> Option<&dyn AnyBody>;
     /// The names of the columns of every probe, in the order of [`AnyWorld::probe`].
     fn probe_columns(&self) -> Vec<Vec<String>>;
+    /// What every probe records.
+    fn probe_records(&self) -> Vec<&[Recorded]>;
 }
 
 impl dyn AnyScene + '_ {
@@ -57,11 +65,18 @@ impl<const D: usize> AnyScene for Blueprint<D> {
     fn credit(&self) -> &str {
         &self.credit
     }
+    fn pictured(&self) -> Pictured<3> {
+        let Pictured { panels, region, azimuth, elevation } = self.picture;
+        Pictured { panels, region: region.map(|corners| corners.map(three)), azimuth, elevation }
+    }
     fn time(&self) -> Time {
         self.time
     }
     fn gravity(&self) -> &[f64] {
         &self.surroundings.gravity
+    }
+    fn drag(&self) -> f64 {
+        self.surroundings.drag
     }
     fn integrator(&self) -> &Values {
         &self.integrator
@@ -82,10 +97,15 @@ impl<const D: usize> AnyScene for Blueprint<D> {
         };
         self.probes.iter().map(columns).collect()
     }
+    fn probe_records(&self) -> Vec<&[Recorded]> {
+        self.probes.iter().map(|probe| &*probe.record).collect()
+    }
 }
 
 /// A body of a scene in the plane or in space.
-pub trait AnyBody {
+pub trait AnyBody: core::fmt::Debug {
+    /// The number of coordinates of a node: 2 or 3.
+    fn dimension(&self) -> usize;
     /// Its name.
     fn name(&self) -> &str;
     /// Its models and their parameters.
@@ -104,17 +124,39 @@ pub trait AnyBody {
     fn facets(&self) -> &[u32];
     /// The triangles of an open surface.
     fn sheets(&self) -> &[[u32; 3]];
+    /// The lines that are drawn of a body with a surface.
+    fn wires(&self) -> &[[u32; 2]];
     /// The filled interior.
     fn cells(&self) -> &Cells;
+    /// Values of the cells by name.
+    fn cell_values(&self) -> &BTreeMap<String, Vec<f64>>;
+    /// Numbers of cells by the name of their group.
+    fn cell_groups(&self) -> &BTreeMap<String, Vec<u32>>;
     /// What is drawn instead of the boundary.
     fn skin(&self) -> Option<&Skin>;
+    /// The signed volume that its facets enclose where its nodes are at some positions [m³, m² in the plane]; none without facets.
+    fn enclosed_volume(&self, positions: &[[f64; 3]]) -> Option<f64>;
     /// The pairs of nodes that its elements join.
     fn edges(&self) -> Vec<[u32; 2]>;
+    /// The nodes that its own pins hold or move, in rising order.
+    fn pinned_nodes(&self) -> Vec<u32>;
+    /// Whether one of its own pins holds nodes at rest.
+    fn is_pinned_at_rest(&self) -> bool;
     /// The smallest and largest angles and edges of its cells; none where it has no cells.
     fn cell_quality(&self) -> Option<CellQuality>;
 }
 
+impl dyn AnyBody + '_ {
+    /// Whether one of its models has a role.
+    pub fn has_role(&self, role: Role) -> bool {
+        self.models().iter().any(|model| model.spec().has_role(role))
+    }
+}
+
 impl<const D: usize> AnyBody for BodyBlueprint<D> {
+    fn dimension(&self) -> usize {
+        D
+    }
     fn name(&self) -> &str {
         &self.name
     }
@@ -142,14 +184,37 @@ impl<const D: usize> AnyBody for BodyBlueprint<D> {
     fn sheets(&self) -> &[[u32; 3]] {
         &self.mesh.sheets
     }
+    fn wires(&self) -> &[[u32; 2]] {
+        &self.mesh.wires
+    }
     fn cells(&self) -> &Cells {
         &self.mesh.cells
+    }
+    fn cell_values(&self) -> &BTreeMap<String, Vec<f64>> {
+        &self.mesh.cell_values
+    }
+    fn cell_groups(&self) -> &BTreeMap<String, Vec<u32>> {
+        &self.mesh.cell_groups
     }
     fn skin(&self) -> Option<&Skin> {
         self.mesh.skin.as_ref()
     }
+    fn enclosed_volume(&self, positions: &[[f64; 3]]) -> Option<f64> {
+        let positions: Vec<[f64; D]> = positions.iter().map(|position| core::array::from_fn(|d| position[d])).collect();
+        (!self.mesh.facets.is_empty()).then(|| opruga_mesh::signed_volume(&self.mesh.facets, &positions))
+    }
     fn edges(&self) -> Vec<[u32; 2]> {
         self.mesh.edges(EdgeSet::All)
+    }
+    fn pinned_nodes(&self) -> Vec<u32> {
+        let pins = self.pins.iter();
+        let mut nodes: Vec<u32> = pins.flat_map(|pin| pin.select.resolve(&self.mesh, &self.translation)).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+    fn is_pinned_at_rest(&self) -> bool {
+        self.pins.iter().any(|pin| pin.motion.is_empty())
     }
     fn cell_quality(&self) -> Option<CellQuality> {
         self.mesh.cell_quality()
@@ -165,14 +230,44 @@ impl AnyBlueprint {
         }
     }
 
-    /// Builds the world of the scene.
+    /// Gives the scene another name.
+    pub fn rename(&mut self, name: &str) {
+        let own = match self {
+            AnyBlueprint::Plane(blueprint) => &mut blueprint.name,
+            AnyBlueprint::Space(blueprint) => &mut blueprint.name,
+        };
+        *own = name.to_string();
+    }
+
+    /// The integrators of the bodies that have their own, then that of the scene.
+    pub fn integrators_mut(&mut self) -> Vec<&mut Values> {
+        fn of<const D: usize>(blueprint: &mut Blueprint<D>) -> Vec<&mut Values> {
+            let own = blueprint.bodies.iter_mut().filter_map(|body| body.integrator.as_mut());
+            own.chain([&mut blueprint.integrator]).collect()
+        }
+        match self {
+            AnyBlueprint::Plane(blueprint) => of(blueprint),
+            AnyBlueprint::Space(blueprint) => of(blueprint),
+        }
+    }
+
+    /// Builds the world of the scene with the models and integrators of this library.
     ///
     /// # Errors
     /// As [`World::new`].
     pub fn build(self, options: Options) -> Result<Box<dyn AnyWorld>, WorldError> {
+        self.build_with(options, &Registries::default())
+    }
+
+    /// Builds the world of the scene.
+    ///
+    /// # Errors
+    /// As [`World::new`].
+    pub fn build_with(self, options: Options, registries: &Registries) -> Result<Box<dyn AnyWorld>, WorldError> {
+        let Registries { plane, space } = registries;
         Ok(match self {
-            AnyBlueprint::Plane(blueprint) => Box::new(World::new(blueprint, options)?),
-            AnyBlueprint::Space(blueprint) => Box::new(World::new(blueprint, options)?),
+            AnyBlueprint::Plane(blueprint) => Box::new(World::with_registry(blueprint, options, Arc::clone(plane))?),
+            AnyBlueprint::Space(blueprint) => Box::new(World::with_registry(blueprint, options, Arc::clone(space))?),
         })
     }
 

@@ -1,77 +1,23 @@
 //! A world without a dimension in its type: stepping, commands, state, readings and columns.
 
-use crate::any_scene::{AnyScene, three};
-use crate::blueprint::Time;
+use crate::any_scene::{AnyBody, AnyScene, three};
+use crate::blueprint::{AnyBlueprint, CommandBlueprint};
 use crate::error::WorldError;
 use crate::inputs::Input;
 use crate::ledger::Energy;
+use crate::modes::Mode;
+use crate::node_columns::Vectors;
+use crate::node_states::NodeState;
+use crate::refused::RefusedCommand;
 use crate::slots::BodyHandle;
 use crate::world::{Warning, World};
+use opruga_collide::Picture;
 use opruga_core::potential::{Account, CellState, Reading};
-use opruga_core::spec::{Value, Values};
+use opruga_core::spec::{Role, Spec, Value, Values};
 use opruga_core::stability::Stability;
 use opruga_core::system::SolverWork;
-use opruga_math::Simd;
-
-/// One number of every node of a body, as it lies in memory: nodes of eight alike bodies lie side by side.
-#[derive(Clone, Copy, Debug)]
-pub struct Strided<'w> {
-    column: &'w [f64],
-    stride: usize,
-}
-
-impl<'w> Strided<'w> {
-    /// The numbers, in the order of the nodes.
-    pub fn iter(self) -> impl ExactSizeIterator<Item = f64> + 'w {
-        self.column.iter().step_by(self.stride).copied()
-    }
-    /// The number of nodes.
-    pub fn len(self) -> usize {
-        self.column.len().div_ceil(self.stride)
-    }
-    /// Whether there is no node.
-    pub fn is_empty(self) -> bool {
-        self.column.is_empty()
-    }
-    /// The number of a node; NaN where there is no such node.
-    pub fn at(self, node: usize) -> f64 {
-        self.column.get(node * self.stride).copied().unwrap_or(f64::NAN)
-    }
-    /// The numbers as one slice, where nothing lies between them.
-    pub fn as_slice(self) -> Option<&'w [f64]> {
-        (self.stride == 1).then_some(self.column)
-    }
-}
-
-/// One vector of every node of a body: a view into the columns of the world, which copies nothing.
-#[derive(Clone, Copy, Debug)]
-pub struct Vectors<'w> {
-    columns: [Strided<'w>; 3],
-    dimension: usize,
-}
-
-impl<'w> Vectors<'w> {
-    /// The number of nodes.
-    pub fn len(self) -> usize {
-        self.columns[0].len()
-    }
-    /// Whether there is no node, also where there is no such body.
-    pub fn is_empty(self) -> bool {
-        self.columns[0].is_empty()
-    }
-    /// The column of each coordinate: two or three.
-    pub fn columns(&self) -> &[Strided<'w>] {
-        &self.columns[..self.dimension]
-    }
-    /// The vector of a node, with 0 for z in the plane; NaN where there is no such node.
-    pub fn at(self, node: usize) -> [f64; 3] {
-        core::array::from_fn(|d| if d < self.dimension { self.columns[d].at(node) } else { 0.0 })
-    }
-    /// The vectors in the order of the nodes, with 0 for z in the plane.
-    pub fn iter(self) -> impl ExactSizeIterator<Item = [f64; 3]> + 'w {
-        (0..self.len()).map(move |node| self.at(node))
-    }
-}
+use opruga_math::{Lane, Simd};
+use std::borrow::Cow;
 
 /// A world in the plane or in space. Vectors have three numbers; in the plane z is 0.
 ///
@@ -80,6 +26,9 @@ impl<'w> Vectors<'w> {
 pub trait AnyWorld: core::fmt::Debug + Send {
     /// The scene, with all changes since.
     fn scene(&self) -> &dyn AnyScene;
+
+    /// Bodies that commands of the scene will add, in the order of time.
+    fn coming_bodies(&self) -> Vec<&dyn AnyBody>;
 
     /// Steps through one frame.
     ///
@@ -108,6 +57,17 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     /// # Errors
     /// As [`World::set`].
     fn set(&mut self, path: &str, value: Value) -> Result<(), WorldError>;
+    /// Gives a command that begins now, as if the scene had held it from the start; returns its number. In the plane the third numbers
+    /// of vectors, axes and rows mean nothing.
+    ///
+    /// # Errors
+    /// As [`World::act`]; also where it adds a body.
+    fn act(&mut self, command: &CommandBlueprint<3>) -> Result<usize, WorldError>;
+    /// Gives the last command of a scene that has begun by now and adds a body; returns its number.
+    ///
+    /// # Errors
+    /// As [`World::act`]; also where the scene has no such command, or another dimension.
+    fn act_of(&mut self, scene: &AnyBlueprint) -> Result<usize, WorldError>;
     /// Begins and ends what is due now without waiting for the coming frame.
     ///
     /// # Errors
@@ -123,6 +83,13 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     /// # Errors
     /// As [`World::finish`].
     fn finish(&mut self, number: usize, until: f64) -> Result<(), WorldError>;
+    /// The command that the last call of [`AnyWorld::frame`] has refused: the cause of its error.
+    fn refused_command(&self) -> Option<RefusedCommand<'_>>;
+    /// Moves a node and gives it a velocity, from outside of the physics.
+    ///
+    /// # Errors
+    /// As [`World::place_node`].
+    fn place_node(&mut self, body: usize, node: u32, position: [f64; 3], velocity: [f64; 3]) -> Result<(), WorldError>;
     /// Takes a body away.
     ///
     /// # Errors
@@ -163,12 +130,22 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     fn momentum(&self) -> [[f64; 3]; 2];
     /// What models say of a body.
     fn readings(&mut self, body: usize) -> Vec<Reading>;
+    /// The names of the readings of a body; none where a model refuses it. Numbers behind those of the scene stand for
+    /// [`AnyWorld::coming_bodies`].
+    fn reading_names_of(&self, body: usize) -> Vec<Cow<'static, str>>;
     /// The values of a probe.
     fn probe(&mut self, number: usize) -> Vec<(String, f64)>;
     /// The pressure of the gas that each node of a body bounds [Pa].
     fn node_pressures(&mut self, body: usize) -> Vec<(u32, f64)>;
     /// Stress and volume ratio of the cells of a body.
     fn cell_states(&self, body: usize) -> Vec<CellState>;
+    /// What the nodes of a body are under: means of the cells around them.
+    fn node_states(&self, body: usize) -> Vec<Option<NodeState>>;
+    /// The lowest natural modes of a body about its present state.
+    ///
+    /// # Errors
+    /// As [`World::modes`].
+    fn modes(&self, body: usize, count: usize) -> Result<Vec<Mode<3>>, WorldError>;
     /// Warnings so far, with counts.
     fn warnings(&self) -> Vec<Warning>;
     /// Warnings so far, and what is odd about the shapes in the present state.
@@ -179,6 +156,10 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     fn is_static(&self) -> bool;
     /// Whether an integrator with these parameters solves for the end of its steps; false where there is no such integrator.
     fn is_implicit(&self, integrator: &Values) -> bool;
+    /// The first integrator with a role among those that the world knows.
+    fn integrator_with(&self, role: Role) -> Option<&'static Spec>;
+    /// The step that would be stable for all bodies under another integrator [s]; none where there is no such step or integrator.
+    fn stable_step_under(&self, integrator: &Values) -> Option<f64>;
     /// The estimates of the stable step.
     fn stability(&self) -> &[(String, Stability)];
     /// What implicit integrators did since the start.
@@ -206,37 +187,27 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     fn node_mass(&self, body: usize, node: u32) -> f64;
     /// The forces of the models of one account on the nodes of a body, or of all models [N]: computed by every call.
     fn forces(&mut self, body: usize, account: Option<Account>) -> Vec<[f64; 3]>;
-}
-
-impl Time {
-    /// How many whole frames it takes until the end.
-    pub fn frames(&self) -> u64 {
-        // Rounding apart; what is no number takes none.
-        let frames = (self.seconds / self.frame - 1e-9).ceil();
-        if frames > 0.0 { frames as u64 } else { 0 }
-    }
-}
-
-const NOTHING: Strided<'static> = Strided { column: &[], stride: 1 };
-
-impl<const D: usize> World<D> {
-    /// The part of a column that belongs to a body.
-    fn column_of<'w>(&self, body: usize, column: &'w [f64]) -> Strided<'w> {
-        let Some((island, lane)) = self.island_of_body(body) else { return NOTHING };
-        let (layout, nodes) = (island.system.layout, island.system.nodes);
-        let Some(last) = nodes.checked_sub(1) else { return NOTHING };
-        Strided { column: &column[layout.place(0, lane)..=layout.place(last, lane)], stride: layout.stride() }
-    }
-
-    fn vectors_of<'w>(&self, body: usize, columns: [&'w [f64]; D]) -> Vectors<'w> {
-        let columns = core::array::from_fn(|d| columns.get(d).map_or(NOTHING, |column| self.column_of(body, column)));
-        Vectors { columns, dimension: D }
-    }
+    /// The forces of obstacles on the nodes of a body in the coming substep [N]: computed by every call.
+    fn contact_forces(&mut self, body: usize) -> Vec<[f64; 3]>;
+    /// The nodes of a body that pins hold now.
+    fn pinned_now(&self, body: usize) -> Vec<u32>;
+    /// The stiffness [N/m] and the largest force [N] of a pull that names neither; none where there is no such body.
+    fn usual_pull(&self, body: usize) -> Option<[f64; 2]>;
+    /// Pulls that act at present: held point [m], pointer [m], force [N].
+    fn pulls(&self) -> Vec<[[f64; 3]; 3]>;
+    /// The obstacles at the present time, in the order of the scene.
+    fn obstacles(&self) -> Vec<Picture<3>>;
+    /// The pairs of nodes that springs of a body join; none where there is no such body, or a model refuses it. Numbers behind those
+    /// of the scene stand for [`AnyWorld::coming_bodies`].
+    fn springs_of(&self, body: usize) -> Option<Vec<[u32; 2]>>;
 }
 
 impl<const D: usize> AnyWorld for World<D> {
     fn scene(&self) -> &dyn AnyScene {
         self.blueprint()
+    }
+    fn coming_bodies(&self) -> Vec<&dyn AnyBody> {
+        self.coming_bodies().map(|body| body as &dyn AnyBody).collect()
     }
 
     fn frame(&mut self) -> Result<(), WorldError> {
@@ -270,6 +241,13 @@ impl<const D: usize> AnyWorld for World<D> {
     fn set(&mut self, path: &str, value: Value) -> Result<(), WorldError> {
         self.set(path, value)
     }
+    fn act(&mut self, command: &CommandBlueprint<3>) -> Result<usize, WorldError> {
+        self.act(command.cut()?)
+    }
+    fn act_of(&mut self, scene: &AnyBlueprint) -> Result<usize, WorldError> {
+        let command = scene.addition_for(&self.registry, self.time())?;
+        self.act(command)
+    }
     fn begin_what_is_due(&mut self) -> Result<(), WorldError> {
         self.begin_what_is_due()
     }
@@ -278,6 +256,13 @@ impl<const D: usize> AnyWorld for World<D> {
     }
     fn finish(&mut self, number: usize, until: f64) -> Result<(), WorldError> {
         self.finish(number, until)
+    }
+    fn refused_command(&self) -> Option<RefusedCommand<'_>> {
+        self.refused_command().map(|command| RefusedCommand::of(command, self.blueprint()))
+    }
+    fn place_node(&mut self, body: usize, node: u32, position: [f64; 3], velocity: [f64; 3]) -> Result<(), WorldError> {
+        let [position, velocity] = [position, velocity].map(|vector| core::array::from_fn(|d| vector[d]));
+        self.place_node(body, node, position, velocity)
     }
     fn remove_body(&mut self, name: &str) -> Result<(), WorldError> {
         self.remove_body(name)
@@ -321,6 +306,10 @@ impl<const D: usize> AnyWorld for World<D> {
     fn readings(&mut self, body: usize) -> Vec<Reading> {
         self.readings(body)
     }
+    fn reading_names_of(&self, body: usize) -> Vec<Cow<'static, str>> {
+        let mut bodies = self.blueprint().bodies.iter().chain(self.coming_bodies());
+        bodies.nth(body).and_then(|body| self.reading_names(body).ok()).unwrap_or_default()
+    }
     fn probe(&mut self, number: usize) -> Vec<(String, f64)> {
         self.probe(number)
     }
@@ -329,6 +318,12 @@ impl<const D: usize> AnyWorld for World<D> {
     }
     fn cell_states(&self, body: usize) -> Vec<CellState> {
         self.cell_states(body)
+    }
+    fn node_states(&self, body: usize) -> Vec<Option<NodeState>> {
+        self.node_states(body)
+    }
+    fn modes(&self, body: usize, count: usize) -> Result<Vec<Mode<3>>, WorldError> {
+        Ok(self.modes(body, count)?.into_iter().map(Mode::in_space).collect())
     }
     fn warnings(&self) -> Vec<Warning> {
         self.warnings()
@@ -345,6 +340,17 @@ impl<const D: usize> AnyWorld for World<D> {
     fn is_implicit(&self, integrator: &Values) -> bool {
         let built = self.registry.integrator(integrator.kind()).and_then(|kind| kind.build(integrator).ok());
         built.is_some_and(|integrator| integrator.needs().hessian)
+    }
+    fn integrator_with(&self, role: Role) -> Option<&'static Spec> {
+        self.registry.integrator_with(role).map(|kind| kind.spec())
+    }
+    fn stable_step_under(&self, integrator: &Values) -> Option<f64> {
+        let integrator = self.registry.integrator(integrator.kind())?.build(integrator).ok()?;
+        let mut least = f64::INFINITY;
+        for (_, stability) in self.stability() {
+            least = least.smaller(stability.spectrum.largest_stable_step(&*integrator)?);
+        }
+        Some(least)
     }
     fn stability(&self) -> &[(String, Stability)] {
         self.stability()
@@ -387,5 +393,25 @@ impl<const D: usize> AnyWorld for World<D> {
     }
     fn forces(&mut self, body: usize, account: Option<Account>) -> Vec<[f64; 3]> {
         self.node_forces(body, account).into_iter().map(three).collect()
+    }
+    fn contact_forces(&mut self, body: usize) -> Vec<[f64; 3]> {
+        self.contact_forces(body).into_iter().map(three).collect()
+    }
+    fn pinned_now(&self, body: usize) -> Vec<u32> {
+        self.held_nodes(body)
+    }
+    fn usual_pull(&self, body: usize) -> Option<[f64; 2]> {
+        self.usual_pull(body)
+    }
+    fn pulls(&self) -> Vec<[[f64; 3]; 3]> {
+        self.pulls().into_iter().map(|(point, pointer, force)| [point, pointer, force].map(three)).collect()
+    }
+    fn obstacles(&self) -> Vec<Picture<3>> {
+        let pictures = self.colliders().map_or_else(Vec::new, |colliders| colliders.pictures(self.time()));
+        pictures.into_iter().map(Picture::in_space).collect()
+    }
+    fn springs_of(&self, body: usize) -> Option<Vec<[u32; 2]>> {
+        let mut bodies = self.blueprint().bodies.iter().chain(self.coming_bodies());
+        self.springs(bodies.nth(body)?).ok()
     }
 }

@@ -13,6 +13,30 @@ pub enum AnyBlueprint {
     Space(Blueprint<3>),
 }
 
+impl TryFrom<AnyBlueprint> for Blueprint<2> {
+    type Error = AnyBlueprint;
+
+    /// The scene in the plane; as it was where it is in space.
+    fn try_from(scene: AnyBlueprint) -> Result<Self, AnyBlueprint> {
+        match scene {
+            AnyBlueprint::Plane(blueprint) => Ok(blueprint),
+            space => Err(space),
+        }
+    }
+}
+
+impl TryFrom<AnyBlueprint> for Blueprint<3> {
+    type Error = AnyBlueprint;
+
+    /// The scene in space; as it was where it is in the plane.
+    fn try_from(scene: AnyBlueprint) -> Result<Self, AnyBlueprint> {
+        match scene {
+            AnyBlueprint::Space(blueprint) => Ok(blueprint),
+            plane => Err(plane),
+        }
+    }
+}
+
 /// A checked scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Blueprint<const D: usize> {
@@ -95,6 +119,15 @@ pub struct Time {
     pub frame: f64,
     /// The number of substeps of a frame.
     pub substeps: u32,
+}
+
+impl Time {
+    /// How many whole frames it takes until the end.
+    pub fn frames(&self) -> u64 {
+        // Rounding apart; what is no number takes none.
+        let frames = (self.seconds / self.frame - 1e-9).ceil();
+        if frames > 0.0 { frames as u64 } else { 0 }
+    }
 }
 
 /// What acts everywhere.

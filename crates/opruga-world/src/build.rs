@@ -5,6 +5,7 @@ use crate::carried::{BodyHistory, BodyState};
 use crate::error::WorldError;
 use crate::island::Island;
 use crate::loads::{FollowerPressure, NodeForces};
+use crate::masses::{densities, node_masses};
 use crate::plausible;
 use crate::registry::Registry;
 use crate::slots::{Origin, Slots};
@@ -16,7 +17,7 @@ use opruga_core::spec::{Role, Value, Values};
 use opruga_core::state::{Columns, Layout, Parameter};
 use opruga_core::system::{Pin, Stabilisers, System};
 use opruga_math::{Simd, WIDTH};
-use opruga_mesh::{Measure, Share, signed_volume};
+use opruga_mesh::signed_volume;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -24,47 +25,6 @@ use std::sync::Arc;
 const LARGEST_IN_BATCH: usize = 1024;
 /// Fewer alike bodies than this are cheaper one by one.
 const SMALLEST_BATCH: usize = 3;
-
-/// The masses of the nodes of a body [kg].
-pub(crate) fn node_masses<const D: usize>(body: &BodyBlueprint<D>) -> Vec<f64> {
-    let nodes = body.mesh.nodes();
-    // A mesh without elements, or with mixed ones, has no shares: its nodes weigh the same.
-    let shares = body.mesh.lumped_measures(Share::Proportional).unwrap_or_else(|_| vec![1.0; nodes]);
-    let first = shares.first().copied().unwrap_or(0.0);
-    // Shares that agree to rounding are equal: a regular ring has equal masses to the bit.
-    let alike = shares.iter().all(|s| (s - first).abs() <= 1e-9 * first.abs());
-    match &body.mass {
-        &Mass::Node(mass) => vec![mass; nodes],
-        &Mass::Total(mass) if alike => vec![mass / nodes as f64; nodes],
-        &Mass::Total(mass) => {
-            let total: f64 = shares.iter().sum();
-            shares.iter().map(|s| mass * s / total).collect()
-        }
-        &Mass::Density(density) => {
-            // What the elements lack in dimensions is thickness: a sheet's, twice a wire's.
-            let depth = match body.mesh.measure() {
-                Ok(Measure::Length(_)) => density * body.thickness * body.thickness,
-                Ok(Measure::Area(_)) => density * body.thickness,
-                _ => density,
-            };
-            shares.iter().map(|s| if alike { first * depth } else { s * depth }).collect()
-        }
-        // A mesh without as many cells has been refused.
-        Mass::DensityOfCells(densities) => match body.mesh.lumped_masses(densities) {
-            Ok(masses) if D == 2 => masses.iter().map(|mass| mass * body.thickness).collect(),
-            Ok(masses) => masses,
-            Err(_) => vec![0.0; nodes],
-        },
-    }
-}
-
-/// The density of every cell of a body [kg/m³], where they differ.
-fn densities<const D: usize>(body: &BodyBlueprint<D>) -> Option<&[f64]> {
-    match &body.mass {
-        Mass::DensityOfCells(densities) => Some(densities),
-        _ => None,
-    }
-}
 
 /// The state of a body at the start.
 pub(crate) fn initial_state<const D: usize>(body: &BodyBlueprint<D>) -> BodyState<D> {

@@ -2,6 +2,7 @@
 //! changed scene, which says what differs from that, can be restored in a world of the scene as it was, and an earlier one in a
 //! changed world. That takes as much memory as the scene has parameters, however often they are set.
 
+use crate::at_start::AtStart;
 use crate::blueprint::{Surroundings, Time};
 use crate::build::build_colliders;
 use crate::error::WorldError;
@@ -12,17 +13,6 @@ use crate::slots::Origin;
 use crate::world::World;
 use opruga_core::spec::{Allowed, Value, Values, nearest};
 use std::collections::BTreeMap;
-
-/// What of the scene has changed since the start, as it was then. What it has become stands in the blueprint.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct AtStart<const D: usize> {
-    pub(crate) integrator: Option<Values>,
-    pub(crate) surroundings: Option<Surroundings<D>>,
-    pub(crate) time: Option<Time>,
-    pub(crate) colliders: BTreeMap<usize, Values>,
-    /// Models and integrators of bodies of the scene; a body that a command of it adds begins as the command says.
-    pub(crate) bodies: BTreeMap<usize, (Vec<Values>, Option<Values>)>,
-}
 
 /// Where an added body comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,7 +39,15 @@ const FORMS: &str = "body.NAME.models.KIND.FIELD, body.NAME.integrator.FIELD, in
                      world.largest_force, world.largest_velocity, world.largest_distance, time.substeps";
 
 impl<const D: usize> World<D> {
-    pub(crate) fn set_here(&mut self, path: &str, value: Value) -> Result<(), WorldError> {
+    /// Changes a parameter: `body.NAME.models.KIND.FIELD`, `body.NAME.integrator.FIELD`, `integrator.FIELD`, `collider.NUMBER.FIELD`, `world.gravity`,
+    /// `world.drag`, `world.largest_force`, `world.largest_velocity`, `world.largest_distance`, `time.substeps`.
+    ///
+    /// The name of a body with copies means all of them, `NAME[i]` one; a body or a model may be named by its number. The
+    /// stable step is estimated anew.
+    ///
+    /// # Errors
+    /// [`WorldError`] says what is wrong; the world stays as it was.
+    pub fn set(&mut self, path: &str, value: Value) -> Result<(), WorldError> {
         self.set_now(path, value.clone())?;
         self.write_down(|| Input::Set { path: path.to_string(), value });
         Ok(())

@@ -5,6 +5,7 @@ use crate::changes::Source;
 use crate::error::WorldError;
 use crate::inputs::Input;
 use crate::loads::{NodeForces, Pull};
+use crate::running::{Progress, Running};
 use crate::selection::longest_side;
 use crate::slots::Origin;
 use crate::world::World;
@@ -14,57 +15,10 @@ use opruga_math::words;
 use opruga_mesh::Mesh;
 use std::collections::BTreeSet;
 use std::sync::atomic::AtomicU64;
-use std::sync::{Arc, PoisonError, RwLock};
+use std::sync::{Arc, PoisonError};
 
 /// Where a scene is silent, a pull is at most that of a spring stretched by so many sizes of the body.
 const FARTHEST_PULL: f64 = 10.0;
-
-/// How far a command has come.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Progress<const D: usize> {
-    /// Its time has not come.
-    Waiting,
-    /// It acts; a drag holds these nodes with these shares, a pin holds nodes at these places.
-    Acting { held: Vec<(u32, f64)>, anchors: Vec<[f64; D]> },
-    /// It is over.
-    Done,
-}
-
-/// A command and how far it has come.
-#[derive(Clone, Debug)]
-pub(crate) struct Running<const D: usize> {
-    pub(crate) command: CommandBlueprint<D>,
-    pub(crate) progress: Progress<D>,
-    /// The path of a drag, shared with the pull that it becomes; empty for all others.
-    pub(crate) path: Arc<RwLock<Vec<Vec<f64>>>>,
-    /// Whether it was given by [`World::act`], and stands among those of the scene.
-    pub(crate) acted: bool,
-    /// Whether it was given by [`World::command`]: it stands behind those of the scene, and nothing is kept of it once it is over.
-    pub(crate) given: bool,
-    /// The generation of the body that it adds, if it belongs to the scene.
-    pub(crate) generation: u64,
-}
-
-impl<const D: usize> Running<D> {
-    /// A command whose time has not come.
-    pub(crate) fn waiting(command: CommandBlueprint<D>) -> Running<D> {
-        let path = match &command.action {
-            Action::Drag { path, .. } => path.clone(),
-            _ => Vec::new(),
-        };
-        let path = Arc::new(RwLock::new(path));
-        Running { command, progress: Progress::Waiting, path, acted: false, given: false, generation: 0 }
-    }
-    /// A command of the program.
-    pub(crate) fn given(command: CommandBlueprint<D>, progress: Progress<D>) -> Running<D> {
-        Running { given: true, progress, ..Running::waiting(command) }
-    }
-    /// The same command before its time has come.
-    pub(crate) fn anew(&self) -> Running<D> {
-        let Running { acted, given, generation, .. } = *self;
-        Running { acted, given, generation, ..Running::waiting(self.command.clone()) }
-    }
-}
 
 impl<const D: usize> Action<D> {
     /// The body that it is about; none where it names a parameter, or a body by its name.
@@ -113,7 +67,11 @@ impl<const D: usize> World<D> {
         Some(usual_pull(&self.islands[island].system, lane, &self.blueprint.bodies[body]))
     }
 
-    pub(crate) fn command_here(&mut self, command: CommandBlueprint<D>) -> Result<(), WorldError> {
+    /// Gives a command; it begins at its time, at the beginning of a frame. Once it is over nothing is kept of it.
+    ///
+    /// # Errors
+    /// [`WorldError`] if it names a body that is not there, or holds what no command of a scene could.
+    pub fn command(&mut self, command: CommandBlueprint<D>) -> Result<(), WorldError> {
         if let Some(body) = command.action.body()
             && !self.slots.is_there(body)
         {
@@ -125,14 +83,20 @@ impl<const D: usize> World<D> {
         Ok(())
     }
 
-    pub(crate) fn act_here(&mut self, command: CommandBlueprint<D>) -> Result<usize, WorldError> {
+    /// Gives a command that begins now, as if the scene had held it from the start; returns its number.
+    ///
+    /// Commands of the scene that are due begin before it. The number stays the same until the world is built anew.
+    ///
+    /// # Errors
+    /// [`WorldError`] if its time is not that of the coming frame or if it is refused; then it was never given.
+    pub fn act(&mut self, command: CommandBlueprint<D>) -> Result<usize, WorldError> {
         let (at, now) = (command.at, self.time());
         if (at - now).abs() > 1e-9 * self.blueprint.time.frame {
             let message = format!("the command begins at {at} s, and the world is at {now} s");
             return Err(WorldError::Path { path: "at".into(), message });
         }
         crate::validity::given(&command)?;
-        self.run_commands()?;
+        self.begin_what_is_due()?;
         self.write_down(|| Input::Act);
         // Where a reader of the scene puts it: in the order of time, behind those that begin with it.
         let number = self.running.iter().rposition(|r| !r.given && r.command.at <= at).map_or(0, |last| last + 1);
@@ -148,7 +112,13 @@ impl<const D: usize> World<D> {
         Ok(number)
     }
 
-    pub(crate) fn lead_here(&mut self, number: usize, row: Vec<f64>) -> Result<(), WorldError> {
+    /// Leads the pointer of a drag: adds a row `[t, x, y(, z)]` to the end of its path.
+    ///
+    /// What was stepped before does not change if the row lies behind the frame that comes next.
+    ///
+    /// # Errors
+    /// [`WorldError::Path`] if the command is no drag, the time does not rise, or a number is not finite.
+    pub fn lead(&mut self, number: usize, row: Vec<f64>) -> Result<(), WorldError> {
         let refuse = |message: &str| WorldError::Path { path: format!("command {number}"), message: message.into() };
         let running = self.running.get_mut(number).ok_or_else(|| refuse("there is no such command"))?;
         let Action::Drag { path, .. } = &mut running.command.action else {
@@ -163,7 +133,11 @@ impl<const D: usize> World<D> {
         Ok(())
     }
 
-    pub(crate) fn finish_here(&mut self, number: usize, until: f64) -> Result<(), WorldError> {
+    /// Ends a command at a time [s] instead of its own.
+    ///
+    /// # Errors
+    /// [`WorldError::Path`] if there is no such command, or it would not end after its beginning.
+    pub fn finish(&mut self, number: usize, until: f64) -> Result<(), WorldError> {
         match self.running.get_mut(number) {
             Some(running) if until > running.command.at => {
                 running.command.until = until;
@@ -180,8 +154,12 @@ impl<const D: usize> World<D> {
         }
     }
 
-    /// Begins and ends commands at the start of a frame.
-    pub(crate) fn run_commands(&mut self) -> Result<(), WorldError> {
+    /// Begins and ends what is due now without waiting for the coming frame, which then finds it done: what is to be seen
+    /// at a moment that was gone back to.
+    ///
+    /// # Errors
+    /// [`WorldError`] of the first command that is refused; the others begin all the same.
+    pub fn begin_what_is_due(&mut self) -> Result<(), WorldError> {
         let now = self.time();
         // A frame begins at a multiple of its length; times given in decimals may differ from it by rounding.
         let soon = now + 1e-9 * self.blueprint.time.frame;
@@ -375,7 +353,8 @@ impl<const D: usize> World<D> {
         island.system.equip(&*island.integrator);
     }
 
-    pub(crate) fn pulls_here(&self) -> Vec<([f64; D], [f64; D], [f64; D])> {
+    /// Pulls that act at present: held point, pointer, force [N].
+    pub fn pulls(&self) -> Vec<([f64; D], [f64; D], [f64; D])> {
         let mut out = Vec::new();
         for running in &self.running {
             let (Progress::Acting { .. }, Action::Drag { body, .. }) = (&running.progress, &running.command.action)

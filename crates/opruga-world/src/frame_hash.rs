@@ -123,7 +123,9 @@ impl<const D: usize> Work for OfBodies<'_, D> {
 }
 
 impl<const D: usize> World<D> {
-    pub(crate) fn frame_hash_here(&self) -> u64 {
+    /// A 64-bit hash over the same numbers, coordinate by coordinate of every body, eight at a time: so quick that every
+    /// frame of a recording has one.
+    pub fn frame_hash(&self) -> u64 {
         let hash = |system: &System<D>| system.simd.run(OfBodies(system));
         let of_islands: Vec<[u64; WIDTH]> = self.islands.iter().map(|island| hash(&island.system)).collect();
         self.bodies().fold(0, |hash, body| {

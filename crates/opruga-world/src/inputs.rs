@@ -3,7 +3,6 @@
 use crate::blueprint::{Action, CommandBlueprint, Selector};
 use crate::bytes::{Reader, Writer};
 use crate::error::WorldError;
-use crate::world::World;
 use opruga_core::spec::Value;
 
 /// Something that a program has done to a world between two frames.
@@ -48,36 +47,8 @@ pub enum Input<const D: usize> {
     },
 }
 
-impl<const D: usize> World<D> {
-    /// Writes down from now on what the program does, for [`World::take_inputs`].
-    pub fn keep_inputs(&mut self) {
-        self.inputs.get_or_insert_default();
-    }
-
-    /// What the program has done since the last call, in its order; empty without [`World::keep_inputs`].
-    pub fn take_inputs(&mut self) -> Vec<Input<D>> {
-        self.inputs.as_mut().map(std::mem::take).unwrap_or_default()
-    }
-
-    pub(crate) fn write_down(&mut self, input: impl FnOnce() -> Input<D>) {
-        if let Some(inputs) = &mut self.inputs {
-            inputs.push(input());
-        }
-    }
-
-    pub(crate) fn repeat_here(&mut self, input: &Input<D>) -> Result<(), WorldError> {
-        match input {
-            Input::Command(command) => self.command(command.clone()),
-            Input::Set { path, value } => self.set(path, value.clone()),
-            Input::Remove { name } => self.remove_body(name),
-            Input::Place { body, node, position, velocity } => self.place_node(*body, *node, *position, *velocity),
-            Input::Add { .. } | Input::Force { .. } | Input::Act => Err(input.unwritable()),
-        }
-    }
-}
-
 impl<const D: usize> Input<D> {
-    fn unwritable(&self) -> WorldError {
+    pub(crate) fn unwritable(&self) -> WorldError {
         let refuse = |path: String, message: &str| WorldError::Path { path, message: message.into() };
         match self {
             Input::Force { body } => {

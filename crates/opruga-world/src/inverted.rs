@@ -22,7 +22,12 @@ enum Found {
 }
 
 impl<const D: usize> World<D> {
-    pub(crate) fn inverted_cells_here(&self) -> Option<Warning> {
+    /// A warning (`cells.inverted`) of cells of finite elements that are inside out in the present state, wholly or
+    /// somewhere, which the rules of motion allow; none where all are certainly right side out. Looked for anew by every call.
+    ///
+    /// J of quadratic cells and boxes is bounded over the whole cell ([`opruga_mesh::least_jacobian`]), whatever their integration
+    /// points see. A cell that is so nearly flat somewhere that the bounds do not decide is counted as one that may be.
+    pub fn inverted_cells(&self) -> Option<Warning> {
         let solid = |body: &usize| {
             self.blueprint.bodies[*body].models.iter().any(|model| model.spec().has_role(Role::OwnsCells))
         };

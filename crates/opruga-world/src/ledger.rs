@@ -1,6 +1,5 @@
 //! Where the energy is and where it went.
 
-use crate::island::Island;
 use opruga_core::potential::Account;
 use opruga_core::state::{Layout, View};
 use opruga_core::system::{SolverWork, System, Work8};
@@ -349,10 +348,9 @@ pub(crate) struct Flows {
 }
 
 impl Flows {
-    /// Adds what entered and left an island since the start of the last frame until now.
-    pub(crate) fn add<const D: usize>(&mut self, island: &Island<D>, work: &Work8) {
-        let system = &island.system;
-        self.numerical += island.numerical_loss(work);
+    /// Adds what entered and left an island since the start of the last frame until now, and what rules have taken by themselves [J].
+    pub(crate) fn add<const D: usize>(&mut self, system: &System<D>, numerical_loss: f64, work: &Work8) {
+        self.numerical += numerical_loss;
         self.user += total_of(system, &work.user);
         self.gas += total_of(system, &work.gas);
         self.damping += total_of(system, &work.damping);

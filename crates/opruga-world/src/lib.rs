@@ -1,7 +1,9 @@
 //! Worlds of Opruga: bodies, obstacles, time, commands and what can be read of them.
 
+mod any_command;
 mod any_scene;
 mod any_world;
+mod at_start;
 pub mod blueprint;
 mod body_bytes;
 mod body_view;
@@ -10,7 +12,6 @@ mod bytes;
 mod carried;
 mod changes;
 mod commands;
-mod compiled_once;
 mod crushed;
 pub mod error;
 mod frame_hash;
@@ -19,19 +20,26 @@ mod inverted;
 mod island;
 pub mod ledger;
 mod loads;
+mod look_within;
 mod looks;
+mod masses;
 pub mod memory;
 pub mod modes;
+mod node_columns;
+mod node_forces;
 mod node_states;
 mod other_balances;
 mod pin_ways;
 mod plausible;
 mod population;
 mod problems;
+mod program_inputs;
 mod programs;
 mod readings;
 mod rebuild;
+mod refused;
 pub mod registry;
+mod running;
 mod scene_delta;
 pub mod schema;
 pub mod selection;
@@ -40,17 +48,20 @@ mod slender;
 mod slots;
 mod snapshot;
 mod stability;
+mod start;
+mod stepping;
 mod turned;
 pub mod validity;
 mod world;
 
 pub use any_scene::{AnyBody, AnyScene};
-pub use any_world::{AnyWorld, Strided, Vectors};
+pub use any_world::AnyWorld;
 pub use body_view::BodyView;
 pub use error::WorldError;
 pub use inputs::Input;
 pub use ledger::{Energy, Momentum};
 pub use loads::ForceLaw;
+pub use node_columns::{Strided, Vectors};
 pub use node_states::NodeState;
 pub use opruga_core::break_off::BreakOff;
 /// What the laws of the finite elements say at one deformation gradient.
@@ -58,6 +69,7 @@ pub mod law {
     pub use opruga_models::fem::materials::NAMES;
     pub use opruga_models::fem::{AtPoint, SPEC, in_plane, in_space, own_fields};
 }
-pub use registry::Registry;
+pub use refused::RefusedCommand;
+pub use registry::{Registries, Registry};
 pub use slots::BodyHandle;
 pub use world::{Options, Warning, World};

@@ -1,7 +1,6 @@
 //! Looks into the middle of a frame, for readers that must not miss what swings faster than frames pass.
 
-use crate::ledger::{Energy, Flows, Momentum};
-use crate::world::World;
+use crate::ledger::Flows;
 
 /// Where a world is looked at between frames.
 #[derive(Debug, Default)]
@@ -14,52 +13,4 @@ pub(crate) struct Looks {
     pub(crate) flows: Flows,
     /// The time while a look lasts [s].
     pub(crate) time: Option<f64>,
-}
-
-impl<const D: usize> World<D> {
-    /// Keeps the state after every so many substeps of the coming frames for [`World::look_within`]; 0 keeps none.
-    ///
-    /// Results do not depend on it. Each look of a frame holds a copy of all positions and velocities; only the first
-    /// frame asks for that memory.
-    pub fn keep_looks(&mut self, every: u32) {
-        (self.looks.every, self.looks.fresh) = (every, false);
-    }
-
-    /// Shows the world as it was within the last frame, look after look; then it is as before.
-    ///
-    /// Shown are positions, velocities, time, energy, momentum, readings and probes.
-    pub fn look_within(&mut self, mut look: impl FnMut(&mut World<D>)) {
-        let every = self.looks.every;
-        if every == 0 || !self.looks.fresh {
-            return;
-        }
-        let now: (Flows, Energy, Momentum<D>) = (self.flows, self.energy, self.momentum);
-        let start = (self.frames - 1) as f64 * self.blueprint.time.frame;
-        for number in 0..(self.blueprint.time.substeps - 1) / every {
-            let ends: Vec<_> = self.islands.iter().map(|island| (island.stock, island.survey)).collect();
-            let mut flows = self.looks.flows;
-            let mut complete = true;
-            for island in &mut self.islands {
-                // Islands that were built since then have no looks.
-                let work = island.swap_look(number as usize);
-                island.refresh();
-                match work {
-                    Some(work) => flows.add(island, &work),
-                    None => complete = false,
-                }
-            }
-            if complete {
-                self.flows = flows;
-                self.refresh_ledger();
-                self.looks.time = Some(start + f64::from((number + 1) * every) * self.h());
-                look(self);
-                self.looks.time = None;
-            }
-            for (island, (stock, survey)) in self.islands.iter_mut().zip(ends) {
-                island.swap_look(number as usize);
-                (island.stock, island.survey) = (stock, survey);
-            }
-            (self.flows, self.energy, self.momentum) = now;
-        }
-    }
 }

@@ -5,6 +5,7 @@
 //! those of the springs' and the gas's stiffness there. A negative ω² is told as it is: the state is unstable, as a body is
 //! that is about to buckle.
 
+use crate::any_scene::three;
 use crate::error::WorldError;
 use crate::world::World;
 use opruga_core::error::BuildError;
@@ -31,6 +32,11 @@ pub struct Mode<const D: usize> {
 }
 
 impl<const D: usize> Mode<D> {
+    /// The same in space; displacements along z are 0 where the body lies in the plane.
+    pub(crate) fn in_space(self) -> Mode<3> {
+        let Mode { square, shape, residual, rigid } = self;
+        Mode { square, shape: shape.into_iter().map(three).collect(), residual, rigid }
+    }
     /// ω [rad/s]; zero where ω² is not positive.
     pub fn omega(&self) -> f64 {
         if self.square > 0.0 { self.square.sqrt() } else { 0.0 }
@@ -48,7 +54,12 @@ const FREE: f64 = 1e-9;
 const MOST_BYTES: f64 = 4_294_967_296.0;
 
 impl<const D: usize> World<D> {
-    pub(crate) fn modes_here(&self, body: usize, count: usize) -> Result<Vec<Mode<D>>, WorldError> {
+    /// The lowest `count` natural modes of a body about its present state, rigid ones first.
+    ///
+    /// # Errors
+    /// [`WorldError`] if there is no such body, if a model lacks second derivatives or refuses the state, or if no
+    /// frequency can be found since a node without mass can move.
+    pub fn modes(&self, body: usize, count: usize) -> Result<Vec<Mode<D>>, WorldError> {
         if self.handle(body).is_none() {
             return Err(WorldError::Path { path: format!("body {body}"), message: "there is no such body".into() });
         }

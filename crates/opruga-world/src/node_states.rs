@@ -29,10 +29,10 @@ impl NodeState {
     }
 
     /// The parts of the stress and the von Mises stress in the order of [`crate::blueprint::Recorded::columns`] [Pa].
-    pub fn components<const D: usize>(&self) -> Vec<f64> {
+    pub fn components(&self, dimension: usize) -> Vec<f64> {
         let s = &self.stress;
         let mut out = vec![s[0][0], s[1][1], s[2][2], s[0][1]];
-        if D == 3 {
+        if dimension == 3 {
             out.extend([s[1][2], s[2][0]]);
         }
         out.push(self.von_mises());

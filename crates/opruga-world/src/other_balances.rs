@@ -63,12 +63,22 @@ struct Node {
 }
 
 impl<const D: usize> World<D> {
-    pub(crate) fn warnings_at_the_end_here(&self) -> Vec<Warning> {
-        let shapes = self.inverted_cells_here().into_iter().chain(self.other_balances_here());
-        self.warnings_here().into_iter().chain(shapes).collect()
+    /// Warnings so far, and what is odd about the shapes in the present state: [`World::inverted_cells`] and
+    /// [`World::other_balances`]. For the end of a run, since shapes are looked at anew by every call.
+    pub fn warnings_at_the_end(&self) -> Vec<Warning> {
+        let shapes = self.inverted_cells().into_iter().chain(self.other_balances());
+        self.warnings().into_iter().chain(shapes).collect()
     }
 
-    pub(crate) fn other_balances_here(&self) -> Option<Warning> {
+    /// A warning (`cells.other_balance`) of bodies of finite elements that are nearly at rest and hold more energy than the
+    /// forces on them account for, from their own shape on: they snapped through, are folded, inside out or twisted
+    /// round. None where there is no such body. Looked for anew by every call.
+    ///
+    /// With the forces fᵢ that hold the shape [N] and the rest shape moved as a whole to where it fits the present places
+    /// xᵢ best, yᵢ, a body is told of where its energy is more than Σ |fᵢ| |xᵢ − yᵢ|: what loads, pins, obstacles or gas have
+    /// deformed holds half of that at most if it is strained a little. Bodies of the material `linear`, which has one shape in
+    /// which it holds nothing, are never told of.
+    pub fn other_balances(&self) -> Option<Warning> {
         let mut found: Vec<Unaccounted> = Vec::new();
         for island in &self.islands {
             let there = |body: &&usize| self.handle(**body).is_some() && self.is_judged(**body);
@@ -91,7 +101,7 @@ impl<const D: usize> World<D> {
         }
         let count = found.len() as u64;
         let Unaccounted { body, energy, accounted } = found.into_iter().min_by_key(|one| one.body)?;
-        let cells = self.cell_states_here(body);
+        let cells = self.cell_states(body);
         let (mut volume, mut rest, mut worst) = (0.0, 0.0, (0, 1.0_f64));
         for cell in &cells {
             volume += cell.volume_ratio * cell.measure;
@@ -161,7 +171,7 @@ impl<const D: usize> World<D> {
                 odd(length(&less(&a.now, &b.now)) / length(&less(&a.rest, &b.rest)))
             })
         });
-        drawn || self.cell_states_here(body).iter().any(|cell| odd(cell.smallest_volume_ratio))
+        drawn || self.cell_states(body).iter().any(|cell| odd(cell.smallest_volume_ratio))
     }
 }
 

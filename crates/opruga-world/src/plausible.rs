@@ -1,9 +1,9 @@
 //! What a scene may well say, but hardly means: units that do not go together, bodies that begin inside an obstacle.
 
 use crate::blueprint::{BodyBlueprint, Mass};
-use crate::build::node_masses;
 use crate::error::WorldError;
 use crate::island::Island;
+use crate::masses::node_masses;
 use crate::selection::{extent, longest_side};
 use crate::world::{Warning, World};
 use opruga_core::error::BuildError;

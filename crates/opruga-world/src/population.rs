@@ -1,11 +1,12 @@
 //! Bodies come and go.
 
 use crate::blueprint::{Action, BodyBlueprint};
+use crate::build::alike;
 use crate::changes::{Before, Source};
-use crate::commands::Progress;
 use crate::error::WorldError;
 use crate::inputs::Input;
 use crate::rebuild::Touched;
+use crate::running::Progress;
 use crate::slots::Origin;
 use crate::world::{Warning, World};
 use opruga_core::spec::Values;
@@ -16,7 +17,12 @@ use std::collections::BTreeMap;
 const MOST_NAMED: usize = 16;
 
 impl<const D: usize> World<D> {
-    pub(crate) fn add_body_here(&mut self, body: BodyBlueprint<D>) -> Result<usize, WorldError> {
+    /// Adds a body; returns its number. Once it was removed nothing is kept of it, and its number may be given to another body
+    /// that the program adds: [`World::handle`] tells one from the other.
+    ///
+    /// # Errors
+    /// [`WorldError`] if its name is taken, it is none that a scene could hold, or a model refuses; the world stays as it was.
+    pub fn add_body(&mut self, body: BodyBlueprint<D>) -> Result<usize, WorldError> {
         let name = body.name.clone();
         let number = self.include(body, Source::Program)?;
         self.write_down(|| Input::Add { name });
@@ -93,7 +99,11 @@ impl<const D: usize> World<D> {
         Ok(number)
     }
 
-    pub(crate) fn remove_body_here(&mut self, name: &str) -> Result<(), WorldError> {
+    /// Takes a body away.
+    ///
+    /// # Errors
+    /// [`WorldError::Path`] if there is no body of that name.
+    pub fn remove_body(&mut self, name: &str) -> Result<(), WorldError> {
         self.remove_now(name)?;
         self.forget_commands();
         self.write_down(|| Input::Remove { name: name.to_string() });
@@ -221,5 +231,51 @@ impl<const D: usize> World<D> {
             Action::Add(body) if present.iter().all(|b| b.name != body.name) => Some(&**body),
             _ => None,
         })
+    }
+}
+
+impl<const D: usize> World<D> {
+    /// Makes sure that there is a place, without a body so far.
+    pub(crate) fn reserve(&mut self, place: usize, origin: Origin) {
+        while self.slots.len() <= place {
+            self.blueprint.bodies.push(BodyBlueprint::nobody());
+            self.slots.put(self.slots.len(), origin, 0);
+            if let Some(last) = self.slots.alive.last_mut() {
+                *last = false;
+            }
+        }
+    }
+
+    /// Forgets the bodies of the program that are gone, and gives their places free; those at the end of the list are given up.
+    pub(crate) fn free_places(&mut self) {
+        for place in self.slots.initial..self.slots.len() {
+            if self.slots.alive[place] || self.slots.origin[place] != Origin::Program {
+                continue;
+            }
+            let gone = &self.blueprint.bodies[place];
+            let like = |other: &usize| {
+                *other != place
+                    && self.slots.origin[*other].is_taken()
+                    && (self.slots.alive[*other] || self.slots.origin[*other] != Origin::Program)
+                    && alike(gone, &self.blueprint.bodies[*other])
+            };
+            let beside = (0..self.slots.len()).find(like);
+            for origin in &mut self.slots.origin {
+                if *origin == Origin::Free(Some(place)) {
+                    *origin = Origin::Free(beside);
+                }
+            }
+            self.slots.origin[place] = Origin::Free(beside);
+            self.blueprint.bodies[place] = BodyBlueprint::nobody();
+            self.at_start.bodies.remove(&place);
+            self.user_forces.retain(|(handle, _)| handle.index != place);
+            self.laws_saved.remove(&place);
+        }
+        while matches!(self.slots.origin.last(), Some(Origin::Free(_))) {
+            let count = self.slots.len() - 1;
+            self.slots.truncate(count);
+            self.blueprint.bodies.truncate(count);
+            self.place.truncate(count);
+        }
     }
 }

@@ -6,13 +6,9 @@ use crate::island::Island;
 use crate::ledger::{Energy, Momentum};
 use crate::slots::BodyHandle;
 use crate::world::{Warning, World, lock};
-use opruga_core::contacts::{Contacts, Moved};
-use opruga_core::potential::{Account, CellState, Count, Reading};
+use opruga_core::potential::{CellState, Count, Reading};
 use opruga_core::stability::Stability;
-use opruga_core::state::Columns;
 use opruga_core::system::{SolverWork, Stage, System};
-use opruga_integrators::accelerations;
-use opruga_math::WIDTH;
 use opruga_math::words::number;
 
 impl<const D: usize> World<D> {
@@ -101,7 +97,10 @@ impl<const D: usize> World<D> {
     pub fn node_mass(&self, body: usize, node: u32) -> f64 {
         self.index_of(body, node).map_or(f64::NAN, |(system, index)| system.mass.at(index))
     }
-    pub(crate) fn readings_here(&mut self, body: usize) -> Vec<Reading> {
+    /// What models say of a body: `volume`, `pressure`, `chamber1.pressure` and others.
+    ///
+    /// A body that is not there says nothing.
+    pub fn readings(&mut self, body: usize) -> Vec<Reading> {
         if self.handle(body).is_none() {
             return Vec::new();
         }
@@ -109,7 +108,8 @@ impl<const D: usize> World<D> {
         let time = self.time();
         self.islands[island].readings(lane, time)
     }
-    pub(crate) fn node_pressures_here(&mut self, body: usize) -> Vec<(u32, f64)> {
+    /// The pressure [Pa] of the gas that each node of a body bounds, chamber by chamber; empty where there is no gas.
+    pub fn node_pressures(&mut self, body: usize) -> Vec<(u32, f64)> {
         if self.handle(body).is_none() {
             return Vec::new();
         }
@@ -117,7 +117,10 @@ impl<const D: usize> World<D> {
         let time = self.time();
         self.islands[island].node_pressures(lane, time)
     }
-    pub(crate) fn cell_states_here(&self, body: usize) -> Vec<CellState> {
+    /// Stress and volume ratio of the cells of a body of finite elements, in the order of its cells.
+    ///
+    /// A body that is not there, or has none, says nothing.
+    pub fn cell_states(&self, body: usize) -> Vec<CellState> {
         if self.handle(body).is_none() {
             return Vec::new();
         }
@@ -133,7 +136,9 @@ impl<const D: usize> World<D> {
     pub fn rest_volume(&self, body: usize) -> f64 {
         if self.slots.is_there(body) { rest_volume(&self.blueprint.bodies[body]) } else { f64::NAN }
     }
-    pub(crate) fn probe_here(&mut self, number: usize) -> Vec<(String, f64)> {
+    /// The values of a probe now: names of columns and numbers, which are NaN while its body is not there. Empty where there is no
+    /// probe of that number.
+    pub fn probe(&mut self, number: usize) -> Vec<(String, f64)> {
         let Some(probe) = self.blueprint.probes.get(number).cloned() else { return Vec::new() };
         let there = self.handle(probe.body).is_some();
         let nodes = if there { self.selected(probe.body, &probe.select) } else { Vec::new() };
@@ -148,7 +153,7 @@ impl<const D: usize> World<D> {
                 Recorded::Velocity => self.mean(&nodes, |w, n| w.velocity(probe.body, n)).to_vec(),
                 Recorded::Reaction => self.reaction(probe.body, &nodes).to_vec(),
                 Recorded::Contact => self.contact_on(probe.body, &nodes).to_vec(),
-                Recorded::Stress => cells.map_or(Vec::new(), |cells| cells.components::<D>()),
+                Recorded::Stress => cells.map_or(Vec::new(), |cells| cells.components(D)),
                 Recorded::VolumeRatio => cells.map_or(Vec::new(), |cells| vec![cells.volume_ratio]),
             };
             let number = |k: usize| numbers.get(k).copied().unwrap_or(f64::NAN);
@@ -177,114 +182,8 @@ impl<const D: usize> World<D> {
         }
         sum.map(|s| s / nodes.len().max(1) as f64)
     }
-    pub(crate) fn node_forces_here(&mut self, body: usize, account: Option<Account>) -> Vec<[f64; D]> {
-        if self.handle(body).is_none() {
-            return Vec::new();
-        }
-        let (island, lane) = self.place[body];
-        let system = &mut self.islands[island].system;
-        let forces = match account {
-            Some(account) => system.forces_of(account),
-            None => system.forces(true),
-        };
-        let Ok(forces) = forces else { return Vec::new() };
-        (0..system.nodes).map(|node| forces.at(system.layout.place(node, lane))).collect()
-    }
-    /// The nodes of a body that pins hold now, along some of their axes or all.
-    pub fn held_nodes(&self, body: usize) -> Vec<u32> {
-        if self.handle(body).is_none() {
-            return Vec::new();
-        }
-        let (island, lane) = self.place[body];
-        let system = &self.islands[island].system;
-        let held: std::collections::BTreeSet<usize> = system.pins.iter().map(|pin| pin.place).collect();
-        (0..system.nodes as u32).filter(|node| held.contains(&system.layout.place(*node as usize, lane))).collect()
-    }
-    pub(crate) fn contact_forces_here(&mut self, body: usize) -> Vec<[f64; D]> {
-        let Some(colliders) = self.colliders.clone().filter(|_| self.handle(body).is_some()) else { return Vec::new() };
-        let (h, time, (island, lane)) = (self.h(), self.time(), self.place[body]);
-        let system = &mut self.islands[island].system;
-        let Ok(forces) = system.forces(true) else { return Vec::new() };
-        let (places, layout) = (system.places(), system.layout);
-        let used = system.nodes * layout.stride();
-        let (mut x, mut v) = (Columns::zeros(places), Columns::zeros(places));
-        for place in 0..used {
-            let mass = system.mass.at(place);
-            for d in 0..D {
-                let now = system.state.v.0[d][place];
-                v.0[d][place] = if mass > 0.0 { now + h * forces.0[d][place] / mass } else { now };
-                x.0[d][place] = system.state.x.0[d][place] + h * v.0[d][place];
-            }
-        }
-        let free = v.clone();
-        let [mut normal, mut friction, mut work, mut correction] = [[0.0; WIDTH]; 4];
-        colliders.resolve(
-            system.simd,
-            &mut Moved {
-                range: 0..places,
-                places_used: used,
-                before: system.state.x.0.each_ref().map(|column| &**column),
-                x: &mut x,
-                v: &mut v,
-                force: forces.0.each_ref().map(|column| &**column),
-                mass: &system.mass,
-                layout,
-                time: time + h,
-                h,
-                loss_contact: &mut normal,
-                loss_friction: &mut friction,
-                work_colliders: &mut work,
-                work_correction: &mut correction,
-            },
-        );
-        let held: std::collections::BTreeSet<usize> = system.pins.iter().map(|pin| pin.place).collect();
-        let force = |place: usize| -> [f64; D] {
-            let share = if held.contains(&place) { 0.0 } else { system.mass.at(place) / h };
-            core::array::from_fn(|d| share * (v.0[d][place] - free.0[d][place]))
-        };
-        (0..system.nodes).map(|node| force(layout.place(node, lane))).collect()
-    }
-    pub(crate) fn reaction_here(&mut self, body: usize, nodes: &[u32]) -> [f64; D] {
-        let count = self.node_count(body);
-        if !self.slots.is_there(body) || nodes.iter().any(|node| *node as usize >= count) {
-            return [f64::NAN; D];
-        }
-        let (island, lane) = self.place[body];
-        let still = self.islands[island].integrator.is_static();
-        let frame = self.blueprint.time.frame;
-        let system = &mut self.islands[island].system;
-        let mut sum = [0.0; D];
-        let Ok(forces) = system.forces(true) else { return sum };
-        // How pins accelerate what they hold; nothing does in statics.
-        let mut held = vec![None; system.nodes * D];
-        for pin in &system.pins {
-            let node = pin.place / system.layout.stride();
-            if system.layout.place(node, lane) != pin.place {
-                continue;
-            }
-            let rate = if still { [0.0; D] } else { pin.acceleration(system.time, frame) };
-            (0..D).filter(|d| pin.axes[*d]).for_each(|d| held[node * D + d] = Some(rate[d]));
-        }
-        let inertia = system.inertia.as_ref().filter(|_| !still).map(|inertia| {
-            let mut a: Vec<f64> = held.iter().map(|rate| rate.unwrap_or(0.0)).collect();
-            let is_held: Vec<bool> = held.iter().map(Option::is_some).collect();
-            // Where masses are coupled there are no obstacles, so that these are all forces on what is free.
-            accelerations(system, &is_held, &system.node_by_node(&forces), &mut a);
-            (inertia, a)
-        });
-        for node in nodes.iter().map(|node| *node as usize) {
-            let place = system.layout.place(node, lane);
-            let more = inertia.as_ref().map_or([0.0; D], |(inertia, a)| inertia.product::<D>(node, a));
-            // A node that two pins hold is held by one force all the same.
-            for d in 0..D {
-                if let Some(rate) = held[node * D + d] {
-                    sum[d] += system.mass.at(place) * rate + more[d] - forces.0[d][place];
-                }
-            }
-        }
-        sum
-    }
-    pub(crate) fn warnings_here(&self) -> Vec<Warning> {
+    /// Warnings so far, with counts.
+    pub fn warnings(&self) -> Vec<Warning> {
         let mut out = self.warnings.clone();
         let mut count = |code: &str, message: &str, count: u64| {
             if count > 0 {
@@ -476,7 +375,7 @@ impl<const D: usize> World<D> {
         }
         let mut worst: Option<(f64, String)> = None;
         for body in self.bodies() {
-            for cell in self.cell_states_here(body) {
+            for cell in self.cell_states(body) {
                 let odd = (cell.smallest_volume_ratio - 1.0).abs();
                 if worst.as_ref().is_none_or(|(most, _)| odd > *most) {
                     let name = &self.blueprint.bodies[body].name;
@@ -494,7 +393,8 @@ impl<const D: usize> World<D> {
             worst.map_or_else(String::new, |(_, text)| text)
         )
     }
-    pub(crate) fn state_hash_here(&self) -> u64 {
+    /// A 64-bit hash (FNV-1a) over the little-endian bits of all positions, then velocities, body by body in node order.
+    pub fn state_hash(&self) -> u64 {
         let mut hash = 0xcbf2_9ce4_8422_2325_u64;
         let mut feed = |number: f64| {
             for byte in number.to_le_bytes() {
@@ -511,7 +411,8 @@ impl<const D: usize> World<D> {
         }
         hash
     }
-    pub(crate) fn heap_bytes_here(&self) -> usize {
+    /// Bytes on the heap for the state and the models of all bodies.
+    pub fn heap_bytes(&self) -> usize {
         let shared: usize = self.workspaces.iter().map(|workspace| lock(workspace).heap_bytes()).sum();
         shared + self.islands.iter().map(Island::heap_bytes).sum::<usize>()
     }

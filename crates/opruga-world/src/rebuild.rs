@@ -153,12 +153,20 @@ impl<const D: usize> World<D> {
         self.refresh_ledger();
     }
 
-    pub(crate) fn reading_names_here(&self, body: &BodyBlueprint<D>) -> Result<Vec<Cow<'static, str>>, WorldError> {
+    /// What a reader sees of a body that is not there yet: the names of its readings.
+    ///
+    /// # Errors
+    /// [`WorldError`] where a model refuses the body.
+    pub fn reading_names(&self, body: &BodyBlueprint<D>) -> Result<Vec<Cow<'static, str>>, WorldError> {
         let mut island = self.island_alone(body)?;
         Ok(island.readings(0, self.time()).into_iter().map(|(name, _)| name).collect())
     }
 
-    pub(crate) fn springs_here(&self, body: &BodyBlueprint<D>) -> Result<Vec<[u32; 2]>, WorldError> {
+    /// The pairs of nodes that springs of a body tie to each other, also of one that is not there yet.
+    ///
+    /// # Errors
+    /// [`WorldError`] where a model refuses the body.
+    pub fn springs(&self, body: &BodyBlueprint<D>) -> Result<Vec<[u32; 2]>, WorldError> {
         let island = self.island_alone(body)?;
         Ok(island.system.members.iter().flat_map(|member| member.potential.bonds()).copied().collect())
     }

@@ -3,11 +3,28 @@
 use opruga_core::integrator::IntegratorKind;
 use opruga_core::potential::Model;
 use opruga_core::spec::{Role, Spec, Values};
+use std::sync::Arc;
 
 /// Models and integrators by name. A user's crate adds its own.
 pub struct Registry<const D: usize> {
     models: Vec<Box<dyn Model<D>>>,
     integrators: Vec<Box<dyn IntegratorKind<D>>>,
+}
+
+/// The models and integrators of the plane and those of space: what a program hands on where a scene may have either dimension.
+#[derive(Clone, Debug)]
+pub struct Registries {
+    /// Those of scenes in the plane.
+    pub plane: Arc<Registry<2>>,
+    /// Those of scenes in space.
+    pub space: Arc<Registry<3>>,
+}
+
+impl Default for Registries {
+    /// Those of this library.
+    fn default() -> Self {
+        Registries { plane: Arc::new(Registry::default()), space: Arc::new(Registry::default()) }
+    }
 }
 
 impl<const D: usize> Default for Registry<D> {

@@ -1,7 +1,6 @@
 //! The list of bodies: who is in which place of it, and handles that tell a body from another one in its place.
 
 use crate::blueprint::{BodyBlueprint, Mass};
-use crate::world::World;
 use opruga_mesh::Mesh;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -152,52 +151,6 @@ impl<const D: usize> BodyBlueprint<D> {
             integrator: None,
             models: Vec::new(),
             pins: Vec::new(),
-        }
-    }
-}
-
-impl<const D: usize> World<D> {
-    /// Makes sure that there is a place, without a body so far.
-    pub(crate) fn reserve(&mut self, place: usize, origin: Origin) {
-        while self.slots.len() <= place {
-            self.blueprint.bodies.push(BodyBlueprint::nobody());
-            self.slots.put(self.slots.len(), origin, 0);
-            if let Some(last) = self.slots.alive.last_mut() {
-                *last = false;
-            }
-        }
-    }
-
-    /// Forgets the bodies of the program that are gone, and gives their places free; those at the end of the list are given up.
-    pub(crate) fn free_places(&mut self) {
-        for place in self.slots.initial..self.slots.len() {
-            if self.slots.alive[place] || self.slots.origin[place] != Origin::Program {
-                continue;
-            }
-            let gone = &self.blueprint.bodies[place];
-            let like = |other: &usize| {
-                *other != place
-                    && self.slots.origin[*other].is_taken()
-                    && (self.slots.alive[*other] || self.slots.origin[*other] != Origin::Program)
-                    && crate::build::alike(gone, &self.blueprint.bodies[*other])
-            };
-            let beside = (0..self.slots.len()).find(like);
-            for origin in &mut self.slots.origin {
-                if *origin == Origin::Free(Some(place)) {
-                    *origin = Origin::Free(beside);
-                }
-            }
-            self.slots.origin[place] = Origin::Free(beside);
-            self.blueprint.bodies[place] = BodyBlueprint::nobody();
-            self.at_start.bodies.remove(&place);
-            self.user_forces.retain(|(handle, _)| handle.index != place);
-            self.laws_saved.remove(&place);
-        }
-        while matches!(self.slots.origin.last(), Some(Origin::Free(_))) {
-            let count = self.slots.len() - 1;
-            self.slots.truncate(count);
-            self.blueprint.bodies.truncate(count);
-            self.place.truncate(count);
         }
     }
 }

@@ -3,10 +3,10 @@
 use crate::blueprint::Action;
 use crate::bytes::{Reader, Writer};
 use crate::carried::BodyState;
-use crate::commands::{Progress, Running};
 use crate::error::WorldError;
 use crate::ledger::Flows;
 use crate::rebuild::Touched;
+use crate::running::{Progress, Running};
 use crate::slots::{ACTED, Origin};
 use crate::world::World;
 use opruga_core::system::SolverWork;
@@ -27,7 +27,8 @@ impl<const D: usize> World<D> {
         out
     }
 
-    pub(crate) fn snapshot_into_here(&self, out: &mut Vec<u8>) {
+    /// Appends the bytes of [`World::snapshot`]: for those who take one every frame.
+    pub fn snapshot_into(&self, out: &mut Vec<u8>) {
         let mut out = Writer(out);
         out.count(VERSION);
         out.count(D as u64);
@@ -95,11 +96,22 @@ impl<const D: usize> World<D> {
         out.number(s.conditioning);
     }
 
-    pub(crate) fn restore_here(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
+    /// Goes to the state of a snapshot of a world with the same blueprint. Bodies that a program had added and commands that it had
+    /// given come back with it; those of since then are forgotten, and handles of them are stale. Laws of force of the
+    /// program are no part of a snapshot: a body that comes back lacks its law, and a warning (`restore.no_force`) says so.
+    ///
+    /// # Errors
+    /// [`WorldError::Snapshot`] if the bytes belong to another scene or are damaged; the world stays as it was.
+    pub fn restore(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
         self.restored(bytes, false)
     }
 
-    pub(crate) fn rewind_here(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
+    /// Goes to the state of a snapshot of a world whose commands up to then were the same: those that had not begun may
+    /// be others, and more or fewer.
+    ///
+    /// # Errors
+    /// As [`World::restore`].
+    pub fn rewind(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
         self.restored(bytes, true)
     }
 

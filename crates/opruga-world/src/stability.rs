@@ -1,9 +1,9 @@
 //! The stable step of every kind of body, estimated before it is stepped.
 
 use crate::blueprint::BodyBlueprint;
-use crate::build::node_masses;
 use crate::error::WorldError;
 use crate::island::Island;
+use crate::masses::node_masses;
 use crate::plausible;
 use crate::world::{Warning, World};
 use opruga_core::error::{BuildError, StepError};
@@ -111,7 +111,10 @@ impl<const D: usize> World<D> {
         Ok(())
     }
 
-    pub(crate) fn look_at_steps_again_here(&mut self) -> bool {
+    /// Where energy has come from nowhere (`ledger.closure`), looks whether the step is still stable in the present
+    /// state, and warns (`step.outgrown`) if it is not; says whether there was anything to look for. Stepping goes on
+    /// as it would without.
+    pub fn look_at_steps_again(&mut self) -> bool {
         if self.flows.open_frames == 0 {
             return false;
         }

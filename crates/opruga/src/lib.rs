@@ -27,6 +27,8 @@ pub mod recordings;
 pub mod scenes;
 pub mod sweep;
 
+use opruga_core::spec::Spec;
+
 pub use opruga_collide as collide;
 pub use opruga_core as core;
 pub use opruga_draw as draw;
@@ -37,15 +39,28 @@ pub use opruga_mesh as mesh;
 pub use opruga_world as world;
 pub use opruga_world::shapes;
 pub use opruga_world::{
-    AnyBody, AnyScene, AnyWorld, BodyHandle, BodyView, BreakOff, Energy, Input, Momentum, Options, Registry, Warning,
-    World, WorldError, blueprint,
+    AnyBody, AnyScene, AnyWorld, BodyHandle, BodyView, BreakOff, Energy, Input, Momentum, Options, Registries,
+    Registry, Warning, World, WorldError, blueprint,
 };
 
 /// What scenes can name: the models, integrators and colliders of this library.
 pub fn catalogue() -> io::Catalogue {
-    let registry = Registry::<2>::default();
-    let colliders = [collide::all(2), collide::all(3)].concat();
-    io::Catalogue { models: registry.models(), integrators: registry.integrators(), colliders }
+    catalogue_of(&Registries::default())
+}
+
+/// What scenes can name where a program has added models or integrators of its own: those of the plane, then those that only space has.
+pub fn catalogue_of(registries: &Registries) -> io::Catalogue {
+    let both = |plane: Vec<&'static Spec>, space: Vec<&'static Spec>| {
+        let same = |a: &Spec, b: &Spec| (a.kind, a.dimensions) == (b.kind, b.dimensions);
+        let further = space.into_iter().filter(|spec| !plane.iter().any(|known| same(known, spec)));
+        plane.iter().copied().chain(further).collect()
+    };
+    let Registries { plane, space } = registries;
+    io::Catalogue {
+        models: both(plane.models(), space.models()),
+        integrators: both(plane.integrators(), space.integrators()),
+        colliders: [collide::all(2), collide::all(3)].concat(),
+    }
 }
 
 /// The program of docs/library.md, for the tests.

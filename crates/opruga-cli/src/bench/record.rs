@@ -4,12 +4,11 @@ use super::{Machine, median, processor_time_of_all};
 use crate::arguments::BenchRecord;
 use crate::checkpoints::Calling;
 use crate::failure::{Failure, print_data};
+use crate::opened::{Opened, open};
 use crate::recordings;
-use crate::source::{Opened, open};
-use opruga::blueprint::{AnyBlueprint, Blueprint};
 use opruga::math::words::counted;
 use opruga::recordings::TapeError;
-use opruga::{World, WorldError};
+use opruga::{AnyWorld, WorldError};
 use serde_json::json;
 use std::path::Path;
 use std::time::Instant;
@@ -22,52 +21,44 @@ pub(crate) fn bench(call: &BenchRecord) -> Result<u8, Failure> {
     let opened = open(&call.scene, &call.set, call.allow_outside, call.json)?;
     let name = format!("opruga-bench-{}.rec", std::process::id());
     let path = call.folder.clone().unwrap_or_else(std::env::temp_dir).join(name);
-    let outcome = match opened.blueprint.clone() {
-        AnyBlueprint::Plane(blueprint) => of_scene(call, &opened, &blueprint, &path),
-        AnyBlueprint::Space(blueprint) => of_scene(call, &opened, &blueprint, &path),
-    };
+    let outcome = of_scene(call, &opened, &path);
     let _ = std::fs::remove_file(&path);
     outcome
 }
 
-fn of_scene<const D: usize>(
-    call: &BenchRecord,
-    opened: &Opened,
-    blueprint: &Blueprint<D>,
-    path: &Path,
-) -> Result<u8, Failure> {
-    let Opened { source, reading, options, .. } = opened;
+fn of_scene(call: &BenchRecord, opened: &Opened, path: &Path) -> Result<u8, Failure> {
+    let Opened { source, reading, options, blueprint, .. } = opened;
     let new = || source.build(blueprint.clone(), reading, options);
     let first = new()?;
     let machine = Machine::measure(first.simd());
-    let every = call.every.map_or_else(|| opruga::recordings::states_apart(&first), u64::from);
-    let nodes: usize = first.bodies().map(|body| first.node_count(body)).sum();
+    let every = call.every.map_or_else(|| opruga::recordings::states_apart(&*first), u64::from);
+    let nodes: usize = first.bodies().into_iter().map(|body| first.node_count(body)).sum();
     drop(first);
-    let frames = call.frames.map_or_else(|| whole_run(blueprint), u64::from);
+    let frames = call.frames.map_or_else(|| blueprint.scene().time().frames().max(1), u64::from);
     let (mut without, mut with, mut around, mut bytes) = (Vec::new(), Vec::new(), Vec::new(), 0);
     for round in 0..2 * call.rounds {
         let mut world = new()?;
-        let failed = |error: WorldError, world: &World<D>| source.frame_error(&error, world, reading);
+        let failed = |error: WorldError, world: &dyn AnyWorld| source.frame_error(&error, world, reading);
         let start = now();
         // One of a pair comes first as often as the other.
         if round % 4 == 0 || round % 4 == 3 {
             for _ in 0..frames {
-                world.frame().map_err(|error| failed(error, &world))?;
+                world.frame().map_err(|error| failed(error, &*world))?;
             }
             without.push(since(start));
             continue;
         }
         let calling = Calling { overrides: reading.overrides.clone(), ..Calling::default() };
-        let mut tape = recordings::begin(path, true, Some(every as u32), source, &calling, &mut world)?;
+        let mut tape = recordings::begin(path, true, Some(every as u32), source, &calling, &mut *world)?;
         let beginning = since(start);
         for _ in 0..frames {
-            tape.step(&mut world).map_err(|error| match error {
-                TapeError::World(error) => failed(error, &world),
+            tape.step(&mut *world).map_err(|error| match error {
+                TapeError::World(error) => failed(error, &*world),
                 error => error.into(),
             })?;
         }
         let end = now();
-        bytes = tape.finish(&mut world)?;
+        bytes = tape.finish(&mut *world)?;
         around.push([0, 1].map(|clock| beginning[clock] + since(end)[clock]));
         with.push(since(start));
         // One that takes the place of another is made to last first.
@@ -113,12 +104,6 @@ fn of_scene<const D: usize>(
         machine.sentence(),
     ))?;
     Ok(0)
-}
-
-/// The frames of the run that a scene asks for.
-fn whole_run<const D: usize>(blueprint: &Blueprint<D>) -> u64 {
-    let frames = (blueprint.time.seconds / blueprint.time.frame - 1e-9).ceil();
-    if frames > 1.0 { frames as u64 } else { 1 }
 }
 
 /// What both clocks show.

@@ -1,15 +1,13 @@
 //! `opruga bench scene`: the time of the frames of a scene, and what implicit bodies spend it on.
 
-use super::timed::{Spent, registry};
+use super::timed::{Spent, registries};
 use super::{Machine, median, processor_time};
 use crate::arguments::BenchScene;
 use crate::failure::{Failure, print_data};
 use crate::forecast::is_implicit;
-use crate::source::{Opened, Source, open};
-use opruga::blueprint::{AnyBlueprint, Blueprint};
-use opruga::io::scene;
+use crate::opened::{Opened, open};
 use opruga::math::words::counted;
-use opruga::{Options, Registry, World};
+use opruga::{AnyWorld, Registries, WorldError};
 use serde_json::json;
 use std::sync::Arc;
 
@@ -17,41 +15,26 @@ use std::sync::Arc;
 pub(crate) fn bench(call: &BenchScene) -> Result<u8, Failure> {
     let Opened { source, reading, options, blueprint, .. } =
         open(&call.scene, &call.set, call.allow_outside, call.json)?;
-    match blueprint {
-        AnyBlueprint::Plane(blueprint) => of_scene(call, &source, blueprint, &reading, &options),
-        AnyBlueprint::Space(blueprint) => of_scene(call, &source, blueprint, &reading, &options),
-    }
-}
-
-fn of_scene<const D: usize>(
-    call: &BenchScene,
-    source: &Source,
-    blueprint: Blueprint<D>,
-    reading: &scene::Options,
-    options: &Options,
-) -> Result<u8, Failure> {
-    // What is wrong with it is told as `run` tells it.
-    let first = source.build(blueprint.clone(), reading, options)?;
-    // Explicit rules call models tile by tile: the clock would be most of what it measures.
-    let library = Registry::<D>::default();
-    let implicit = first.integrators().into_iter().all(|kind| is_implicit(&library, kind));
-    drop(first);
+    // What is wrong with it is told as `run` tells it. Explicit integrators call models tile by tile: the clock would be most of what it
+    // measures.
+    let implicit = is_implicit(&*source.build(blueprint.clone(), &reading, &options)?);
     let spent = Arc::new(Spent::default());
-    let models = if implicit { registry(&spent) } else { library };
-    let failed = |error: opruga::WorldError| source.run_error(&error, 0.0);
-    let mut world = World::with_registry(blueprint, options.clone(), Arc::new(models)).map_err(failed)?;
-    let nodes: usize = world.bodies().map(|body| world.node_count(body)).sum();
+    let library = Registries::default();
+    let models = if implicit { registries(&library, &spent) } else { library };
+    let failed = |error: WorldError| source.run_error(&error, 0.0);
+    let mut world = blueprint.build_with(options, &models).map_err(failed)?;
+    let nodes: usize = world.bodies().into_iter().map(|body| world.node_count(body)).sum();
     let machine = Machine::measure(world.simd());
 
-    let frame = |world: &mut World<D>| world.frame().map_err(|error| source.frame_error(&error, world, reading));
+    let frame = |world: &mut dyn AnyWorld| world.frame().map_err(|error| source.frame_error(&error, world, &reading));
     for _ in 0..call.after {
-        frame(&mut world)?;
+        frame(&mut *world)?;
     }
     let (before, work) = (spent.milliseconds(), world.solver_work());
     let mut times = Vec::with_capacity(call.frames as usize);
     for _ in 0..call.frames {
         let start = processor_time();
-        frame(&mut world)?;
+        frame(&mut *world)?;
         times.push((processor_time() - start) * 1e3);
     }
     let frames = f64::from(call.frames);
@@ -70,7 +53,7 @@ fn of_scene<const D: usize>(
         })
     });
     let row = json!({
-        "scene": source.name, "nodes": nodes, "frames": call.frames, "substeps": world.blueprint().time.substeps,
+        "scene": source.name, "nodes": nodes, "frames": call.frames, "substeps": world.scene().time().substeps,
         "integrators": world.integrators(), "simd": world.simd().name(), "threads": 1,
         "milliseconds_per_frame": median(&times), "least_milliseconds": least, "mean_milliseconds": mean,
         "phases": phases, "calibration": machine,
@@ -84,7 +67,7 @@ fn of_scene<const D: usize>(
         source.name,
         counted(nodes as u64, "node", "nodes"),
         counted(call.frames.into(), "frame", "frames"),
-        counted(world.blueprint().time.substeps.into(), "substep", "substeps"),
+        counted(world.scene().time().substeps.into(), "substep", "substeps"),
         world.integrators().join(", "),
         median(&times),
     );

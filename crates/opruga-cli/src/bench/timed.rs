@@ -1,7 +1,6 @@
 //! Models that count the time that integrators spend in them: each stands in the registry before the one that it wraps.
 
 use super::processor_time;
-use opruga::Registry;
 use opruga::core::error::{BuildError, StepError};
 use opruga::core::potential::{
     CellState, Count, Definiteness, Ingredients, Model, Observe, Potential, Properties, Reading, Sink, Views,
@@ -10,6 +9,7 @@ use opruga::core::spec::Spec;
 use opruga::core::state::View;
 use opruga::core::tile::Tile;
 use opruga::math::{Simd, WIDTH};
+use opruga::{Registries, Registry};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -37,13 +37,15 @@ fn count<T>(to: &AtomicU64, work: impl FnOnce() -> T) -> T {
 }
 
 /// The models of the library, timed.
-pub(crate) fn registry<const D: usize>(spent: &Arc<Spent>) -> Registry<D> {
-    let library = Arc::new(Registry::<D>::default());
-    let mut out = Registry::default();
-    for spec in library.models() {
-        out.add_model(Box::new(TimedModel { library: Arc::clone(&library), spec, spent: Arc::clone(spent) }));
+pub(crate) fn registries(library: &Registries, spent: &Arc<Spent>) -> Registries {
+    fn timed<const D: usize>(library: &Arc<Registry<D>>, spent: &Arc<Spent>) -> Arc<Registry<D>> {
+        let mut out = Registry::default();
+        for spec in library.models() {
+            out.add_model(Box::new(TimedModel { library: Arc::clone(library), spec, spent: Arc::clone(spent) }));
+        }
+        Arc::new(out)
     }
-    out
+    Registries { plane: timed(&library.plane, spent), space: timed(&library.space, spent) }
 }
 
 struct TimedModel<const D: usize> {

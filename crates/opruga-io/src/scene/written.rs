@@ -40,8 +40,8 @@ pub fn kind_table(values: &Values, dimension: usize) -> InlineTable {
     table
 }
 
-/// A command as the scene file writes it, on the body of this name; none for what has no such form.
-pub fn command_table<const D: usize>(command: &CommandBlueprint<D>, body: &str) -> Option<Table> {
+/// A command as the file of a scene of so many dimensions writes it, on the body of this name; none for what has no such form.
+pub fn command_table(command: &CommandBlueprint<3>, dimension: usize, body: &str) -> Option<Table> {
     let mut table = Table::new();
     table.decor_mut().set_prefix("\n");
     if matches!(command.action, Action::Add(_)) {
@@ -52,7 +52,7 @@ pub fn command_table<const D: usize>(command: &CommandBlueprint<D>, body: &str) 
     if command.action.lasts() {
         table["until"] = toml_edit::value(command.until);
     }
-    let select = |select: &Selector<D>| match select {
+    let select = |select: &Selector<3>| match select {
         Selector::Nodes(nodes) => {
             let mut inline = InlineTable::new();
             inline.insert("nodes", Toml::Array(nodes.iter().map(|n| i64::from(*n)).collect()));
@@ -72,11 +72,12 @@ pub fn command_table<const D: usize>(command: &CommandBlueprint<D>, body: &str) 
             if let Some(stiffness) = stiffness {
                 table["stiffness"] = toml_edit::value(*stiffness);
             }
-            table["path"] = Item::Value(toml(&Value::Rows(path.clone())));
+            let rows = path.iter().map(|row| row[..row.len().min(1 + dimension)].to_vec()).collect();
+            table["path"] = Item::Value(toml(&Value::Rows(rows)));
         }
         Action::Push { select: nodes, force, .. } => {
             table["select"] = toml_edit::value(select(nodes)?);
-            table["force"] = toml_edit::value(numbers(force));
+            table["force"] = toml_edit::value(numbers(&force[..dimension]));
         }
         Action::Pin { select: nodes, .. } | Action::Free { select: nodes, .. } => {
             table["select"] = toml_edit::value(select(nodes)?)
@@ -87,11 +88,11 @@ pub fn command_table<const D: usize>(command: &CommandBlueprint<D>, body: &str) 
         }
         Action::Change { models, integrator, .. } => {
             if let Some(models) = models {
-                let list: Array = models.iter().map(|model| Toml::InlineTable(kind_table(model, D))).collect();
+                let list: Array = models.iter().map(|model| Toml::InlineTable(kind_table(model, dimension))).collect();
                 table["models"] = toml_edit::value(list);
             }
             if let Some(integrator) = integrator {
-                table["integrator"] = toml_edit::value(kind_table(integrator, D));
+                table["integrator"] = toml_edit::value(kind_table(integrator, dimension));
             }
         }
         Action::Remove { .. } | Action::Add(_) => {}

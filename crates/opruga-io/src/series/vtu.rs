@@ -46,9 +46,9 @@ pub(crate) fn wholes(out: &mut dyn Write, name: &str, values: &[i64]) -> io::Res
     array(out, "Int64", name, 1, &bytes)
 }
 
-/// Coordinates of all nodes, z zero in the plane.
-fn vectors<'a, const D: usize>(all: impl Iterator<Item = &'a [f64; D]>) -> Vec<f64> {
-    all.flat_map(|x| [x[0], x[1], x.get(2).copied().unwrap_or(0.0)]).collect()
+/// Coordinates of all nodes.
+fn vectors<'a>(all: impl Iterator<Item = &'a [f64; 3]>) -> Vec<f64> {
+    all.flatten().copied().collect()
 }
 
 /// Head and points of a file; the time [s] of a frame.
@@ -95,7 +95,7 @@ pub(crate) fn foot(out: &mut dyn Write) -> io::Result<()> {
 }
 
 /// Writes one frame: displacement [m] and velocity [m/s] of nodes; body, groups, values and fields of cells.
-pub(super) fn write<const D: usize>(out: &mut dyn Write, time: f64, shapes: &[Shape<'_, D>]) -> io::Result<()> {
+pub(super) fn write(out: &mut dyn Write, time: f64, shapes: &[Shape<'_>]) -> io::Result<()> {
     let elements = super::elements(shapes, true);
     let all = || elements.iter().enumerate().flat_map(|(body, e)| e.all.iter().map(move |e| (body, e)));
     let count = all().count();
@@ -105,9 +105,9 @@ pub(super) fn write<const D: usize>(out: &mut dyn Write, time: f64, shapes: &[Sh
     // Nodes.
     let mut displacements = Vec::new();
     for shape in shapes {
-        for (x, rest) in shape.positions.iter().zip(&shape.mesh.positions) {
-            let moved = |d: usize| if d < D { x[d] - (rest[d] + shape.translation[d]) } else { 0.0 };
-            displacements.extend([moved(0), moved(1), moved(2)]);
+        let translation = shape.body.translation();
+        for (x, rest) in shape.positions.iter().zip(shape.body.rest_positions()) {
+            displacements.extend((0..3).map(|d| x[d] - (rest[d] + translation[d])));
         }
     }
     writeln!(out, "<PointData>")?;
@@ -117,11 +117,11 @@ pub(super) fn write<const D: usize>(out: &mut dyn Write, time: f64, shapes: &[Sh
 
     // Cells: what a body does not have is not a number.
     wholes(out, "body", &all().map(|(body, _)| body as i64).collect::<Vec<i64>>())?;
-    let filled = |elements: &Elements, shape: &Shape<'_, D>| {
-        let own = shape.mesh.cells.len();
+    let filled = |elements: &Elements, shape: &Shape<'_>| {
+        let own = shape.body.cells().len();
         (own, elements.all.len() - own.min(elements.all.len()))
     };
-    let mut write_field = |name: &str, components: usize, of: &dyn Fn(&Shape<'_, D>) -> Option<Vec<f64>>| {
+    let mut write_field = |name: &str, components: usize, of: &dyn Fn(&Shape<'_>) -> Option<Vec<f64>>| {
         let mut values = Vec::with_capacity(count * components);
         for (own, shape) in elements.iter().zip(shapes) {
             let (cells, others) = filled(own, shape);
@@ -141,15 +141,15 @@ pub(super) fn write<const D: usize>(out: &mut dyn Write, time: f64, shapes: &[Sh
             own.map(|field| field.values.to_vec())
         })?;
     }
-    let names: BTreeSet<&String> = shapes.iter().flat_map(|s| s.mesh.cell_values.keys()).collect();
+    let names: BTreeSet<&String> = shapes.iter().flat_map(|s| s.body.cell_values().keys()).collect();
     for name in names {
-        write_field(name, 1, &|shape| shape.mesh.cell_values.get(name).cloned())?;
+        write_field(name, 1, &|shape| shape.body.cell_values().get(name).cloned())?;
     }
-    let names: BTreeSet<&String> = shapes.iter().flat_map(|s| s.mesh.cell_groups.keys()).collect();
+    let names: BTreeSet<&String> = shapes.iter().flat_map(|s| s.body.cell_groups().keys()).collect();
     for name in names {
         write_field(&format!("group {name}"), 1, &|shape| {
-            let mut member = vec![0.0; shape.mesh.cells.len()];
-            shape.mesh.cell_groups.get(name)?.iter().for_each(|cell| member[*cell as usize] = 1.0);
+            let mut member = vec![0.0; shape.body.cells().len()];
+            shape.body.cell_groups().get(name)?.iter().for_each(|cell| member[*cell as usize] = 1.0);
             Some(member)
         })?;
     }

@@ -7,6 +7,7 @@ use opruga_io::series::{Format, Shape, write_vtk_series};
 use opruga_io::tables::{FinalBody, NumberTable, Summary, write_final};
 use opruga_io::tracks::{Track, write_glb};
 use opruga_mesh::Mesh;
+use opruga_world::blueprint::{BodyBlueprint, Mass};
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -47,14 +48,14 @@ fn writers() -> Vec<(&'static str, Writer)> {
     let mut table = NumberTable::new(vec!["time".into(), "kinetic".into()]);
     (0..8).for_each(|k| table.push(&[f64::from(k), 1.0 / f64::from(k + 1)]));
     let checkpoint = Checkpoint { scene: "format = \"opruga-1\"\n".into(), payload: (0..200u8).collect() };
-    let positions: Vec<[f64; 2]> = (0..6).map(|k| [f64::from(k), 0.1]).collect();
+    let positions: Vec<[f64; 3]> = (0..6).map(|k| [f64::from(k), 0.1, 0.0]).collect();
     vec![
         ("diagnostics.csv", Box::new(move |out| table.write(out))),
         (
             "final.csv",
             Box::new(move |out| {
                 let body = FinalBody { name: "a", positions: &positions, velocities: &positions };
-                write_final(out, [body].into_iter())
+                write_final(out, 2, [body].into_iter())
             }),
         ),
         ("summary.json", Box::new(|out| Summary { scene: "ball".into(), ..Summary::default() }.write(out))),
@@ -72,24 +73,19 @@ fn exports() -> Vec<(String, Writer)> {
             all.push((format!("cube.{ending}"), Box::new(move |out| out.write_all(&bytes))));
         }
     }
+    let cube = BodyBlueprint::new("cube", mesh, Mass::Total(1.0), Vec::new());
     for format in [Format::Vtk, Format::Vtu, Format::Obj, Format::Ply] {
-        let mesh = mesh.clone();
+        let cube = cube.clone();
         let write = move |out: &mut dyn Write| {
-            let velocities = vec![[0.1; 3]; mesh.nodes()];
-            let shape = Shape {
-                name: "cube",
-                mesh: &mesh,
-                positions: &mesh.positions,
-                velocities: &velocities,
-                translation: [0.0; 3],
-                cell_fields: &[],
-            };
+            let velocities = vec![[0.1; 3]; cube.mesh.nodes()];
+            let positions = &cube.mesh.positions;
+            let shape = Shape { body: &cube, positions, velocities: &velocities, cell_fields: &[] };
             format.write(out, "a cube", 0.5, &[shape])
         };
         all.push((format!("frame.{}", format.ending()), Box::new(write)));
     }
-    let mut track = Track::new("cube", &mesh);
-    (0..2).for_each(|k| track.add(f64::from(k), &mesh.positions));
+    let mut track = Track::new(&cube);
+    (0..2).for_each(|k| track.add(f64::from(k), &cube.mesh.positions));
     let other = track.clone();
     all.push(("motion.pc2".into(), Box::new(move |out| other.write_pc2(out))));
     let other = track.clone();
@@ -361,8 +357,8 @@ fn damaged_checkpoints() {
 #[test]
 fn tables_keep_every_bit() {
     let mut out = Vec::new();
-    let body = FinalBody { name: "a", positions: &[[0.1, -2.0]], velocities: &[[1.0 / 3.0, 0.0]] };
-    write_final(&mut out, [body].into_iter()).expect("memory does not fail");
+    let body = FinalBody { name: "a", positions: &[[0.1, -2.0, 0.0]], velocities: &[[1.0 / 3.0, 0.0, 0.0]] };
+    write_final(&mut out, 2, [body].into_iter()).expect("memory does not fail");
     let text = String::from_utf8(out).expect("text");
     assert_eq!(
         text,

@@ -1,9 +1,9 @@
 //! Files that were dropped on the window or chosen.
 
 use super::Studio;
-use crate::dropping::Shape;
 use crate::hand::Arrived;
 use crate::session::Request;
+use crate::shape_file::Shape;
 use crate::shown::Shown;
 use egui::Ui;
 use std::time::Duration;

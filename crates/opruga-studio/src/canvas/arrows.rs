@@ -1,8 +1,7 @@
 //! Arrows over a scene of the plane, and the key to those of both dimensions: an arrow as long as it is drawn for a round value.
 
 use super::camera::Flat;
-use super::look::{Look, Paper};
-use super::plane::{colour, on_paper};
+use super::look::{Look, Paper, colour, on_paper};
 use crate::shown::Shown;
 use crate::words::Language;
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Vec2};

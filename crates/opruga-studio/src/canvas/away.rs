@@ -1,6 +1,6 @@
 //! What says where the bodies are when none of them is in sight.
 
-use super::plane::RUBBER;
+use super::look::RUBBER;
 use super::{Canvas, arrows};
 use crate::shown::Shown;
 use crate::words::Language;

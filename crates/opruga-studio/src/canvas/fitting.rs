@@ -191,7 +191,7 @@ mod tests {
         }
         assert!(canvas.flat.scale < first.scale, "it widens for a body that leaves it");
         let exploded =
-            crate::engine::Exploded { body: "ball".into(), integrator: "explicit_euler".into(), unstable: true };
+            crate::exploded::Exploded { body: "ball".into(), integrator: "explicit_euler".into(), unstable: true };
         let said = Said::Exploded(exploded);
         let text = said.to_string();
         let message = Message { number: 3, severity: Severity::Refused, said, text, offer: None, frame_seconds: None };

@@ -1,8 +1,7 @@
 //! The handles of a selected body, by which it is turned and scaled.
 
 use super::Canvas;
-use super::look::Paper;
-use super::plane::RUBBER;
+use super::look::{Paper, RUBBER};
 use super::tool::Tool;
 use crate::session::{Edit, Placed, Request};
 use crate::shown::Shown;

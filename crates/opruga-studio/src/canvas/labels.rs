@@ -1,7 +1,6 @@
 //! What is written beside bodies: their names, and the hint for the first pull. Nothing of it covers anything else that is written.
 
-use super::look::Paper;
-use super::plane::RUBBER;
+use super::look::{Paper, RUBBER};
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Vec2};
 
 /// Bodies up to which names keep off other bodies.

@@ -1,7 +1,6 @@
 //! The legend: what the colours of a scene mean.
 
-use super::look::Look;
-use super::plane::{colour, on_paper};
+use super::look::{Look, colour, on_paper};
 use crate::shown::Shown;
 use crate::words::Language;
 use egui::text::LayoutJob;

@@ -3,6 +3,9 @@
 use crate::shown::{Show, Shown};
 use egui::{Color32, Rect, Ui};
 
+/// The rubber line of a pull.
+pub(crate) const RUBBER: Color32 = Color32::from_rgb(214, 50, 100);
+
 /// What everything that is drawn needs.
 #[derive(Clone, Copy)]
 pub(crate) struct Look<'a> {
@@ -53,4 +56,14 @@ impl Paper {
             }
         }
     }
+}
+
+pub(super) fn colour([r, g, b]: [u8; 3]) -> Color32 {
+    Color32::from_rgb(r, g, b)
+}
+
+/// A colour that can be seen on the paper: on a dark one the dark ones are lifted, and their order stays.
+pub(super) fn on_paper(c: Color32, paper: &Paper) -> Color32 {
+    let lift = |x: u8| if paper.dark { (70.0 + f32::from(x) * (185.0 / 255.0)) as u8 } else { x };
+    Color32::from_rgb(lift(c.r()), lift(c.g()), lift(c.b()))
 }

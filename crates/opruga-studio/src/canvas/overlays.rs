@@ -1,15 +1,14 @@
 //! What is drawn over the scene: pins, pulls with their force, what the hand is doing, the hint for the first pull.
 
 use super::labels::{self, Named};
-use super::look::{Look, Paper};
+use super::look::{Look, RUBBER};
 use super::pick::Under;
 use super::tool::Tool;
 use super::{Canvas, Doing, handles, plane};
-use crate::shown::{Beside, Shown};
+use crate::shown::Shown;
 use crate::words::Language;
-use egui::{Align2, Color32, FontId, Galley, Painter, Pos2, Rect, Stroke, Vec2};
-use opruga::draw::{Lens, format_value};
-use std::sync::Arc;
+use egui::{Pos2, Rect, Stroke, Vec2};
+use opruga::draw::Lens;
 
 impl Canvas {
     /// The place of a point in the window; in space none behind the camera.
@@ -91,7 +90,7 @@ impl Canvas {
                 if let (Some(first), Some(last)) = (line.first(), line.last()) {
                     painter.line_segment([*last, *first], Stroke::new(1.0, paper.soft));
                 }
-                painter.line(line, Stroke::new(2.0, plane::RUBBER));
+                painter.line(line, Stroke::new(2.0, RUBBER));
             }
             _ => {}
         }
@@ -111,85 +110,4 @@ impl Canvas {
             labels::hint(painter, top, rect, self.tools, legend, language.drag_me());
         }
     }
-}
-
-/// What is written over two scenes: where, what, and in which colour.
-pub(super) struct Captions(Vec<(Rect, Arc<Galley>, Color32)>);
-
-impl Captions {
-    /// The room below a scene for them, and for the names of its lowest bodies above them: next to one another, one above the other
-    /// [points].
-    pub(super) const FOOT: [f32; 2] = [46.0, 32.0];
-
-    /// What the two scenes are, how far they are from one another, and why the second one has stopped. The lower one of two, which has
-    /// no tools above it, has it there, beside its legend.
-    pub(super) fn of(
-        painter: &Painter,
-        paper: &Paper,
-        [first, second]: [Rect; 2],
-        legend: Option<Rect>,
-        beside: &Beside,
-        language: Language,
-    ) -> Captions {
-        let mut all = Vec::new();
-        let below = second.top() > first.top();
-        // Beside the legend, which the lower ones do not reach where the scenes stand next to one another.
-        let free = legend.map_or(second.right(), |legend| legend.left());
-        let beside_legend = (free - second.left() - 30.0).max(40.0);
-        let room = if below { beside_legend } else { (second.width() - 40.0).max(40.0) };
-        let mut caption = |spot: Pos2, align: Align2, text: String, ink: Color32, room: f32| {
-            let galley = painter.layout(text, FontId::proportional(12.5), ink, room);
-            let place = align.anchor_size(spot, galley.size());
-            all.push((place, galley, ink));
-            place
-        };
-        let low = |rect: Rect| rect.center_bottom() - Vec2::new(0.0, 8.0);
-        caption(low(first), Align2::CENTER_BOTTOM, language.as_it_is().into(), paper.ink, room);
-        let words: Vec<String> = beside.differences.iter().map(|difference| language.difference(difference)).collect();
-        let words = if words.is_empty() { language.no_difference().into() } else { words.join(", ") };
-        let far = match (beside.distances, beside.center) {
-            (Some([mean, largest]), _) => {
-                let [mean, largest] = [mean, largest].map(format_value);
-                format!("\n{} {mean} m, {} {largest} m", language.mean_distance(), language.largest_distance())
-            }
-            // Where the nodes are others, their distances are none.
-            (None, Some(far)) => format!("\n{} {} m", language.center_distance(), format_value(far)),
-            (None, None) => String::new(),
-        };
-        let high = second.left_top() + Vec2::new(14.0, 10.0);
-        let (spot, align) = if below { (high, Align2::LEFT_TOP) } else { (low(second), Align2::CENTER_BOTTOM) };
-        let told = caption(spot, align, format!("{words}{far}"), paper.ink, room);
-        if let Some(reason) = &beside.stopped {
-            let text = format!("{}\n{}", language.right_stopped(), language.detail(reason));
-            let middle = Pos2::new(0.5 * (second.left() + free), second.top() + 70.0);
-            let under = Pos2::new(told.left(), told.bottom() + 12.0);
-            let (spot, align) = if below { (under, Align2::LEFT_TOP) } else { (middle, Align2::CENTER_TOP) };
-            caption(spot, align, text, Color32::from_rgb(230, 110, 60), beside_legend);
-        }
-        Captions(all)
-    }
-
-    /// What they take.
-    pub(super) fn places(&self) -> Vec<Rect> {
-        self.0.iter().map(|(place, ..)| ground(*place)).collect()
-    }
-
-    /// Writes them, and draws the line between the two scenes.
-    pub(super) fn paint(self, painter: &Painter, paper: &Paper, [first, second]: [Rect; 2]) {
-        let border = Stroke::new(1.5, paper.solid_edge);
-        if second.left() > first.left() {
-            painter.vline(second.left(), second.y_range(), border);
-        } else {
-            painter.hline(second.x_range(), second.top(), border);
-        }
-        for (place, galley, ink) in self.0 {
-            painter.rect_filled(ground(place), 5.0, paper.background.gamma_multiply(0.85));
-            painter.galley(place.min, galley, ink);
-        }
-    }
-}
-
-/// What is behind a caption.
-fn ground(place: Rect) -> Rect {
-    place.expand2(Vec2::new(7.0, 4.0))
 }

@@ -3,32 +3,20 @@
 use super::arrows::{self, Longest};
 use super::brush::Brush;
 use super::camera::Flat;
+use super::captions::Captions;
 use super::detail::{Detail, apart, corners};
 use super::labels::{self, Named};
-use super::look::{Look, Paper};
+use super::look::{Look, Paper, RUBBER, colour, on_paper};
 use super::outlines::{Outlines, Part, fill};
-use super::overlays::Captions;
 use egui::{Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke, Vec2};
 use opruga::core::spec::Role;
 use opruga::draw::{BODIES, BodyPicture, ColliderPicture, ColourMap, Facets, format_value, nice_length};
 
-/// The rubber line of a pull.
-pub(crate) const RUBBER: Color32 = Color32::from_rgb(214, 50, 100);
 /// Lines of a crowd up to which they are drawn with soft borders.
 const SOFT_EDGES: usize = 6_000;
 /// The opacity of what fills an outline, and of cells.
 const FILLED: f32 = 0.34;
 const FILLED_CELLS: f32 = 0.62;
-
-pub(super) fn colour([r, g, b]: [u8; 3]) -> Color32 {
-    Color32::from_rgb(r, g, b)
-}
-
-/// A colour that can be seen on the paper: on a dark one the dark ones are lifted, and their order stays.
-pub(super) fn on_paper(c: Color32, paper: &Paper) -> Color32 {
-    let lift = |x: u8| if paper.dark { (70.0 + f32::from(x) * (185.0 / 255.0)) as u8 } else { x };
-    Color32::from_rgb(lift(c.r()), lift(c.g()), lift(c.b()))
-}
 
 /// The colours of a node: where surfaces are filled, and of lines.
 #[derive(Clone, Copy, Debug, Default)]

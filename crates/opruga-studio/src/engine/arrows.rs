@@ -1,6 +1,6 @@
 //! The picture of a world, and arrows over it.
 
-use super::{Living, has_drawings, three};
+use super::{Engine, Living, has_drawings};
 use crate::normals::normals;
 use crate::shown::Show;
 use opruga::draw::{ArrowKind, ArrowPicture, Facets};
@@ -9,23 +9,24 @@ use opruga::pictures::{Quantity, Scenery};
 /// Bodies up to which arrows are drawn: those of more could not be told apart.
 const MOST_WITH_ARROWS: usize = 64;
 
-impl<const D: usize> Living<D> {
+impl Living {
     /// What there is to see.
     pub(super) fn picture(&mut self, show: &Show) -> opruga::draw::Picture {
-        let bodies = self.world.blueprint().bodies.len();
+        let bodies = self.world.scene().body_count();
         if bodies != self.known {
-            (self.scenery, self.known) = (Scenery::new(&self.world), bodies);
+            (self.scenery, self.known) = (Scenery::new(&*self.world), bodies);
         }
-        let as_drawn = show.own_colours && has_drawings(&self.world);
+        let as_drawn = show.own_colours && has_drawings(&*self.world);
         let quantity = if as_drawn { Quantity::Plain } else { show.quantity };
-        let moment = self.scenery.capture_quantity(&mut self.world, show.arrows, quantity);
+        let moment = self.scenery.capture_quantity(&mut *self.world, show.arrows, quantity);
         let mut picture = self.scenery.picture(&moment);
         if let Some(legend) = &mut picture.legend {
             legend.map = show.map;
         }
+        let flat = self.dimension() == 2;
         if !show.springs {
             picture.bodies.iter_mut().for_each(|body| {
-                if D == 2 && !body.cells.is_empty() || !matches!(&body.facets, Facets::Edges(e) if e.is_empty()) {
+                if flat && !body.cells.is_empty() || !matches!(&body.facets, Facets::Edges(e) if e.is_empty()) {
                     body.segments.clear();
                 }
             });
@@ -42,32 +43,30 @@ impl<const D: usize> Living<D> {
 
     /// The arrows that a person wants to see, and the nodes that are held now: those of the scene may have been freed.
     pub(super) fn add_arrows(&mut self, picture: &mut opruga::draw::Picture, show: &Show) {
-        let living: Vec<usize> = self.world.bodies().collect();
+        let living = self.world.bodies();
         if living.len() > MOST_WITH_ARROWS {
             return;
         }
         let mut arrows = Vec::new();
         for (place, &body) in living.iter().enumerate() {
-            let nodes = self.world.node_count(body) as u32;
+            let nodes = self.world.node_count(body);
             if let Some(seen) = picture.bodies.get_mut(place).filter(|seen| !seen.pinned.is_empty()) {
-                seen.pinned = self.world.held_nodes(body);
+                seen.pinned = self.world.pinned_now(body);
             }
             let forces = if show.contacts { self.world.contact_forces(body) } else { Vec::new() };
-            let at = |node: u32| three(self.world.position(body, node));
-            let some = (0..nodes).step_by((nodes / 40).max(1) as usize);
+            let (x, v) = (self.world.positions(body), self.world.velocities(body));
+            let some = (0..nodes).step_by((nodes / 40).max(1));
             if show.velocities {
-                arrows.extend(
-                    some.clone().map(|node| (ArrowKind::Velocity, at(node), three(self.world.velocity(body, node)))),
-                );
+                arrows.extend(some.clone().map(|node| (ArrowKind::Velocity, x.at(node), v.at(node))));
             }
             if show.normals
-                && let Some(seen) = picture.bodies.get(place).filter(|seen| seen.positions.len() == nodes as usize)
+                && let Some(seen) = picture.bodies.get(place).filter(|seen| seen.positions.len() == nodes)
             {
                 let normals = normals(seen);
-                arrows.extend(some.map(|node| (ArrowKind::Normal, at(node), normals[node as usize])));
+                arrows.extend(some.map(|node| (ArrowKind::Normal, x.at(node), normals[node])));
             }
             let pressed = forces.into_iter().enumerate().filter(|(_, force)| force.iter().any(|f| *f != 0.0));
-            arrows.extend(pressed.map(|(node, force)| (ArrowKind::Contact, at(node as u32), three(force))));
+            arrows.extend(pressed.map(|(node, force)| (ArrowKind::Contact, x.at(node), force)));
         }
         let arrows = arrows.into_iter().filter(|(_, _, vector)| vector.iter().all(|c| c.is_finite()));
         picture.arrows.extend(arrows.map(|(kind, from, vector)| ArrowPicture { kind, from, vector }));

@@ -1,7 +1,8 @@
 //! Bodies that have left every measure: long before their positions lose digits there is nothing to be seen of them.
 
-use super::{Living, three};
-use opruga::World;
+use super::Living;
+use crate::exploded::Exploded;
+use opruga::{AnyBody, AnyWorld};
 
 /// A body that is larger than this many times the scene has exploded [1]. A body that a person pulls, or that gas inflates, comes to
 /// a few times its size; one that is torn apart by a step that is too long grows by a factor with every substep, so that the bound
@@ -10,28 +11,6 @@ const LARGEST: f64 = 100.0;
 
 /// What the world calls a step that is too long, or a rule without a stable one.
 const STEPS: [&str; 3] = ["step.unstable", "step.no_stable_step", "step.outgrown"];
-
-/// A body that has exploded.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Exploded {
-    /// The body.
-    pub body: String,
-    /// The kind of its integrator.
-    pub integrator: String,
-    /// Whether that integrator is unstable at this step, as far as the world can tell.
-    pub unstable: bool,
-}
-
-/// What is said of it beside the other scene, in the words of the world: a kind in quotes.
-impl core::fmt::Display for Exploded {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        let Exploded { body, integrator, unstable } = self;
-        match unstable {
-            true => write!(f, "`{body}` exploded: `{integrator}` is unstable at this step"),
-            false => write!(f, "`{body}` exploded: it is more than 100 times as large as the scene was"),
-        }
-    }
-}
 
 /// The longest side of the box around points [m]; 0 where there are none.
 fn longest_side(points: impl Iterator<Item = [f64; 3]>) -> f64 {
@@ -44,34 +23,30 @@ fn longest_side(points: impl Iterator<Item = [f64; 3]>) -> f64 {
     ends.iter().map(|[low, high]| high - low).fold(0.0, f64::max)
 }
 
-fn positions<const D: usize>(world: &World<D>, body: usize) -> impl Iterator<Item = [f64; 3]> {
-    (0..world.node_count(body) as u32).map(move |node| three(world.position(body, node)))
-}
-
 /// The longest side of the box around all bodies [m].
-pub(super) fn size_of<const D: usize>(world: &World<D>) -> f64 {
-    longest_side(world.bodies().flat_map(|body| positions(world, body)))
+pub(super) fn size_of(world: &dyn AnyWorld) -> f64 {
+    longest_side(world.bodies().into_iter().flat_map(|body| world.positions(body).iter()))
 }
 
-impl<const D: usize> Living<D> {
+impl Living {
     /// The first body that has exploded.
     pub(super) fn first_exploded(&mut self) -> Option<Exploded> {
         let exploded = |body: &usize| {
-            let size = longest_side(positions(&self.world, *body));
+            let size = longest_side(self.world.positions(*body).iter());
             if size <= LARGEST * self.size {
                 return false;
             }
             // What came later may be larger than everything was at the start; what has no size cannot be measured.
-            let at_rest = longest_side(self.world.blueprint().bodies[*body].mesh.positions.iter().copied().map(three));
+            let at_rest = self.world.scene().body(*body).map_or_else(Vec::new, AnyBody::rest_positions);
+            let at_rest = longest_side(at_rest.into_iter());
             let scene = self.size.max(at_rest);
             scene > 0.0 && size > LARGEST * scene
         };
-        let body = self.world.bodies().find(exploded)?;
+        let number = self.world.bodies().into_iter().find(exploded)?;
         self.world.look_at_steps_again();
-        let blueprint = self.world.blueprint();
-        let own = blueprint.bodies[body].integrator.as_ref();
-        let integrator = own.unwrap_or(&blueprint.integrator).kind().to_string();
+        let body = self.world.scene().body(number)?;
+        let integrator = body.integrator().unwrap_or(self.world.scene().integrator()).kind().to_string();
         let unstable = self.world.warnings().iter().any(|warning| STEPS.contains(&warning.code.as_str()));
-        Some(Exploded { body: blueprint.bodies[body].name.clone(), integrator, unstable })
+        Some(Exploded { body: body.name().to_string(), integrator, unstable })
     }
 }

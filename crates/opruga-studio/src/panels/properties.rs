@@ -6,7 +6,6 @@ use crate::session::{Edit, Placed, Request};
 use crate::shown::{BodyShown, Shown};
 use crate::words::{Language, Part};
 use egui::{Button, CollapsingHeader, Color32, ComboBox, Pos2, RichText, ScrollArea, Sense, Slider, Stroke, Ui, Vec2};
-use opruga::Registry;
 use opruga::core::spec::{Allowed, Spec, Value, Values};
 use opruga::world::schema::MOST_SUBSTEPS;
 
@@ -35,8 +34,8 @@ struct Kinds {
 impl Kinds {
     fn of(dimension: usize) -> Kinds {
         let there = |list: Vec<&'static Spec>| list.into_iter().filter(|s| s.dimensions.contains(&dimension)).collect();
-        let registry = Registry::<2>::default();
-        Kinds { models: there(registry.models()), integrators: there(registry.integrators()), dimension }
+        let catalogue = opruga::catalogue();
+        Kinds { models: there(catalogue.models), integrators: there(catalogue.integrators), dimension }
     }
 }
 

@@ -5,7 +5,7 @@ use crate::work;
 use opruga::draw::{View, draw_scene};
 use opruga::io::scene;
 use opruga::pictures::Scenery;
-use opruga::{Options, World, blueprint::AnyBlueprint};
+use opruga::{AnyWorld, Options};
 
 /// The size of a picture in pixels.
 pub(super) const SIZE: [u32; 2] = [256, 160];
@@ -20,23 +20,21 @@ pub(super) async fn draw(name: &str) -> Option<Pixels> {
     let options = scene::Options { files: opruga::scenes::files(), ..scene::Options::default() };
     let text = opruga::scenes::find(name)?;
     let (blueprint, _) = scene::read(text.as_bytes(), name, &opruga::catalogue(), &options).ok()?;
-    match blueprint {
-        AnyBlueprint::Plane(blueprint) => picture(World::new(blueprint, Options::default()).ok()?).await,
-        AnyBlueprint::Space(blueprint) => picture(World::new(blueprint, Options::default()).ok()?).await,
-    }
+    picture(blueprint.build(Options::default()).ok()?).await
 }
 
-async fn picture<const D: usize>(mut world: World<D>) -> Option<Pixels> {
-    let nodes: u64 = world.bodies().map(|body| world.node_count(body) as u64).sum();
-    let frames = (0.25 * world.blueprint().time.seconds / world.blueprint().time.frame) as u64;
-    if nodes * frames * u64::from(world.blueprint().time.substeps) <= WORK {
+async fn picture(mut world: Box<dyn AnyWorld>) -> Option<Pixels> {
+    let nodes: u64 = world.bodies().into_iter().map(|body| world.node_count(body) as u64).sum();
+    let time = world.scene().time();
+    let frames = (0.25 * time.seconds / time.frame) as u64;
+    if nodes * frames * u64::from(time.substeps) <= WORK {
         for _ in 0..frames {
             work::breathe().await;
             world.frame().ok()?;
         }
     }
-    let scenery = Scenery::new(&world);
-    let moment = scenery.capture(&mut world, false);
+    let scenery = Scenery::new(&*world);
+    let moment = scenery.capture(&mut *world, false);
     let mut picture = scenery.picture(&moment);
     picture.bodies.iter_mut().for_each(|body| body.label.clear());
     let view = View::fit([&picture]).ok()?;

@@ -6,8 +6,8 @@
 
 use super::Session;
 use super::travel::Past;
+use crate::document::read;
 use crate::document::{add_table, kind_table, numbers, toml};
-use crate::pair::read;
 use crate::said::{Said, Step};
 use crate::shown::Severity;
 use opruga::core::spec::{Value, Values};

@@ -2,7 +2,7 @@
 
 use super::Session;
 use super::edits::shift;
-use crate::pair::read;
+use crate::document::read;
 use opruga::draw::ColliderPicture;
 use toml_edit::InlineTable;
 

@@ -29,13 +29,13 @@ pub use pointer::Grip;
 
 use crate::differences::{Difference, add_difference};
 use crate::document::Document;
-use crate::dropping::Shape;
 use crate::engine::Engine;
 use crate::keyframes::Keyframes;
 use crate::pacing::Pacing;
 use crate::pair;
 use crate::said::Said;
 use crate::samples::Samples;
+use crate::shape_file::Shape;
 use crate::shown::{Message, Offer, Severity, Show};
 use crate::words::Language;
 use opruga::core::spec::{Value, Values};

@@ -1,18 +1,17 @@
 //! What is offered where something was refused or a motion has ended, and what becomes of it where a person accepts.
 
 use super::{Edit, Request, Session};
-use crate::document::Document;
-use crate::pair::read;
+use crate::document::{Document, read};
 use crate::said::Said;
 use crate::shown::{Offer, Severity, Shown};
+use opruga::WorldError;
 use opruga::core::spec::{Role, Spec, Value, Values};
 use opruga::io::Files;
 use opruga::world::schema::MOST_SUBSTEPS;
-use opruga::{Registry, WorldError};
 
 /// The integrator that is offered instead of one without a stable step: it costs as little.
 pub fn steady() -> Option<&'static Spec> {
-    Registry::<2>::default().integrator_with(Role::OfferedExplicit).map(|kind| kind.spec())
+    opruga::catalogue().integrators.into_iter().find(|spec| spec.has_role(Role::OfferedExplicit))
 }
 
 /// What a frame may take before a person is told of it [s].

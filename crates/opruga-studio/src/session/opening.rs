@@ -3,9 +3,9 @@
 use super::offers::with_a_margin;
 use super::{Edit, Session};
 use crate::document::Document;
-use crate::dropping::Shape;
 use crate::handing::named_files;
 use crate::said::{Said, Step};
+use crate::shape_file::Shape;
 use crate::shown::Severity;
 use opruga::core::spec::Value;
 use opruga::io::Files;

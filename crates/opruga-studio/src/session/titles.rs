@@ -1,6 +1,6 @@
 //! The names by which a person knows bodies: one that was set down anew has another in the scene.
 
-use crate::engine::Exploded;
+use crate::exploded::Exploded;
 use crate::said::Said;
 use opruga::WorldError;
 

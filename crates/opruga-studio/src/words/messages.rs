@@ -2,7 +2,7 @@
 
 use super::{Language, Part, details, scene_errors};
 use crate::differences::Difference;
-use crate::engine::Exploded;
+use crate::exploded::Exploded;
 use crate::said::{Said, Step};
 use opruga::WorldError;
 use opruga::core::spec::Value;

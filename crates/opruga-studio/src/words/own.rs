@@ -12,7 +12,7 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
 #[cfg(test)]
 mod tests {
     use super::super::{Language, details};
-    use crate::engine::Exploded;
+    use crate::exploded::Exploded;
     use crate::said::Said;
 
     #[test]

@@ -5,15 +5,14 @@
 mod quantity;
 mod rest;
 
-use crate::World;
-use crate::blueprint::{BodyBlueprint, PinBlueprint};
 use crate::collide::Picture as Placed;
 use crate::core::potential::Account;
 use crate::draw::{
     AreaPicture, ArrowKind, ArrowPicture, BodyPicture, ColliderPicture, Facets, Picture, PullPicture, RestPicture,
     Sight,
 };
-use crate::mesh::{EdgeSet, Mesh, Skin, triangle_parts};
+use crate::mesh::{Skin, triangle_parts};
+use crate::{AnyBody, AnyWorld};
 use opruga_core::spec::Role;
 pub use quantity::Quantity;
 use quantity::{push_quantity, strain};
@@ -87,101 +86,82 @@ pub struct Moment {
     arrows: Vec<ArrowPicture>,
 }
 
-fn three<const D: usize>(x: [f64; D]) -> [f64; 3] {
-    let mut out = [0.0; 3];
-    out[..D].copy_from_slice(&x);
-    out
-}
-
 impl Scenery {
     /// Looks at the bodies of a world, and at those that its commands will add.
-    pub fn new<const D: usize>(world: &World<D>) -> Scenery {
-        let (present, pictured) = (&world.blueprint().bodies, world.blueprint().picture);
-        let many = present.len() > 64;
+    pub fn new(world: &dyn AnyWorld) -> Scenery {
+        let (scene, pictured) = (world.scene(), world.scene().pictured());
+        let (present, flat) = (scene.body_count(), scene.dimension() == 2);
+        let many = present > 64;
         // A body alone is told by the title, and copies have no names that say anything.
-        let named = (2..=8).contains(&present.len()) && present.iter().all(|b| !b.name.contains('['));
-        let fixed = |(place, blueprint): (usize, &BodyBlueprint<D>)| {
-            let mesh = &blueprint.mesh;
-            let edges = mesh.edges(EdgeSet::All);
+        let named = (2..=8).contains(&present) && scene.bodies().all(|body| !body.name().contains('['));
+        let fixed = |(number, body): (usize, &dyn AnyBody)| {
+            let positions = body.rest_positions();
+            let edges = body.edges();
             let length = |e: &[u32; 2]| {
-                let (a, b) = (mesh.positions[e[0] as usize], mesh.positions[e[1] as usize]);
+                let (a, b) = (positions[e[0] as usize], positions[e[1] as usize]);
                 a.iter().zip(&b).map(|(p, q)| (p - q) * (p - q)).sum::<f64>().sqrt()
             };
             // In a crowd the marks of pins would hide the bodies.
-            let pins: &[PinBlueprint<D>] = if many { &[] } else { &blueprint.pins };
-            let mut pinned: Vec<u32> =
-                pins.iter().flat_map(|p| p.select.resolve(mesh, &blueprint.translation)).collect();
-            pinned.sort_unstable();
-            pinned.dedup();
-            let surface: Vec<[u32; 3]> = if D == 3 {
-                mesh.facets.iter().map(|f| [f[0], f[1], f[D - 1]]).chain(mesh.sheets.iter().copied()).collect()
-            } else {
-                Vec::new()
-            };
-            let mut cells = mesh.cells.triangles.clone();
-            for q in &mesh.cells.quadrilaterals {
-                cells.extend([[q[0], q[1], q[2]], [q[0], q[2], q[3]]]);
-            }
-            cells.extend(mesh.cells.quadratic_triangles.iter().flat_map(triangle_parts));
+            let pinned = if many { Vec::new() } else { body.pinned_nodes() };
             let edges_length: f64 = edges.iter().map(length).sum();
             let side = |axis: usize| {
-                let places = || mesh.positions.iter().map(move |position| position[axis]);
+                let places = || positions.iter().map(move |position| position[axis]);
                 places().fold(f64::NEG_INFINITY, f64::max) - places().fold(f64::INFINITY, f64::min)
             };
-            let facets = if D == 2 {
-                Facets::Edges(mesh.facets.iter().map(|f| [f[0], f[1]]).collect())
+            let facets = if flat {
+                Facets::Edges(body.facets().as_chunks().0.to_vec())
             } else {
-                Facets::Triangles(surface)
+                Facets::Triangles([body.facets().as_chunks().0, body.sheets()].concat())
             };
-            let integrator = blueprint.integrator.as_ref().unwrap_or(&world.blueprint().integrator);
-            let rest = if is_shown(blueprint, integrator.kind()) {
-                let at = |x: &[f64; D]| three::<D>(core::array::from_fn(|d| x[d] + blueprint.translation[d]));
-                rest_lines(&facets, mesh.positions.iter().map(at).collect())
+            let rest = if is_shown(body, scene.integrator()) {
+                let translation = body.translation();
+                let at = |x: &[f64; 3]| core::array::from_fn(|d| x[d] + translation[d]);
+                rest_lines(&facets, positions.iter().map(at).collect())
             } else {
                 RestPicture::default()
             };
+            let arrows = if present <= MOST_BODIES { MOST_ARROWS[usize::from(!flat)] } else { 0 };
             Fixed {
-                generation: world.handle(place).map(|handle| handle.generation),
-                extent: (0..D).map(side).fold(0.0, f64::max),
+                generation: world.handle(number).map(|handle| handle.generation),
+                extent: (0..scene.dimension()).map(side).fold(0.0, f64::max),
                 rest,
                 node_spacing: edges_length / edges.len().max(1) as f64,
-                nodes: mesh.nodes(),
+                nodes: positions.len(),
+                segments: if many || !flat && !body.facets().is_empty() {
+                    body.wires().to_vec()
+                } else {
+                    edges.clone()
+                },
                 facets,
-                segments: if many || D == 3 && !mesh.facets.is_empty() { mesh.wires.clone() } else { edges.clone() },
-                cells: if D == 2 { cells } else { Vec::new() },
+                cells: if flat { triangles(body) } else { Vec::new() },
                 edges: edges.iter().map(|e| (*e, length(e))).collect(),
-                nodes_drawn: world.blueprint().bodies.len() <= 2 && mesh.nodes() <= 64,
+                nodes_drawn: present <= 2 && positions.len() <= 64,
                 pinned,
-                label: if named { blueprint.name.clone() } else { String::new() },
-                thickness: if D == 2 { blueprint.thickness } else { 1.0 },
-                arrow_nodes: if present.len() <= MOST_BODIES { spread(mesh, MOST_ARROWS[D - 2]) } else { Vec::new() },
-                skin: mesh.skin.clone(),
+                label: if named { body.name().to_string() } else { String::new() },
+                thickness: if flat { body.thickness() } else { 1.0 },
+                arrow_nodes: spread(&positions, arrows),
+                skin: body.skin().cloned(),
                 springs: None,
             }
         };
         Scenery {
-            dimension: D as u8,
-            title: world.blueprint().title.clone(),
-            bodies: present.iter().chain(world.coming_bodies()).enumerate().map(fixed).collect(),
+            dimension: scene.dimension() as u8,
+            title: scene.title().to_string(),
+            bodies: scene.bodies().chain(world.coming_bodies()).enumerate().map(fixed).collect(),
             y_down: y_down(world),
-            length_unit: world.blueprint().length_unit.clone(),
-            credit: world.blueprint().credit.clone(),
-            sight: Sight {
-                region: pictured.region.map(|corners| corners.map(three)),
-                azimuth: pictured.azimuth,
-                elevation: pictured.elevation,
-            },
+            length_unit: scene.length_unit().to_string(),
+            credit: scene.credit().to_string(),
+            sight: Sight { region: pictured.region, azimuth: pictured.azimuth, elevation: pictured.elevation },
             panels: pictured.panels,
-            quantity: Quantity::of(present),
+            quantity: Quantity::of(scene),
         }
     }
 
     /// Draws every spring and every node that it holds, and the body itself instead of a skin.
-    pub fn show_springs<const D: usize>(&mut self, world: &World<D>) {
-        let bodies = world.blueprint().bodies.iter().chain(world.coming_bodies());
-        for (fixed, body) in self.bodies.iter_mut().zip(bodies) {
+    pub fn show_springs(&mut self, world: &dyn AnyWorld) {
+        for (number, fixed) in self.bodies.iter_mut().enumerate() {
             // A body that no model can carry is told when it comes.
-            fixed.springs = world.springs(body).ok();
+            fixed.springs = world.springs_of(number);
         }
     }
 
@@ -197,12 +177,12 @@ impl Scenery {
 
     /// Keeps what a world looks like now; with arrows also pulls, and the pressure on the bodies with gas [Pa] or the
     /// force on the nodes of the others [N].
-    pub fn capture<const D: usize>(&self, world: &mut World<D>, arrows: bool) -> Moment {
+    pub fn capture(&self, world: &mut dyn AnyWorld, arrows: bool) -> Moment {
         self.capture_quantity(world, arrows, self.quantity)
     }
 
     /// As [`Scenery::capture`], with another quantity for the colours.
-    pub fn capture_quantity<const D: usize>(&self, world: &mut World<D>, arrows: bool, quantity: Quantity) -> Moment {
+    pub fn capture_quantity(&self, world: &mut dyn AnyWorld, arrows: bool, quantity: Quantity) -> Moment {
         let (mut coordinates, mut scalars) = (Vec::new(), Vec::new());
         // A body that has taken the place of one of these since is unknown here.
         let known = |body: &usize| {
@@ -212,45 +192,42 @@ impl Scenery {
                 _ => fixed.nodes == world.node_count(*body),
             })
         };
-        let bodies: Vec<usize> = world.bodies().filter(known).collect();
+        let bodies: Vec<usize> = world.bodies().into_iter().filter(known).collect();
         for &body in &bodies {
             let fixed = &self.bodies[body];
-            let positions: Vec<[f64; 3]> = (0..fixed.nodes as u32).map(|n| three(world.position(body, n))).collect();
-            coordinates.extend(positions.iter().flat_map(|position| position[..D].iter().map(|c| *c as f32)));
+            let positions: Vec<[f64; 3]> = world.positions(body).iter().collect();
+            let dimension = usize::from(self.dimension);
+            coordinates.extend(positions.iter().flat_map(|position| position[..dimension].iter().map(|c| *c as f32)));
             match quantity {
                 Quantity::Strain => scalars.extend(strain(fixed, &positions).into_iter().map(|s| s as f32)),
                 _ => push_quantity(world, body, fixed.nodes, quantity, &mut scalars),
             }
         }
-        let pulls: Vec<PullPicture> = world
-            .pulls()
-            .into_iter()
-            .map(|(node, pointer, _)| PullPicture { node: three(node), pointer: three(pointer) })
-            .collect();
+        let present = world.pulls();
+        let pulls = present.iter().map(|[node, pointer, _]| PullPicture { node: *node, pointer: *pointer }).collect();
         let mut drawn = Vec::new();
         if arrows {
             if bodies.len() <= MOST_BODIES {
                 bodies.iter().for_each(|&body| self.push_arrows(world, body, &mut drawn));
             }
-            for (node, _, force) in world.pulls() {
-                drawn.push(ArrowPicture { kind: ArrowKind::Pull, from: three(node), vector: three(force) });
-            }
+            let pull =
+                |[node, _, force]: [[f64; 3]; 3]| ArrowPicture { kind: ArrowKind::Pull, from: node, vector: force };
+            drawn.extend(present.into_iter().map(pull));
         }
-        let colliders =
-            world.colliders().map_or_else(Vec::new, |c| c.pictures(world.time()).into_iter().map(collider).collect());
+        let colliders = world.obstacles().into_iter().map(collider).collect();
         Moment { time: world.time(), coordinates, quantity, scalars, bodies, pulls, colliders, arrows: drawn }
     }
 
     /// Adds the arrows of a body: the pressure of its gas at some of its nodes, or without gas the force on them.
-    fn push_arrows<const D: usize>(&self, world: &mut World<D>, body: usize, arrows: &mut Vec<ArrowPicture>) {
+    fn push_arrows(&self, world: &mut dyn AnyWorld, body: usize, arrows: &mut Vec<ArrowPicture>) {
         let fixed = &self.bodies[body];
-        let gas = world.blueprint().bodies[body].models.iter().any(|model| model.spec().has_role(Role::Gas));
-        let mut forces = world.node_forces(body, gas.then_some(Account::Gas));
+        let gas = world.scene().body(body).is_some_and(|body| body.has_role(Role::Gas));
+        let mut forces = world.forces(body, gas.then_some(Account::Gas));
+        let positions: Vec<[f64; 3]> = world.positions(body).iter().collect();
         let kind = if gas {
             // The force on a node over the surface that belongs to it.
-            let positions: Vec<[f64; 3]> = (0..fixed.nodes as u32).map(|n| three(world.position(body, n))).collect();
             for (force, surface) in forces.iter_mut().zip(surfaces(fixed, &positions)) {
-                *force = if surface > 0.0 { force.map(|f| f / surface) } else { [0.0; D] };
+                *force = if surface > 0.0 { force.map(|f| f / surface) } else { [0.0; 3] };
             }
             ArrowKind::Pressure
         } else {
@@ -258,7 +235,7 @@ impl Scenery {
         };
         for &node in &fixed.arrow_nodes {
             if let Some(force) = forces.get(node as usize).filter(|force| force.iter().any(|f| *f != 0.0)) {
-                arrows.push(ArrowPicture { kind, from: three(world.position(body, node)), vector: three(*force) });
+                arrows.push(ArrowPicture { kind, from: positions[node as usize], vector: *force });
             }
         }
     }
@@ -316,6 +293,17 @@ impl Scenery {
     }
 }
 
+/// The triangles that fill the cells of a body in a plane.
+fn triangles(body: &dyn AnyBody) -> Vec<[u32; 3]> {
+    let cells = body.cells();
+    let mut triangles = cells.triangles.clone();
+    for q in &cells.quadrilaterals {
+        triangles.extend([[q[0], q[1], q[2]], [q[0], q[2], q[3]]]);
+    }
+    triangles.extend(cells.quadratic_triangles.iter().flat_map(triangle_parts));
+    triangles
+}
+
 /// The skin that a body carries, coloured as the nodes that carry it.
 fn skinned(skin: &Skin, positions: &[[f64; 3]], scalar: &[f64], label: &str) -> BodyPicture {
     BodyPicture {
@@ -350,13 +338,13 @@ fn areas(skin: &Skin, positions: &[[f64; 3]], quantity: Quantity) -> Vec<AreaPic
 }
 
 /// Whether y counts downwards in a plane: gravity says so, or where there is none, the floor.
-fn y_down<const D: usize>(world: &World<D>) -> bool {
-    let gravity = world.blueprint().surroundings.gravity[1];
-    if D != 2 || gravity != 0.0 {
-        return D == 2 && gravity > 0.0;
+fn y_down(world: &dyn AnyWorld) -> bool {
+    let &[_, gravity] = world.scene().gravity() else { return false };
+    if gravity != 0.0 {
+        return gravity > 0.0;
     }
-    let pictures = world.colliders().map_or_else(Vec::new, |colliders| colliders.pictures(world.time()));
-    let mut floors = pictures.iter().filter_map(|placed| match placed {
+    let obstacles = world.obstacles();
+    let mut floors = obstacles.iter().filter_map(|placed| match placed {
         Placed::HalfSpace { normal, .. } if normal[1] != 0.0 => Some(normal[1] < 0.0),
         _ => None,
     });
@@ -364,25 +352,20 @@ fn y_down<const D: usize>(world: &World<D>) -> bool {
 }
 
 /// An obstacle as the renderer knows it. A box that is turned is drawn by its outline or faces.
-fn collider<const D: usize>(placed: Placed<D>) -> ColliderPicture {
-    let points = |points: Vec<[f64; D]>| -> Vec<[f64; 3]> { points.into_iter().map(three).collect() };
+fn collider(placed: Placed<3>) -> ColliderPicture {
     match placed {
-        Placed::HalfSpace { point, normal } => {
-            ColliderPicture::HalfSpace { point: three(point), normal: three(normal) }
-        }
-        Placed::Ball { center, radius, .. } => ColliderPicture::Ball { center: three(center), radius },
-        Placed::Capsule { a, b, radius } => ColliderPicture::Capsule { a: three(a), b: three(b), radius },
-        Placed::Polygon { points: p } => ColliderPicture::Polygon(points(p)),
-        Placed::Polyline { points: p, closed } => {
-            let mut p = points(p);
+        Placed::HalfSpace { point, normal } => ColliderPicture::HalfSpace { point, normal },
+        Placed::Ball { center, radius, .. } => ColliderPicture::Ball { center, radius },
+        Placed::Capsule { a, b, radius } => ColliderPicture::Capsule { a, b, radius },
+        Placed::Polygon { points } => ColliderPicture::Polygon(points),
+        Placed::Polyline { points: mut p, closed } => {
             if closed && let Some(first) = p.first().copied() {
                 p.push(first);
             }
             ColliderPicture::Polyline(p)
         }
-        Placed::Triangles { points: p, triangles, .. } => ColliderPicture::Mesh { positions: points(p), triangles },
+        Placed::Triangles { points, triangles, .. } => ColliderPicture::Mesh { positions: points, triangles },
         Placed::Box { corners, inside } => {
-            let corners = points(corners);
             let (mut min, mut max) = (corners[0], corners[0]);
             for corner in &corners {
                 for d in 0..3 {
@@ -394,8 +377,8 @@ fn collider<const D: usize>(placed: Placed<D>) -> ColliderPicture {
             if straight || inside {
                 return ColliderPicture::Box { min, max, inside };
             }
-            if D == 2 {
-                return ColliderPicture::Polygon(vec![corners[0], corners[1], corners[3], corners[2]]);
+            if let [a, b, c, d] = corners[..] {
+                return ColliderPicture::Polygon(vec![a, b, d, c]);
             }
             // Corner k lies on the upper side of axis d where bit d of k is set.
             let mut triangles = Vec::new();
@@ -411,16 +394,17 @@ fn collider<const D: usize>(placed: Placed<D>) -> ColliderPicture {
 }
 
 /// Up to so many nodes of a body, each as far as possible from those before it.
-fn spread<const D: usize>(mesh: &Mesh<D>, most: usize) -> Vec<u32> {
-    if mesh.nodes() <= most {
-        return (0..mesh.nodes() as u32).collect();
+fn spread(positions: &[[f64; 3]], most: usize) -> Vec<u32> {
+    if positions.len() <= most {
+        return (0..positions.len() as u32).collect();
     }
-    let mut chosen = vec![0_u32];
-    let mut gaps = vec![f64::INFINITY; mesh.nodes()];
+    let mut chosen = Vec::with_capacity(most);
+    chosen.extend((most > 0).then_some(0_u32));
+    let mut gaps = vec![f64::INFINITY; positions.len()];
     while chosen.len() < most {
-        let last = mesh.positions[chosen[chosen.len() - 1] as usize];
+        let last = positions[chosen[chosen.len() - 1] as usize];
         let mut farthest = 0;
-        for (node, position) in mesh.positions.iter().enumerate() {
+        for (node, position) in positions.iter().enumerate() {
             let gap = position.iter().zip(&last).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
             gaps[node] = gaps[node].min(gap);
             if gaps[node] > gaps[farthest] {

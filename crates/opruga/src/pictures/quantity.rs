@@ -1,10 +1,9 @@
 //! What the colours of bodies tell, and its value at every node.
 
 use super::Fixed;
-use crate::World;
-use crate::blueprint::BodyBlueprint;
 use crate::core::potential::{Account, CellState};
 use crate::draw::{ColourMap, Legend};
+use crate::{AnyScene, AnyWorld};
 use opruga_core::spec::Role;
 
 /// What the colours of the bodies tell.
@@ -42,13 +41,13 @@ impl Quantity {
 
     /// What the colours of some bodies tell by themselves: nothing where one is painted in colours of its own, stress where
     /// all are made of finite elements, else strain.
-    pub(super) fn of<const D: usize>(bodies: &[BodyBlueprint<D>]) -> Quantity {
-        let mut areas = bodies.iter().filter_map(|body| body.mesh.skin.as_ref()).flat_map(|skin| &skin.areas);
+    pub(super) fn of(scene: &dyn AnyScene) -> Quantity {
+        let mut areas = scene.bodies().filter_map(|body| body.skin()).flat_map(|skin| &skin.areas);
         if areas.any(|area| area.colour.is_some()) {
             return Quantity::Plain;
         }
-        let solid = |body: &BodyBlueprint<D>| body.models.iter().any(|model| model.spec().has_role(Role::OwnsCells));
-        if !bodies.is_empty() && bodies.iter().all(solid) { Quantity::VonMises } else { Quantity::Strain }
+        let mut solids = scene.bodies().map(|body| body.has_role(Role::OwnsCells));
+        if scene.body_count() > 0 && solids.all(|solid| solid) { Quantity::VonMises } else { Quantity::Strain }
     }
 
     /// Name and unit for legends; none where there is nothing to tell.
@@ -73,19 +72,19 @@ impl Quantity {
 const ROUNDING: f64 = 1e-11;
 
 /// Adds a quantity at every node of a body.
-pub(super) fn push_quantity<const D: usize>(
-    world: &mut World<D>,
+pub(super) fn push_quantity(
+    world: &mut dyn AnyWorld,
     body: usize,
     nodes: usize,
     quantity: Quantity,
     scalars: &mut Vec<f32>,
 ) {
-    let size = |v: [f64; D]| v.iter().map(|c| c * c).sum::<f64>().sqrt() as f32;
+    let size = |v: [f64; 3]| v.iter().map(|c| c * c).sum::<f64>().sqrt() as f32;
     match quantity {
         Quantity::Strain | Quantity::Plain => {}
-        Quantity::Speed => scalars.extend((0..nodes as u32).map(|node| size(world.velocity(body, node)))),
+        Quantity::Speed => scalars.extend(world.velocities(body).iter().map(size)),
         Quantity::VonMises => {
-            let models = &world.blueprint().bodies[body].models;
+            let models = world.scene().body(body).map_or(&[][..], |body| body.models());
             let moduli = models.iter().filter_map(|model| model.number("youngs_modulus"));
             let rounding = ROUNDING * moduli.fold(0.0, |largest: f64, e| if e > largest { e } else { largest });
             let seen = |state: &CellState| Some(state.von_mises()).filter(|stress| *stress > rounding).unwrap_or(0.0);
@@ -93,7 +92,7 @@ pub(super) fn push_quantity<const D: usize>(
         }
         Quantity::VolumeRatio => push_means(world, body, nodes, |state| state.volume_ratio, scalars),
         Quantity::ElasticForce => {
-            let forces = world.node_forces(body, Some(Account::Elastic));
+            let forces = world.forces(body, Some(Account::Elastic));
             scalars.extend((0..nodes).map(|node| forces.get(node).map_or(f32::NAN, |force| size(*force))));
         }
         Quantity::Pressure => {
@@ -109,15 +108,15 @@ pub(super) fn push_quantity<const D: usize>(
 }
 
 /// Adds the mean of a number of the cells at every node of a body; not a number where a node has none.
-fn push_means<const D: usize>(
-    world: &World<D>,
+fn push_means(
+    world: &dyn AnyWorld,
     body: usize,
     nodes: usize,
     number: impl Fn(&CellState) -> f64,
     scalars: &mut Vec<f32>,
 ) {
-    let cells = &world.blueprint().bodies[body].mesh.cells;
-    let of_cell: Vec<&[u32]> = cells.iter().map(|(_, _, nodes)| nodes).collect();
+    let cells = world.scene().body(body).map(|body| body.cells());
+    let of_cell: Vec<&[u32]> = cells.into_iter().flat_map(|cells| cells.iter()).map(|(_, _, nodes)| nodes).collect();
     let (mut sum, mut count) = (vec![0.0; nodes], vec![0.0; nodes]);
     for state in world.cell_states(body) {
         for node in of_cell[state.cell as usize] {

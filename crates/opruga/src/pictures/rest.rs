@@ -1,8 +1,8 @@
 //! Where bodies lay before they were deformed, as lines.
 
-use crate::blueprint::BodyBlueprint;
+use crate::AnyBody;
 use crate::draw::{BodyPicture, Facets, RestPicture};
-use opruga_core::spec::Role;
+use opruga_core::spec::{Role, Values};
 use std::collections::BTreeMap;
 
 /// The least angle between two facets whose common edge shows the shape of a body, as a cosine.
@@ -10,10 +10,10 @@ const SHARP: f64 = 0.8;
 
 /// Whether pictures of a body show where it lay at the start: it is held, and what it is made of resists being deformed, so that
 /// it bends around there; in statics, any body.
-pub(super) fn is_shown<const D: usize>(body: &BodyBlueprint<D>, integrator: &str) -> bool {
-    let held = body.pins.iter().any(|pin| pin.motion.is_empty());
-    let solid = body.models.iter().any(|model| model.spec().has_role(Role::OwnsCells));
-    body.mesh.skin.is_none() && (integrator == "equilibrium" || held && solid)
+pub(super) fn is_shown(body: &dyn AnyBody, of_scene: &Values) -> bool {
+    let integrator = body.integrator().unwrap_or(of_scene).spec();
+    let pinned_solid = body.is_pinned_at_rest() && body.has_role(Role::OwnsCells);
+    body.skin().is_none() && (integrator.has_role(Role::Statics) || pinned_solid)
 }
 
 /// A body as it lies in a picture, as lines: its outline, or where its surface has edges.

@@ -24,6 +24,7 @@ mod numerical_damping;
 mod pictures;
 mod published_beside_physics;
 mod recordings;
+mod registered;
 mod said_by_scenes;
 mod seams;
 mod shipped_measures;

@@ -164,14 +164,7 @@ fn a_frame_in_vtk_xml_is_the_start_of_another_run() {
         velocities(&world, 0),
     );
     let blueprint = world.blueprint();
-    let shape = Shape {
-        name: "b",
-        mesh: &blueprint.bodies[0].mesh,
-        positions: &at(&world),
-        velocities: &fast,
-        translation: blueprint.bodies[0].translation,
-        cell_fields: &[],
-    };
+    let shape = Shape { body: &blueprint.bodies[0], positions: &at(&world), velocities: &fast, cell_fields: &[] };
     let mut file = Vec::new();
     Format::Vtu.write(&mut file, "", 0.07, &[shape]).expect("memory does not fail");
     let text = "format = \"opruga-1\"\ndimension = 3\n[time]\nseconds = 1\nframe = 0.01\nsubsteps = 8\n[integrator]\nkind = \"verlet\"\n\

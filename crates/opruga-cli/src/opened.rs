@@ -1,0 +1,34 @@
+//! Scenes of calls that have no options of their own for reading them.
+
+use crate::failure::Failure;
+use crate::run::simd_from_environment;
+use crate::source::{Source, Whole, overrides};
+use opruga::Options;
+use opruga::blueprint::AnyBlueprint;
+use opruga::io::scene;
+
+/// A scene of a call that has no options of its own for reading it.
+pub(crate) struct Opened {
+    pub(crate) source: Source,
+    pub(crate) reading: scene::Options,
+    pub(crate) options: Options,
+    pub(crate) blueprint: AnyBlueprint,
+    /// The names of the files that the scene names.
+    pub(crate) files: Vec<String>,
+}
+
+/// Finds and reads a scene with overrides, and tells what is odd about it unless the call wants to hear nothing.
+pub(crate) fn open(scene: &str, set: &[String], allow_outside: bool, quiet: bool) -> Result<Opened, Failure> {
+    let source = Source::find(scene)?;
+    let reading = scene::Options {
+        overrides: overrides(set)?,
+        files: source.files.clone().allow_outside(allow_outside),
+        ..scene::Options::default()
+    };
+    let options = Options { simd: simd_from_environment()?, ..Options::default() };
+    let Whole { blueprint, notices, files } = source.read(&reading, &options)?;
+    if !quiet {
+        notices.iter().for_each(|notice| eprintln!("{notice}"));
+    }
+    Ok(Opened { source, reading, options, blueprint, files: files.into_keys().collect() })
+}

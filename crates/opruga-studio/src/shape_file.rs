@@ -1,0 +1,37 @@
+//! A shape from a file, with a scene around it.
+
+use opruga::io::Files;
+use toml_edit::{DocumentMut, InlineTable};
+
+/// A shape from a file.
+#[derive(Clone, Debug)]
+pub struct Shape {
+    /// Its name.
+    pub name: String,
+    /// Its file.
+    pub file: String,
+    /// A scene around it.
+    pub text: String,
+    /// Whether it is one of space.
+    pub space: bool,
+    /// Where its file is.
+    pub files: Files,
+}
+
+impl Shape {
+    /// Its body in a scene that others are in, of this size [m], from a file that is called so there.
+    pub fn body(&self, file: &str, size: f64) -> Option<InlineTable> {
+        let document: DocumentMut = self.text.parse().ok()?;
+        let mut body = document.get("body")?.as_array_of_tables()?.get(0)?.clone().into_inline_table();
+        body.insert("name", self.name.as_str().into());
+        // It is set down where there is room for it.
+        body.remove("position");
+        let shape = body.get_mut("shape")?.as_inline_table_mut()?;
+        shape.insert("file", file.into());
+        shape.insert("size", size.into());
+        if shape.contains_key("spacing") {
+            shape.insert("spacing", (0.05 * size).into());
+        }
+        Some(body)
+    }
+}

@@ -1,0 +1,102 @@
+//! What a program does to a world from outside of its scene: it moves nodes and adds forces. All of it is written down on request, and done
+//! again.
+
+use crate::error::WorldError;
+use crate::inputs::Input;
+use crate::loads::ForceLaw;
+use crate::world::World;
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+impl<const D: usize> World<D> {
+    /// Writes down from now on what the program does, for [`World::take_inputs`].
+    pub fn keep_inputs(&mut self) {
+        self.inputs.get_or_insert_default();
+    }
+
+    /// What the program has done since the last call, in its order; empty without [`World::keep_inputs`].
+    pub fn take_inputs(&mut self) -> Vec<Input<D>> {
+        self.inputs.as_mut().map(std::mem::take).unwrap_or_default()
+    }
+
+    pub(crate) fn write_down(&mut self, input: impl FnOnce() -> Input<D>) {
+        if let Some(inputs) = &mut self.inputs {
+            inputs.push(input());
+        }
+    }
+
+    /// Does again what a program did.
+    ///
+    /// # Errors
+    /// Those of the call that it stands for; the world stays as it was.
+    pub fn repeat(&mut self, input: &Input<D>) -> Result<(), WorldError> {
+        match input {
+            Input::Command(command) => self.command(command.clone()),
+            Input::Set { path, value } => self.set(path, value.clone()),
+            Input::Remove { name } => self.remove_body(name),
+            Input::Place { body, node, position, velocity } => self.place_node(*body, *node, *position, *velocity),
+            Input::Add { .. } | Input::Force { .. } | Input::Act => Err(input.unwritable()),
+        }
+    }
+
+    /// Moves a node and gives it a velocity, from outside of the physics.
+    ///
+    /// # Errors
+    /// [`WorldError::Path`] if there is no such node, or a number is not finite; the world stays as it was.
+    pub fn place_node(
+        &mut self,
+        body: usize,
+        node: u32,
+        position: [f64; D],
+        velocity: [f64; D],
+    ) -> Result<(), WorldError> {
+        let refuse = |message: String| Err(WorldError::Path { path: format!("body {body}, node {node}"), message });
+        if node as usize >= self.node_count(body) {
+            return refuse("there is no such node".into());
+        }
+        if let Some(x) = position.iter().chain(&velocity).find(|x| !x.is_finite()) {
+            return refuse(format!("{x} is no place and no velocity; allowed: finite numbers"));
+        }
+        let (island, lane) = self.place[body];
+        let island = &mut self.islands[island];
+        let place = island.system.layout.place(node as usize, lane);
+        island.system.state.x.set(place, position);
+        island.system.state.v.set(place, velocity);
+        // What an integrator remembers does not lead to here.
+        island.system.history.numbers.fill(0.0);
+        island.refresh();
+        // Nobody's work or loss.
+        let before = self.energy.total();
+        self.flows.start += self.stock_energy() - before;
+        self.refresh_ledger();
+        self.write_down(|| Input::Place { body, node, position, velocity });
+        Ok(())
+    }
+    /// Adds a force on every node of a body by a user's law of (node, position, velocity, time).
+    ///
+    /// The law runs while the world is stepped, on any thread, so it cannot change the world; this does not compile:
+    ///
+    /// ```compile_fail,E0502
+    /// # use opruga_world::World; use std::sync::Arc;
+    /// fn removes<'w>(world: &'w mut World<2>) {
+    ///     let mut law = |_: u32, _: [f64; 2], _: [f64; 2], _: f64| { let _ = world.remove_body("ball"); [0.0; 2] };
+    ///     let _ = world.frame();
+    ///     law(0, [0.0; 2], [0.0; 2], 0.0);
+    /// }
+    /// ```
+    ///
+    /// # Errors
+    /// [`WorldError`] if there is no such body or its island cannot be built anew; the world stays as it was.
+    pub fn add_force(&mut self, body: usize, law: Arc<ForceLaw<D>>) -> Result<(), WorldError> {
+        let Some(handle) = self.handle(body) else {
+            return Err(WorldError::Path { path: format!("body {body}"), message: "there is no such body".into() });
+        };
+        self.user_forces.push((handle, law));
+        let outcome = self.rebuild(&BTreeSet::from([body]));
+        match outcome {
+            Ok(()) => self.write_down(|| Input::Force { body }),
+            Err(_) => _ = self.user_forces.pop(),
+        }
+        outcome
+    }
+}

@@ -1,0 +1,100 @@
+//! Steps a world through a frame, and takes back a frame that fails.
+
+use crate::error::WorldError;
+use crate::island::{FramePlan, Island};
+use crate::world::{World, lock};
+use opruga_core::error::StepError;
+use opruga_core::threads::together;
+use rayon::prelude::*;
+use std::sync::atomic::Ordering;
+
+impl<const D: usize> World<D> {
+    /// Steps through one frame.
+    ///
+    /// # Errors
+    /// [`WorldError`] names body, node and substep; the world is at its last good frame.
+    pub fn frame(&mut self) -> Result<(), WorldError> {
+        self.begin_what_is_due()?;
+        let plan = FramePlan {
+            colliders: self.colliders.as_ref(),
+            start: self.time(),
+            substeps: self.blueprint.time.substeps,
+            h: self.h(),
+            look_every: self.looks.every,
+        };
+        (self.looks.flows, self.looks.fresh) = (self.flows, false);
+        let islands = &mut self.islands;
+        let workspaces = &mut self.workspaces;
+        // One small body has nothing to share: waking threads for it would cost more than its frame.
+        let alone = |island: &[Island<D>]| matches!(island, [one] if !one.is_shared_by(self.options.threads, 1));
+        match self.pool.as_ref().filter(|_| !alone(islands)) {
+            None => islands.iter_mut().for_each(|island| island.frame(&plan, &mut lock(&workspaces[0]))),
+            Some(pool) => pool.install(|| {
+                // Large bodies one after the other, each on all threads; then the others, one a thread. A body that waits for
+                // its threads must not be handed another one, whose workspace would be its own.
+                let (threads, count) = (pool.current_num_threads(), islands.len());
+                for island in islands.iter_mut().filter(|island| island.is_shared_by(threads, count)) {
+                    island.system.threads = threads;
+                    together(threads, || island.frame(&plan, &mut lock(&workspaces[0])));
+                    island.system.threads = 1;
+                }
+                islands.par_iter_mut().filter(|island| !island.is_shared_by(threads, count)).for_each(|island| {
+                    let thread = rayon::current_thread_index().unwrap_or(0);
+                    island.frame(&plan, &mut lock(&workspaces[thread]));
+                });
+            }),
+        }
+        if let Some(first) = self.islands.iter().position(|i| i.outcome.is_err()) {
+            // All islands go back to the same frame.
+            for island in &mut self.islands {
+                if island.outcome.is_ok() {
+                    island.restore();
+                    island.refresh();
+                }
+                island.work = Default::default();
+            }
+            let body = |local: usize| self.blueprint.bodies[self.islands[first].bodies[local]].name.clone();
+            return Err(match &self.islands[first].outcome {
+                Err(StepError::Diverged { body: local, node, time, range }) => {
+                    let (body, last) = (body(*local), self.time());
+                    WorldError::Diverged { body, node: *node, time: *time, last, range: *range }
+                }
+                Err(StepError::BrokenOff) => WorldError::BrokenOff,
+                Err(StepError::Model { model, message }) => {
+                    WorldError::Step { body: body(0), message: format!("{model}: {message}") }
+                }
+                Err(error @ StepError::NotConverged { hint, .. }) => {
+                    WorldError::NotConverged { body: body(0), message: error.to_string(), hint: hint.to_string() }
+                }
+                Ok(()) => WorldError::Step { body: body(0), message: String::new() },
+            });
+        }
+        self.frames += 1;
+        self.looks.fresh = true;
+        for island in &mut self.islands {
+            let work = std::mem::take(&mut island.work);
+            self.flows.add(&island.system, island.numerical_loss(&work), &work);
+        }
+        self.flows.limited_pulls = self.limited_pulls.load(Ordering::Relaxed);
+        self.refresh_ledger();
+        if !(self.energy.is_finite() && self.momentum.is_finite()) {
+            return Err(self.take_back_frame());
+        }
+        self.flows.count_frame(&self.energy);
+        self.warn_of_crushed_bodies();
+        self.warn_of_turned_cells();
+        self.take_away_what_is_far()
+    }
+
+    /// Goes back to the last good frame, from one whose states are sound and whose sums are not.
+    fn take_back_frame(&mut self) -> WorldError {
+        for island in &mut self.islands {
+            island.restore();
+            island.refresh();
+        }
+        self.frames -= 1;
+        (self.flows, self.looks.fresh) = (self.looks.flows, false);
+        self.refresh_ledger();
+        WorldError::Overflow { last: self.time() }
+    }
+}
