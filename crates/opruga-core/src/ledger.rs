@@ -94,7 +94,7 @@ pub struct SolverWork {
     pub conditioned: u64,
     /// How many times at most they were as large.
     pub conditioning: f64,
-    /// How often a body that stood still flat, inside out or folded was disturbed.
+    /// How often a body that rested in a degenerate shape was displaced at random.
     pub disturbed: u64,
     /// How often that was in vain.
     pub odd_rests: u64,

@@ -6,6 +6,7 @@ pub mod break_off;
 pub mod check;
 pub mod contacts;
 pub mod error;
+pub mod history;
 mod implicit;
 pub mod inertia;
 pub mod integrator;

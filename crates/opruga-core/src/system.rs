@@ -2,6 +2,7 @@
 
 use crate::contacts::Contacts;
 use crate::error::StepError;
+use crate::history::History;
 use crate::inertia::Inertia;
 use crate::ledger::StepWork;
 use crate::pins::Held;
@@ -42,17 +43,6 @@ pub struct Stabilisers {
     pub largest_force: Option<f64>,
     /// The largest speed of a node [m/s].
     pub largest_velocity: Option<f64>,
-}
-
-/// What an integrator remembers from step to step; part of the state.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct History<const D: usize> {
-    /// The name of the integrator whose it is.
-    pub owner: &'static str,
-    /// Columns of one vector per node.
-    pub columns: Vec<Columns<D>>,
-    /// Plain numbers, zero at the start.
-    pub numbers: Vec<f64>,
 }
 
 /// What an integrator does with the forces of a tile: reads the state, writes positions and velocities.
@@ -240,16 +230,13 @@ impl<const D: usize> System<D> {
         self.stages = work_columns;
         self.held = Held::of(&self.pins);
     }
-    /// Lays out tiles and buffers for an integrator, and room for what it remembers; what it knows is kept if it fits.
+    /// Lays out tiles, buffers and the history for an integrator; a history that the same integrator has declared is kept.
     pub fn equip(&mut self, integrator: &dyn crate::integrator::Integrator<D>) {
         self.plan(integrator.work_columns());
-        let size = integrator.history();
-        let places = self.places();
-        if self.history.owner != integrator.name() {
-            self.history = History { owner: integrator.name(), ..History::default() };
+        let channels = integrator.history();
+        if !self.history.is_of(integrator.name(), &channels) {
+            self.history = History::new(integrator.name(), &channels, self.places());
         }
-        self.history.columns.resize_with(size.columns, || Columns::zeros(places));
-        self.history.numbers.resize(size.numbers, 0.0);
     }
     /// The number of places.
     pub fn places(&self) -> usize {

@@ -46,7 +46,8 @@ pub(crate) enum Before<const D: usize> {
 }
 
 const FORMS: &str = "body.NAME.models.KIND.FIELD, body.NAME.integrator.FIELD, integrator.FIELD, collider.NUMBER.FIELD, world.gravity, world.drag, \
-                     world.largest_force, world.largest_velocity, world.largest_distance, time.substeps";
+                     world.largest_force, world.largest_velocity, world.largest_distance, \
+                     world.unfold, time.substeps";
 
 impl<const D: usize> World<D> {
     pub(crate) fn set_here(&mut self, path: &str, value: Value) -> Result<(), WorldError> {
@@ -184,8 +185,10 @@ impl<const D: usize> World<D> {
                         now.largest_distance = number(accept(Allowed::POSITIVE)?);
                         return Ok((Before::Surroundings(before), Touched::Bodies(Vec::new())));
                     }
+                    "unfold" => now.unfold = matches!(accept(Allowed::Boolean)?, Value::Boolean(true)),
                     other => {
-                        let known = ["gravity", "drag", "largest_force", "largest_velocity", "largest_distance"];
+                        let known =
+                            ["gravity", "drag", "largest_force", "largest_velocity", "largest_distance", "unfold"];
                         let hint = nearest(other, known.into_iter()).map(|n| format!("; did you mean `{n}`?"));
                         let hint = hint.unwrap_or_default();
                         return Err(refuse(format!(

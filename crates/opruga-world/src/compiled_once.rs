@@ -253,7 +253,7 @@ impl<const D: usize> World<D> {
         pub fn add_force(&mut self, body: usize, law @ Arc<ForceLaw<D>>) -> Result<(), WorldError> = add_force_here;
 
         /// Changes a parameter: `body.NAME.models.KIND.FIELD`, `body.NAME.integrator.FIELD`, `integrator.FIELD`, `collider.NUMBER.FIELD`, `world.gravity`,
-        /// `world.drag`, `world.largest_force`, `world.largest_velocity`, `world.largest_distance`, `time.substeps`.
+        /// `world.drag`, `world.largest_force`, `world.largest_velocity`, `world.largest_distance`, `world.unfold`, `time.substeps`.
         ///
         /// The name of a body with copies means all of them, `NAME[i]` one; a body or a model may be named by its number. The
         /// stable step is estimated anew.

@@ -37,6 +37,7 @@ impl<const D: usize> World<D> {
                 let found = match shapes.get(cell.cell as usize) {
                     Some(Some(Found::Inverted(ratio))) if right || *ratio < points => Found::Inverted(*ratio),
                     _ if !right => Found::Inverted(points),
+                    _ if cell.is_degenerate() => Found::Nearly(points),
                     Some(Some(Found::Nearly(ratio))) => Found::Nearly(*ratio),
                     _ => continue,
                 };
@@ -54,7 +55,7 @@ impl<const D: usize> World<D> {
             _ => format!("{} are", counted(count, "cell", "cells")),
         };
         let message = format!(
-            "at t = {} s {} inside out, the first of them cell {cell} of body `{}` with J = {}; hint: more substeps, {}",
+            "at t = {} s {} inside out, the first of them cell {cell} of body `{}` with J = {}; hint: more substeps, {}{}",
             number(self.time()),
             match (count, near) {
                 (_, 0) => cells(count),
@@ -64,6 +65,7 @@ impl<const D: usize> World<D> {
             self.blueprint.bodies[body].name,
             number(ratio),
             self.what_rights_cells(body),
+            self.or_unfold(),
         );
         Some(Warning { code: INVERTED.into(), message, count: count + near })
     }
@@ -86,6 +88,11 @@ impl<const D: usize> World<D> {
             Some(if least.is_inverted() { Found::Inverted(ratio) } else { Found::Nearly(ratio) })
         });
         found.collect()
+    }
+
+    /// What helps a body that rests in a degenerate shape, where the scene does not say it.
+    pub(crate) fn or_unfold(&self) -> &'static str {
+        if self.blueprint.surroundings.unfold { "" } else { ", or `unfold = true` in `[world]`" }
     }
 
     /// What else than more substeps turns cells of a body right side out: no law that it already has.

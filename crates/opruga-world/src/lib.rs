@@ -41,6 +41,7 @@ mod slots;
 mod snapshot;
 mod stability;
 mod turned;
+mod unfold;
 pub mod validity;
 mod world;
 

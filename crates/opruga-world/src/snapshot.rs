@@ -15,7 +15,9 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-const VERSION: u64 = 8;
+const VERSION: u64 = 9;
+/// The version before it, which named no channels of a history. It is read where no integrator kept anything.
+const BEFORE: u64 = 8;
 
 impl<const D: usize> World<D> {
     /// The whole state: time, positions, velocities, what models remember, how far commands have come, the ledger.
@@ -53,10 +55,7 @@ impl<const D: usize> World<D> {
                 out.count(memory.len() as u64);
                 memory.for_each(|m| out.number(*m));
             }
-            out.text(system.history.owner);
-            out.count(system.history.columns.len() as u64);
-            system.history.columns.iter().for_each(|columns| out.columns(columns, system, lane));
-            out.numbers(&system.history.numbers);
+            out.history(system, lane);
             out.count(self.laws_on(body));
         }
         let of_scene = self.running.iter().filter(|running| !running.given);
@@ -123,16 +122,17 @@ impl<const D: usize> World<D> {
         outcome
     }
 
-    /// What a snapshot says before its bodies: frames, and how the scene differs from that at the start.
-    fn read_head<'b>(reader: &mut Reader<'b>) -> Result<(u64, &'b [u8]), WorldError> {
+    /// Reads what a snapshot says before its bodies.
+    fn read_head<'b>(reader: &mut Reader<'b>) -> Result<Head<'b>, WorldError> {
         let refuse = |message: &str| Err(WorldError::Snapshot(message.into()));
-        if reader.count()? != VERSION {
+        let version = reader.count()?;
+        if ![VERSION, BEFORE].contains(&version) {
             return refuse(&format!("its version is not {VERSION}"));
         }
         if reader.count()? != D as u64 {
             return refuse("it has another dimension");
         }
-        Ok((reader.count()?, reader.bytes()?))
+        Ok(Head { version, frames: reader.count()?, delta: reader.bytes()? })
     }
 
     /// What a snapshot says of the bodies of the blueprint, the commands, and the ledger; those are known, and
@@ -140,6 +140,7 @@ impl<const D: usize> World<D> {
     fn read_rest(
         &self,
         reader: &mut Reader<'_>,
+        version: u64,
         commands: &[Running<D>],
         other_future: bool,
     ) -> Result<Rest<D>, WorldError> {
@@ -174,8 +175,14 @@ impl<const D: usize> World<D> {
             if x.iter().chain(&v).flatten().any(|c| !c.is_finite()) {
                 return refuse(&format!("body `{}` has a number that is not finite", body.name));
             }
-            let history = reader.history()?;
-            if history.columns.iter().any(|column| column.len() != x.len()) {
+            let history = match version {
+                VERSION => reader.history()?,
+                _ => match reader.empty_history()? {
+                    Some(history) => history,
+                    None => return refuse(&format!("its version is not {VERSION}")),
+                },
+            };
+            if !history.is_of_nodes(x.len()) {
                 return refuse(&format!("body `{}` has another shape", body.name));
             }
             rest.states.insert(number, BodyState { x, v, memory, history });
@@ -300,13 +307,13 @@ impl<const D: usize> World<D> {
     /// Goes to a snapshot that differs in motion alone: the islands stay as they are. False where more differs.
     fn go_to_alike(&mut self, bytes: &[u8], commands: &[Running<D>], other_future: bool) -> Result<bool, WorldError> {
         let mut reader = Reader(bytes);
-        let (frames, delta) = Self::read_head(&mut reader)?;
+        let Head { version, frames, delta } = Self::read_head(&mut reader)?;
         let mut here = Vec::new();
         self.write_delta(&mut Writer(&mut here));
         if delta != here {
             return Ok(false);
         }
-        let rest = self.read_rest(&mut reader, commands, other_future)?;
+        let rest = self.read_rest(&mut reader, version, commands, other_future)?;
         let fits = |number: &usize| {
             let (island, lane) = self.place[*number];
             let (state, system) = (&rest.states[number], &self.islands[island].system);
@@ -362,7 +369,7 @@ impl<const D: usize> World<D> {
 
     fn go_to(&mut self, bytes: &[u8], commands: &[Running<D>], other_future: bool) -> Result<(), WorldError> {
         let mut reader = Reader(bytes);
-        let (frames, delta) = Self::read_head(&mut reader)?;
+        let Head { version, frames, delta } = Self::read_head(&mut reader)?;
         let mut here = Vec::new();
         self.write_delta(&mut Writer(&mut here));
         let changed = delta != here;
@@ -371,7 +378,7 @@ impl<const D: usize> World<D> {
         if !delta.0.is_empty() {
             return Err(WorldError::Snapshot("what it says of the scene goes on after its end".into()));
         }
-        let rest = self.read_rest(&mut reader, commands, other_future)?;
+        let rest = self.read_rest(&mut reader, version, commands, other_future)?;
         self.running = self.commands_then(commands, &rest);
         self.slots.alive = rest.alive;
         self.slots.next = self.slots.next.max(rest.next);
@@ -392,6 +399,14 @@ impl<const D: usize> World<D> {
         self.flows.largest = rest.flows.largest;
         Ok(())
     }
+}
+
+/// What a snapshot says before its bodies.
+struct Head<'b> {
+    version: u64,
+    frames: u64,
+    /// How the scene differs from that at the start.
+    delta: &'b [u8],
 }
 
 /// What a snapshot says behind its head.

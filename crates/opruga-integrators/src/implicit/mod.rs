@@ -34,7 +34,6 @@
 //! | `contact_derivatives` | what the forces of contacts change by with positions |
 //! | `growth` | refuses what accepted steps blow up |
 //! | `slenderness` | for which bodies the real-time setting factors its matrix |
-//! | `standstill` | bodies that stand still flat, inside out or folded |
 //! | `impact` | what obstacles do at the end of a step: velocities and the ledger |
 //!
 //! **Newton.** The matrix is σM + βC + K with C = −∂F/∂v and K = ∂²U/∂x∂x: the exact one while it is positive definite, else
@@ -79,7 +78,6 @@ pub(crate) mod rule;
 pub(crate) mod settings;
 mod slenderness;
 pub(crate) mod stage;
-pub(crate) mod standstill;
 pub(crate) mod step;
 pub(crate) mod step_limit;
 pub(crate) mod theta;

@@ -3,6 +3,12 @@
 /// Whole sentences, as in [`super::sentences::SENTENCES`].
 pub(super) const SENTENCES: &[(&str, &str)] = &[
     (
+        "at t = {} s {~} inside out, the first of them cell {} of body `{}` with J = {}; hint: more substeps, {~}, or `unfold = true` \
+         in `[world]`",
+        "u t = {} s izvrnuto je: {~}; prva je ćelija {} tijela `{}` s J = {}; savjet: više podkoraka, {~}, ili `unfold = true` u \
+         `[world]`",
+    ),
+    (
         "at t = {} s {~} inside out, the first of them cell {} of body `{}` with J = {}; hint: more substeps, {~}",
         "u t = {} s izvrnuto je: {~}; prva je ćelija {} tijela `{}` s J = {}; savjet: više podkoraka, {~}",
     ),
@@ -17,6 +23,14 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
          {} times the first frequencies of plates were measured {} % too high, and they rise farther; hint: {~}",
         "tijelo `{}` presavija se ili uvija prekruto: najdulji bridovi njegovih ćelija dugi su prosječno {} m, {} puta koliko je debelo \
          ({} m); uz {} puta prve su frekvencije ploča izmjerene {} % previsoke, a dalje rastu; savjet: {~}",
+    ),
+    (
+        "at t = {} s {~} account for, in another balance than that of the own shape: snapped through, folded, inside out or \
+         twisted round; the first of them is body `{}` with {} J, {} J of it accounted for, V/V₀ = {}, and cell {} at J = {}; hint: \
+         where this was not meant, begin in its own shape, with more damping or more substeps, or `unfold = true` in `[world]`",
+        "u t = {} s {~}, u drugoj ravnoteži nego što je ona vlastitog oblika: preskočilo, presavijeno, izvrnuto ili zavrnuto; prvo \
+         je tijelo `{}` s {} J, od toga objašnjeno {} J, V/V₀ = {}, i ćelijom {} s J = {}; savjet: ako to nije namjera, počni u \
+         vlastitom obliku, s više prigušenja ili podkoraka, ili `unfold = true` u `[world]`",
     ),
     (
         "at t = {} s {~} account for, in another balance than that of the own shape: snapped through, folded, inside out or \

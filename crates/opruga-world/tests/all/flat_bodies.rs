@@ -8,11 +8,11 @@ use opruga_mesh::Mesh;
 use opruga_world::{Options, World};
 
 /// A free cube of 1 m of 2 × 2 × 2 cells that begins in a shape.
-fn cube(material: &str, simplices: bool, shape: &dyn Fn([f64; 3], usize) -> [f64; 3]) -> World<3> {
+fn cube(material: &str, simplices: bool, unfold: bool, shape: &dyn Fn([f64; 3], usize) -> [f64; 3]) -> World<3> {
     let boxes = Mesh::<3>::grid([0.0; 3], [1.0; 3], [2; 3]).expect("a grid");
     let mesh = if simplices { boxes.into_simplices().expect("tetrahedra") } else { boxes };
     let positions = mesh.positions.clone();
-    let blueprint = solid(
+    let mut blueprint = solid(
         mesh,
         "backward_euler",
         &[("when_not_converged", text("halve"))],
@@ -23,11 +23,30 @@ fn cube(material: &str, simplices: bool, shape: &dyn Fn([f64; 3], usize) -> [f64
             ("damping", Value::Number(0.02)),
         ],
     );
+    blueprint.surroundings.unfold = unfold;
     let mut world = World::new(blueprint, Options::default()).expect("a world");
     for (node, at) in positions.iter().enumerate() {
         world.place_node(0, node as u32, shape(*at, node), [0.0; 3]).expect("placed");
     }
     world
+}
+
+/// The twin of the test below: nobody displaces a body that does not ask for it, and a warning names body, cells and the word.
+#[test]
+fn bodies_on_a_line_stay_there_and_are_warned_of_where_the_scene_does_not_unfold() {
+    for simplices in [true, false] {
+        let mut world = cube("stable_neo_hookean", simplices, false, &|x, _| [x[0], 0.5, 0.5]);
+        (0..120).for_each(|_| world.frame().expect("a frame"));
+        assert!(volume_ratio(&world).abs() < 1e-9, "simplices: {simplices}: {}", volume_ratio(&world));
+        assert_eq!((world.solver_work().disturbed, world.solver_work().odd_rests), (0, 0));
+        let told = world.inverted_cells().expect("a warning");
+        assert_eq!(told.count as usize, world.cell_states(0).len());
+        assert!(
+            told.message.contains("of body `body`") && told.message.contains("`unfold = true`"),
+            "{}",
+            told.message
+        );
+    }
 }
 
 fn volume_ratio(world: &World<3>) -> f64 {
@@ -39,7 +58,7 @@ fn volume_ratio(world: &World<3>) -> f64 {
 #[test]
 fn bodies_on_a_line_leave_it_though_they_swing_along_it() {
     for (simplices, seconds) in [(true, 12), (false, 90)] {
-        let mut world = cube("stable_neo_hookean", simplices, &|x, _| [x[0], 0.5, 0.5]);
+        let mut world = cube("stable_neo_hookean", simplices, true, &|x, _| [x[0], 0.5, 0.5]);
         let mut reason = None;
         let back = (0..60 * seconds).position(|_| {
             world.frame().expect("a frame");
@@ -90,6 +109,7 @@ fn disturbances_end_though_a_box_goes_to_and_fro_about_flatness() {
         ],
     );
     blueprint.bodies[0].pins = clamp();
+    blueprint.surroundings.unfold = true;
     let mut world = World::new(blueprint, Options::default()).expect("a world");
     let free = positions.iter().enumerate().filter(|(_, at)| at[0] > 0.0);
     for ((node, at), by) in free.zip(moved) {

@@ -61,6 +61,7 @@ fn scene(bodies: Vec<BodyBlueprint<2>>, colliders: Vec<ColliderBlueprint>) -> Bl
             largest_force: None,
             largest_velocity: None,
             largest_distance: None,
+            unfold: false,
         },
         integrator: Values::defaults(verlet, 2),
         bodies,

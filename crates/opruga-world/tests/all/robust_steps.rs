@@ -27,6 +27,7 @@ fn body<const D: usize>(mesh: Mesh<D>, material: &str, frame: f64, pins: Vec<Pin
     );
     blueprint.time.frame = frame;
     blueprint.bodies[0].pins = pins;
+    blueprint.surroundings.unfold = true;
     blueprint
 }
 
@@ -180,12 +181,43 @@ fn statics_and_real_time_leave_flat_shapes_too() {
             );
             blueprint.time.frame = 1.0 / 30.0;
             blueprint.bodies[0].pins = clamp();
+            blueprint.surroundings.unfold = true;
             // What is held stays where it is.
             let on_line = |x: [f64; 3], _| if x[0] == 0.0 { x } else { [x[0], 0.5, 0.5] };
             let in_point = |x: [f64; 3], _| if x[0] == 0.0 { x } else { [0.5; 3] };
             comes_back(blueprint.clone(), &format!("{rule}, {material}, line"), &on_line);
             comes_back(blueprint, &format!("{rule}, {material}, point"), &in_point);
         }
+    }
+}
+
+/// The twin of the test above: in statics nothing is displaced by chance, and a warning names body, cells and the word.
+#[test]
+fn statics_on_a_line_stays_there_and_is_warned_of_where_the_scene_does_not_unfold() {
+    let material = [("material", text("stable_neo_hookean")), ("youngs_modulus", Value::Number(1e5))];
+    for unfold in [false, true] {
+        let mut blueprint = solid(cube(3), "equilibrium", &[], &material);
+        blueprint.bodies[0].pins = clamp();
+        blueprint.surroundings.unfold = unfold;
+        let positions = blueprint.bodies[0].mesh.positions.clone();
+        let mut world = World::new(blueprint, Options::default()).unwrap();
+        for (node, x) in positions.iter().enumerate() {
+            let at = if x[0] == 0.0 { *x } else { [x[0], 0.5, 0.5] };
+            world.place_node(0, node as u32, at, [0.0; 3]).unwrap();
+        }
+        world.frame().unwrap();
+        let told = world.inverted_cells();
+        assert_eq!(told.is_none(), unfold, "{told:?}");
+        assert_eq!(world.solver_work().disturbed > 0, unfold);
+        // What displacing and solving again changed is work from outside.
+        let closure = world.energy().closure;
+        assert!(closure < 1e-9, "{closure}");
+        if let Some(told) = told {
+            assert!(told.message.contains("of body `body`") && told.message.contains("`unfold = true`"), "{told:?}");
+            continue;
+        }
+        assert!(world.warnings().iter().any(|warning| warning.code == "step.disturbed"));
+        assert!((ratios(&world).0 - 1.0).abs() < 1e-6, "{:?}", ratios(&world));
     }
 }
 
@@ -220,6 +252,7 @@ fn every_rule_brings_every_kind_of_cell_back_or_says_what_is_folded() {
             material.extend((*name == "nodal volumes").then(|| ("locking", text("nodal_volume"))));
             let mut blueprint = solid(mesh.clone(), rule, &[("when_not_converged", text("halve"))], &material);
             blueprint.time.frame = 1.0 / 30.0;
+            blueprint.surroundings.unfold = true;
             let name = |shape: &str| format!("{rule}, {name}, {shape}");
             comes_back(blueprint.clone(), &name("plane"), &|x, _| [x[0], 0.0, x[2]]);
             // Many nodes inside out or at random places take long to find out of it.
@@ -281,6 +314,7 @@ fn a_body_that_creeps_back_against_its_viscosity_is_never_taken_for_one_at_rest(
             ],
         );
         blueprint.time.frame = 0.05;
+        blueprint.surroundings.unfold = true;
         let mut world = World::new(blueprint, Options::default()).unwrap();
         for (node, x) in mesh.positions.iter().enumerate() {
             world.place_node(0, node as u32, [stretch * x[0], x[1]], [0.0; 2]).unwrap();
