@@ -1,7 +1,7 @@
 //! What an integrator is to a world: it moves a system on by one substep, and knows its own stability.
 
 use crate::error::{BuildError, StepError};
-use crate::history::Channel;
+use crate::history::{Channel, History};
 use crate::memory::Counts;
 use crate::potential::{Reading, Views};
 use crate::spec::{Spec, Values};
@@ -76,6 +76,17 @@ pub trait Integrator<const D: usize>: Send + Sync + Debug {
     /// # Errors
     /// [`StepError`] where a model refuses.
     fn step(&self, system: &mut System<D>, h: f64) -> Result<(), StepError>;
+}
+
+impl<const D: usize> System<D> {
+    /// Lays out tiles, buffers and the history for an integrator; a history that the same integrator has declared is kept.
+    pub fn equip(&mut self, integrator: &dyn Integrator<D>) {
+        self.plan(integrator.work_columns());
+        let channels = integrator.history();
+        if !self.history.is_of(integrator.name(), &channels) {
+            self.history = History::new(integrator.name(), &channels, self.places());
+        }
+    }
 }
 
 /// A kind of integrator that scenes can name.

@@ -14,7 +14,7 @@ use opruga_math::{Column, Lane, Pack, Simd, WIDTH};
 
 pub use crate::ledger::{SolverWork, Work8};
 pub use crate::pins::{Pin, along_path};
-pub use crate::workspace::{Room, Workspace};
+pub use crate::workspace::{Cache, Workspace};
 
 /// Which columns hold the state in which forces are evaluated, or into which an update writes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -111,8 +111,8 @@ pub struct System<const D: usize> {
     pub work: Work8,
     /// What the integrator remembers.
     pub history: History<D>,
-    /// Room that an integrator keeps between steps; what it holds does not change results.
-    pub room: Room,
+    /// What the integrator keeps between steps to save time; no result depends on it.
+    pub cache: Cache,
     pub(crate) plan: TilePlan,
     /// What the pins hold.
     pub(crate) held: Held<D>,
@@ -164,7 +164,7 @@ impl<const D: usize> System<D> {
             stabilisers: Stabilisers::default(),
             work: Work8::default(),
             history: History::default(),
-            room: Room::default(),
+            cache: Cache::default(),
             plan: TilePlan::new(places, std::iter::empty()),
             held: Held::default(),
             step_work: Default::default(),
@@ -229,14 +229,6 @@ impl<const D: usize> System<D> {
         self.plan = TilePlan::new(places, spans.into_iter());
         self.stages = work_columns;
         self.held = Held::of(&self.pins);
-    }
-    /// Lays out tiles, buffers and the history for an integrator; a history that the same integrator has declared is kept.
-    pub fn equip(&mut self, integrator: &dyn crate::integrator::Integrator<D>) {
-        self.plan(integrator.work_columns());
-        let channels = integrator.history();
-        if !self.history.is_of(integrator.name(), &channels) {
-            self.history = History::new(integrator.name(), &channels, self.places());
-        }
     }
     /// The number of places.
     pub fn places(&self) -> usize {

@@ -31,6 +31,7 @@
 //! Source: Riks 1979; Crisfield 1981; for the direction on the curve Feng, Perić, Owen 1996.
 
 mod arc;
+pub mod motion;
 pub(crate) mod pieces;
 pub(crate) mod restraint;
 pub mod rigid;
@@ -371,7 +372,7 @@ impl<const D: usize> Integrator<D> for Equilibrium {
         true
     }
     fn step(&self, system: &mut System<D>, h: f64) -> Result<(), StepError> {
-        let mut workspace = system.room.take::<Workspace<D>>();
+        let mut workspace = system.cache.take::<Workspace<D>>();
         let (work, velocities) = (system.work, system.state.v.clone());
         let outcome = self.attempt(system, &mut workspace, h);
         if outcome.is_err() {
@@ -380,7 +381,7 @@ impl<const D: usize> Integrator<D> for Equilibrium {
             system.work.solver = solver;
             system.state.v = velocities;
         }
-        system.room.put(workspace);
+        system.cache.put(workspace);
         outcome
     }
 }

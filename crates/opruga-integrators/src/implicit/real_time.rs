@@ -9,11 +9,9 @@
 use super::balance::{Balance, Solved};
 use super::direction::wanted_forces;
 use super::linear::{Filter, Mixture};
-use super::minimiser::Minimiser;
-use super::newton::Newton;
 use super::rigid_balance::settles;
 use super::settings::Settings;
-use super::stage::{evaluate, judge, look, potential, rounding_of_models};
+use super::stage::{evaluate, judge, look};
 use super::workspace::Workspace;
 use opruga_core::error::StepError;
 use opruga_core::history::{Channel, PerBody, PerNode};
@@ -38,14 +36,8 @@ const NOTHING: f64 = 1e-9;
 /// Products with the matrix in an iteration at most.
 const PRODUCTS: u32 = 1000;
 
-/// A potential that has risen by this part of its parts has risen: rounding, and what obstacles push back, are less.
-const RISE: f64 = 1e-6;
-
 /// Corrections below this part of the extent are those of a body that is whole.
 const SHORT: f64 = 0.1;
-
-/// How many iterations steps get that few led astray.
-const MOST_ITERATIONS: u32 = 50;
 
 /// Iterations that take more products than this are counted as cut off: a body on which news travels so slowly is ill-conditioned,
 /// and the residual, in which stiff motions count most, says little of the slow ones, such as the bending of a slender body.
@@ -81,8 +73,14 @@ fn is_loose<const D: usize>(system: &System<D>) -> bool {
     system.contacts.is_some() || system.pins.is_empty()
 }
 
+/// What the setting keeps from step to step.
+pub(super) fn channels() -> Vec<Channel> {
+    let vectors = [REFERENCE, VELOCITY].map(|channel| channel.declared());
+    vectors.into_iter().chain([STEP.declared(), MATRIX.declared(), STALE.declared()]).collect()
+}
+
 /// Where the body would come to under the acceleration of the last step, less x₀: in `workspace.u`.
-fn predict<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, theta: f64, h: f64) {
+pub(super) fn predict<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, theta: f64, h: f64) {
     let last = system.history.get(STEP);
     if last <= 0.0 || is_loose(system) {
         return;
@@ -103,7 +101,7 @@ fn predict<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, the
 }
 
 /// Keeps the velocities at the start of a step; nodes that met an obstacle go on as they do then.
-fn remember<const D: usize>(system: &mut System<D>, workspace: &Workspace<D>, h: f64) {
+pub(super) fn remember<const D: usize>(system: &mut System<D>, workspace: &Workspace<D>, h: f64) {
     // The acceleration of an impact leads nowhere.
     system.history.set(STEP, if workspace.struck.is_empty() { h } else { 0.0 });
     let System { history, nodes, threads, .. } = system;
@@ -254,116 +252,17 @@ impl Task<'_> {
     }
 }
 
-/// The real-time setting as a minimiser.
-///
-/// What few iterations lead to counts only where it makes no energy: else the step is solved by Newton's method with its line search,
-/// and made in two halves where that does not converge. Its incremental potential must not be above that of a body that stays where it
-/// is; looked at are bodies in the air, and others whose matrix was made anew on the way, or that went far or are left farther out of
-/// balance than promised. What is left of a body on an obstacle is taken for an impulse of that, which the potential
-/// does not know: the end of such a step is doubtful ([`Solved::doubtful`]), and its energy decides.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct RealTime(pub(crate) Settings);
-
-impl<const D: usize> Minimiser<D> for RealTime {
-    fn minimise(
-        &self,
-        system: &mut System<D>,
-        workspace: &mut Workspace<D>,
-        balance: &Balance,
-    ) -> Result<Solved, StepError> {
-        let settings = &self.0;
-        let (cut_off, left) = (system.work.solver.cut_off, system.work.solver.left);
-        let outcome = iterate(system, workspace, balance, settings);
-        let spent = match &outcome {
-            Ok((solved, Trust::Always)) => return Ok(*solved),
-            Ok((solved, Trust::IfNoGain)) if !has_risen(system, workspace, balance)? => {
-                return Ok(Solved { doubtful: true, ..*solved });
-            }
-            Ok((solved, Trust::IfDownhill)) if !has_risen(system, workspace, balance)? => return Ok(*solved),
-            Ok((solved, _)) => *solved,
-            // A law that has no meaning where the iteration led to.
-            Err(StepError::Model { .. }) => Solved::default(),
-            Err(_) => return outcome.map(|(solved, _)| solved),
-        };
-        (system.work.solver.cut_off, system.work.solver.left) = (cut_off, left);
-        mark_stale(system);
-        workspace.contacting.clear(system.nodes);
-        for k in 0..workspace.u.len() {
-            workspace.u[k] = if workspace.held[k].is_nan() {
-                balance.theta * balance.h * workspace.v0[k]
-            } else {
-                workspace.held[k]
-            };
-        }
-        let mut solved = Newton(exactly(settings)).minimise(system, workspace, balance)?;
-        solved.iterations += spent.iterations;
-        solved.products += spent.products;
-        Ok(solved)
-    }
-    fn history(&self) -> Vec<Channel> {
-        let vectors = [REFERENCE, VELOCITY].map(|channel| channel.declared());
-        vectors.into_iter().chain([STEP.declared(), MATRIX.declared(), STALE.declared()]).collect()
-    }
-    fn predict(&self, system: &System<D>, workspace: &mut Workspace<D>, balance: &Balance) {
-        predict(system, workspace, balance.theta, balance.h);
-    }
-    fn discard(&self, system: &mut System<D>) {
-        mark_stale(system);
-    }
-    fn remember(&self, system: &mut System<D>, workspace: &Workspace<D>, h: f64) {
-        remember(system, workspace, h);
-    }
-    /// In real time nobody waits for another setting.
-    fn always_halves(&self) -> bool {
-        true
-    }
-    fn shares_threads(&self) -> bool {
-        true
-    }
-    fn same_bits_everywhere(&self, system: &System<D>) -> bool {
-        !self.0.solver.is_direct_in_real_time(system)
-    }
-}
-
-/// The settings of steps that few iterations led astray.
-pub(crate) fn exactly(settings: &Settings) -> Settings {
-    Settings { real_time: false, iterations: MOST_ITERATIONS, ..*settings }
-}
-
 /// Lets the next step make its matrix anew.
-fn mark_stale<const D: usize>(system: &mut System<D>) {
+pub(super) fn mark_stale<const D: usize>(system: &mut System<D>) {
     if system.history.get(MATRIX) > 0 {
         system.history.set(MATRIX, CLAMPED);
         system.history.set(STALE, true);
     }
 }
 
-/// Whether the incremental potential of what was found is above that of the body where it was, but for what is held; not a number
-/// counts as above, and so does what forces without a potential may have done.
-fn has_risen<const D: usize>(
-    system: &mut System<D>,
-    workspace: &mut Workspace<D>,
-    balance: &Balance,
-) -> Result<bool, StepError> {
-    let Some((after, size)) = potential(system, workspace, balance, false) else { return Ok(true) };
-    if !after.is_finite() {
-        return Ok(true);
-    }
-    for k in 0..workspace.u.len() {
-        workspace.trial[k] = if workspace.held[k].is_nan() { 0.0 } else { workspace.held[k] };
-    }
-    // Where a body stood where its law has no meaning there is nothing to compare with.
-    let before = match evaluate(system, workspace, balance, true) {
-        Ok(()) => potential(system, workspace, balance, true),
-        Err(_) => None,
-    };
-    evaluate(system, workspace, balance, false)?;
-    Ok(!before.is_some_and(|(before, parts)| after - before <= RISE * (size + parts) + rounding_of_models(system)))
-}
-
 /// Whether what few iterations lead to may count.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Trust {
+pub(super) enum Trust {
     /// It does.
     Always,
     /// It does unless the incremental potential has risen.
@@ -391,7 +290,7 @@ fn aims<const D: usize>(system: &System<D>, settings: &Settings) -> (f64, f64) {
 }
 
 /// Three iterations, or as many as the scene says, and whether what they leave may count.
-fn iterate<const D: usize>(
+pub(super) fn iterate<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
     balance: &Balance,

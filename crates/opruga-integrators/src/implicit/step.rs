@@ -11,6 +11,7 @@
 //! | impact | nodes that end inside obstacles: they are put onto them | `impact` |
 //! | convergence | a search that did not end, unless the scene accepts it | `convergence` |
 //! | contact | an unforeseen contact: the rule in contact | `Method::find_end` |
+//! | budget | what few iterations led to and may have made energy: Newton's method | `fallback` |
 //! | rounding | a stage that rounding hides: iterations of the exact minimiser go on | `rounding`, `rigid_balance` |
 //!
 //! Slenderness (`slenderness`) chooses the linear solver of the real-time minimiser, and refuses nothing.
@@ -19,6 +20,7 @@ use super::balance::{Balance, Solved};
 use super::contact::SMALL;
 use super::convergence::{accept_or_refuse, count, finish, refusal};
 use super::energy;
+use super::fallback::{RealTime, exactly};
 use super::growth;
 use super::holding;
 use super::impact::Ending;
@@ -26,7 +28,6 @@ use super::memory;
 use super::minimiser::Minimiser;
 use super::newton::Newton;
 use super::own_loss::{self, given};
-use super::real_time::{self, RealTime};
 use super::rule::Rule;
 use super::settings::{Otherwise, Settings};
 use super::workspace::{Workspace, write};
@@ -111,10 +112,10 @@ impl<R> Implicit<R> {
     where
         R: Rule<D>,
     {
-        let mut workspace = system.room.take::<Workspace<D>>();
+        let mut workspace = system.cache.take::<Workspace<D>>();
         let method = Method { rule: self.rule, settings: &self.settings, minimiser };
         let outcome = method.advance(system, &mut workspace, h, 0);
-        system.room.put(workspace);
+        system.cache.put(workspace);
         outcome
     }
 }
@@ -197,7 +198,7 @@ impl<R: Rule<D>, const D: usize> Method<'_, R, D> {
     fn find_end(&self, system: &mut System<D>, workspace: &mut Workspace<D>, h: f64) -> Result<Found<R>, StepError> {
         let in_contact = self.rule.in_contact();
         let mut rule = in_contact.filter(|_| touches(system, workspace, h)).unwrap_or(self.rule);
-        let exact = Newton(real_time::exactly(self.settings));
+        let exact = Newton(exactly(self.settings));
         let mut minimiser = self.minimiser;
         let mut energy = None;
         loop {
