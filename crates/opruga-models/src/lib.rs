@@ -4,8 +4,10 @@ pub mod as_published;
 pub mod bending;
 pub mod drag;
 pub mod fem;
+pub mod finite_difference;
 pub mod mass_spring;
 pub mod pressure;
+mod vectors;
 
 use core::any::Any;
 use opruga_core::potential::Model;
@@ -39,6 +41,7 @@ fn list<const D: usize>() -> Vec<Box<dyn Model<D>>> {
         Box::new(pressure::PressureModel),
         Box::new(bending::BendingModel),
         Box::new(drag::DragModel),
+        Box::new(finite_difference::FiniteDifferenceModel),
         Box::new(as_published::AsPublishedModel),
     ]
 }

@@ -282,8 +282,8 @@ impl<const D: usize> Builder<'_, D> {
         self.check_cells(first).map_err(refuse)?;
         // Loads know their derivatives; a model may lack them.
         for member in &system.members[..first.models.len()] {
-            if !member.potential.views().include(integrator.needs()) {
-                return Err(refuse(no_view(member.potential.name(), integrator.name())));
+            if !member.potential.properties().views.include(integrator.needs()) {
+                return Err(refuse(no_view(member.potential.properties().name, integrator.name())));
             }
         }
         if system.inertia.is_some() {

@@ -59,8 +59,8 @@ impl<const D: usize> World<D> {
         };
         // By itself: others side by side do not matter.
         let mut system = self.island_of(&[body], &BTreeMap::new(), &self.integrator)?.system;
-        if let Some(member) = system.members.iter().find(|member| !member.potential.views().hessian) {
-            let message = format!("`{}` has no second derivatives", member.potential.name());
+        if let Some(member) = system.members.iter().find(|member| !member.potential.properties().views.hessian) {
+            let message = format!("`{}` has no second derivatives", member.potential.properties().name);
             return Err(refuse("integrator.needs", message));
         }
         let mut force = Columns::zeros(system.places());

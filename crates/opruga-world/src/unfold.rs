@@ -166,7 +166,7 @@ struct Motion {
 /// The motion of a body; of a free one as seen from its centre of mass, and from axes that turn with it: what spins rests, too.
 /// Accelerations are means over the frame, since the forces of obstacles are in them.
 fn motion<const D: usize>(system: &mut System<D>, v0: &Columns<D>, frame: f64) -> Result<Motion, StepError> {
-    let damping = if system.members.iter().any(|member| member.potential.views().damping) {
+    let damping = if system.members.iter().any(|member| member.potential.properties().views.damping) {
         let (all, undamped) = (system.forces(true)?, system.forces(false)?);
         Some((all, undamped))
     } else {
@@ -299,8 +299,8 @@ fn nothing_acts<const D: usize>(system: &System<D>) -> bool {
         && system.contacts.is_none()
         && system.members.iter().all(|member| {
             let potential = &member.potential;
-            potential.account() == Account::Elastic
-                && (!potential.views().energy || !potential.cell_states(&view, 0).is_empty())
+            potential.properties().account == Account::Elastic
+                && (!potential.properties().views.energy || !potential.cell_states(&view, 0).is_empty())
         })
 }
 
