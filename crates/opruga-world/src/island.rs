@@ -237,10 +237,10 @@ impl<const D: usize> Island<D> {
     }
 
     /// Lets a body leave a degenerate shape at the end of a frame; looks at the state again.
-    fn recover(&mut self, plan: &FramePlan<D>, near: bool) -> Result<Survey<D>, StepError> {
+    fn recover(&mut self, plan: &FramePlan<D>, meets: bool) -> Result<Survey<D>, StepError> {
         if self.integrator.is_static() {
             let start = self.survey.kinetic + self.potential_before;
-            self.unfold_statics(plan, near, start)?;
+            self.unfold_statics(plan, meets, start)?;
         } else if let Some(last) = self.last.take() {
             let outcome = self.unfold(plan, &last.v);
             self.last = Some(last);

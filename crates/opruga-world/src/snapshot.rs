@@ -85,12 +85,12 @@ impl<const D: usize> World<D> {
         let s = &f.solver;
         let counts =
             [s.steps, s.iterations, s.linear_iterations, s.accepted, s.halved, s.deepest, s.cut_off, s.disturbed];
-        for n in counts.into_iter().chain([s.odd_rests, s.blurred, s.conditioned]) {
+        for n in counts.into_iter().chain([s.odd_rests, s.estimated, s.conditioned]) {
             out.count(n);
         }
         out.number(s.residual);
         out.number(s.left);
-        out.number(s.blur);
+        out.number(s.error_estimate);
         out.number(s.conditioning);
     }
 
@@ -232,8 +232,8 @@ impl<const D: usize> World<D> {
         for n in &mut solver {
             *n = reader.count()?;
         }
-        let [mut residual, mut left, mut blur, mut conditioning] = [0.0; 4];
-        for number in [&mut residual, &mut left, &mut blur, &mut conditioning] {
+        let [mut residual, mut left, mut error_estimate, mut conditioning] = [0.0; 4];
+        for number in [&mut residual, &mut left, &mut error_estimate, &mut conditioning] {
             *number = reader.number()?;
         }
         if !reader.0.is_empty() {
@@ -251,7 +251,7 @@ impl<const D: usize> World<D> {
             cut_off,
             disturbed,
             odd_rests,
-            blurred,
+            estimated,
             conditioned,
         ] = solver;
         rest.flows = Flows {
@@ -283,8 +283,8 @@ impl<const D: usize> World<D> {
                 left,
                 disturbed,
                 odd_rests,
-                blurred,
-                blur,
+                estimated,
+                error_estimate,
                 conditioned,
                 conditioning,
             },

@@ -37,7 +37,7 @@ use opruga_core::history::{Channel, PerBody};
 use opruga_core::potential::{Account, CellState};
 use opruga_core::state::Columns;
 use opruga_core::system::{Stage, System};
-use opruga_math::Lane;
+use opruga_math::{Lane, sum_in_fixed_order};
 use opruga_solve::dense::symmetric_eigen;
 
 /// How often a body was displaced since it left its last degenerate shape, one more where that was in vain.
@@ -90,7 +90,7 @@ impl<const D: usize> Island<D> {
         };
         let flat = if is_flat(system) { system.history.get(FLAT_FRAMES) + 1 } else { 0 };
         system.history.set(FLAT_FRAMES, flat);
-        let energy = take_stock(system).elastic;
+        let energy = stored(system)?;
         let Motion { kinetic, push, mass, fading } = motion(system, v0, frame)?;
         let patience = PATIENCE * size * (mass / energy).sqrt();
         // Numbers of the state are finite; what holds no energy has for ever to leave.
@@ -121,7 +121,7 @@ impl<const D: usize> Island<D> {
     ///
     /// # Errors
     /// [`StepError`] where no equilibrium is found.
-    pub(crate) fn unfold_statics(&mut self, plan: &FramePlan<D>, near: bool, start: f64) -> Result<(), StepError> {
+    pub(crate) fn unfold_statics(&mut self, plan: &FramePlan<D>, meets: bool, start: f64) -> Result<(), StepError> {
         // Along the curve of equilibria every point counts.
         if self.integrator.part_of_load(&self.system).is_some() {
             return Ok(());
@@ -135,7 +135,7 @@ impl<const D: usize> Island<D> {
             displace(&mut self.system, part * size, times as u64);
             // Statics enters the change of energy since it began; what displacing gave is work, too.
             let given = self.energy_here() - start;
-            self.attempt(plan, near)?;
+            self.attempt(plan, meets)?;
             self.system.work.user[0] += given;
             self.system.work.solver.add(&solver);
             self.system.work.solver.disturbed += 1;
@@ -149,6 +149,15 @@ impl<const D: usize> Island<D> {
         let (survey, stock) = (survey(&self.system), take_stock(&mut self.system));
         survey.kinetic + survey.gravity + stock.elastic + stock.gas
     }
+}
+
+/// The energy that the cells and springs of a body hold [J].
+fn stored<const D: usize>(system: &mut System<D>) -> Result<f64, StepError> {
+    // Evaluating the forces prepares the models.
+    system.forces(true)?;
+    let view = system.view(Stage::Current, system.time);
+    let elastic = system.members.iter().filter(|member| member.potential.properties().account == Account::Elastic);
+    Ok(elastic.map(|member| sum_in_fixed_order(&member.potential.energy(system.simd, &view, &member.scratch))).sum())
 }
 
 /// How a body moves.
@@ -172,8 +181,8 @@ fn motion<const D: usize>(system: &mut System<D>, v0: &Columns<D>, frame: f64) -
     } else {
         None
     };
-    let mut held = vec![[false; D]; system.nodes];
-    system.held_axes(&mut |node, d| held[node][d] = true);
+    let mut pinned = vec![[false; D]; system.nodes];
+    system.held_axes(&mut |node, d| pinned[node][d] = true);
     let mut mass = 0.0;
     let (mut center, mut speed, mut change) = ([0.0; D], [0.0; D], [0.0; D]);
     for node in 0..system.nodes {
@@ -213,8 +222,8 @@ fn motion<const D: usize>(system: &mut System<D>, v0: &Columns<D>, frame: f64) -
             let own = own[d] - turning[d];
             kinetic += 0.5 * m * own * own;
             push += m * (left[d] - turned_more[d]).abs();
-            // Held nodes are led by others.
-            if let Some((all, undamped)) = damping.as_ref().filter(|_| !held[node][d]) {
+            // Pinned nodes are led by others.
+            if let Some((all, undamped)) = damping.as_ref().filter(|_| !pinned[node][d]) {
                 fading -= (all.0[d][node] - undamped.0[d][node]) * own;
             }
         }

@@ -29,8 +29,8 @@ pub(super) fn count<const D: usize>(system: &mut System<D>, solved: &Solved) {
     let work = &mut system.work.solver;
     work.iterations += u64::from(solved.iterations);
     work.linear_iterations += u64::from(solved.products);
-    work.blurred += u64::from(solved.error_estimate > 0.0);
-    work.blur = solved.error_estimate.larger(work.blur);
+    work.estimated += u64::from(solved.error_estimate > 0.0);
+    work.error_estimate = solved.error_estimate.larger(work.error_estimate);
     work.conditioned += u64::from(solved.conditioning > 1.0);
     work.conditioning = solved.conditioning.larger(work.conditioning);
 }

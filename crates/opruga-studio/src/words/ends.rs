@@ -27,10 +27,10 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     (
         "at t = {} s {~} account for, in another balance than that of the own shape: snapped through, folded, inside out or \
          twisted round; the first of them is body `{}` with {} J, {} J of it accounted for, V/V₀ = {}, and cell {} at J = {}; hint: \
-         where this was not meant, begin in its own shape, with more damping or more substeps, or `unfold = true` in `[world]`",
+         where this was not meant, begin in its own shape, with more damping or more substeps{~}",
         "u t = {} s {~}, u drugoj ravnoteži nego što je ona vlastitog oblika: preskočilo, presavijeno, izvrnuto ili zavrnuto; prvo \
          je tijelo `{}` s {} J, od toga objašnjeno {} J, V/V₀ = {}, i ćelijom {} s J = {}; savjet: ako to nije namjera, počni u \
-         vlastitom obliku, s više prigušenja ili podkoraka, ili `unfold = true` u `[world]`",
+         vlastitom obliku, s više prigušenja ili podkoraka{~}",
     ),
     (
         "at t = {} s {~} account for, in another balance than that of the own shape: snapped through, folded, inside out or \
@@ -44,6 +44,7 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
 
 /// Parts of them, as in [`super::sentences::PARTS`].
 pub(super) const PARTS: &[(&str, &str)] = &[
+    (", or `unfold = true` in `[world]`", ", ili `unfold = true` u `[world]`"),
     ("1 cell is", "1 ćelija"),
     ("{} cells are", "ćelija {}"),
     (

@@ -191,36 +191,6 @@ fn statics_and_real_time_leave_flat_shapes_too() {
     }
 }
 
-/// The twin of the test above: in statics nothing is displaced by chance, and a warning names body, cells and the word.
-#[test]
-fn statics_on_a_line_stays_there_and_is_warned_of_where_the_scene_does_not_unfold() {
-    let material = [("material", text("stable_neo_hookean")), ("youngs_modulus", Value::Number(1e5))];
-    for unfold in [false, true] {
-        let mut blueprint = solid(cube(3), "equilibrium", &[], &material);
-        blueprint.bodies[0].pins = clamp();
-        blueprint.surroundings.unfold = unfold;
-        let positions = blueprint.bodies[0].mesh.positions.clone();
-        let mut world = World::new(blueprint, Options::default()).unwrap();
-        for (node, x) in positions.iter().enumerate() {
-            let at = if x[0] == 0.0 { *x } else { [x[0], 0.5, 0.5] };
-            world.place_node(0, node as u32, at, [0.0; 3]).unwrap();
-        }
-        world.frame().unwrap();
-        let told = world.inverted_cells();
-        assert_eq!(told.is_none(), unfold, "{told:?}");
-        assert_eq!(world.solver_work().disturbed > 0, unfold);
-        // What displacing and solving again changed is work from outside.
-        let closure = world.energy().closure;
-        assert!(closure < 1e-9, "{closure}");
-        if let Some(told) = told {
-            assert!(told.message.contains("of body `body`") && told.message.contains("`unfold = true`"), "{told:?}");
-            continue;
-        }
-        assert!(world.warnings().iter().any(|warning| warning.code == "step.disturbed"));
-        assert!((ratios(&world).0 - 1.0).abs() < 1e-6, "{:?}", ratios(&world));
-    }
-}
-
 #[test]
 fn scattered_stretched_and_twisted_bodies_come_back_or_are_refused_with_a_reason() {
     for material in MATERIALS {
