@@ -166,9 +166,10 @@ impl<const D: usize> History<D> {
     pub fn channels_mut(&mut self) -> impl ExactSizeIterator<Item = (Channel, &mut Content<D>)> {
         self.channels.iter_mut().map(|(channel, content)| (*channel, content))
     }
-    /// Whether it was declared by an owner with these channels.
+    /// Whether an owner has declared these channels; others may have been added behind them.
     pub fn is_of(&self, owner: &str, channels: &[Channel]) -> bool {
-        self.owner == owner && self.channels.iter().map(|(channel, _)| channel).eq(channels)
+        let declared = self.channels.iter().map(|(channel, _)| channel);
+        self.owner == owner && self.channels.len() >= channels.len() && declared.zip(channels).all(|(a, b)| a == b)
     }
 
     fn find(&self, name: &str) -> Option<usize> {
@@ -287,5 +288,8 @@ mod tests {
         history.set(TURN, 2);
         history.add(&[TURN.declared(), PerBody::<f64>::new("last").declared()], 8);
         assert_eq!((history.get(TURN), history.channels().len()), (2, 5));
+        // Whoever declared the first of them still owns them.
+        let declared: Vec<Channel> = history.channels().map(|(channel, _)| channel).collect();
+        assert!(history.is_of("rule", &declared[..4]) && !history.is_of("rule", &declared[1..]));
     }
 }
