@@ -1,6 +1,7 @@
 //! What an integrator is to a world: it moves a system on by one substep, and knows its own stability.
 
 use crate::error::{BuildError, StepError};
+use crate::history::{Channel, History};
 use crate::memory::Counts;
 use crate::potential::{Reading, Views};
 use crate::spec::{Spec, Values};
@@ -20,11 +21,11 @@ pub trait Integrator<const D: usize>: Send + Sync + Debug {
     fn work_columns(&self) -> usize {
         0
     }
-    /// What it remembers from step to step beside x and v; part of the state.
-    fn history(&self) -> HistorySize {
-        HistorySize::default()
+    /// What it keeps from step to step beside x and v; part of the state.
+    fn history(&self) -> Vec<Channel> {
+        Vec::new()
     }
-    /// The matrix that takes (x, v), and behind them the columns of its history, to the next step on the damped oscillator
+    /// The matrix that takes (x, v), and behind them the vectors of its history, to the next step on the damped oscillator
     /// x″ = −ω²x − c x′.
     ///
     /// Its spectral radius is at most 1 where the step h is stable. The state is scaled as (x, v), not (ωx, v).
@@ -77,6 +78,17 @@ pub trait Integrator<const D: usize>: Send + Sync + Debug {
     fn step(&self, system: &mut System<D>, h: f64) -> Result<(), StepError>;
 }
 
+impl<const D: usize> System<D> {
+    /// Lays out tiles, buffers and the history for an integrator; a history that the same integrator has declared is kept.
+    pub fn equip(&mut self, integrator: &dyn Integrator<D>) {
+        self.plan(integrator.work_columns());
+        let channels = integrator.history();
+        if !self.history.is_of(integrator.name(), &channels) {
+            self.history = History::new(integrator.name(), &channels, self.places());
+        }
+    }
+}
+
 /// A kind of integrator that scenes can name.
 pub trait IntegratorKind<const D: usize>: Send + Sync {
     /// Its parameters and documentation.
@@ -90,15 +102,6 @@ pub trait IntegratorKind<const D: usize>: Send + Sync {
     /// # Errors
     /// [`BuildError`] where a combination of parameters has no meaning.
     fn build(&self, values: &Values) -> Result<Box<dyn Integrator<D>>, BuildError>;
-}
-
-/// What an integrator remembers from step to step.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct HistorySize {
-    /// Columns of one vector per node.
-    pub columns: usize,
-    /// Plain numbers.
-    pub numbers: usize,
 }
 
 /// The most numbers per degree of freedom that an integrator carries from step to step.

@@ -87,14 +87,14 @@ pub struct SolverWork {
     /// alone [m].
     pub left: f64,
     /// Steps that ended where forces balance to their rounding, though what is left of them would still move nodes visibly.
-    pub blurred: u64,
+    pub estimated: u64,
     /// By how much at most it would [m].
-    pub blur: f64,
+    pub error_estimate: f64,
     /// Steps in which forces that rounding of positions makes were larger than the loads.
     pub conditioned: u64,
     /// How many times at most they were as large.
     pub conditioning: f64,
-    /// How often a body that stood still flat, inside out or folded was disturbed.
+    /// How often a body that rested in a degenerate shape was displaced at random.
     pub disturbed: u64,
     /// How often that was in vain.
     pub odd_rests: u64,
@@ -112,8 +112,8 @@ impl SolverWork {
         self.deepest = self.deepest.max(other.deepest);
         self.cut_off += other.cut_off;
         self.left = other.left.larger(self.left);
-        self.blurred += other.blurred;
-        self.blur = other.blur.larger(self.blur);
+        self.estimated += other.estimated;
+        self.error_estimate = other.error_estimate.larger(self.error_estimate);
         self.conditioned += other.conditioned;
         self.conditioning = other.conditioning.larger(self.conditioning);
         self.disturbed += other.disturbed;

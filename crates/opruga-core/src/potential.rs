@@ -284,6 +284,12 @@ impl CellState {
         let shear = square(s[0][1]) + square(s[1][2]) + square(s[2][0]);
         (0.5 * normal + 3.0 * shear).sqrt()
     }
+    /// Whether it has no volume or a negative one, somewhere: less than a thousandth of its volume at rest, or a number that is none.
+    pub fn is_degenerate(&self) -> bool {
+        /// Cells below this part of their volume have none.
+        const NO_VOLUME: f64 = 1e-3;
+        !matches!(self.smallest_volume_ratio.partial_cmp(&NO_VOLUME), Some(core::cmp::Ordering::Greater))
+    }
     /// The pressure −⅓ tr σ [Pa].
     pub fn pressure(&self) -> f64 {
         -(self.stress[0][0] + self.stress[1][1] + self.stress[2][2]) / 3.0

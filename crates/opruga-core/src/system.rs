@@ -2,6 +2,7 @@
 
 use crate::contacts::Contacts;
 use crate::error::StepError;
+use crate::history::History;
 use crate::inertia::Inertia;
 use crate::ledger::StepWork;
 use crate::pins::Held;
@@ -13,7 +14,7 @@ use opruga_math::{Column, Lane, Pack, Simd, WIDTH};
 
 pub use crate::ledger::{SolverWork, Work8};
 pub use crate::pins::{Pin, along_path};
-pub use crate::workspace::{Room, Workspace};
+pub use crate::workspace::{Cache, Workspace};
 
 /// Which columns hold the state in which forces are evaluated, or into which an update writes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,17 +43,6 @@ pub struct Stabilisers {
     pub largest_force: Option<f64>,
     /// The largest speed of a node [m/s].
     pub largest_velocity: Option<f64>,
-}
-
-/// What an integrator remembers from step to step; part of the state.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct History<const D: usize> {
-    /// The name of the integrator whose it is.
-    pub owner: &'static str,
-    /// Columns of one vector per node.
-    pub columns: Vec<Columns<D>>,
-    /// Plain numbers, zero at the start.
-    pub numbers: Vec<f64>,
 }
 
 /// What an integrator does with the forces of a tile: reads the state, writes positions and velocities.
@@ -121,8 +111,8 @@ pub struct System<const D: usize> {
     pub work: Work8,
     /// What the integrator remembers.
     pub history: History<D>,
-    /// Room that an integrator keeps between steps; what it holds does not change results.
-    pub room: Room,
+    /// What the integrator keeps between steps to save time; no result depends on it.
+    pub cache: Cache,
     pub(crate) plan: TilePlan,
     /// What the pins hold.
     pub(crate) held: Held<D>,
@@ -174,7 +164,7 @@ impl<const D: usize> System<D> {
             stabilisers: Stabilisers::default(),
             work: Work8::default(),
             history: History::default(),
-            room: Room::default(),
+            cache: Cache::default(),
             plan: TilePlan::new(places, std::iter::empty()),
             held: Held::default(),
             step_work: Default::default(),
@@ -240,17 +230,6 @@ impl<const D: usize> System<D> {
         self.plan = TilePlan::new(places, spans.into_iter());
         self.stages = work_columns;
         self.held = Held::of(&self.pins);
-    }
-    /// Lays out tiles and buffers for an integrator, and room for what it remembers; what it knows is kept if it fits.
-    pub fn equip(&mut self, integrator: &dyn crate::integrator::Integrator<D>) {
-        self.plan(integrator.work_columns());
-        let size = integrator.history();
-        let places = self.places();
-        if self.history.owner != integrator.name() {
-            self.history = History { owner: integrator.name(), ..History::default() };
-        }
-        self.history.columns.resize_with(size.columns, || Columns::zeros(places));
-        self.history.numbers.resize(size.numbers, 0.0);
     }
     /// The number of places.
     pub fn places(&self) -> usize {

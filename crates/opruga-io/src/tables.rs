@@ -221,7 +221,7 @@ pub struct SolverSummary {
     pub cut_off: u64,
     /// The most that such a step left out of balance, as the way that it would move nodes if each stood alone [m].
     pub largest_left: f64,
-    /// How often a body that stood still flat, inside out or folded was disturbed.
+    /// How often a body that rested in a degenerate shape was displaced at random (`[world] unfold = true`).
     pub disturbed: u64,
     /// How often that was in vain.
     pub odd_rests: u64,

@@ -143,6 +143,8 @@ pub struct Surroundings<const D: usize> {
     pub largest_velocity: Option<f64>,
     /// Bodies all of whose nodes are farther from the origin than this are taken away [m]; each is counted. None: no limit.
     pub largest_distance: Option<f64>,
+    /// Whether bodies that rest in a degenerate shape are displaced at random, so that they leave it; counted every time it acts.
+    pub unfold: bool,
 }
 
 /// One body.

@@ -9,6 +9,7 @@ use crate::masses::{densities, node_masses};
 use crate::plausible;
 use crate::registry::Registry;
 use crate::slots::{Origin, Slots};
+use crate::unfold;
 use opruga_collide::Colliders;
 use opruga_core::error::BuildError;
 use opruga_core::integrator::Integrator;
@@ -249,6 +250,9 @@ impl<const D: usize> Builder<'_, D> {
             self.check_mass_matrix(first, &*integrator).map_err(refuse)?;
         }
         system.equip(&*integrator);
+        if self.blueprint.surroundings.unfold {
+            system.history.add(&unfold::channels(), places);
+        }
         for (l, state) in states.iter().enumerate() {
             state.history.restore(&mut system, l);
         }

@@ -1,10 +1,17 @@
 //! Numbers, texts and values as bytes: what snapshots and written inputs are made of.
 
-use crate::carried::BodyHistory;
+use crate::carried::{BodyHistory, Kept};
 use crate::error::WorldError;
+use opruga_core::history::Content;
 use opruga_core::spec::Value;
 use opruga_core::state::Columns;
 use opruga_core::system::System;
+
+/// The types of the channels of a history.
+const NUMBER: u64 = 0;
+const COUNT: u64 = 1;
+const FLAG: u64 = 2;
+const VECTORS: u64 = 3;
 
 /// Little-endian numbers, one after the other.
 pub(crate) struct Writer<'a>(pub(crate) &'a mut Vec<u8>);
@@ -66,6 +73,33 @@ impl Writer<'_> {
         self.count(vectors.len() as u64);
         for x in vectors.iter().flatten() {
             self.number(*x);
+        }
+    }
+    /// What the integrator of one body keeps.
+    pub(crate) fn history<const D: usize>(&mut self, system: &System<D>, lane: usize) {
+        self.text(system.history.owner());
+        let channels = system.history.channels();
+        self.count(channels.len() as u64);
+        for (channel, content) in channels {
+            self.text(channel.name);
+            match content {
+                Content::Number(number) => {
+                    self.count(NUMBER);
+                    self.number(*number);
+                }
+                Content::Count(count) => {
+                    self.count(COUNT);
+                    self.count(*count);
+                }
+                Content::Flag(flag) => {
+                    self.count(FLAG);
+                    self.count(u64::from(*flag));
+                }
+                Content::Vectors(columns) => {
+                    self.count(VECTORS);
+                    self.columns(columns, system, lane);
+                }
+            }
         }
     }
     /// The vectors of the nodes of one body; room is made once, for this is most of a snapshot.
@@ -146,15 +180,33 @@ impl Reader<'_> {
         })
     }
     pub(crate) fn history<const D: usize>(&mut self) -> Result<BodyHistory<D>, WorldError> {
-        let owner = self.text()?;
-        let columns = self.length()?;
-        let columns = (0..columns).map(|_| self.vectors::<D>()).collect::<Result<_, _>>()?;
-        let history = BodyHistory { owner, columns, numbers: self.numbers()? };
-        let numbers = history.columns.iter().flatten().flatten().chain(&history.numbers);
-        if let Some(odd) = numbers.copied().find(|x| !x.is_finite()) {
-            return Err(WorldError::Snapshot(format!("`{}` remembers {odd}", history.owner)));
+        let mut history = BodyHistory { owner: self.text()?, channels: Vec::new() };
+        for _ in 0..self.length()? {
+            let name = self.text()?;
+            let kept = match self.count()? {
+                NUMBER => Kept::Number(self.number()?),
+                COUNT => Kept::Count(self.count()?),
+                FLAG => Kept::Flag(self.count()? != 0),
+                VECTORS => Kept::Vectors(self.vectors::<D>()?),
+                _ => return Err(WorldError::Snapshot(format!("the channel `{name}` is of an unknown type"))),
+            };
+            let numbers = match &kept {
+                Kept::Number(number) => std::slice::from_ref(number),
+                Kept::Vectors(vectors) => vectors.as_flattened(),
+                Kept::Count(_) | Kept::Flag(_) => &[],
+            };
+            if let Some(odd) = numbers.iter().find(|x| !x.is_finite()) {
+                return Err(WorldError::Snapshot(format!("the channel `{name}` holds {odd}")));
+            }
+            history.channels.push((name, kept));
         }
         Ok(history)
+    }
+    /// The history in a snapshot of version 8, if its integrator kept nothing; others held numbers without names.
+    pub(crate) fn empty_history<const D: usize>(&mut self) -> Result<Option<BodyHistory<D>>, WorldError> {
+        let owner = self.text()?;
+        let (columns, numbers) = (self.count()?, self.count()?);
+        Ok((columns == 0 && numbers == 0).then_some(BodyHistory { owner, channels: Vec::new() }))
     }
     pub(crate) fn vectors<const D: usize>(&mut self) -> Result<Vec<[f64; D]>, WorldError> {
         let n = self.length()?;

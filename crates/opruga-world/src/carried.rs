@@ -1,6 +1,6 @@
 //! What of a body is carried over when its island is built anew.
 
-use opruga_core::state::Columns;
+use opruga_core::history::Content;
 use opruga_core::system::System;
 
 /// What is carried over when islands are built anew.
@@ -13,42 +13,91 @@ pub(crate) struct BodyState<const D: usize> {
     pub(crate) history: BodyHistory<D>,
 }
 
-/// What an integrator remembers of one body.
+/// The channels of one body.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct BodyHistory<const D: usize> {
     /// The integrator.
     pub(crate) owner: String,
-    pub(crate) columns: Vec<Vec<[f64; D]>>,
-    pub(crate) numbers: Vec<f64>,
+    /// Name and content.
+    pub(crate) channels: Vec<(String, Kept<D>)>,
+}
+
+/// What a channel holds of one body.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Kept<const D: usize> {
+    Number(f64),
+    Count(u64),
+    Flag(bool),
+    /// One vector per node.
+    Vectors(Vec<[f64; D]>),
 }
 
 impl<const D: usize> BodyHistory<D> {
     /// That of a body in a lane.
     pub(crate) fn of(system: &System<D>, lane: usize) -> BodyHistory<D> {
-        let place = |node| system.layout.place(node, lane);
-        let column = |c: &Columns<D>| (0..system.nodes).map(|n| c.at(place(n))).collect();
+        let kept = |content: &Content<D>| match content {
+            Content::Number(number) => Kept::Number(*number),
+            Content::Count(count) => Kept::Count(*count),
+            Content::Flag(flag) => Kept::Flag(*flag),
+            Content::Vectors(columns) => {
+                Kept::Vectors((0..system.nodes).map(|node| columns.at(system.layout.place(node, lane))).collect())
+            }
+        };
         BodyHistory {
-            owner: system.history.owner.into(),
-            columns: system.history.columns.iter().map(column).collect(),
-            numbers: system.history.numbers.clone(),
+            owner: system.history.owner().into(),
+            channels: system
+                .history
+                .channels()
+                .map(|(channel, content)| (channel.name.to_string(), kept(content)))
+                .collect(),
         }
     }
-    /// Whether the integrator of a system remembers as much.
+    /// Whether a system has the same channels.
     pub(crate) fn fits(&self, system: &System<D>) -> bool {
-        let own = &system.history;
-        self.owner == own.owner && self.columns.len() == own.columns.len() && self.numbers.len() == own.numbers.len()
+        let own = system.history.channels();
+        self.owner == system.history.owner()
+            && self.channels.len() == own.len()
+            && self
+                .channels
+                .iter()
+                .zip(own)
+                .all(|((name, kept), (channel, content))| name == channel.name && kept.is_like(content))
     }
-    /// Gives it back to the system of a body, if that has the same integrator.
+    /// Whether its vectors belong to so many nodes.
+    pub(crate) fn is_of_nodes(&self, nodes: usize) -> bool {
+        self.channels.iter().all(|(_, kept)| !matches!(kept, Kept::Vectors(vectors) if vectors.len() != nodes))
+    }
+    /// Gives it back to the system of a body, channel by channel, if that has the same integrator.
     pub(crate) fn restore(&self, system: &mut System<D>, lane: usize) {
-        if !self.fits(system) {
+        if self.owner != system.history.owner() {
             return;
         }
-        let own = &mut system.history;
-        own.numbers.clone_from(&self.numbers);
-        for (column, kept) in own.columns.iter_mut().zip(&self.columns) {
-            for (node, value) in kept.iter().enumerate().take(system.nodes) {
-                column.set(system.layout.place(node, lane), *value);
+        let (layout, nodes) = (system.layout, system.nodes);
+        for (channel, content) in system.history.channels_mut() {
+            let Some((_, kept)) = self.channels.iter().find(|(name, _)| name == channel.name) else { continue };
+            match (content, kept) {
+                (Content::Number(own), Kept::Number(kept)) => *own = *kept,
+                (Content::Count(own), Kept::Count(kept)) => *own = *kept,
+                (Content::Flag(own), Kept::Flag(kept)) => *own = *kept,
+                (Content::Vectors(own), Kept::Vectors(kept)) => {
+                    for (node, value) in kept.iter().enumerate().take(nodes) {
+                        own.set(layout.place(node, lane), *value);
+                    }
+                }
+                _ => {}
             }
         }
+    }
+}
+
+impl<const D: usize> Kept<D> {
+    fn is_like(&self, content: &Content<D>) -> bool {
+        matches!(
+            (self, content),
+            (Kept::Number(_), Content::Number(_))
+                | (Kept::Count(_), Content::Count(_))
+                | (Kept::Flag(_), Content::Flag(_))
+                | (Kept::Vectors(_), Content::Vectors(_))
+        )
     }
 }

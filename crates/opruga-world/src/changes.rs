@@ -36,11 +36,12 @@ pub(crate) enum Before<const D: usize> {
 }
 
 const FORMS: &str = "body.NAME.models.KIND.FIELD, body.NAME.integrator.FIELD, integrator.FIELD, collider.NUMBER.FIELD, world.gravity, world.drag, \
-                     world.largest_force, world.largest_velocity, world.largest_distance, time.substeps";
+                     world.largest_force, world.largest_velocity, world.largest_distance, \
+                     world.unfold, time.substeps";
 
 impl<const D: usize> World<D> {
     /// Changes a parameter: `body.NAME.models.KIND.FIELD`, `body.NAME.integrator.FIELD`, `integrator.FIELD`, `collider.NUMBER.FIELD`, `world.gravity`,
-    /// `world.drag`, `world.largest_force`, `world.largest_velocity`, `world.largest_distance`, `time.substeps`.
+    /// `world.drag`, `world.largest_force`, `world.largest_velocity`, `world.largest_distance`, `world.unfold`, `time.substeps`.
     ///
     /// The name of a body with copies means all of them, `NAME[i]` one; a body or a model may be named by its number. The
     /// stable step is estimated anew.
@@ -182,8 +183,10 @@ impl<const D: usize> World<D> {
                         now.largest_distance = number(accept(Allowed::POSITIVE)?);
                         return Ok((Before::Surroundings(before), Touched::Bodies(Vec::new())));
                     }
+                    "unfold" => now.unfold = matches!(accept(Allowed::Boolean)?, Value::Boolean(true)),
                     other => {
-                        let known = ["gravity", "drag", "largest_force", "largest_velocity", "largest_distance"];
+                        let known =
+                            ["gravity", "drag", "largest_force", "largest_velocity", "largest_distance", "unfold"];
                         let hint = nearest(other, known.into_iter()).map(|n| format!("; did you mean `{n}`?"));
                         let hint = hint.unwrap_or_default();
                         return Err(refuse(format!(

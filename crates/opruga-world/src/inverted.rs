@@ -42,6 +42,7 @@ impl<const D: usize> World<D> {
                 let found = match shapes.get(cell.cell as usize) {
                     Some(Some(Found::Inverted(ratio))) if right || *ratio < points => Found::Inverted(*ratio),
                     _ if !right => Found::Inverted(points),
+                    _ if cell.is_degenerate() => Found::Nearly(points),
                     Some(Some(Found::Nearly(ratio))) => Found::Nearly(*ratio),
                     _ => continue,
                 };
@@ -59,7 +60,7 @@ impl<const D: usize> World<D> {
             _ => format!("{} are", counted(count, "cell", "cells")),
         };
         let message = format!(
-            "at t = {} s {} inside out, the first of them cell {cell} of body `{}` with J = {}; hint: more substeps, {}",
+            "at t = {} s {} inside out, the first of them cell {cell} of body `{}` with J = {}; hint: more substeps, {}{}",
             number(self.time()),
             match (count, near) {
                 (_, 0) => cells(count),
@@ -69,6 +70,7 @@ impl<const D: usize> World<D> {
             self.blueprint.bodies[body].name,
             number(ratio),
             self.what_rights_cells(body),
+            self.or_unfold(),
         );
         Some(Warning { code: INVERTED.into(), message, count: count + near })
     }
@@ -91,6 +93,11 @@ impl<const D: usize> World<D> {
             Some(if least.is_inverted() { Found::Inverted(ratio) } else { Found::Nearly(ratio) })
         });
         found.collect()
+    }
+
+    /// What helps a body that rests in a degenerate shape, where the scene does not say it.
+    pub(crate) fn or_unfold(&self) -> &'static str {
+        if self.blueprint.surroundings.unfold { "" } else { ", or `unfold = true` in `[world]`" }
     }
 
     /// What else than more substeps turns cells of a body right side out: no law that it already has.

@@ -3,11 +3,12 @@
 use crate::ledger::{Stock, Survey, survey, take_stock, total_of};
 use opruga_collide::Colliders;
 use opruga_core::error::StepError;
+use opruga_core::history::History;
 use opruga_core::integrator::Integrator;
 use opruga_core::potential::Reading;
 use opruga_core::stability::Stability;
 use opruga_core::state::{Columns, View};
-use opruga_core::system::{History, Member, System, Work8, Workspace};
+use opruga_core::system::{Member, System, Work8, Workspace};
 use opruga_math::Lane;
 use std::sync::Arc;
 
@@ -73,7 +74,7 @@ impl<const D: usize> Saved<D> {
         for (kept, member) in self.memory.iter_mut().zip(&system.members) {
             kept.clone_from(&member.memory);
         }
-        copy_history(&system.history, &mut self.history);
+        self.history.copy_from(&system.history);
         (self.time, self.work) = (time, system.work);
     }
 
@@ -100,6 +101,8 @@ pub(crate) struct FramePlan<'a, const D: usize> {
     pub(crate) h: f64,
     /// Substeps between two looks within the frame; 0: none.
     pub(crate) look_every: u32,
+    /// Whether bodies that rest in a degenerate shape are displaced.
+    pub(crate) unfold: bool,
 }
 
 impl<const D: usize> Island<D> {
@@ -209,6 +212,9 @@ impl<const D: usize> Island<D> {
             self.restore();
             outcome = self.attempt(plan, true);
         }
+        if plan.unfold && outcome.is_ok() {
+            outcome = self.recover(plan, near);
+        }
         match outcome {
             Ok(survey) => {
                 self.survey = survey;
@@ -230,7 +236,20 @@ impl<const D: usize> Island<D> {
         }
     }
 
-    fn attempt(&mut self, plan: &FramePlan<D>, near: bool) -> Result<Survey<D>, StepError> {
+    /// Lets a body leave a degenerate shape at the end of a frame; looks at the state again.
+    fn recover(&mut self, plan: &FramePlan<D>, meets: bool) -> Result<Survey<D>, StepError> {
+        if self.integrator.is_static() {
+            let start = self.survey.kinetic + self.potential_before;
+            self.unfold_statics(plan, meets, start)?;
+        } else if let Some(last) = self.last.take() {
+            let outcome = self.unfold(plan, &last.v);
+            self.last = Some(last);
+            outcome?;
+        }
+        Ok(survey(&self.system))
+    }
+
+    pub(crate) fn attempt(&mut self, plan: &FramePlan<D>, near: bool) -> Result<Survey<D>, StepError> {
         self.system.work = Work8::default();
         self.system.contacts = None;
         if let (true, Some(colliders)) = (near, plan.colliders) {
@@ -330,7 +349,7 @@ impl<const D: usize> Island<D> {
             for (member, kept) in self.system.members.iter_mut().zip(&saved.memory) {
                 member.memory.clone_from(kept);
             }
-            copy_history(&saved.history, &mut self.system.history);
+            self.system.history.copy_from(&saved.history);
             self.system.time = saved.time;
         }
     }
@@ -364,19 +383,6 @@ impl<const D: usize> Island<D> {
     pub(crate) fn heap_bytes(&self) -> usize {
         let kept: usize = self.last.iter().chain(&self.looks).map(|s| 2 * D * s.x.0[0].heap_bytes()).sum();
         self.system.heap_bytes() + kept
-    }
-}
-
-/// Copies what an integrator remembers into memory that is there already.
-fn copy_history<const D: usize>(from: &History<D>, to: &mut History<D>) {
-    to.owner = from.owner;
-    to.numbers.clone_from(&from.numbers);
-    to.columns.resize_with(from.columns.len(), || Columns::zeros(0));
-    for (to, from) in to.columns.iter_mut().zip(&from.columns) {
-        for d in 0..D {
-            to.0[d].grow(from.0[d].len());
-            to.0[d].copy_from_slice(&from.0[d]);
-        }
     }
 }
 

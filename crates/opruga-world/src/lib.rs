@@ -51,6 +51,7 @@ mod stability;
 mod start;
 mod stepping;
 mod turned;
+mod unfold;
 pub mod validity;
 mod world;
 

@@ -113,7 +113,7 @@ impl<const D: usize> World<D> {
         let message = format!(
             "at t = {} s {} account for, in another balance than that of the own shape: snapped through, folded, inside out or \
              twisted round; the first of them is body `{}` with {} J, {} J of it accounted for, V/V₀ = {}, and cell {} at \
-             J = {}; hint: where this was not meant, begin in its own shape, with more damping or more substeps",
+             J = {}; hint: where this was not meant, begin in its own shape, with more damping or more substeps{}",
             number(self.time()),
             match count {
                 1 => "1 body holds more energy in its cells than the forces on it".into(),
@@ -125,6 +125,7 @@ impl<const D: usize> World<D> {
             rounded(volume / rest, 4),
             worst.0,
             rounded(worst.1, 4),
+            self.or_unfold(),
         );
         Some(Warning { code: OTHER_BALANCE.into(), message, count })
     }

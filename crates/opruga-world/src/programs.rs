@@ -74,6 +74,7 @@ impl<const D: usize> Blueprint<D> {
                 largest_force: None,
                 largest_velocity: None,
                 largest_distance: None,
+                unfold: false,
             },
             integrator,
             bodies: Vec::new(),

@@ -287,9 +287,9 @@ impl<const D: usize> World<D> {
                  positions have sixteen digits, and the body is so slender, its cells so thin or the origin so far that this is what \
                  they leave open; what is smaller in the result is chance; hint: cells that are less long for their thickness, or a scene at the \
                  origin",
-                number(solver.blur)
+                number(solver.error_estimate)
             ),
-            solver.blurred,
+            solver.estimated,
         );
         count(
             "conditioning",

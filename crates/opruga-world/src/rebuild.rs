@@ -50,7 +50,9 @@ impl<const D: usize> World<D> {
     /// Whether bodies like one may be stepped side by side.
     fn batches(&self, body: &BodyBlueprint<D>) -> bool {
         let kind = body.integrator.as_ref().unwrap_or(&self.blueprint.integrator).kind();
-        self.options.batches && self.registry.integrator(kind).is_none_or(|integrator| integrator.batches())
+        // A body is displaced by itself.
+        let alone = !self.options.batches || self.blueprint.surroundings.unfold;
+        !alone && self.registry.integrator(kind).is_none_or(|integrator| integrator.batches())
     }
 
     /// Builds the islands of some bodies anew after commands on them began or ended; who lies beside whom stays.

@@ -26,7 +26,7 @@ impl<const D: usize> World<D> {
         out.own_integrator(integrator.map(|_| &now.integrator));
         let s = &now.surroundings;
         if then.surroundings.is_some_and(|before| before != *s) {
-            out.count(1);
+            out.count(1 + u64::from(s.unfold));
             out.vectors(&[s.gravity]);
             out.number(s.drag);
             [s.largest_force, s.largest_velocity, s.largest_distance].iter().for_each(|x| out.numbers(x.as_slice()));
@@ -101,12 +101,14 @@ impl<const D: usize> World<D> {
             let before = std::mem::replace(&mut self.blueprint.integrator, values);
             self.keep_start(Before::Integrator(before));
         }
-        if reader.count()? == 1 {
+        let changed = reader.count()?;
+        if changed > 0 {
+            let unfold = changed == 2;
             let [gravity] = reader.vectors::<D>()?[..] else { return refused("its gravity is none") };
             let drag = reader.number()?;
             let mut limit = || Ok::<_, WorldError>(reader.numbers()?.first().copied());
             let (largest_force, largest_velocity, largest_distance) = (limit()?, limit()?, limit()?);
-            let now = Surroundings { gravity, drag, largest_force, largest_velocity, largest_distance };
+            let now = Surroundings { gravity, drag, largest_force, largest_velocity, largest_distance, unfold };
             crate::validity::surroundings(&now)?;
             let before = std::mem::replace(&mut self.blueprint.surroundings, now);
             self.keep_start(Before::Surroundings(before));

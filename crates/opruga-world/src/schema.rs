@@ -227,7 +227,7 @@ pub const WORLD: Section = Section {
     spec: &section(
         "world",
         "What acts everywhere",
-        "Gravity and drag act on every node. The largest force and velocity are stabilisers, the largest distance ends what would fall for ever: off unless given, and every time they act is counted.",
+        "Gravity and drag act on every node. The largest force and velocity are stabilisers, the largest distance ends what would fall for ever: off unless given, and every time they act is counted. `unfold` does what no physics does, and is off, too.",
         &[
             Field::new("gravity", Allowed::Vector, "m/s²", Default::Origin, "Acceleration of gravity."),
             Field::new(
@@ -245,6 +245,14 @@ pub const WORLD: Section = Section {
                 "m",
                 Default::Absent,
                 "A body all of whose nodes are farther than this from the origin is taken away.",
+            ),
+            Field::new(
+                "unfold",
+                Allowed::Boolean,
+                "",
+                Default::Boolean(false),
+                "Whether a body that rests with degenerate or inverted cells, or strained though nothing acts on it, is displaced at \
+random so that it leaves that shape: by 1e-4 of its size, then by a hundredth and a tenth. Every time is counted.",
             ),
         ],
     ),

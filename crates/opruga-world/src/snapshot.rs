@@ -15,7 +15,9 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-const VERSION: u64 = 8;
+const VERSION: u64 = 9;
+/// The version before it, which named no channels of a history. It is read where no integrator kept anything.
+const BEFORE: u64 = 8;
 
 impl<const D: usize> World<D> {
     /// The whole state: time, positions, velocities, what models remember, how far commands have come, the ledger.
@@ -54,10 +56,7 @@ impl<const D: usize> World<D> {
                 out.count(memory.len() as u64);
                 memory.for_each(|m| out.number(*m));
             }
-            out.text(system.history.owner);
-            out.count(system.history.columns.len() as u64);
-            system.history.columns.iter().for_each(|columns| out.columns(columns, system, lane));
-            out.numbers(&system.history.numbers);
+            out.history(system, lane);
             out.count(self.laws_on(body));
         }
         let of_scene = self.running.iter().filter(|running| !running.given);
@@ -87,12 +86,12 @@ impl<const D: usize> World<D> {
         let s = &f.solver;
         let counts =
             [s.steps, s.iterations, s.linear_iterations, s.accepted, s.halved, s.deepest, s.cut_off, s.disturbed];
-        for n in counts.into_iter().chain([s.odd_rests, s.blurred, s.conditioned]) {
+        for n in counts.into_iter().chain([s.odd_rests, s.estimated, s.conditioned]) {
             out.count(n);
         }
         out.number(s.residual);
         out.number(s.left);
-        out.number(s.blur);
+        out.number(s.error_estimate);
         out.number(s.conditioning);
     }
 
@@ -135,16 +134,17 @@ impl<const D: usize> World<D> {
         outcome
     }
 
-    /// What a snapshot says before its bodies: frames, and how the scene differs from that at the start.
-    fn read_head<'b>(reader: &mut Reader<'b>) -> Result<(u64, &'b [u8]), WorldError> {
+    /// Reads what a snapshot says before its bodies.
+    fn read_head<'b>(reader: &mut Reader<'b>) -> Result<Head<'b>, WorldError> {
         let refuse = |message: &str| Err(WorldError::Snapshot(message.into()));
-        if reader.count()? != VERSION {
+        let version = reader.count()?;
+        if ![VERSION, BEFORE].contains(&version) {
             return refuse(&format!("its version is not {VERSION}"));
         }
         if reader.count()? != D as u64 {
             return refuse("it has another dimension");
         }
-        Ok((reader.count()?, reader.bytes()?))
+        Ok(Head { version, frames: reader.count()?, delta: reader.bytes()? })
     }
 
     /// What a snapshot says of the bodies of the blueprint, the commands, and the ledger; those are known, and
@@ -152,6 +152,7 @@ impl<const D: usize> World<D> {
     fn read_rest(
         &self,
         reader: &mut Reader<'_>,
+        version: u64,
         commands: &[Running<D>],
         other_future: bool,
     ) -> Result<Rest<D>, WorldError> {
@@ -186,8 +187,14 @@ impl<const D: usize> World<D> {
             if x.iter().chain(&v).flatten().any(|c| !c.is_finite()) {
                 return refuse(&format!("body `{}` has a number that is not finite", body.name));
             }
-            let history = reader.history()?;
-            if history.columns.iter().any(|column| column.len() != x.len()) {
+            let history = match version {
+                VERSION => reader.history()?,
+                _ => match reader.empty_history()? {
+                    Some(history) => history,
+                    None => return refuse(&format!("its version is not {VERSION}")),
+                },
+            };
+            if !history.is_of_nodes(x.len()) {
                 return refuse(&format!("body `{}` has another shape", body.name));
             }
             rest.states.insert(number, BodyState { x, v, memory, history });
@@ -237,8 +244,8 @@ impl<const D: usize> World<D> {
         for n in &mut solver {
             *n = reader.count()?;
         }
-        let [mut residual, mut left, mut blur, mut conditioning] = [0.0; 4];
-        for number in [&mut residual, &mut left, &mut blur, &mut conditioning] {
+        let [mut residual, mut left, mut error_estimate, mut conditioning] = [0.0; 4];
+        for number in [&mut residual, &mut left, &mut error_estimate, &mut conditioning] {
             *number = reader.number()?;
         }
         if !reader.0.is_empty() {
@@ -256,7 +263,7 @@ impl<const D: usize> World<D> {
             cut_off,
             disturbed,
             odd_rests,
-            blurred,
+            estimated,
             conditioned,
         ] = solver;
         rest.flows = Flows {
@@ -288,8 +295,8 @@ impl<const D: usize> World<D> {
                 left,
                 disturbed,
                 odd_rests,
-                blurred,
-                blur,
+                estimated,
+                error_estimate,
                 conditioned,
                 conditioning,
             },
@@ -312,13 +319,13 @@ impl<const D: usize> World<D> {
     /// Goes to a snapshot that differs in motion alone: the islands stay as they are. False where more differs.
     fn go_to_alike(&mut self, bytes: &[u8], commands: &[Running<D>], other_future: bool) -> Result<bool, WorldError> {
         let mut reader = Reader(bytes);
-        let (frames, delta) = Self::read_head(&mut reader)?;
+        let Head { version, frames, delta } = Self::read_head(&mut reader)?;
         let mut here = Vec::new();
         self.write_delta(&mut Writer(&mut here));
         if delta != here {
             return Ok(false);
         }
-        let rest = self.read_rest(&mut reader, commands, other_future)?;
+        let rest = self.read_rest(&mut reader, version, commands, other_future)?;
         let fits = |number: &usize| {
             let (island, lane) = self.place[*number];
             let (state, system) = (&rest.states[number], &self.islands[island].system);
@@ -374,7 +381,7 @@ impl<const D: usize> World<D> {
 
     fn go_to(&mut self, bytes: &[u8], commands: &[Running<D>], other_future: bool) -> Result<(), WorldError> {
         let mut reader = Reader(bytes);
-        let (frames, delta) = Self::read_head(&mut reader)?;
+        let Head { version, frames, delta } = Self::read_head(&mut reader)?;
         let mut here = Vec::new();
         self.write_delta(&mut Writer(&mut here));
         let changed = delta != here;
@@ -383,7 +390,7 @@ impl<const D: usize> World<D> {
         if !delta.0.is_empty() {
             return Err(WorldError::Snapshot("what it says of the scene goes on after its end".into()));
         }
-        let rest = self.read_rest(&mut reader, commands, other_future)?;
+        let rest = self.read_rest(&mut reader, version, commands, other_future)?;
         self.running = self.commands_then(commands, &rest);
         self.slots.alive = rest.alive;
         self.slots.next = self.slots.next.max(rest.next);
@@ -404,6 +411,14 @@ impl<const D: usize> World<D> {
         self.flows.largest = rest.flows.largest;
         Ok(())
     }
+}
+
+/// What a snapshot says before its bodies.
+struct Head<'b> {
+    version: u64,
+    frames: u64,
+    /// How the scene differs from that at the start.
+    delta: &'b [u8],
 }
 
 /// What a snapshot says behind its head.

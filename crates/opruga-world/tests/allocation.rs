@@ -121,6 +121,7 @@ fn scene<const D: usize>(
             largest_force: None,
             largest_velocity: None,
             largest_distance: None,
+            unfold: false,
         },
         integrator: Values::defaults(Registry::<D>::default().integrator(rule).expect("a rule").spec(), D),
         bodies: (0..count).map(body).collect(),

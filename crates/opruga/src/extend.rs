@@ -1,7 +1,8 @@
 //! What a model or an integrator of your own is made of.
 
 pub use opruga_core::error::{BuildError, StepError};
-pub use opruga_core::integrator::{Amplification, HistorySize, Integrator, IntegratorKind};
+pub use opruga_core::history::{Channel, History, PerBody, PerNode};
+pub use opruga_core::integrator::{Amplification, Integrator, IntegratorKind};
 pub use opruga_core::potential::{
     Account, Definiteness, Ingredients, Model, Observe, Potential, Properties, Sink, Views,
 };

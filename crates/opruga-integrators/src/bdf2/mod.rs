@@ -19,14 +19,17 @@
 mod tests;
 
 use crate::implicit::balance::Balance;
+use crate::implicit::impact::Struck;
 use crate::implicit::rule::Rule;
 use crate::implicit::settings::fields;
 use crate::implicit::step::Implicit;
 use crate::implicit::workspace::Workspace;
 use opruga_core::error::BuildError;
-use opruga_core::integrator::{Amplification, HistorySize, Integrator, IntegratorKind};
+use opruga_core::history::{Channel, PerBody, PerNode};
+use opruga_core::integrator::{Amplification, Integrator, IntegratorKind};
 use opruga_core::spec::{Spec, Values};
 use opruga_core::system::System;
+use opruga_solve::blocks::nodes;
 
 /// The parameters.
 pub const SPEC: Spec = Spec {
@@ -39,6 +42,11 @@ Euler. One body an island.",
     fields: fields!(of_time),
     roles: &[],
 };
+
+/// The displacement of the last step [m], the velocity at its start [m/s], and its length [s]; zero: there was none.
+const DISPLACEMENT: PerNode = PerNode::new("bdf2.displacement");
+const VELOCITY: PerNode = PerNode::new("bdf2.velocity");
+const STEP: PerBody<f64> = PerBody::new("bdf2.step");
 
 /// The kind `bdf2`.
 #[derive(Debug)]
@@ -63,8 +71,8 @@ impl<const D: usize> IntegratorKind<D> for Bdf2Kind {
 impl<const D: usize> Rule<D> for Bdf2 {
     const NAME: &'static str = SPEC.kind;
     const TRAPEZOID: bool = true;
-    fn history(&self) -> HistorySize {
-        HistorySize { columns: 2, numbers: 1 }
+    fn history(&self) -> Vec<Channel> {
+        vec![DISPLACEMENT.declared(), VELOCITY.declared(), STEP.declared()]
     }
     fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification {
         // Carried are x, v, the last displacement, the last v but one; z = x + ⅓ way, w = 4/3 v − ⅓ before.
@@ -82,29 +90,30 @@ impl<const D: usize> Rule<D> for Bdf2 {
     }
     fn begin(&self, system: &System<D>, workspace: &mut Workspace<D>, h: f64) -> Balance {
         // With the ratio r = h/h₋: x₁ = x₀ + r²(x₀ − x₋₁)/(1 + 2r) + γ h v₁, γ = (1 + r)/(1 + 2r); r = 0 is backward Euler.
-        let last = system.history.numbers[0];
+        let last = system.history.get(STEP);
+        let kept = [DISPLACEMENT, VELOCITY].map(|channel| system.history.vectors(channel).filter(|_| last > 0.0));
         let r = if last > 0.0 { h / last } else { 0.0 };
         let (share, span) = (r * r / (1.0 + 2.0 * r), h * (1.0 + r) / (1.0 + 2.0 * r));
-        let [displacement, before] = [&system.history.columns[0], &system.history.columns[1]];
-        for node in 0..system.nodes {
-            for d in 0..D {
-                let k = node * D + d;
-                let velocity = workspace.v0[k];
-                // A jump of velocity by pins is one of all that is remembered too: the difference across it is no force.
-                let jump = workspace.kick.get(k).copied().unwrap_or(0.0);
-                workspace.z[k] = share * (displacement.0[d][node] + last * jump);
-                workspace.y[k] = workspace.z[k] + span * (velocity + share * (velocity - before.0[d][node] - jump));
+        if let [Some(displacement), Some(before)] = kept {
+            for node in 0..system.nodes {
+                for d in 0..D {
+                    let k = node * D + d;
+                    let velocity = workspace.v0[k];
+                    // A jump of velocity by pins is one of all that is remembered too: the difference across it is no force.
+                    let jump = workspace.kick.get(k).copied().unwrap_or(0.0);
+                    workspace.z[k] = share * (displacement.0[d][node] + last * jump);
+                    workspace.y[k] = workspace.z[k] + span * (velocity + share * (velocity - before.0[d][node] - jump));
+                }
             }
-        }
-        if system.inertia.is_some() {
-            // What pins hold goes on as if it had always moved as it does in this step; its neighbours would feel more.
-            system.held_axes(&mut |node, d| {
-                let k = node * D + d;
-                workspace.z[k] = share * last * workspace.v0[k];
-                workspace.y[k] = workspace.z[k] + span * workspace.v0[k];
-            });
-        }
-        if r == 0.0 {
+            if system.inertia.is_some() {
+                // What pins hold goes on as if it had always moved as it does in this step; its neighbours would feel more.
+                system.held_axes(&mut |node, d| {
+                    let k = node * D + d;
+                    workspace.z[k] = share * last * workspace.v0[k];
+                    workspace.y[k] = workspace.z[k] + span * workspace.v0[k];
+                });
+            }
+        } else {
             for k in 0..workspace.z.len() {
                 (workspace.z[k], workspace.y[k]) = (0.0, span * workspace.v0[k]);
             }
@@ -130,22 +139,24 @@ impl<const D: usize> Rule<D> for Bdf2 {
         0.5 * (workspace.v1[k] - workspace.v0[k])
     }
     fn remember(&self, system: &mut System<D>, workspace: &Workspace<D>, h: f64) {
-        // Behind them may be what the real-time setting remembers.
-        let [displacement, before, ..] = &mut system.history.columns[..] else { return };
-        for node in 0..system.nodes {
-            for d in 0..D {
-                let k = node * D + d;
-                (displacement.0[d][node], before.0[d][node]) = (workspace.u1[k], workspace.v0[k]);
+        // Where a node met an obstacle, the differences that are left say how the motion along the surface goes on.
+        let velocity = |node: usize, d: usize| workspace.v1[node * D + d];
+        if let Some(displacement) = system.history.vectors_mut(DISPLACEMENT) {
+            for (node, u) in nodes::<D>(&workspace.u1).iter().enumerate() {
+                displacement.set(node, *u);
+            }
+            for Struck { node, memory, .. } in &workspace.struck {
+                displacement.set(*node, core::array::from_fn(|d| h * (velocity(*node, d) - memory[d])));
             }
         }
-        for struck in &workspace.struck {
-            for d in 0..D {
-                let (velocity, node) = (workspace.v1[struck.node * D + d], struck.node);
-                // The differences that are left say how the motion along the surface goes on.
-                displacement.0[d][node] = h * (velocity - struck.memory[d]);
-                before.0[d][node] = velocity - 2.0 * struck.memory[d];
+        if let Some(before) = system.history.vectors_mut(VELOCITY) {
+            for (node, v) in nodes::<D>(&workspace.v0).iter().enumerate() {
+                before.set(node, *v);
+            }
+            for Struck { node, memory, .. } in &workspace.struck {
+                before.set(*node, core::array::from_fn(|d| velocity(*node, d) - 2.0 * memory[d]));
             }
         }
-        system.history.numbers[0] = h;
+        system.history.set(STEP, h);
     }
 }

@@ -7,7 +7,7 @@
 //! may find the one that it came from, and which way is on is told by the last step alone. So a step in which the curve
 //! turns by more than 60° is gone again in halves, but for the kinks that obstacles make.
 
-use super::{COMPLETE, Equilibrium, Reached, SPEC};
+use super::{COMPLETE, DISPLACEMENT, Equilibrium, Reached, SPEC};
 use crate::implicit::balance::{Balance, Solved};
 use crate::implicit::contact_query::ContactQuery;
 use crate::implicit::convergence::report;
@@ -59,7 +59,7 @@ pub(super) fn follow<const D: usize>(
             }
             // Past the end: the equilibrium under the whole load is near.
             rule.balance(system, workspace, Reached { load: 1.0, held: 1.0, time: h }, h)?;
-            system.history.numbers[COMPLETE] = 1.0;
+            system.history.set(COMPLETE, true);
             return Ok(1.0);
         }
         if tried.unloaded {
@@ -116,7 +116,8 @@ fn one_step<const D: usize>(
     let start = workspace.u.clone();
     // Of what is free: what pins move does not tell how the curve goes on.
     let free = |k: usize| if workspace.held[k].is_nan() { 1.0 } else { 0.0 };
-    let last: Vec<f64> = (0..start.len()).map(|k| free(k) * system.history.columns[0].0[k % D][k / D]).collect();
+    let before = system.history.vectors(DISPLACEMENT);
+    let last: Vec<f64> = (0..start.len()).map(|k| before.map_or(0.0, |u| free(k) * u.0[k % D][k / D])).collect();
     let mut now = load;
     let mut gone = vec![0.0; start.len()];
     let goal = rule.settings.tolerance * workspace.extent;

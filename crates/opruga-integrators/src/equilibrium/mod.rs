@@ -31,6 +31,7 @@
 //! Source: Riks 1979; Crisfield 1981; for the direction on the curve Feng, Perić, Owen 1996.
 
 mod arc;
+pub mod motion;
 pub(crate) mod pieces;
 pub(crate) mod restraint;
 pub mod rigid;
@@ -44,12 +45,12 @@ use crate::implicit::memory;
 use crate::implicit::minimiser::Minimiser;
 use crate::implicit::newton::Newton;
 use crate::implicit::settings::{Otherwise, Settings, Solver, fields};
-use crate::implicit::standstill;
 use crate::implicit::step::{MOST_HALVINGS, commit};
 use crate::implicit::step_limit::{leaves_nodes_inside, lift_out};
 use crate::implicit::workspace::Workspace;
 use opruga_core::error::{BuildError, StepError};
-use opruga_core::integrator::{Amplification, HistorySize, Integrator, IntegratorKind};
+use opruga_core::history::{Channel, PerBody, PerNode};
+use opruga_core::integrator::{Amplification, Integrator, IntegratorKind};
 use opruga_core::memory::Counts;
 use opruga_core::potential::{Reading, Views};
 use opruga_core::spec::{Allowed, Condition, Default, Field, Role, Spec, Values};
@@ -103,9 +104,10 @@ pub struct Equilibrium {
 /// After so many iterations it is asked whether obstacles hold the body at all.
 const EARLY: u32 = 25;
 
-/// The numbers of the history: the part of the load that is on, and whether it has reached the whole.
-const LOAD: usize = 0;
-const COMPLETE: usize = 1;
+/// The part of the load that is on, whether it has reached the whole, and the last displacement along the curve of equilibria [m].
+const LOAD: PerBody<f64> = PerBody::new("equilibrium.load");
+const COMPLETE: PerBody<bool> = PerBody::new("equilibrium.complete");
+const DISPLACEMENT: PerNode = PerNode::new("equilibrium.displacement");
 
 impl<const D: usize> IntegratorKind<D> for EquilibriumKind {
     fn spec(&self) -> &'static Spec {
@@ -266,7 +268,7 @@ impl Equilibrium {
         workspace.load(system);
         system.evaluate(Stage::Current, 0.0, 0.0, &mut workspace.force)?;
         let before = system.stored_energy(Stage::Current, 0.0) + moving;
-        let (mut load, complete) = (system.history.numbers[LOAD], system.history.numbers[COMPLETE] > 0.0);
+        let (mut load, complete) = (system.history.get(LOAD), system.history.get(COMPLETE));
         workspace.contacting.clear(system.nodes);
         workspace.y.fill(0.0);
         workspace.z.fill(0.0);
@@ -295,28 +297,16 @@ impl Equilibrium {
                 }
             }
         }
-        // A shape that is none of the body's own is left.
-        let mut times = 0;
-        let solver = system.work.solver;
-        while self.arc_length.is_none() && standstill::disturb_balance(system, workspace, times) {
-            self.balance(system, workspace, whole, h).map_err(|error| self.told(error, system, None))?;
-            times += 1;
-        }
-        if times > 0 {
-            standstill::forget_wrong_turns(system, &solver);
-        }
         workspace.u1.copy_from_slice(&workspace.u);
         workspace.v1.fill(0.0);
         commit(system, workspace);
-        if self.arc_length.is_some() {
-            for d in 0..D {
-                for node in 0..system.nodes {
-                    system.history.columns[0].0[d][node] = workspace.u1[node * D + d];
-                }
+        if let Some(displacement) = system.history.vectors_mut(DISPLACEMENT) {
+            for (node, u) in nodes::<D>(&workspace.u1).iter().enumerate() {
+                displacement.set(node, *u);
             }
         }
-        system.history.numbers[LOAD] = load;
-        system.history.numbers[COMPLETE] = if load >= 1.0 { 1.0 } else { 0.0 };
+        system.history.set(LOAD, load);
+        system.history.set(COMPLETE, load >= 1.0);
         system.end_implicit(h);
         for column in &mut system.state.v.0 {
             column.fill(0.0);
@@ -342,8 +332,9 @@ impl<const D: usize> Integrator<D> for Equilibrium {
     fn work_columns(&self) -> usize {
         1
     }
-    fn history(&self) -> HistorySize {
-        HistorySize { columns: usize::from(self.arc_length.is_some()), numbers: 2 }
+    fn history(&self) -> Vec<Channel> {
+        let along_the_curve = self.arc_length.map(|_| DISPLACEMENT.declared());
+        [LOAD.declared(), COMPLETE.declared()].into_iter().chain(along_the_curve).collect()
     }
     fn amplification(&self, omega: f64, _c: f64, _h: f64) -> Amplification {
         // To rest at once; where nothing pulls back, it stays where it is.
@@ -366,10 +357,10 @@ impl<const D: usize> Integrator<D> for Equilibrium {
         memory::of_body::<D>(&self.settings, counts, couplings)
     }
     fn readings(&self, system: &System<D>) -> Vec<Reading> {
-        vec![("load_factor".into(), system.history.numbers[LOAD])]
+        vec![("load_factor".into(), system.history.get(LOAD))]
     }
     fn part_of_load(&self, system: &System<D>) -> Option<f64> {
-        self.arc_length.is_some().then(|| system.history.numbers[LOAD])
+        self.arc_length.is_some().then(|| system.history.get(LOAD))
     }
     fn same_bits_everywhere(&self, system: &System<D>) -> bool {
         self.arc_length.is_none() && Newton(self.settings).same_bits_everywhere(system)
@@ -381,7 +372,7 @@ impl<const D: usize> Integrator<D> for Equilibrium {
         true
     }
     fn step(&self, system: &mut System<D>, h: f64) -> Result<(), StepError> {
-        let mut workspace = system.room.take::<Workspace<D>>();
+        let mut workspace = system.cache.take::<Workspace<D>>();
         let (work, velocities) = (system.work, system.state.v.clone());
         let outcome = self.attempt(system, &mut workspace, h);
         if outcome.is_err() {
@@ -390,7 +381,7 @@ impl<const D: usize> Integrator<D> for Equilibrium {
             system.work.solver = solver;
             system.state.v = velocities;
         }
-        system.room.put(workspace);
+        system.cache.put(workspace);
         outcome
     }
 }

@@ -10,8 +10,8 @@
 //! holds the body. In some poses a dead load has no second-order work though it has some in others (a pendulum that stands
 //! out sideways), so the body is looked at in several.
 
+use super::motion::{Motion, Projection, all_motions, center, displacement, of_weights, shape_at, unpinned_motions};
 use super::pieces::whole;
-use super::rigid::{Motion, Projection, all_motions, center, displacement, of_weights, shape_at, unpinned_motions};
 use opruga_core::potential::{Account, Definiteness, Sink};
 use opruga_core::state::{Columns, View};
 use opruga_core::system::{Member, Stage, System};

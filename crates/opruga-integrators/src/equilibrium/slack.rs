@@ -4,8 +4,8 @@
 //! turn is the motion ω × r, straight on: its forces do not change along that way, and what turns the body at its start turns it
 //! without end.
 
+use super::motion::{Motion, center, shape_at};
 use super::restraint::{TURN, add_forces_of, outer, pose, unstiffened_motions};
-use super::rigid::{Motion, center, shape_at};
 use opruga_core::state::{Columns, View};
 use opruga_core::system::{Member, Stage, System};
 use opruga_math::Column;

@@ -95,9 +95,9 @@ fn a_truss_is_followed_through_its_snap() {
     let mut system = truss();
     system.equip(&arc);
     let (mut highest, mut lowest, mut steps) = (0.0f64, f64::INFINITY, 0);
-    while system.history.numbers[COMPLETE] == 0.0 {
+    while !system.history.get(COMPLETE) {
         arc.step(&mut system, 0.1).unwrap();
-        let (load, y) = (system.history.numbers[LOAD], system.state.x.at(1)[1]);
+        let (load, y) = (system.history.get(LOAD), system.state.x.at(1)[1]);
         assert!((needed(y) - load).abs() < 1e-7, "{y}: {load}, not {}", needed(y));
         highest = if load > highest && load < 1.0 && y > 0.0 { load } else { highest };
         lowest = if load < lowest { load } else { lowest };

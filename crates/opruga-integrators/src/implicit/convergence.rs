@@ -2,10 +2,9 @@
 
 use super::balance::Solved;
 use super::settings::{Otherwise, Settings};
-use super::standstill;
 use super::workspace::Workspace;
 use opruga_core::error::StepError;
-use opruga_core::system::System;
+use opruga_core::system::{Stage, System};
 use opruga_math::Lane;
 use opruga_math::words::number;
 
@@ -30,8 +29,8 @@ pub(super) fn count<const D: usize>(system: &mut System<D>, solved: &Solved) {
     let work = &mut system.work.solver;
     work.iterations += u64::from(solved.iterations);
     work.linear_iterations += u64::from(solved.products);
-    work.blurred += u64::from(solved.error_estimate > 0.0);
-    work.blur = solved.error_estimate.larger(work.blur);
+    work.estimated += u64::from(solved.error_estimate > 0.0);
+    work.error_estimate = solved.error_estimate.larger(work.error_estimate);
     work.conditioned += u64::from(solved.conditioning > 1.0);
     work.conditioning = solved.conditioning.larger(work.conditioning);
 }
@@ -55,8 +54,19 @@ pub(super) fn accept_or_refuse<const D: usize>(
         system.work.solver.accepted += 1;
         return Ok(());
     }
-    let flat_cells = standstill::flat_cells(system);
-    Err(refusal(integrator, settings, workspace, solved, (system.time, flat_cells), settings.hint()))
+    Err(refusal(integrator, settings, workspace, solved, (system.time, degenerate_cells(system)), settings.hint()))
+}
+
+/// How many cells of the state are degenerate or inverted, and how many there are; none where none is.
+fn degenerate_cells<const D: usize>(system: &System<D>) -> Option<[usize; 2]> {
+    let view = system.view(Stage::Current, system.time);
+    let cells = system.members.iter().flat_map(|member| member.potential.cell_states(&view, 0));
+    let (mut degenerate, mut all) = (0, 0);
+    for cell in cells {
+        degenerate += usize::from(cell.is_degenerate());
+        all += 1;
+    }
+    (degenerate > 0).then_some([degenerate, all])
 }
 
 /// The error of a step that did not converge, with its time [s] and the cells that it found flat or inside out.

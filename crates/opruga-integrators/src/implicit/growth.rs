@@ -3,28 +3,28 @@
 use super::balance::Solved;
 use super::workspace::Workspace;
 use opruga_core::error::StepError;
+use opruga_core::history::PerBody;
 use opruga_core::system::System;
 use opruga_math::Lane;
 use opruga_solve::blocks::nodes;
 
-/// What the state remembers: the size of the body when it was first stepped [m].
-pub(crate) const NUMBERS: usize = 1;
+/// The size of the body when it was first stepped [m].
+pub(crate) const SIZE: PerBody<f64> = PerBody::new("growth.size");
 
 /// How large a body may become by steps that did not converge, in its sizes when it was first stepped.
 const LARGEST: f64 = 100.0;
 
-/// Refuses the end of a step, in `workspace.u1`, that did not converge and is beyond every measure; `slot` is the place of what is
-/// remembered.
+/// Refuses the end of a step, in `workspace.u1`, that did not converge and is beyond every measure.
 pub(crate) fn check<const D: usize>(
     system: &mut System<D>,
     workspace: &Workspace<D>,
-    slot: usize,
     solved: &Solved,
     refused: impl FnOnce(&'static str) -> StepError,
 ) -> Result<(), StepError> {
-    let size = &mut system.history.numbers[slot];
-    if *size <= 0.0 {
-        *size = workspace.extent;
+    let mut size = system.history.get(SIZE);
+    if size <= 0.0 {
+        size = workspace.extent;
+        system.history.set(SIZE, size);
     }
     if solved.converged {
         return Ok(());
@@ -36,7 +36,7 @@ pub(crate) fn check<const D: usize>(
             high[d] = (from[d] + displacement[d]).larger(high[d]);
         }
     }
-    let largest = LARGEST * *size;
+    let largest = LARGEST * size;
     // Written so that what is no number is too large.
     if (0..D).all(|d| high[d] - low[d] <= largest) {
         return Ok(());

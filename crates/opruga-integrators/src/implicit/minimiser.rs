@@ -6,7 +6,7 @@
 use super::balance::{Balance, Solved};
 use super::workspace::Workspace;
 use opruga_core::error::StepError;
-use opruga_core::integrator::HistorySize;
+use opruga_core::history::Channel;
 use opruga_core::system::System;
 
 /// Finds the stage in which forces balance the change of motion: where they have a potential, the minimum of the incremental
@@ -22,14 +22,14 @@ pub(crate) trait Minimiser<const D: usize>: core::fmt::Debug {
         workspace: &mut Workspace<D>,
         balance: &Balance,
     ) -> Result<Solved, StepError>;
-    /// What it remembers from step to step, behind what the rule does.
-    fn history(&self) -> HistorySize {
-        HistorySize::default()
+    /// What it remembers from step to step.
+    fn history(&self) -> Vec<Channel> {
+        Vec::new()
     }
     /// Improves the displacement in `workspace.u`, which the motion of the last step leads to, by what it remembers.
     fn predict(&self, _system: &System<D>, _workspace: &mut Workspace<D>, _balance: &Balance) {}
     /// Discards what it reuses from step to step, where a guard refuses the stage that it found.
-    fn discard(&self, _system: &mut System<D>, _workspace: &Workspace<D>) {}
+    fn discard(&self, _system: &mut System<D>) {}
     /// Remembers a step of h [s] that counts.
     fn remember(&self, _system: &mut System<D>, _workspace: &Workspace<D>, _h: f64) {}
     /// Whether a step that does not converge is halved whatever the scene says.

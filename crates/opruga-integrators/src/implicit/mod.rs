@@ -23,9 +23,11 @@
 //! | `line_search` | how far a step is gone |
 //! | `rounding` | balances whose forces are as small as their rounding |
 //! | `rigid` | the motions of a body as a whole, whose balance rounding does not hide |
+//! | `rigid_motion` | these motions themselves |
 //! | `rigid_balance` | whether that holds where an iteration ends |
 //! | `mixing` | what the matrix leaves out, from the iterations before |
 //! | `real_time` | the iteration with a fixed budget |
+//! | `fallback` | the guard around it: steps that it leads astray are made by `newton` |
 //! | `reused_matrix` | the matrix that it keeps from step to step |
 //! | `linear` | the direction: conjugate gradients or sparse Cholesky |
 //! | `step_limit` | what keeps statics, without inertia, out of obstacles |
@@ -34,7 +36,6 @@
 //! | `contact_derivatives` | what the forces of contacts change by with positions |
 //! | `growth` | refuses what accepted steps blow up |
 //! | `slenderness` | for which bodies the real-time setting factors its matrix |
-//! | `standstill` | bodies that stand still flat, inside out or folded |
 //! | `impact` | what obstacles do at the end of a step: velocities and the ledger |
 //!
 //! **Newton.** The matrix is σM + βC + K with C = −∂F/∂v and K = ∂²U/∂x∂x: the exact one while it is positive definite, else
@@ -58,6 +59,7 @@ pub(crate) mod contact_query;
 pub(crate) mod convergence;
 pub(crate) mod direction;
 mod energy;
+mod fallback;
 mod growth;
 pub(crate) mod holding;
 pub(crate) mod impact;
@@ -74,12 +76,12 @@ mod real_time;
 mod reused_matrix;
 mod rigid;
 mod rigid_balance;
+mod rigid_motion;
 mod rounding;
 pub(crate) mod rule;
 pub(crate) mod settings;
 mod slenderness;
 pub(crate) mod stage;
-pub(crate) mod standstill;
 pub(crate) mod step;
 pub(crate) mod step_limit;
 pub(crate) mod theta;

@@ -9,14 +9,12 @@
 use super::balance::{Balance, Solved};
 use super::direction::wanted_forces;
 use super::linear::{Filter, Mixture};
-use super::minimiser::Minimiser;
-use super::newton::Newton;
 use super::rigid_balance::settles;
 use super::settings::Settings;
-use super::stage::{evaluate, judge, look, potential, rounding_of_models};
+use super::stage::{evaluate, judge, look};
 use super::workspace::Workspace;
 use opruga_core::error::StepError;
-use opruga_core::integrator::HistorySize;
+use opruga_core::history::{Channel, PerBody, PerNode};
 use opruga_core::potential::Definiteness;
 use opruga_core::system::System;
 use opruga_core::threads::each_block;
@@ -27,7 +25,7 @@ use opruga_solve::Indefinite;
 const LINEAR: f64 = 0.05;
 
 /// The part with which the matrix is made anew in the next step.
-const STALE: f64 = 0.2;
+const WORN: f64 = 0.2;
 
 /// The part that the linear solver leaves of bodies that are free or near obstacles; an iteration is enough with its square.
 const LOOSE: f64 = 1e-3;
@@ -38,34 +36,33 @@ const NOTHING: f64 = 1e-9;
 /// Products with the matrix in an iteration at most.
 const PRODUCTS: u32 = 1000;
 
-/// A potential that has risen by this part of its parts has risen: rounding, and what obstacles push back, are less.
-const RISE: f64 = 1e-6;
-
 /// Corrections below this part of the extent are those of a body that is whole.
 const SHORT: f64 = 0.1;
-
-/// How many iterations steps get that few led astray.
-const MOST_ITERATIONS: u32 = 50;
 
 /// Iterations that take more products than this are counted as cut off: a body on which news travels so slowly is ill-conditioned,
 /// and the residual, in which stiff motions count most, says little of the slow ones, such as the bending of a slender body.
 const MANY_PRODUCTS: u32 = 120;
 
-/// What the setting adds to what a rule remembers: the reference shape of the matrix and the velocities before the step;
-/// which matrix it is, and the length of the step.
-const COLUMNS: usize = 2;
-const NUMBERS: usize = 2;
+/// The shape in which the matrix was made [m], the velocity at the start of the last step [m/s] and its length [s]; zero: its
+/// acceleration leads nowhere.
+const REFERENCE: PerNode = PerNode::new("real_time.reference");
+const VELOCITY: PerNode = PerNode::new("real_time.velocity");
+const STEP: PerBody<f64> = PerBody::new("real_time.step");
 
-/// Numbers of the history: the matrix of elements without negative eigenvalues, above it ones with a raised diagonal. Zero is
-/// none, a negative number one that is to be made anew.
-const CLAMPED: f64 = 1.0;
-const MOST_RAISED: f64 = 5.0;
+/// Which matrix it is: none, that of elements without negative eigenvalues ([`CLAMPED`]), or above it one with a raised diagonal; and
+/// whether the next step makes it anew.
+const MATRIX: PerBody<u64> = PerBody::new("real_time.matrix");
+const STALE: PerBody<bool> = PerBody::new("real_time.stale");
+
+/// The values of `MATRIX`.
+const CLAMPED: u64 = 1;
+const MOST_RAISED: u64 = 5;
 
 /// By how much the diagonal is raised.
-fn raised(kind: f64) -> f64 {
+fn raised(matrix: u64) -> f64 {
     let mut part = 0.0;
-    for k in 0..(kind - CLAMPED) as u32 {
-        part = if k == 0 { 1e-8 } else { 100.0 * part };
+    for k in CLAMPED..matrix {
+        part = if k == CLAMPED { 1e-8 } else { 100.0 * part };
     }
     part
 }
@@ -76,13 +73,19 @@ fn is_loose<const D: usize>(system: &System<D>) -> bool {
     system.contacts.is_some() || system.pins.is_empty()
 }
 
+/// What the setting keeps from step to step.
+pub(super) fn channels() -> Vec<Channel> {
+    let vectors = [REFERENCE, VELOCITY].map(|channel| channel.declared());
+    vectors.into_iter().chain([STEP.declared(), MATRIX.declared(), STALE.declared()]).collect()
+}
+
 /// Where the body would come to under the acceleration of the last step, less x₀: in `workspace.u`.
-fn predict<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, theta: f64, h: f64) {
-    let last = system.history.numbers[workspace.own.numbers + 1];
+pub(super) fn predict<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, theta: f64, h: f64) {
+    let last = system.history.get(STEP);
     if last <= 0.0 || is_loose(system) {
         return;
     }
-    let before = &system.history.columns[workspace.own.columns + 1];
+    let Some(before) = system.history.vectors(VELOCITY) else { return };
     let share = theta * theta * h * h / last;
     let Workspace { u, held, v0, .. } = workspace;
     each_block(system.threads, D, [u], |first, [u]| {
@@ -98,12 +101,13 @@ fn predict<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, the
 }
 
 /// Keeps the velocities at the start of a step; nodes that met an obstacle go on as they do then.
-fn remember<const D: usize>(system: &mut System<D>, workspace: &Workspace<D>, h: f64) {
+pub(super) fn remember<const D: usize>(system: &mut System<D>, workspace: &Workspace<D>, h: f64) {
     // The acceleration of an impact leads nowhere.
-    system.history.numbers[workspace.own.numbers + 1] = if workspace.struck.is_empty() { h } else { 0.0 };
-    let before = &mut system.history.columns[workspace.own.columns + 1];
-    let columns = before.0.each_mut().map(|column| &mut column[..system.nodes]);
-    each_block(system.threads, 1, columns, |first, columns| {
+    system.history.set(STEP, if workspace.struck.is_empty() { h } else { 0.0 });
+    let System { history, nodes, threads, .. } = system;
+    let Some(before) = history.vectors_mut(VELOCITY) else { return };
+    let columns = before.0.each_mut().map(|column| &mut column[..*nodes]);
+    each_block(*threads, 1, columns, |first, columns| {
         for (d, column) in columns.into_iter().enumerate() {
             for (node, before) in (first..).zip(column) {
                 *before = workspace.v0[node * D + d];
@@ -141,17 +145,19 @@ impl Task<'_> {
 
     /// Makes the matrix of the reference shape, which was evaluated last.
     fn make<const D: usize>(&self, system: &System<D>, workspace: &mut Workspace<D>) {
-        let kind = system.history.numbers[workspace.own.numbers];
-        let Workspace { reused, linear, mass, own, .. } = workspace;
+        let Some(reference) = system.history.vectors(REFERENCE) else { return };
+        let Workspace { reused, linear, mass, .. } = workspace;
         let mixture = self.mixture(system, mass);
-        reused.make(linear, &mixture, raised(kind), &system.history.columns[own.columns]);
+        reused.make(linear, &mixture, raised(system.history.get(MATRIX)), reference);
     }
 
     /// Makes the matrix of the present shape, which becomes the reference.
-    fn make_here<const D: usize>(&self, system: &mut System<D>, workspace: &mut Workspace<D>, kind: f64) {
+    fn make_here<const D: usize>(&self, system: &mut System<D>, workspace: &mut Workspace<D>, matrix: u64) {
         let System { history, state, nodes, .. } = system;
-        history.numbers[workspace.own.numbers] = kind;
-        for (own, column) in history.columns[workspace.own.columns].0.iter_mut().zip(&state.work[0][0].0) {
+        history.set(MATRIX, matrix);
+        history.set(STALE, false);
+        let Some(reference) = history.vectors_mut(REFERENCE) else { return };
+        for (own, column) in reference.0.iter_mut().zip(&state.work[0][0].0) {
             own[..*nodes].copy_from_slice(&column[..*nodes]);
         }
         self.make(system, workspace);
@@ -159,15 +165,17 @@ impl Task<'_> {
 
     /// Makes the matrix of the reference shape that the state remembers, if it is not at hand; none where there is none.
     fn recall<const D: usize>(&self, system: &mut System<D>, workspace: &mut Workspace<D>) -> Result<bool, StepError> {
-        let kind = system.history.numbers[workspace.own.numbers];
-        if kind <= 0.0 || is_loose(system) || !system.hessian_is_of_positions() {
+        let matrix = system.history.get(MATRIX);
+        if matrix == 0 || system.history.get(STALE) || is_loose(system) || !system.hessian_is_of_positions() {
             return Ok(false);
         }
+        let Some(reference) = system.history.vectors(REFERENCE) else { return Ok(false) };
         let mixture = self.mixture(system, &workspace.mass);
-        if !workspace.reused.is_of(&system.history.columns[workspace.own.columns], &mixture, raised(kind)) {
+        if !workspace.reused.is_of(reference, &mixture, raised(matrix)) {
             let (nodes, places) = (system.nodes, system.places());
             let System { history, state, .. } = system;
-            for (to, from) in state.work[0][0].0.iter_mut().zip(&history.columns[workspace.own.columns].0) {
+            let Some(reference) = history.vectors(REFERENCE) else { return Ok(false) };
+            for (to, from) in state.work[0][0].0.iter_mut().zip(&reference.0) {
                 for place in 0..places {
                     to[place] = from[place.min(nodes - 1)];
                 }
@@ -223,18 +231,18 @@ impl Task<'_> {
                 Ok((products, indefinite)) => {
                     if indefinite {
                         // What was found leads downhill; the next matrix is another one.
-                        system.history.numbers[workspace.own.numbers] = -CLAMPED;
+                        mark_stale(system);
                     }
                     return (spent + products, true);
                 }
                 Err(Indefinite) => {
                     spent += 1;
                     // Directions without any stiffness, or a gas that pushes.
-                    let kind = system.history.numbers[workspace.own.numbers].abs();
-                    if kind >= MOST_RAISED {
+                    let matrix = system.history.get(MATRIX);
+                    if matrix >= MOST_RAISED {
                         return (spent, false);
                     }
-                    self.make_here(system, workspace, kind + 1.0);
+                    self.make_here(system, workspace, matrix + 1);
                     if self.out_of_balance(system, workspace, moves).is_err() {
                         workspace.reused.forget_right_hand_side();
                     }
@@ -244,113 +252,17 @@ impl Task<'_> {
     }
 }
 
-/// The real-time setting as a minimiser.
-///
-/// What few iterations lead to counts only where it makes no energy: else the step is solved by Newton's method with its line search,
-/// and made in two halves where that does not converge. Its incremental potential must not be above that of a body that stays where it
-/// is; looked at are bodies in the air, and others whose matrix was made anew on the way, or that went far or are left farther out of
-/// balance than promised. What is left of a body on an obstacle is taken for an impulse of that, which the potential
-/// does not know: the end of such a step is doubtful ([`Solved::doubtful`]), and its energy decides.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct RealTime(pub(crate) Settings);
-
-impl<const D: usize> Minimiser<D> for RealTime {
-    fn minimise(
-        &self,
-        system: &mut System<D>,
-        workspace: &mut Workspace<D>,
-        balance: &Balance,
-    ) -> Result<Solved, StepError> {
-        let settings = &self.0;
-        let (cut_off, left) = (system.work.solver.cut_off, system.work.solver.left);
-        let outcome = iterate(system, workspace, balance, settings);
-        let spent = match &outcome {
-            Ok((solved, Trust::Always)) => return Ok(*solved),
-            Ok((solved, Trust::IfNoGain)) if !has_risen(system, workspace, balance)? => {
-                return Ok(Solved { doubtful: true, ..*solved });
-            }
-            Ok((solved, Trust::IfDownhill)) if !has_risen(system, workspace, balance)? => return Ok(*solved),
-            Ok((solved, _)) => *solved,
-            // A law that has no meaning where the iteration led to.
-            Err(StepError::Model { .. }) => Solved::default(),
-            Err(_) => return outcome.map(|(solved, _)| solved),
-        };
-        (system.work.solver.cut_off, system.work.solver.left) = (cut_off, left);
-        mark_stale(system, workspace);
-        workspace.contacting.clear(system.nodes);
-        for k in 0..workspace.u.len() {
-            workspace.u[k] = if workspace.held[k].is_nan() {
-                balance.theta * balance.h * workspace.v0[k]
-            } else {
-                workspace.held[k]
-            };
-        }
-        let mut solved = Newton(exactly(settings)).minimise(system, workspace, balance)?;
-        solved.iterations += spent.iterations;
-        solved.products += spent.products;
-        Ok(solved)
-    }
-    fn history(&self) -> HistorySize {
-        HistorySize { columns: COLUMNS, numbers: NUMBERS }
-    }
-    fn predict(&self, system: &System<D>, workspace: &mut Workspace<D>, balance: &Balance) {
-        predict(system, workspace, balance.theta, balance.h);
-    }
-    fn discard(&self, system: &mut System<D>, workspace: &Workspace<D>) {
-        mark_stale(system, workspace);
-    }
-    fn remember(&self, system: &mut System<D>, workspace: &Workspace<D>, h: f64) {
-        remember(system, workspace, h);
-    }
-    /// In real time nobody waits for another setting.
-    fn always_halves(&self) -> bool {
-        true
-    }
-    fn shares_threads(&self) -> bool {
-        true
-    }
-    fn same_bits_everywhere(&self, system: &System<D>) -> bool {
-        !self.0.solver.is_direct_in_real_time(system)
-    }
-}
-
-/// The settings of steps that few iterations led astray.
-pub(crate) fn exactly(settings: &Settings) -> Settings {
-    Settings { real_time: false, iterations: MOST_ITERATIONS, ..*settings }
-}
-
 /// Lets the next step make its matrix anew.
-fn mark_stale<const D: usize>(system: &mut System<D>, workspace: &Workspace<D>) {
-    let kind = &mut system.history.numbers[workspace.own.numbers];
-    *kind = if *kind > 0.0 { -CLAMPED } else { *kind };
-}
-
-/// Whether the incremental potential of what was found is above that of the body where it was, but for what is held; not a number
-/// counts as above, and so does what forces without a potential may have done.
-fn has_risen<const D: usize>(
-    system: &mut System<D>,
-    workspace: &mut Workspace<D>,
-    balance: &Balance,
-) -> Result<bool, StepError> {
-    let Some((after, size)) = potential(system, workspace, balance, false) else { return Ok(true) };
-    if !after.is_finite() {
-        return Ok(true);
+pub(super) fn mark_stale<const D: usize>(system: &mut System<D>) {
+    if system.history.get(MATRIX) > 0 {
+        system.history.set(MATRIX, CLAMPED);
+        system.history.set(STALE, true);
     }
-    for k in 0..workspace.u.len() {
-        workspace.trial[k] = if workspace.held[k].is_nan() { 0.0 } else { workspace.held[k] };
-    }
-    // Where a body stood where its law has no meaning there is nothing to compare with.
-    let before = match evaluate(system, workspace, balance, true) {
-        Ok(()) => potential(system, workspace, balance, true),
-        Err(_) => None,
-    };
-    evaluate(system, workspace, balance, false)?;
-    Ok(!before.is_some_and(|(before, parts)| after - before <= RISE * (size + parts) + rounding_of_models(system)))
 }
 
 /// Whether what few iterations lead to may count.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Trust {
+pub(super) enum Trust {
     /// It does.
     Always,
     /// It does unless the incremental potential has risen.
@@ -378,7 +290,7 @@ fn aims<const D: usize>(system: &System<D>, settings: &Settings) -> (f64, f64) {
 }
 
 /// Three iterations, or as many as the scene says, and whether what they leave may count.
-fn iterate<const D: usize>(
+pub(super) fn iterate<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
     balance: &Balance,
@@ -411,7 +323,7 @@ fn iterate<const D: usize>(
             let end = End { size, first, floor, most: settings.leaves[1], slow, remade };
             return conclude(system, workspace, balance, settings, solved, &end);
         }
-        if solved.iterations > 0 && (is_loose(system) || size > STALE * first) {
+        if solved.iterations > 0 && (is_loose(system) || size > WORN * first) {
             // The matrix of another shape does not lead there.
             remade = true;
             task.make_here(system, workspace, CLAMPED);
@@ -461,9 +373,8 @@ fn conclude<const D: usize>(
     end: &End,
 ) -> Result<(Solved, Trust), StepError> {
     let End { size, first, floor, most, slow, remade } = *end;
-    let number = workspace.own.numbers;
-    if size > (STALE * first).larger(floor) && system.history.numbers[number] > 0.0 {
-        system.history.numbers[number] = -CLAMPED;
+    if size > (WORN * first).larger(floor) {
+        mark_stale(system);
     }
     let as_promised = size <= (most * first).larger(floor);
     if slow || !as_promised {

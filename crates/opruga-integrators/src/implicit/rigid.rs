@@ -16,6 +16,7 @@
 
 use super::contact::Contacting;
 use super::linear::{Filter, Mixture};
+use super::rigid_motion::{Motion, Sum, along, arm, unheld};
 use crate::equilibrium::pieces::pieces;
 use crate::equilibrium::restraint::{acts_between_nodes, add_forces_of};
 use opruga_core::inertia::Inertia;
@@ -27,18 +28,8 @@ use opruga_solve::dense::inverse;
 /// Resistance of the whole below this part of what it is the sum of is rounding, as of sums over many cells.
 const NO_RESISTANCE: f64 = 1e-13;
 
-/// Held directions that are this near to others that are held are the same.
-const SAME: f64 = 1e-8;
-
 /// Motions of the whole in space.
 const MOST: usize = 6;
-
-/// x moves by t + ω × (x − c); in the plane ω is along the third axis.
-#[derive(Clone, Copy, Debug)]
-struct Motion<const D: usize> {
-    translation: [f64; D],
-    rotation: [f64; 3],
-}
 
 /// A part of a body that its models hold together.
 #[derive(Debug)]
@@ -59,86 +50,6 @@ pub(crate) struct Rigid<const D: usize> {
     pieces: Vec<Piece<D>>,
     /// The forces that rounding of positions makes, over the loads; zero where that is not of interest.
     pub(super) conditioning: f64,
-}
-
-/// ω × r.
-fn cross<const D: usize>(rotation: &[f64; 3], arm: &[f64; D]) -> [f64; D] {
-    let mut out = [0.0; D];
-    if D == 2 {
-        out[0] = -rotation[2] * arm[1];
-        out[1] = rotation[2] * arm[0];
-    } else {
-        for d in 0..D {
-            let (e, f) = ((d + 1) % 3, (d + 2) % 3);
-            out[d] = rotation[e] * arm[f] - rotation[f] * arm[e];
-        }
-    }
-    out
-}
-
-impl<const D: usize> Motion<D> {
-    const NONE: Motion<D> = Motion { translation: [0.0; D], rotation: [0.0; 3] };
-
-    /// What it moves a node by that is so far from the centre.
-    fn displacement(&self, arm: &[f64; D]) -> [f64; D] {
-        let turned = cross(&self.rotation, arm);
-        core::array::from_fn(|d| self.translation[d] + turned[d])
-    }
-    /// The same of a finite turn: R − 1 = α (ω× + ½ ω×ω×), α = 1/(1 + ¼ω²), about the axis that the motion leaves in place, and
-    /// straight on along that.
-    fn finite_way(&self, arm: &[f64; D]) -> [f64; D] {
-        let (displacement, turn) = (self.displacement(arm), &self.rotation);
-        let again = cross(turn, &displacement);
-        let square: f64 = turn.iter().map(|w| w * w).sum();
-        let along: f64 = if D == 2 { 0.0 } else { (0..D).map(|d| turn[d] * self.translation[d]).sum() };
-        let alpha = 1.0 / (1.0 + 0.25 * square);
-        core::array::from_fn(|d| {
-            let screw = if D == 2 { 0.0 } else { 0.25 * along * turn[d] };
-            alpha * (displacement[d] + 0.5 * again[d] + screw)
-        })
-    }
-    fn add(&mut self, share: f64, other: &Motion<D>) {
-        for d in 0..D {
-            self.translation[d] += share * other.translation[d];
-        }
-        for (own, w) in self.rotation.iter_mut().zip(&other.rotation) {
-            *own += share * w;
-        }
-    }
-    fn sum(motions: &[Motion<D>], shares: &[f64]) -> Motion<D> {
-        let mut out = Motion::NONE;
-        for (motion, share) in motions.iter().zip(shares) {
-            out.add(*share, motion);
-        }
-        out
-    }
-}
-
-/// A sum that loses nothing but its last digit (Neumaier 1974).
-#[derive(Clone, Copy, Default)]
-struct Sum {
-    sum: f64,
-    lost: f64,
-}
-
-impl Sum {
-    fn add(&mut self, x: f64) {
-        let next = self.sum + x;
-        self.lost += if self.sum.abs() >= x.abs() { (self.sum - next) + x } else { (x - next) + self.sum };
-        self.sum = next;
-    }
-    fn value(self) -> f64 {
-        self.sum + self.lost
-    }
-}
-
-/// Where a node is, from the centre of its piece.
-fn arm<const D: usize>(x0: &[f64], u: &[f64], node: usize, center: &[f64; D]) -> [f64; D] {
-    core::array::from_fn(|d| x0[node * D + d] + u[node * D + d] - center[d])
-}
-
-fn along<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
-    (0..D).map(|d| a[d] * b[d]).sum()
 }
 
 /// What a stage needs to know to find the motions of the whole.
@@ -399,70 +310,6 @@ impl<const D: usize> Piece<D> {
         }
         Piece { center, motions, inverse: Vec::new() }
     }
-}
-
-/// The sums of motions that move no node along what holds it.
-fn unheld<const D: usize>(
-    all: &[Motion<D>],
-    nodes: &[usize],
-    filter: &Filter<D>,
-    arm: impl Fn(usize) -> [f64; D],
-) -> Vec<Motion<D>> {
-    let n = all.len();
-    // What each held direction makes of the motions, orthonormal: at most as many rows as motions.
-    let mut rows: Vec<Vec<f64>> = Vec::new();
-    let reduced = |row: &[f64], rows: &[Vec<f64>]| {
-        let mut rest = row.to_vec();
-        for _ in 0..2 {
-            for known in rows {
-                let share: f64 = rest.iter().zip(known).map(|(a, b)| a * b).sum();
-                rest.iter_mut().zip(known).for_each(|(r, k)| *r -= share * k);
-            }
-        }
-        let size = rest.iter().map(|x| x * x).sum::<f64>().sqrt();
-        (rest, size)
-    };
-    for node in nodes.iter().filter(|node| !filter.free[**node]) {
-        let displacements: Vec<[f64; D]> = all
-            .iter()
-            .map(|motion| {
-                let displacement = motion.displacement(&arm(*node));
-                let free = times(&filter.projectors[*node], &displacement);
-                core::array::from_fn(|d| displacement[d] - free[d])
-            })
-            .collect();
-        for d in 0..D {
-            let row: Vec<f64> = displacements.iter().map(|displacement| displacement[d]).collect();
-            let whole = row.iter().map(|x| x * x).sum::<f64>().sqrt();
-            let (rest, size) = reduced(&row, &rows);
-            if size > SAME && size > SAME * whole && rows.len() < n {
-                rows.push(rest.iter().map(|x| x / size).collect());
-            }
-        }
-    }
-    if rows.is_empty() {
-        return all.to_vec();
-    }
-    // What is left beside the rows, the longest first.
-    let mut out = Vec::new();
-    while rows.len() < n {
-        let mut best: (Vec<f64>, f64) = (Vec::new(), 0.0);
-        for k in 0..n {
-            let mut unit = vec![0.0; n];
-            unit[k] = 1.0;
-            let (rest, size) = reduced(&unit, &rows);
-            if size > best.1 {
-                best = (rest, size);
-            }
-        }
-        if best.1 == 0.0 {
-            break;
-        }
-        let unit: Vec<f64> = best.0.iter().map(|x| x / best.1).collect();
-        out.push(Motion::sum(all, &unit));
-        rows.push(unit);
-    }
-    out
 }
 
 /// Adds up φᵀ K φ of every piece, and the sizes of its parts.

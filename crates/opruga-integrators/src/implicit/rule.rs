@@ -2,7 +2,8 @@
 
 use super::balance::Balance;
 use super::workspace::Workspace;
-use opruga_core::integrator::{Amplification, HistorySize};
+use opruga_core::history::Channel;
+use opruga_core::integrator::Amplification;
 use opruga_core::system::System;
 
 /// What makes one implicit rule differ from another.
@@ -25,8 +26,8 @@ pub(crate) trait Rule<const D: usize>: Copy + core::fmt::Debug + Send + Sync + '
         None
     }
     /// What it remembers from step to step.
-    fn history(&self) -> HistorySize {
-        HistorySize::default()
+    fn history(&self) -> Vec<Channel> {
+        Vec::new()
     }
     /// What one step makes of the damped oscillator, as [`Integrator::amplification`].
     fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification;

@@ -11,6 +11,7 @@
 //! | impact | nodes that end inside obstacles: they are put onto them | `impact` |
 //! | convergence | a search that did not end, unless the scene accepts it | `convergence` |
 //! | contact | an unforeseen contact: the rule in contact | `Method::find_end` |
+//! | budget | what few iterations led to and may have made energy: Newton's method | `fallback` |
 //! | rounding | a stage that rounding hides: iterations of the exact minimiser go on | `rounding`, `rigid_balance` |
 //!
 //! Slenderness (`slenderness`) chooses the linear solver of the real-time minimiser, and refuses nothing.
@@ -19,6 +20,7 @@ use super::balance::{Balance, Solved};
 use super::contact::SMALL;
 use super::convergence::{accept_or_refuse, count, finish, refusal};
 use super::energy;
+use super::fallback::{RealTime, exactly};
 use super::growth;
 use super::holding;
 use super::impact::Ending;
@@ -26,13 +28,12 @@ use super::memory;
 use super::minimiser::Minimiser;
 use super::newton::Newton;
 use super::own_loss::{self, given};
-use super::real_time::{self, RealTime};
 use super::rule::Rule;
 use super::settings::{Otherwise, Settings};
-use super::standstill;
 use super::workspace::{Workspace, write};
 use opruga_core::error::{BuildError, StepError};
-use opruga_core::integrator::{Amplification, HistorySize, Integrator};
+use opruga_core::history::Channel;
+use opruga_core::integrator::{Amplification, Integrator};
 use opruga_core::memory::Counts;
 use opruga_core::potential::Views;
 use opruga_core::spec::Values;
@@ -73,13 +74,9 @@ impl<R: Rule<D>, const D: usize> Integrator<D> for Implicit<R> {
     fn work_columns(&self) -> usize {
         1
     }
-    fn history(&self) -> HistorySize {
-        let own = self.rule.history();
-        let more = self.with_minimiser(|minimiser: &dyn Minimiser<D>| minimiser.history());
-        HistorySize {
-            columns: own.columns + more.columns,
-            numbers: own.numbers + more.numbers + growth::NUMBERS + standstill::NUMBERS,
-        }
+    fn history(&self) -> Vec<Channel> {
+        let of_minimiser = self.with_minimiser(|minimiser: &dyn Minimiser<D>| minimiser.history());
+        [self.rule.history(), of_minimiser, vec![growth::SIZE.declared()]].concat()
     }
     fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification {
         self.rule.amplification(omega, c, h)
@@ -115,11 +112,10 @@ impl<R> Implicit<R> {
     where
         R: Rule<D>,
     {
-        let mut workspace = system.room.take::<Workspace<D>>();
-        workspace.own = self.rule.history();
+        let mut workspace = system.cache.take::<Workspace<D>>();
         let method = Method { rule: self.rule, settings: &self.settings, minimiser };
         let outcome = method.advance(system, &mut workspace, h, 0);
-        system.room.put(workspace);
+        system.cache.put(workspace);
         outcome
     }
 }
@@ -194,8 +190,7 @@ impl<R: Rule<D>, const D: usize> Method<'_, R, D> {
         found.rule.remember(system, workspace, h);
         self.minimiser.remember(system, workspace, h);
         system.end_implicit(h);
-        let first = workspace.own.numbers + self.minimiser.history().numbers + growth::NUMBERS;
-        standstill::look(system, workspace, first, h)
+        Ok(())
     }
 
     /// Finds the stage and the end of a step. The guards are asked in this order: contact, convergence, obstacles at the end of the
@@ -203,7 +198,7 @@ impl<R: Rule<D>, const D: usize> Method<'_, R, D> {
     fn find_end(&self, system: &mut System<D>, workspace: &mut Workspace<D>, h: f64) -> Result<Found<R>, StepError> {
         let in_contact = self.rule.in_contact();
         let mut rule = in_contact.filter(|_| touches(system, workspace, h)).unwrap_or(self.rule);
-        let exact = Newton(real_time::exactly(self.settings));
+        let exact = Newton(exactly(self.settings));
         let mut minimiser = self.minimiser;
         let mut energy = None;
         loop {
@@ -220,7 +215,7 @@ impl<R: Rule<D>, const D: usize> Method<'_, R, D> {
             end(rule, system, workspace, &balance, h);
             if solved.doubtful && energy::gains_in_doubt(system, workspace, &balance)? {
                 system.work = work;
-                minimiser.discard(system, workspace);
+                minimiser.discard(system);
                 minimiser = &exact;
                 continue;
             }
@@ -239,10 +234,9 @@ impl<R: Rule<D>, const D: usize> Method<'_, R, D> {
         workspace: &Workspace<D>,
         found: &Found<R>,
     ) -> Result<(), StepError> {
-        let slot = workspace.own.numbers + self.minimiser.history().numbers;
         let (time, solved) = (system.time, &found.solved);
         let refused = |hint| refusal(R::NAME, self.settings, workspace, solved, (time, None), hint);
-        growth::check(system, workspace, slot, solved, refused)
+        growth::check(system, workspace, solved, refused)
     }
 }
 

@@ -7,7 +7,6 @@ use super::mixing::Mixing;
 use super::reused_matrix::ReusedMatrix;
 use super::rigid::Rigid;
 use super::settings::Solver;
-use opruga_core::integrator::HistorySize;
 use opruga_core::state::Columns;
 use opruga_core::system::{Stage, System};
 use opruga_core::threads::each_block;
@@ -61,8 +60,6 @@ pub(crate) struct Workspace<const D: usize> {
     pub(crate) direct: Option<(Solver, bool)>,
     /// The matrix of the real-time setting.
     pub(crate) reused: ReusedMatrix<D>,
-    /// Where the history of the real-time setting begins, behind that of the rule.
-    pub(crate) own: HistorySize,
     pub(crate) contacting: Contacting<D>,
     /// The motions of the whole that are free.
     pub(crate) rigid: Rigid<D>,
@@ -104,7 +101,6 @@ impl<const D: usize> Default for Workspace<D> {
             linear: Linear::default(),
             direct: None,
             reused: ReusedMatrix::default(),
-            own: HistorySize::default(),
             contacting: Contacting::default(),
             rigid: Rigid::default(),
             mixing: Mixing::default(),

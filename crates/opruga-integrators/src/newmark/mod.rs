@@ -27,7 +27,8 @@ use crate::implicit::step::Implicit;
 use crate::implicit::theta::Theta;
 use crate::implicit::workspace::Workspace;
 use opruga_core::error::BuildError;
-use opruga_core::integrator::{Amplification, HistorySize, Integrator, IntegratorKind};
+use opruga_core::history::{Channel, PerBody, PerNode};
+use opruga_core::integrator::{Amplification, Integrator, IntegratorKind};
 use opruga_core::spec::{Allowed, Default, Field, Spec, Values};
 use opruga_core::system::System;
 use opruga_solve::blocks::times;
@@ -54,6 +55,10 @@ rule of average acceleration.",
     ),
     roles: &[],
 };
+
+/// The acceleration at the end of the last step [m/s²], and whether there was one.
+const ACCELERATION: PerNode = PerNode::new("newmark.acceleration");
+const BEGUN: PerBody<bool> = PerBody::new("newmark.begun");
 
 /// The kind `newmark`.
 #[derive(Debug)]
@@ -103,8 +108,8 @@ impl<const D: usize> Rule<D> for Newmark {
     fn is_trapezoid(&self) -> bool {
         self.theta.is_none()
     }
-    fn history(&self) -> HistorySize {
-        HistorySize { columns: 1, numbers: 1 }
+    fn history(&self) -> Vec<Channel> {
+        vec![ACCELERATION.declared(), BEGUN.declared()]
     }
     fn in_contact(self) -> Option<Self> {
         // Average acceleration keeps every oscillation.
@@ -135,7 +140,8 @@ impl<const D: usize> Rule<D> for Newmark {
             return theta.begin(workspace, h);
         }
         let Newmark { alpha_m, alpha_f, beta, gamma, .. } = *self;
-        let begun = system.history.numbers[0] > 0.0;
+        let last = system.history.vectors(ACCELERATION).filter(|_| system.history.get(BEGUN));
+        let begun = last.is_some();
         let theta = 1.0 - alpha_f;
         let rate = gamma / (beta * h);
         first_acceleration(system, workspace);
@@ -144,9 +150,9 @@ impl<const D: usize> Rule<D> for Newmark {
         for node in 0..system.nodes {
             for d in 0..D {
                 let k = node * D + d;
-                let a = match stopped.get(k) {
-                    Some(true) => 0.0,
-                    _ if begun => system.history.columns[0].0[d][node],
+                let a = match (stopped.get(k), last) {
+                    (Some(true), _) => 0.0,
+                    (_, Some(last)) => last.0[d][node],
                     _ => workspace.a0[k],
                 };
                 let v = workspace.v0[k];
@@ -187,24 +193,26 @@ impl<const D: usize> Rule<D> for Newmark {
     fn remember(&self, system: &mut System<D>, workspace: &Workspace<D>, h: f64) {
         if self.theta.is_some() {
             // The next step begins with F/M, which is what average acceleration would have remembered.
-            system.history.numbers[0] = 0.0;
+            system.history.set(BEGUN, false);
             return;
         }
-        for node in 0..system.nodes {
+        let nodes = system.nodes;
+        let Some(last) = system.history.vectors_mut(ACCELERATION) else { return };
+        for node in 0..nodes {
             for d in 0..D {
-                system.history.columns[0].0[d][node] = self.acceleration(workspace, node * D + d, h);
+                last.0[d][node] = self.acceleration(workspace, node * D + d, h);
             }
         }
         for struck in &workspace.struck {
-            let a = times(&struck.kept, &system.history.columns[0].at(struck.node));
-            system.history.columns[0].set(struck.node, a);
+            let a = times(&struck.kept, &last.at(struck.node));
+            last.set(struck.node, a);
         }
         // What an obstacle or a pin holds is not accelerated where it is held.
-        for node in (0..system.nodes).filter(|node| !workspace.free[*node]) {
-            let along = times(&workspace.projectors[node], &system.history.columns[0].at(node));
-            system.history.columns[0].set(node, along);
+        for node in (0..nodes).filter(|node| !workspace.free[*node]) {
+            let along = times(&workspace.projectors[node], &last.at(node));
+            last.set(node, along);
         }
-        system.history.numbers[0] = 1.0;
+        system.history.set(BEGUN, true);
     }
 }
 
@@ -217,7 +225,7 @@ fn first_acceleration<const D: usize>(system: &System<D>, workspace: &mut Worksp
         for (k, a) in a0.iter_mut().enumerate() {
             *a = force.0[k % D][k / D] * system.inverse_mass.at(k / D);
         }
-    } else if system.history.numbers[0] <= 0.0 {
+    } else if !system.history.get(BEGUN) {
         right.iter_mut().enumerate().for_each(|(k, force_on)| *force_on = force.0[k % D][k / D]);
         accelerations(system, &held(system), right, a0);
     }

@@ -9,6 +9,7 @@ mod stability;
 
 pub(crate) use problems::{oscillator, two_nodes};
 
+use opruga_core::history::Content;
 use opruga_core::integrator::Integrator;
 use opruga_core::stability::Spectrum;
 use opruga_core::state::{Columns, Layout, Parameter};
@@ -31,6 +32,15 @@ pub(crate) fn run<const D: usize>(system: &mut System<D>, integrator: &dyn Integ
     }
 }
 
+/// The vectors that a history keeps of the first node.
+fn vectors<const D: usize>(system: &System<D>) -> Vec<[f64; D]> {
+    let of = |(_, content): (_, &Content<D>)| match content {
+        Content::Vectors(vectors) => Some(vectors.at(0)),
+        _ => None,
+    };
+    system.history.channels().filter_map(of).collect()
+}
+
 fn distance(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
 }
@@ -47,12 +57,20 @@ fn matrix_of_one_step<const D: usize>(integrator: &dyn Integrator<D>) {
             let mut system = oscillator::<D>(mass, mass * omega * omega, mass * c, one(0), one(1));
             system.equip(integrator);
             // Of rules with a history, a step in the middle of a run.
-            for (k, history) in system.history.columns.iter_mut().enumerate() {
-                history.set(0, core::array::from_fn(|d| one(2 + k) * (d + 1) as f64));
+            let mut row = 2;
+            for (_, content) in system.history.channels_mut() {
+                match content {
+                    Content::Vectors(vectors) => {
+                        vectors.set(0, core::array::from_fn(|d| one(row) * (d + 1) as f64));
+                        row += 1;
+                    }
+                    Content::Number(number) => *number = h,
+                    Content::Flag(flag) => *flag = true,
+                    Content::Count(_) => {}
+                }
             }
-            system.history.numbers.fill(h);
             run(&mut system, integrator, h, 1);
-            let history: Vec<_> = system.history.columns.iter().map(|columns| columns.at(0)).collect();
+            let history = vectors(&system);
             let after = [vec![system.state.x.at(0), system.state.v.at(0)], history].concat();
             assert_eq!(after.len(), m.size());
             let scale = 1e-12 * (1.0 + (0..m.size()).map(|row| m[row][column].abs()).sum::<f64>());

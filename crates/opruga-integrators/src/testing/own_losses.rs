@@ -1,6 +1,7 @@
 //! What implicit rules dissipate by themselves, against their formulas in differences of states, and the ledger with it.
 
 use super::{problems, two_nodes};
+use opruga_core::history::Content;
 use opruga_core::integrator::Integrator;
 use opruga_core::spec::{Value, Values};
 use opruga_core::state::Columns;
@@ -68,7 +69,11 @@ impl Moment {
     fn of(system: &mut System<2>) -> Moment {
         let g = of(&system.forces(false).unwrap()).map(|f| f.map(|f| -f));
         let u = system.potential_energy(Stage::Current, 0.0).unwrap();
-        let a = system.history.columns.first().map_or([[0.0; 2]; NODES], of);
+        let a = system
+            .history
+            .channels()
+            .find_map(|(_, content)| if let Content::Vectors(a) = content { Some(of(a)) } else { None })
+            .unwrap_or([[0.0; 2]; NODES]);
         Moment { x: of(&system.state.x), v: of(&system.state.v), g, a, u }
     }
 }

@@ -265,6 +265,7 @@ fn surroundings<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Surroun
         largest_force: values.number("largest_force"),
         largest_velocity: values.number("largest_velocity"),
         largest_distance: values.number("largest_distance"),
+        unfold: values.flag("unfold"),
     }
 }
 

@@ -3,6 +3,12 @@
 /// Whole sentences, as in [`super::sentences::SENTENCES`].
 pub(super) const SENTENCES: &[(&str, &str)] = &[
     (
+        "at t = {} s {~} inside out, the first of them cell {} of body `{}` with J = {}; hint: more substeps, {~}, or `unfold = true` \
+         in `[world]`",
+        "u t = {} s izvrnuto je: {~}; prva je ćelija {} tijela `{}` s J = {}; savjet: više podkoraka, {~}, ili `unfold = true` u \
+         `[world]`",
+    ),
+    (
         "at t = {} s {~} inside out, the first of them cell {} of body `{}` with J = {}; hint: more substeps, {~}",
         "u t = {} s izvrnuto je: {~}; prva je ćelija {} tijela `{}` s J = {}; savjet: više podkoraka, {~}",
     ),
@@ -21,6 +27,14 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     (
         "at t = {} s {~} account for, in another balance than that of the own shape: snapped through, folded, inside out or \
          twisted round; the first of them is body `{}` with {} J, {} J of it accounted for, V/V₀ = {}, and cell {} at J = {}; hint: \
+         where this was not meant, begin in its own shape, with more damping or more substeps{~}",
+        "u t = {} s {~}, u drugoj ravnoteži nego što je ona vlastitog oblika: preskočilo, presavijeno, izvrnuto ili zavrnuto; prvo \
+         je tijelo `{}` s {} J, od toga objašnjeno {} J, V/V₀ = {}, i ćelijom {} s J = {}; savjet: ako to nije namjera, počni u \
+         vlastitom obliku, s više prigušenja ili podkoraka{~}",
+    ),
+    (
+        "at t = {} s {~} account for, in another balance than that of the own shape: snapped through, folded, inside out or \
+         twisted round; the first of them is body `{}` with {} J, {} J of it accounted for, V/V₀ = {}, and cell {} at J = {}; hint: \
          where this was not meant, begin in its own shape, with more damping or more substeps",
         "u t = {} s {~}, u drugoj ravnoteži nego što je ona vlastitog oblika: preskočilo, presavijeno, izvrnuto ili zavrnuto; prvo \
          je tijelo `{}` s {} J, od toga objašnjeno {} J, V/V₀ = {}, i ćelijom {} s J = {}; savjet: ako to nije namjera, počni u \
@@ -30,6 +44,7 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
 
 /// Parts of them, as in [`super::sentences::PARTS`].
 pub(super) const PARTS: &[(&str, &str)] = &[
+    (", or `unfold = true` in `[world]`", ", ili `unfold = true` u `[world]`"),
     ("1 cell is", "1 ćelija"),
     ("{} cells are", "ćelija {}"),
     (

@@ -58,6 +58,7 @@ fn scene(commands: Vec<CommandBlueprint<2>>) -> Blueprint<2> {
             largest_force: None,
             largest_velocity: None,
             largest_distance: None,
+            unfold: false,
         },
         integrator: integrator("symplectic_euler"),
         bodies: vec![ball("one", 0.0), ball("two", 2.0)],

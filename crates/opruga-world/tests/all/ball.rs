@@ -52,6 +52,7 @@ fn rings(count: usize, vertices: u32, rule: &str) -> Blueprint<2> {
             largest_force: None,
             largest_velocity: None,
             largest_distance: None,
+            unfold: false,
         },
         integrator: integrator(rule),
         bodies: (0..count)

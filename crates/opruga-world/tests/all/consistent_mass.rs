@@ -44,6 +44,7 @@ fn body<const D: usize>(mesh: Mesh<D>, mass: &str, integrator: &str) -> Blueprin
             largest_force: None,
             largest_velocity: None,
             largest_distance: None,
+            unfold: false,
         },
         integrator: Values::defaults(spec, D),
         bodies: vec![BodyBlueprint {

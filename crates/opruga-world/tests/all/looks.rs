@@ -52,6 +52,7 @@ fn rings(count: usize, substeps: u32) -> Blueprint<2> {
             largest_force: None,
             largest_velocity: None,
             largest_distance: None,
+            unfold: false,
         },
         integrator: Values::defaults(registry.integrator("symplectic_euler").expect("an integrator").spec(), 2),
         bodies: (0..count).map(body).collect(),

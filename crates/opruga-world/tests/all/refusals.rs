@@ -61,6 +61,7 @@ fn scene(bodies: Vec<BodyBlueprint<2>>, colliders: Vec<ColliderBlueprint>) -> Bl
             largest_force: None,
             largest_velocity: None,
             largest_distance: None,
+            unfold: false,
         },
         integrator: Values::defaults(verlet, 2),
         bodies,
@@ -169,6 +170,6 @@ fn the_hint_of_inverted_cells_names_no_law_that_the_body_has() {
         assert_eq!(world.inverted_cells(), None);
         world.place_node(0, 0, [2.0, 2.0], [0.0; 2]).expect("a node");
         let said = world.inverted_cells().expect("a cell inside out").message;
-        assert!(said.ends_with(hint), "{law}: {said}");
+        assert!(said.ends_with(&format!("{hint}, or `unfold = true` in `[world]`")), "{law}: {said}");
     }
 }

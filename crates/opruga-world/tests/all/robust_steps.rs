@@ -27,6 +27,7 @@ fn body<const D: usize>(mesh: Mesh<D>, material: &str, frame: f64, pins: Vec<Pin
     );
     blueprint.time.frame = frame;
     blueprint.bodies[0].pins = pins;
+    blueprint.surroundings.unfold = true;
     blueprint
 }
 
@@ -180,6 +181,7 @@ fn statics_and_real_time_leave_flat_shapes_too() {
             );
             blueprint.time.frame = 1.0 / 30.0;
             blueprint.bodies[0].pins = clamp();
+            blueprint.surroundings.unfold = true;
             // What is held stays where it is.
             let on_line = |x: [f64; 3], _| if x[0] == 0.0 { x } else { [x[0], 0.5, 0.5] };
             let in_point = |x: [f64; 3], _| if x[0] == 0.0 { x } else { [0.5; 3] };
@@ -220,6 +222,7 @@ fn every_rule_brings_every_kind_of_cell_back_or_says_what_is_folded() {
             material.extend((*name == "nodal volumes").then(|| ("locking", text("nodal_volume"))));
             let mut blueprint = solid(mesh.clone(), rule, &[("when_not_converged", text("halve"))], &material);
             blueprint.time.frame = 1.0 / 30.0;
+            blueprint.surroundings.unfold = true;
             let name = |shape: &str| format!("{rule}, {name}, {shape}");
             comes_back(blueprint.clone(), &name("plane"), &|x, _| [x[0], 0.0, x[2]]);
             // Many nodes inside out or at random places take long to find out of it.
@@ -281,6 +284,7 @@ fn a_body_that_creeps_back_against_its_viscosity_is_never_taken_for_one_at_rest(
             ],
         );
         blueprint.time.frame = 0.05;
+        blueprint.surroundings.unfold = true;
         let mut world = World::new(blueprint, Options::default()).unwrap();
         for (node, x) in mesh.positions.iter().enumerate() {
             world.place_node(0, node as u32, [stretch * x[0], x[1]], [0.0; 2]).unwrap();

@@ -1,0 +1,33 @@
+//! How a system borrows the memory of its steps.
+
+use crate::system::System;
+use crate::workspace::Workspace;
+use opruga_math::WIDTH;
+
+impl<const D: usize> Workspace<D> {
+    /// Grows to what the steps of a system need.
+    pub fn fit(&mut self, system: &System<D>) {
+        self.make_room(system.plan.buffer_places(), system.stages, system.places());
+    }
+}
+
+impl<const D: usize> System<D> {
+    /// Takes a workspace for its own, or gives it back.
+    pub fn exchange(&mut self, workspace: &mut Workspace<D>) {
+        std::mem::swap(&mut self.forces, &mut workspace.forces);
+        std::mem::swap(&mut self.before, &mut workspace.before);
+        std::mem::swap(&mut self.velocity_before, &mut workspace.velocity_before);
+        std::mem::swap(&mut self.state.work, &mut workspace.stages);
+    }
+    /// Makes room for a step where nobody has lent any.
+    pub(crate) fn make_room(&mut self) {
+        let (buffers, stages, places) = (self.plan.buffer_places(), self.stages, self.places());
+        let own = self.state.work.iter().take(stages).flatten().all(|c| c.0[0].len() >= places + WIDTH);
+        if self.forces[0].len() < buffers + WIDTH || self.state.work.len() < stages || !own {
+            let mut workspace = Workspace::default();
+            self.exchange(&mut workspace);
+            workspace.make_room(buffers, stages, places);
+            self.exchange(&mut workspace);
+        }
+    }
+}

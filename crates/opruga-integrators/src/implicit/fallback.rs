@@ -1,0 +1,118 @@
+//! The guard of a search with a budget: what few iterations lead to counts only where it makes no energy.
+
+use super::balance::{Balance, Solved};
+use super::minimiser::Minimiser;
+use super::newton::Newton;
+use super::real_time::{self, Trust, iterate, mark_stale};
+use super::settings::Settings;
+use super::stage::{evaluate, potential, rounding_of_models};
+use super::workspace::Workspace;
+use opruga_core::error::StepError;
+use opruga_core::history::Channel;
+use opruga_core::system::System;
+
+/// A potential that has risen by this part of its parts has risen: rounding, and what obstacles push back, are less.
+const RISE: f64 = 1e-6;
+
+/// How many iterations steps get that few led astray.
+const MOST_ITERATIONS: u32 = 50;
+
+/// The real-time setting as a minimiser.
+///
+/// What few iterations lead to counts only where it makes no energy: else the step is solved by Newton's method with its line search,
+/// and made in two halves where that does not converge. Its incremental potential must not be above that of a body that stays where it
+/// is; looked at are bodies in the air, and others whose matrix was made anew on the way, or that went far or are left farther out of
+/// balance than promised. What is left of a body on an obstacle is taken for an impulse of that, which the potential
+/// does not know: the end of such a step is doubtful ([`Solved::doubtful`]), and its energy decides.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RealTime(pub(crate) Settings);
+
+impl<const D: usize> Minimiser<D> for RealTime {
+    fn minimise(
+        &self,
+        system: &mut System<D>,
+        workspace: &mut Workspace<D>,
+        balance: &Balance,
+    ) -> Result<Solved, StepError> {
+        let settings = &self.0;
+        let (cut_off, left) = (system.work.solver.cut_off, system.work.solver.left);
+        let outcome = iterate(system, workspace, balance, settings);
+        let spent = match &outcome {
+            Ok((solved, Trust::Always)) => return Ok(*solved),
+            Ok((solved, Trust::IfNoGain)) if !has_risen(system, workspace, balance)? => {
+                return Ok(Solved { doubtful: true, ..*solved });
+            }
+            Ok((solved, Trust::IfDownhill)) if !has_risen(system, workspace, balance)? => return Ok(*solved),
+            Ok((solved, _)) => *solved,
+            // A law that has no meaning where the iteration led to.
+            Err(StepError::Model { .. }) => Solved::default(),
+            Err(_) => return outcome.map(|(solved, _)| solved),
+        };
+        (system.work.solver.cut_off, system.work.solver.left) = (cut_off, left);
+        mark_stale(system);
+        begin_anew(system, workspace, balance);
+        let mut solved = Newton(exactly(settings)).minimise(system, workspace, balance)?;
+        solved.iterations += spent.iterations;
+        solved.products += spent.products;
+        Ok(solved)
+    }
+    fn history(&self) -> Vec<Channel> {
+        real_time::channels()
+    }
+    fn predict(&self, system: &System<D>, workspace: &mut Workspace<D>, balance: &Balance) {
+        real_time::predict(system, workspace, balance.theta, balance.h);
+    }
+    fn discard(&self, system: &mut System<D>) {
+        mark_stale(system);
+    }
+    fn remember(&self, system: &mut System<D>, workspace: &Workspace<D>, h: f64) {
+        real_time::remember(system, workspace, h);
+    }
+    /// In real time nobody waits for another setting.
+    fn always_halves(&self) -> bool {
+        true
+    }
+    fn shares_threads(&self) -> bool {
+        true
+    }
+    fn same_bits_everywhere(&self, system: &System<D>) -> bool {
+        !self.0.solver.is_direct_in_real_time(system)
+    }
+}
+
+/// Puts the body to where the motion of the last step leads, without obstacles.
+fn begin_anew<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, balance: &Balance) {
+    workspace.contacting.clear(system.nodes);
+    for k in 0..workspace.u.len() {
+        let pinned = workspace.held[k];
+        workspace.u[k] = if pinned.is_nan() { balance.theta * balance.h * workspace.v0[k] } else { pinned };
+    }
+}
+
+/// The settings of steps that few iterations led astray.
+pub(crate) fn exactly(settings: &Settings) -> Settings {
+    Settings { real_time: false, iterations: MOST_ITERATIONS, ..*settings }
+}
+
+/// Whether the incremental potential of what was found is above that of the body where it was, but for what is held; not a number
+/// counts as above, and so does what forces without a potential may have done.
+fn has_risen<const D: usize>(
+    system: &mut System<D>,
+    workspace: &mut Workspace<D>,
+    balance: &Balance,
+) -> Result<bool, StepError> {
+    let Some((after, size)) = potential(system, workspace, balance, false) else { return Ok(true) };
+    if !after.is_finite() {
+        return Ok(true);
+    }
+    for k in 0..workspace.u.len() {
+        workspace.trial[k] = if workspace.held[k].is_nan() { 0.0 } else { workspace.held[k] };
+    }
+    // Where a body stood where its law has no meaning there is nothing to compare with.
+    let before = match evaluate(system, workspace, balance, true) {
+        Ok(()) => potential(system, workspace, balance, true),
+        Err(_) => None,
+    };
+    evaluate(system, workspace, balance, false)?;
+    Ok(!before.is_some_and(|(before, parts)| after - before <= RISE * (size + parts) + rounding_of_models(system)))
+}

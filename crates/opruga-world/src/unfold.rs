@@ -1,0 +1,349 @@
+//! Recovery of bodies that rest in a degenerate shape: flat, inverted or folded. It acts where the scene says `[world] unfold = true`.
+//!
+//! A body that was squeezed onto a plane, a line or a point, or inverted, may be in equilibrium there by symmetry alone: no force leads
+//! out of the plane, though the energy falls on both sides of it. No solver may leave such a shape by itself, since it follows the forces.
+//! So the world looks at the bodies after every frame. Where one rests while cells are degenerate or inverted, or strained though nothing
+//! acts on the body, its free nodes are displaced at random, the same in every run: first by 10⁻⁴ of its size, then, each time after it
+//! had time to leave, by a hundredth and a tenth. Every time is counted. A shape that is left after the last time is counted, too.
+//!
+//! In statics the frame is solved again from the displaced shape, up to three times.
+//!
+//! A body has left such a shape when it kept another one for as long as leaving takes. One that goes to and fro about the limit goes on
+//! where it was, and comes to the last time.
+//!
+//! Strained bodies on which something acts, a pin, an obstacle or a load, are left alone, as those are that were meant to snap
+//! through: `cells.other_balance` reports at the end that they hold more energy than what acts on them accounts for.
+//!
+//! A body rests when its kinetic energy and its forces out of balance are small against the energy U that its cells hold,
+//! ½ Σ m v² ≪ U and Σ m |a| L ≪ U, and when damping does not take that energy: one that creeps against its viscosity is on its way. The
+//! time to leave is a multiple of L √(M/U), where L is its size and M its mass.
+//!
+//! A body all of whose cells are flat has a motion along its plane or line that may go on for ever, and leads nowhere. It is displaced
+//! once it had time to leave, whatever it does there.
+//!
+//! Bodies of models without cells, such as springs, are left alone.
+//!
+//! | constant | what breaks without it | test |
+//! |---|---|---|
+//! | `REST`, `BALANCED` | a body that creeps or swings is displaced on its way | `robust_steps::a_body_that_creeps_back…` |
+//! | `PATIENCE` | a body is displaced again before it could leave | `flat_bodies::disturbances_end…` |
+//! | `SIZES` | one displacement alone leaves no flat shape that is stable against it | `robust_steps::bodies_that_symmetry_holds…` |
+//! | `STRAINED` | folded bodies with sound cells stay | `robust_steps::every_rule_brings…` |
+
+use crate::island::{FramePlan, Island};
+use crate::ledger::{survey, take_stock};
+use opruga_core::error::StepError;
+use opruga_core::history::{Channel, PerBody};
+use opruga_core::potential::{Account, CellState};
+use opruga_core::state::Columns;
+use opruga_core::system::{Stage, System};
+use opruga_math::{Lane, sum_in_fixed_order};
+use opruga_solve::dense::symmetric_eigen;
+
+/// How often a body was displaced since it left its last degenerate shape, one more where that was in vain.
+const TIMES: PerBody<u64> = PerBody::new("unfold.times");
+/// When it was displaced last [s].
+const LAST: PerBody<f64> = PerBody::new("unfold.last");
+/// After how many frames in a row all of it was flat.
+const FLAT_FRAMES: PerBody<u64> = PerBody::new("unfold.flat_frames");
+/// Until when another shape does not count as having left the degenerate one [s].
+const UNTIL: PerBody<f64> = PerBody::new("unfold.until");
+
+/// What is kept of every body.
+pub(crate) fn channels() -> [Channel; 4] {
+    [TIMES.declared(), LAST.declared(), FLAT_FRAMES.declared(), UNTIL.declared()]
+}
+
+/// Kinetic energy, and what damping takes in the time to leave, that count as rest, as parts of the stored energy.
+const REST: f64 = 1e-3;
+
+/// Forces out of balance times the size that count as rest, as a part of the stored energy: a tremble with 10⁻⁷ of it has a
+/// thousandth.
+const BALANCED: f64 = 1e-2;
+
+/// How long a displaced body has to leave, in units of L √(M/U).
+const PATIENCE: f64 = 12.0;
+
+/// By how much nodes are displaced, in sizes of the body: the cube root of its volume, the square root of its area.
+const SIZES: [f64; 3] = [1e-4, 1e-2, 0.1];
+
+/// Cells of a body on which nothing acts are strained where their volume has changed by more than this part of it.
+const STRAINED: f64 = 1e-3;
+
+/// The axes of space.
+const UNITS: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+impl<const D: usize> Island<D> {
+    /// Looks at a body after the substeps of a frame, and displaces it where it rests in a degenerate shape. `v0` holds the velocities
+    /// at the start of the frame.
+    ///
+    /// # Errors
+    /// [`StepError`] where a model refuses the state.
+    pub(crate) fn unfold(&mut self, plan: &FramePlan<D>, v0: &Columns<D>) -> Result<(), StepError> {
+        let system = &mut self.system;
+        let frame = f64::from(plan.substeps) * plan.h;
+        let (times, last, until) = (system.history.get(TIMES), system.history.get(LAST), system.history.get(UNTIL));
+        let Some(size) = degenerate_size(system) else {
+            system.history.set(TIMES, if system.time > until { 0 } else { times });
+            system.history.set(FLAT_FRAMES, 0);
+            return Ok(());
+        };
+        let flat = if is_flat(system) { system.history.get(FLAT_FRAMES) + 1 } else { 0 };
+        system.history.set(FLAT_FRAMES, flat);
+        let energy = stored(system)?;
+        let Motion { kinetic, push, mass, fading } = motion(system, v0, frame)?;
+        let patience = PATIENCE * size * (mass / energy).sqrt();
+        // Numbers of the state are finite; what holds no energy has for ever to leave.
+        let until = system.time + patience;
+        system.history.set(UNTIL, if until.is_finite() { until } else { f64::MAX });
+        if times > SIZES.len() as u64 {
+            return Ok(());
+        }
+        let waits = times > 0 && system.time - last <= patience;
+        let small = |part: f64| part <= REST * energy;
+        let rests = small(kinetic) && push * size <= BALANCED * energy && small(fading * patience);
+        let stays = flat as f64 * frame > patience;
+        if waits || !(stays || rests) {
+            return Ok(());
+        }
+        system.history.set(FLAT_FRAMES, 0);
+        system.history.set(TIMES, times + 1);
+        system.history.set(LAST, system.time);
+        match SIZES.get(times as usize) {
+            Some(part) => displace_with_work(system, part * size, times),
+            None => system.work.solver.odd_rests += 1,
+        }
+        Ok(())
+    }
+
+    /// Solves a frame of statics again from displaced shapes, as long as it ends in a degenerate one; `start` is the energy at the start
+    /// of the frame [J].
+    ///
+    /// # Errors
+    /// [`StepError`] where no equilibrium is found.
+    pub(crate) fn unfold_statics(&mut self, plan: &FramePlan<D>, meets: bool, start: f64) -> Result<(), StepError> {
+        // Along the curve of equilibria every point counts.
+        if self.integrator.part_of_load(&self.system).is_some() {
+            return Ok(());
+        }
+        for (times, part) in SIZES.iter().enumerate() {
+            let Some(size) = degenerate_size(&self.system) else { return Ok(()) };
+            let solver = self.system.work.solver;
+            let shape = self.system.state.x.clone();
+            self.restore();
+            self.system.state.x = shape;
+            displace(&mut self.system, part * size, times as u64);
+            // Statics enters the change of energy since it began; what displacing gave is work, too.
+            let given = self.energy_here() - start;
+            self.attempt(plan, meets)?;
+            self.system.work.user[0] += given;
+            self.system.work.solver.add(&solver);
+            self.system.work.solver.disturbed += 1;
+        }
+        self.system.work.solver.odd_rests += u64::from(degenerate_size(&self.system).is_some());
+        Ok(())
+    }
+
+    /// The energy of the present state [J].
+    fn energy_here(&mut self) -> f64 {
+        let (survey, stock) = (survey(&self.system), take_stock(&mut self.system));
+        survey.kinetic + survey.gravity + stock.elastic + stock.gas
+    }
+}
+
+/// The energy that the cells and springs of a body hold [J].
+fn stored<const D: usize>(system: &mut System<D>) -> Result<f64, StepError> {
+    // Evaluating the forces prepares the models.
+    system.forces(true)?;
+    let view = system.view(Stage::Current, system.time);
+    let elastic = system.members.iter().filter(|member| member.potential.properties().account == Account::Elastic);
+    Ok(elastic.map(|member| sum_in_fixed_order(&member.potential.energy(system.simd, &view, &member.scratch))).sum())
+}
+
+/// How a body moves.
+struct Motion {
+    /// The kinetic energy [J].
+    kinetic: f64,
+    /// The sum of the forces that change velocities [N].
+    push: f64,
+    /// The mass [kg].
+    mass: f64,
+    /// The energy that damping takes [W].
+    fading: f64,
+}
+
+/// The motion of a body; of a free one as seen from its centre of mass, and from axes that turn with it: what spins rests, too.
+/// Accelerations are means over the frame, since the forces of obstacles are in them.
+fn motion<const D: usize>(system: &mut System<D>, v0: &Columns<D>, frame: f64) -> Result<Motion, StepError> {
+    let damping = if system.members.iter().any(|member| member.potential.properties().views.damping) {
+        let (all, undamped) = (system.forces(true)?, system.forces(false)?);
+        Some((all, undamped))
+    } else {
+        None
+    };
+    let mut pinned = vec![[false; D]; system.nodes];
+    system.held_axes(&mut |node, d| pinned[node][d] = true);
+    let mut mass = 0.0;
+    let (mut center, mut speed, mut change) = ([0.0; D], [0.0; D], [0.0; D]);
+    for node in 0..system.nodes {
+        let (x, v, old, m) = (system.state.x.at(node), system.state.v.at(node), v0.at(node), system.mass.at(node));
+        mass += m;
+        for d in 0..D {
+            center[d] += m * x[d];
+            speed[d] += m * v[d];
+            change[d] += m * (v[d] - old[d]);
+        }
+    }
+    let free = system.pins.is_empty() && system.contacts.is_none();
+    if !free {
+        (speed, change) = ([0.0; D], [0.0; D]);
+    }
+    let arm = |node: usize| -> [f64; D] {
+        let x = system.state.x.at(node);
+        core::array::from_fn(|d| x[d] - center[d] / mass)
+    };
+    let velocity = |node: usize| -> [f64; D] {
+        let v = system.state.v.at(node);
+        core::array::from_fn(|d| v[d] - speed[d] / mass)
+    };
+    let spin = if free { rotation(system, &velocity, &arm) } else { [0.0; 3] };
+    // What a body that tumbles has of accelerations: those that keep it together and turn its axis.
+    let acceleration = |node: usize| -> [f64; D] {
+        let (v, old, inward) = (system.state.v.at(node), v0.at(node), turned(&spin, &turned(&spin, &arm(node))));
+        core::array::from_fn(|d| (v[d] - old[d] - change[d] / mass) / frame - inward[d])
+    };
+    let tumble = if free { rotation(system, &acceleration, &arm) } else { [0.0; 3] };
+    let (mut kinetic, mut push, mut fading) = (0.0, 0.0, 0.0);
+    for node in 0..system.nodes {
+        let m = system.mass.at(node);
+        let (own, left) = (velocity(node), acceleration(node));
+        let (turning, turned_more) = (turned(&spin, &arm(node)), turned(&tumble, &arm(node)));
+        for d in 0..D {
+            let own = own[d] - turning[d];
+            kinetic += 0.5 * m * own * own;
+            push += m * (left[d] - turned_more[d]).abs();
+            // Pinned nodes are led by others.
+            if let Some((all, undamped)) = damping.as_ref().filter(|_| !pinned[node][d]) {
+                fading -= (all.0[d][node] - undamped.0[d][node]) * own;
+            }
+        }
+    }
+    Ok(Motion { kinetic, push, mass, fading })
+}
+
+/// The angular velocity [rad/s] of the rotation about the centre that is nearest to the velocities of a body beyond their mean; of
+/// accelerations the angular acceleration [rad/s²].
+fn rotation<const D: usize>(
+    system: &System<D>,
+    field: &dyn Fn(usize) -> [f64; D],
+    arm: &dyn Fn(usize) -> [f64; D],
+) -> [f64; 3] {
+    let turns = if D == 2 { &UNITS[2..] } else { &UNITS[..] };
+    let n = turns.len();
+    let (mut inertia, mut momentum) = (vec![0.0; n * n], vec![0.0; n]);
+    for node in 0..system.nodes {
+        let (v, m, arm) = (field(node), system.mass.at(node), arm(node));
+        let displacements: Vec<[f64; D]> = turns.iter().map(|turn| turned(turn, &arm)).collect();
+        for p in 0..n {
+            for d in 0..D {
+                momentum[p] += m * displacements[p][d] * v[d];
+                for q in 0..n {
+                    inertia[p * n + q] += m * displacements[p][d] * displacements[q][d];
+                }
+            }
+        }
+    }
+    // A body on a line has no inertia about it.
+    let (values, vectors) = symmetric_eigen(&inertia, n);
+    let least = 1e-9 * values.last().copied().unwrap_or(0.0);
+    let mut out = [0.0; 3];
+    for (value, vector) in values.iter().zip(&vectors).filter(|(value, _)| **value > least) {
+        let part = vector.iter().zip(&momentum).map(|(a, b)| a * b).sum::<f64>() / value;
+        for (turn, weight) in turns.iter().zip(vector) {
+            for d in 0..3 {
+                out[d] += part * weight * turn[d];
+            }
+        }
+    }
+    out
+}
+
+/// ω × r; in the plane ω is along z.
+fn turned<const D: usize>(spin: &[f64; 3], arm: &[f64; D]) -> [f64; D] {
+    let r: [f64; 3] = core::array::from_fn(|d| if d < D { arm[d] } else { 0.0 });
+    core::array::from_fn(|d| {
+        let (e, f) = ((d + 1) % 3, (d + 2) % 3);
+        spin[e] * r[f] - spin[f] * r[e]
+    })
+}
+
+/// The size of a body that is degenerate, inverted or strained by nothing [m]; none where its shape is one of its own.
+fn degenerate_size<const D: usize>(system: &System<D>) -> Option<f64> {
+    let alone = nothing_acts(system);
+    let (mut volume, mut degenerate) = (0.0, false);
+    for cell in cells(system) {
+        degenerate |= cell.is_degenerate() || alone && (cell.volume_ratio - 1.0).abs() > STRAINED;
+        volume += cell.measure;
+    }
+    degenerate.then(|| if D == 2 { volume.sqrt() } else { Lane::exp(Lane::ln(volume) / 3.0) })
+}
+
+/// The cells of a body in the present state.
+fn cells<const D: usize>(system: &System<D>) -> Vec<CellState> {
+    let view = system.view(Stage::Current, system.time);
+    system.members.iter().flat_map(|member| member.potential.cell_states(&view, 0)).collect()
+}
+
+/// Whether every cell of a body has no volume.
+fn is_flat<const D: usize>(system: &System<D>) -> bool {
+    cells(system)
+        .iter()
+        .all(|cell| CellState { smallest_volume_ratio: cell.volume_ratio.abs(), ..*cell }.is_degenerate())
+}
+
+/// Whether nothing acts on the cells of a body but themselves.
+fn nothing_acts<const D: usize>(system: &System<D>) -> bool {
+    let view = system.view(Stage::Current, system.time);
+    system.pins.is_empty()
+        && system.contacts.is_none()
+        && system.members.iter().all(|member| {
+            let potential = &member.potential;
+            potential.properties().account == Account::Elastic
+                && (!potential.properties().views.energy || !potential.cell_states(&view, 0).is_empty())
+        })
+}
+
+/// Displaces the nodes of a body at random by up to `size` [m]; pins stay where they are.
+fn displace<const D: usize>(system: &mut System<D>, size: f64, times: u64) {
+    for node in 0..system.nodes {
+        let x = system.state.x.at(node);
+        system.state.x.set(node, core::array::from_fn(|d| x[d] + size * random(node * D + d, times)));
+    }
+    system.hold(Stage::Current, 0.0);
+}
+
+/// The same; the energy that this takes is work from outside. Nothing happens where a law has no meaning in the displaced shape.
+fn displace_with_work<const D: usize>(system: &mut System<D>, size: f64, times: u64) {
+    let (x, before) = (system.state.x.clone(), system.stored_energy(Stage::Current, 0.0));
+    displace(system, size, times);
+    system.work.solver.disturbed += 1;
+    if system.forces(true).is_err() {
+        system.state.x = x;
+        return;
+    }
+    let given = system.stored_energy(Stage::Current, 0.0) - before;
+    system.work.user[0] += given;
+    // The rule had no part in it.
+    system.work.numerical[0] += given;
+}
+
+/// A number from −1 to 1 that belongs to a coordinate and a time of asking.
+fn random(coordinate: usize, times: u64) -> f64 {
+    let mut state = (coordinate as u64 + 1) ^ (times << 48);
+    for _ in 0..3 {
+        // Knuth's linear congruential generator, and the mixing of its upper bits into the lower ones.
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state ^= state >> 29;
+    }
+    (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+}
