@@ -5,6 +5,7 @@ pub mod bending;
 pub mod drag;
 pub mod fem;
 pub mod mass_spring;
+pub mod materials;
 pub mod pressure;
 
 use core::any::Any;
