@@ -316,6 +316,8 @@ pub struct Ingredients<'a, const D: usize> {
     pub thickness: f64,
     /// Acceleration of gravity [m/s²].
     pub gravity: [f64; D],
+    /// Length of a substep as the scene declares it [s]: for published schemes whose stiffness depends on it, and for nothing else.
+    pub step: f64,
 }
 
 impl<const D: usize> Ingredients<'_, D> {

@@ -7,6 +7,7 @@ pub mod fem;
 pub mod mass_spring;
 pub mod materials;
 pub mod pressure;
+pub mod shape_matching;
 
 use core::any::Any;
 use opruga_core::potential::Model;
@@ -41,5 +42,6 @@ fn list<const D: usize>() -> Vec<Box<dyn Model<D>>> {
         Box::new(bending::BendingModel),
         Box::new(drag::DragModel),
         Box::new(as_published::AsPublishedModel),
+        Box::new(shape_matching::ShapeMatchingModel),
     ]
 }

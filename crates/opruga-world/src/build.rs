@@ -249,6 +249,7 @@ impl<const D: usize> Builder<'_, D> {
                     densities: densities(first),
                     thickness: first.thickness,
                     gravity: self.blueprint.surroundings.gravity,
+                    step: self.blueprint.time.frame / f64::from(self.blueprint.time.substeps),
                 })
                 .map_err(refuse)?;
             system.add(potential);
@@ -392,6 +393,7 @@ impl<const D: usize> Builder<'_, D> {
             densities: densities(body),
             thickness: body.thickness,
             gravity: self.blueprint.surroundings.gravity,
+            step: self.blueprint.time.frame / f64::from(self.blueprint.time.substeps),
         };
         system.add(model.build(&ingredients).map_err(refuse)?);
         Ok(())

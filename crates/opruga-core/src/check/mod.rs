@@ -204,6 +204,7 @@ impl<const D: usize> Suite<'_, D> {
             densities: None,
             thickness: self.options.thickness,
             gravity: [0.0; D],
+            step: 1e-3,
         };
         self.model.build(&ingredients).map_err(|e| e.to_string())
     }
