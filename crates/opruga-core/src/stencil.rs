@@ -337,7 +337,7 @@ impl<L: Kernel<D, N, K>, const D: usize, const N: usize, const K: usize> Potenti
         L::NAME
     }
     fn views(&self) -> Views {
-        Views { energy: true, hessian: true, damping: self.damped }
+        Views { energy: true, hessian: true, symmetric: true, damping: self.damped }
     }
     fn spans(&self, visit: &mut dyn FnMut(u32, u32)) {
         for element in &self.elements {

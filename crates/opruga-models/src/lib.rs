@@ -4,6 +4,7 @@ pub mod as_published;
 pub mod bending;
 pub mod drag;
 pub mod fem;
+pub mod finite_volume;
 pub mod mass_spring;
 pub mod materials;
 pub mod pressure;
@@ -26,11 +27,13 @@ pub fn all<const D: usize>() -> Vec<Box<dyn Model<D>>> {
 fn of_the_plane() -> Vec<Box<dyn Model<2>>> {
     let mut models = list();
     models.push(Box::new(fem::FemModel));
+    models.push(Box::new(finite_volume::FiniteVolumeModel));
     models
 }
 fn of_space() -> Vec<Box<dyn Model<3>>> {
     let mut models = list();
     models.push(Box::new(fem::FemModel));
+    models.push(Box::new(finite_volume::FiniteVolumeModel));
     models
 }
 

@@ -127,7 +127,11 @@ fn stiffen<const D: usize>(blueprint: &mut Blueprint<D>, factor: f64) -> Result<
                 changed.push(("youngs_modulus", mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu)));
                 changed.push(("poissons_ratio", lambda / (2.0 * (lambda + mu))));
             }
-            "mass_spring" | "bending" => {
+            "finite_volume" => {
+                let young = values.number("youngs_modulus").ok_or("a solid without Young's modulus")?;
+                changed.push(("youngs_modulus", factor * young));
+            }
+            "mass_spring" | "bending" | "shape_matching" => {
                 let known = |name: &'static str| values.number(name).map(|value| (name, factor * value));
                 changed.extend(known("stiffness"));
                 changed.extend(known("modulus"));

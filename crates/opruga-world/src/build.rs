@@ -11,7 +11,7 @@ use crate::slots::{Origin, Slots};
 use opruga_collide::Colliders;
 use opruga_core::error::BuildError;
 use opruga_core::integrator::Integrator;
-use opruga_core::potential::Ingredients;
+use opruga_core::potential::{Ingredients, Potential};
 use opruga_core::spec::{Role, Value, Values};
 use opruga_core::state::{Columns, Layout, Parameter};
 use opruga_core::system::{Pin, Stabilisers, System};
@@ -283,7 +283,7 @@ impl<const D: usize> Builder<'_, D> {
         // Loads know their derivatives; a model may lack them.
         for member in &system.members[..first.models.len()] {
             if !member.potential.views().include(integrator.needs()) {
-                return Err(refuse(no_view(member.potential.name(), integrator.name())));
+                return Err(refuse(no_view(&*member.potential, integrator.name())));
             }
         }
         if system.inertia.is_some() {
@@ -467,12 +467,15 @@ impl<const D: usize> Builder<'_, D> {
 }
 
 /// A model without what an integrator needs.
-fn no_view(model: &str, integrator: &str) -> BuildError {
+fn no_view<const D: usize>(model: &dyn Potential<D>, integrator: &str) -> BuildError {
+    let what = if model.views().hessian { "no symmetric second derivatives" } else { "no second derivatives" };
+    let why = model.lacks().map_or(String::new(), |why| format!(": {why}"));
+    let also = if model.views().hessian { ", and `equilibrium` finds its rest" } else { "" };
     let message = format!(
-        "the model has no second derivatives, which `{integrator}` needs; hint: an explicit integrator steps it, such as \
-         `symplectic_euler`"
+        "the model has {what}, which `{integrator}` needs{why}; hint: an explicit integrator steps it, such as \
+         `symplectic_euler`{also}"
     );
-    BuildError::new(model, "integrator.needs", message)
+    BuildError::new(model.name(), "integrator.needs", message)
 }
 
 fn no_cells<const D: usize>(body: &BodyBlueprint<D>) -> WorldError {

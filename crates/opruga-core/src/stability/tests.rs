@@ -20,7 +20,7 @@ impl<const D: usize> Potential<D> for Anchors {
         "anchors"
     }
     fn views(&self) -> Views {
-        Views { energy: true, hessian: false, damping: self.damping.iter().any(|c| *c > 0.0) }
+        Views { energy: true, hessian: false, symmetric: false, damping: self.damping.iter().any(|c| *c > 0.0) }
     }
     fn spans(&self, _visit: &mut dyn FnMut(u32, u32)) {}
     fn add_force(&self, _simd: Simd, view: &View<D>, _scratch: &[f64], tile: &mut Tile<D>) {

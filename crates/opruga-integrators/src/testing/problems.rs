@@ -19,7 +19,7 @@ impl<const D: usize> Potential<D> for Anchors {
         "anchors"
     }
     fn views(&self) -> Views {
-        Views { energy: true, hessian: true, damping: self.damping > 0.0 }
+        Views { energy: true, hessian: true, symmetric: true, damping: self.damping > 0.0 }
     }
     fn energy(&self, _simd: Simd, view: &View<D>, _scratch: &[f64]) -> [f64; 8] {
         let places = 0..view.nodes * view.layout.stride();
@@ -105,7 +105,7 @@ impl<const D: usize> Potential<D> for Springs {
         "springs"
     }
     fn views(&self) -> Views {
-        Views { energy: true, hessian: self.gas == 0.0, damping: self.damping > 0.0 }
+        Views { energy: true, hessian: self.gas == 0.0, symmetric: self.gas == 0.0, damping: self.damping > 0.0 }
     }
     fn energy(&self, _simd: Simd, view: &View<D>, _scratch: &[f64]) -> [f64; 8] {
         let stretch = |&[a, b]: &[usize; 2]| {

@@ -84,7 +84,7 @@ impl<const D: usize> Model<D> for AsPublishedModel {
         &SPEC
     }
     fn views(&self) -> Views {
-        Views { energy: false, hessian: false, damping: true }
+        Views { energy: false, hessian: false, symmetric: false, damping: true }
     }
     fn build(&self, ingredients: &Ingredients<D>) -> Result<Box<dyn Potential<D>>, BuildError> {
         let refuse = |code, message: &str| Err(BuildError::new(SPEC.kind, code, message));
@@ -235,7 +235,7 @@ impl<const D: usize> Potential<D> for AsPublished {
         SPEC.kind
     }
     fn views(&self) -> Views {
-        Views { energy: false, hessian: false, damping: true }
+        Views { energy: false, hessian: false, symmetric: false, damping: true }
     }
     fn bonds(&self) -> &[[u32; 2]] {
         &self.springs

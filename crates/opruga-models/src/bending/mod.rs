@@ -164,7 +164,7 @@ impl<const D: usize> Potential<D> for Bending {
         SPEC.kind
     }
     fn views(&self) -> Views {
-        Views { energy: true, hessian: true, damping: self.damped }
+        Views { energy: true, hessian: true, symmetric: true, damping: self.damped }
     }
     fn spans(&self, visit: &mut dyn FnMut(u32, u32)) {
         for part in self.parts::<D>() {

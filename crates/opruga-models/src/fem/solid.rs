@@ -102,7 +102,7 @@ impl<const D: usize> Potential<D> for Solid<D> {
         SPEC.kind
     }
     fn views(&self) -> Views {
-        Views { energy: true, hessian: true, damping: self.damped }
+        Views { energy: true, hessian: true, symmetric: true, damping: self.damped }
     }
     fn inertia(&self) -> &[(u32, u32, f64)] {
         &self.inertia

@@ -115,7 +115,7 @@ impl<const D: usize> Potential<D> for Springs {
         "mass_spring"
     }
     fn views(&self) -> Views {
-        Views { energy: true, hessian: true, damping: self.damped }
+        Views { energy: true, hessian: true, symmetric: true, damping: self.damped }
     }
     fn bonds(&self) -> &[[u32; 2]] {
         self.table.pairs()

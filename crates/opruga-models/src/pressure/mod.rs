@@ -194,7 +194,7 @@ impl<const D: usize> Potential<D> for Pressure {
         "pressure"
     }
     fn views(&self) -> Views {
-        Views { energy: true, hessian: true, damping: false }
+        Views { energy: true, hessian: true, symmetric: true, damping: false }
     }
     fn account(&self) -> Account {
         Account::Gas

@@ -47,6 +47,7 @@ use opruga_core::potential::{Account, Definiteness, Ingredients, Model, Potentia
 use opruga_core::spec::Spec;
 use opruga_core::state::{Layout, Parameter, View};
 use opruga_core::tile::Tile;
+use opruga_math::message::AnyMessage;
 use opruga_math::{Pack, Simd, WIDTH, Work};
 
 /// The kind `shape_matching`.
@@ -130,7 +131,10 @@ impl<const D: usize> Potential<D> for Matching<D> {
     }
     fn views(&self) -> Views {
         let is_gradient = !self.is_published;
-        Views { energy: is_gradient, hessian: is_gradient, damping: false }
+        Views { energy: is_gradient, hessian: is_gradient, symmetric: is_gradient, damping: false }
+    }
+    fn lacks(&self) -> Option<AnyMessage> {
+        self.is_published.then(|| Refusal::NoPotential {}.into())
     }
     fn account(&self) -> Account {
         if self.is_published { Account::User } else { Account::Elastic }

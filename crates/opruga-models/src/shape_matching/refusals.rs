@@ -30,6 +30,10 @@ messages! {
         "model.step_changed"
         #[error("the substep is {} s, and `goal_step` counts for the {} s that the scene declared; allowed: that step; hint: `stiffness = {}` means the same at any step", number(*now), number(*declared), number(*stiffness))]
         StepChanged { now: f64, declared: f64, stiffness: f64 },
+        /// What the published scheme lacks, as a part of a refusal.
+        "part.no_potential"
+        #[error("`scheme` is \"as_published\", whose goal, the fitted map over the root of its determinant, is the gradient of no potential; `scheme = \"potential\"` has both")]
+        NoPotential {},
     }
 }
 

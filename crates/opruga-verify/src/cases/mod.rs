@@ -9,6 +9,7 @@ mod contact;
 mod heat;
 mod integrators;
 mod ledgers;
+mod matching;
 mod materials;
 mod membranes;
 mod patches;
@@ -16,6 +17,7 @@ mod pressure;
 mod solids;
 mod springs;
 mod vibrations;
+mod volumes;
 
 use crate::case::{Case, Check, Family, Over, Scale};
 
@@ -45,6 +47,8 @@ pub fn cases() -> impl Iterator<Item = &'static Case> {
         springs::CASES,
         solids::CASES,
         heat::CASES,
+        volumes::CASES,
+        matching::CASES,
         materials::CASES,
         pressure::CASES,
         balloons::CASES,
