@@ -7,6 +7,7 @@ mod gallery;
 mod goldens;
 mod licences;
 mod mutants;
+mod names;
 mod same_results;
 mod tokens;
 mod web;
@@ -23,7 +24,7 @@ struct Chore {
     work: fn(&[String]) -> Result<(), String>,
 }
 
-const CHORES: [Chore; 11] = [
+const CHORES: [Chore; 12] = [
     Chore {
         word: "licences",
         arguments: "",
@@ -58,6 +59,13 @@ const CHORES: [Chore; 11] = [
         about: "counts Rust tokens and long functions of each crate, and their change since a commit",
         most: 2,
         work: tokens::tell,
+    },
+    Chore {
+        word: "names",
+        arguments: "[WORD]",
+        about: "counts the names that have a word which the glossary replaces",
+        most: 1,
+        work: names::check,
     },
     Chore {
         word: "mutants",

@@ -143,9 +143,14 @@ fn answered(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
     Some((text, rest.get(1..)?))
 }
 
+/// The code of a file without comments and tests.
+pub(crate) fn product(text: &str) -> String {
+    without_tests(&without_comments(text))
+}
+
 /// The size of a file.
 fn size(text: &str) -> Size {
-    let body = without_tests(&without_comments(text));
+    let body = product(text);
     let (mut tokens, mut rest) = (0, body.as_str());
     while let Some(first) = rest.chars().next() {
         let length = token(rest);

@@ -1,5 +1,5 @@
 //! Which crate may see which:
-//! math ← mesh ← core ← solve ← {models, integrators, collide} ← world ← io ← draw ← opruga ← {studio, verify} ← cli.
+//! math ← {mesh, video}, mesh ← core ← solve ← {models, integrators, collide} ← world ← io ← draw ← opruga ← {studio, verify} ← cli.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -9,6 +9,7 @@ use std::process::Command;
 fn layers() -> BTreeMap<&'static str, u32> {
     BTreeMap::from([
         ("opruga-math", 0),
+        ("opruga-video", 1),
         ("opruga-mesh", 1),
         ("opruga-core", 2),
         ("opruga-solve", 3),

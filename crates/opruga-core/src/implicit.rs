@@ -45,22 +45,23 @@ impl<const D: usize> System<D> {
 
     /// Whether second derivatives depend on positions alone: not on the time, nor on what models remember.
     pub fn hessian_is_of_positions(&self) -> bool {
-        self.members.iter().all(|m| m.memory.is_empty() && m.potential.account() == Account::Elastic)
+        self.members.iter().all(|m| m.memory.is_empty() && m.potential.properties().account == Account::Elastic)
     }
 
     /// The potential energy of all models and of the weight in a state [J], after [`System::evaluate`] of the same state;
     /// none where a model that pushes has no energy.
     pub fn potential_energy(&self, stage: Stage, time: f64) -> Option<f64> {
-        let silent =
-            |member: &Member<D>| member.potential.account() == Account::User && !member.potential.views().energy;
+        let silent = |member: &Member<D>| {
+            member.potential.properties().account == Account::User && !member.potential.properties().views.energy
+        };
         (self.has_energy() && !self.members.iter().any(silent)).then(|| self.stored_energy(stage, time))
     }
 
     /// Whether every model says what its forces do: it has an energy, or its power is entered as that of damping or of loads.
     pub fn has_energy(&self) -> bool {
         self.members.iter().all(|member| {
-            let views = member.potential.views();
-            views.energy || views.damping || member.potential.account() == Account::User
+            let views = member.potential.properties().views;
+            views.energy || views.damping || member.potential.properties().account == Account::User
         })
     }
 
@@ -68,7 +69,7 @@ impl<const D: usize> System<D> {
     pub fn stored_energy(&self, stage: Stage, time: f64) -> f64 {
         let view = self.view(stage, self.time + time);
         let mut sum = 0.0;
-        for member in self.members.iter().filter(|member| member.potential.views().energy) {
+        for member in self.members.iter().filter(|member| member.potential.properties().views.energy) {
             sum += sum_in_fixed_order(&member.potential.energy(self.simd, &view, &member.scratch));
         }
         let mut parts = [0.0; WIDTH];
@@ -113,7 +114,7 @@ impl<const D: usize> System<D> {
             let slots = &mut self.slots;
             let mut all = Tile { range: range.clone(), force: force_of_tile, power: &mut power, weight, slots };
             all.settle(self.simd);
-            for member in self.members.iter().filter(|member| member.potential.account() == Account::User) {
+            for member in self.members.iter().filter(|member| member.potential.properties().account == Account::User) {
                 member.potential.add_force(self.simd, &view, &member.scratch, &mut all);
             }
             for d in 0..D {
@@ -125,8 +126,8 @@ impl<const D: usize> System<D> {
     /// Delivers the second derivatives of what acts from outside, after [`System::evaluate`] of the same state.
     pub fn outer_hessian(&self, stage: Stage, time: f64, keep: Definiteness, sink: &mut dyn Sink<D>) {
         let view = self.view(stage, self.time + time);
-        for member in self.members.iter().filter(|member| member.potential.account() == Account::User) {
-            if member.potential.views().hessian {
+        for member in self.members.iter().filter(|member| member.potential.properties().account == Account::User) {
+            if member.potential.properties().views.hessian {
                 member.potential.hessian(&view, &member.scratch, keep, sink);
             }
         }
@@ -136,7 +137,7 @@ impl<const D: usize> System<D> {
     pub fn hessian(&self, stage: Stage, time: f64, keep: Definiteness, sink: &mut dyn Sink<D>) {
         let view = self.view(stage, self.time + time);
         for member in &self.members {
-            if member.potential.views().hessian {
+            if member.potential.properties().views.hessian {
                 member.potential.hessian(&view, &member.scratch, keep, sink);
             }
         }
@@ -145,14 +146,14 @@ impl<const D: usize> System<D> {
     /// Delivers −∂F/∂v of all models in a state, after [`System::evaluate`] of the same state.
     pub fn damping_matrix(&self, stage: Stage, time: f64, sink: &mut dyn Sink<D>) {
         let view = self.view(stage, self.time + time);
-        for member in self.members.iter().filter(|member| member.potential.views().damping) {
+        for member in self.members.iter().filter(|member| member.potential.properties().views.damping) {
             member.potential.damping_matrix(&view, &member.scratch, sink);
         }
     }
 
     /// Whether any model damps.
     pub fn is_damped(&self) -> bool {
-        self.members.iter().any(|member| member.potential.views().damping)
+        self.members.iter().any(|member| member.potential.properties().views.damping)
     }
 
     /// Calls back with every held axis of a node, once: place, axis.

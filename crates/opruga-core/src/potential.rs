@@ -138,34 +138,54 @@ pub trait Sink<const D: usize> {
     }
 }
 
+/// What stays the same while a [`Potential`] lives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Properties {
+    /// The word that names the model.
+    pub name: &'static str,
+    /// Which questions it answers.
+    pub views: Views,
+    /// Where energy and power are entered.
+    pub account: Account,
+    /// The rate λ [1/s] at which it brakes every node at least, f = −λ m v, whatever the motion; the least of its bodies.
+    pub uniform_damping: f64,
+    /// How many numbers `prepare` leaves behind.
+    pub scratch_len: usize,
+    /// Whether `prepare` and the derivatives are spread over [`View::threads`], for bodies that are large enough.
+    pub shares_threads: bool,
+    /// Whether `add_force` itself begins the forces of a tile with the weight where `tile.weight` says so, which saves a pass.
+    pub begins_tiles: bool,
+    /// Whether `prepare` reads all that forces depend on, so that nodes of one stencil may move one after the other.
+    pub forces_in_prepare: bool,
+}
+
+impl Properties {
+    /// Those of an elastic model without anything special.
+    pub const fn new(name: &'static str, views: Views) -> Properties {
+        Properties {
+            name,
+            views,
+            account: Account::Elastic,
+            uniform_damping: 0.0,
+            scratch_len: 0,
+            shares_threads: false,
+            begins_tiles: false,
+            forces_in_prepare: false,
+        }
+    }
+}
+
 /// A model of one body, or of eight alike bodies side by side: the energy U(x) and what derives from it.
 ///
 /// This is the only dynamic dispatch: one call per model and tile. `memory` is what the model remembers from step to
 /// step (an amount of gas, a ramp); it is part of the state. `scratch` is what [`Potential::prepare`] works out for the
 /// calls that follow it.
-pub trait Potential<const D: usize>: Send + Sync + Debug {
-    /// The word that names the model.
-    fn name(&self) -> &'static str;
-    /// Which questions it answers.
-    fn views(&self) -> Views;
-    /// Why it has no energy, or no symmetric second derivatives, for refusals; nothing where it has both.
-    fn lacks(&self) -> Option<AnyMessage> {
-        None
-    }
-    /// Where energy and power are entered.
-    fn account(&self) -> Account {
-        Account::Elastic
-    }
-    /// The rate λ [1/s] at which it brakes every node at least, f = −λ m v, whatever the motion; the least of its bodies.
-    fn uniform_damping(&self) -> f64 {
-        0.0
-    }
-    /// Calls back with the lowest and highest node of every stencil whose nodes read one another's state.
-    fn spans(&self, visit: &mut dyn FnMut(u32, u32));
-    /// Pairs of nodes that a spring ties to each other, for pictures.
-    fn bonds(&self) -> &[[u32; 2]] {
-        &[]
-    }
+pub trait Potential<const D: usize>: Observe<D> + Send + Sync + Debug {
+    /// What stays the same while it lives.
+    fn properties(&self) -> Properties;
+    /// Calls back with the nodes of every term of the energy that couples nodes, in any order: what colours, tiles and drawings
+    /// of the coupling need. A term of one node, or of the whole body (the volume of a gas, whose facets are named), is none.
+    fn stencils(&self, _visit: &mut dyn FnMut(&[u32])) {}
     /// What its consistent mass matrix adds to the lumped masses of pairs of nodes, (row, column, mass [kg]); nothing where
     /// masses are lumped.
     fn inertia(&self) -> &[(u32, u32, f64)] {
@@ -175,24 +195,12 @@ pub trait Potential<const D: usize>: Send + Sync + Debug {
     fn initial_memory(&self) -> Vec<f64> {
         Vec::new()
     }
-    /// Whether `prepare` and the derivatives are spread over [`View::threads`], for bodies that are large enough.
-    fn shares_threads(&self) -> bool {
-        false
-    }
-    /// How many numbers `prepare` leaves behind.
-    fn scratch_len(&self) -> usize {
-        0
-    }
     /// Works out what concerns the body as a whole (volume, pressure, a factor over time).
     ///
     /// # Errors
     /// [`StepError::Model`] where the model has no meaning in this state.
     fn prepare(&self, _simd: Simd, _view: &View<D>, _memory: &[f64], _scratch: &mut [f64]) -> Result<(), StepError> {
         Ok(())
-    }
-    /// Whether `add_force` itself begins the forces of a tile with the weight where `tile.weight` says so, which saves a pass.
-    fn begins_tiles(&self) -> bool {
-        false
     }
     /// Adds the whole force of the model, −∂U/∂x and damping [N], on every node of the tile.
     fn add_force(&self, simd: Simd, view: &View<D>, scratch: &[f64], tile: &mut Tile<D>);
@@ -226,6 +234,18 @@ pub trait Potential<const D: usize>: Send + Sync + Debug {
     fn add_hessian_product(&self, view: &View<D>, scratch: &[f64], direction: &[&[f64]; D], out: &mut [&mut [f64]; D]) {
         let mut product = ProductSink { direction, out };
         self.hessian(view, scratch, Definiteness::Exact, &mut product);
+    }
+}
+
+/// What people and programs read of a model; no integrator asks for it.
+pub trait Observe<const D: usize> {
+    /// Why it has no energy, or no symmetric second derivatives, for refusals; nothing where it has both.
+    fn lacks(&self) -> Option<AnyMessage> {
+        None
+    }
+    /// Pairs of nodes that a spring ties to each other, for pictures.
+    fn bonds(&self) -> &[[u32; 2]] {
+        &[]
     }
     /// Names and values per body of what a reader may want to see (`volume`, `pressure`), body by body.
     fn readings(&self, _view: &View<D>, _scratch: &[f64], _memory: &[f64], _body: usize) -> Vec<Reading> {

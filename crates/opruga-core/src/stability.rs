@@ -103,14 +103,14 @@ impl Spectrum {
         let weights = probe.weights.clone();
         let [_, stiffness] = extremes(&weights, false, 0.0, |d, out| probe.add_stiffness(1.0, d, out))?;
         let omega = stiffness.larger(0.0).sqrt();
-        if !system.members.iter().any(|m| m.potential.views().damping) {
+        if !system.members.iter().any(|m| m.potential.properties().views.damping) {
             return Ok(Spectrum::uniform(omega, 0.0));
         }
         probe.start_damping()?;
         let [weakest, strongest] = extremes(&weights, true, 0.0, |d, out| probe.add_damping(d, out))?;
         let damping = strongest.larger(0.0);
         // A weak drag beside strong springs is lost in what the recurrence leaves; what every node feels is known.
-        let uniform: f64 = system.members.iter().map(|m| m.potential.uniform_damping()).sum();
+        let uniform: f64 = system.members.iter().map(|m| m.potential.properties().uniform_damping).sum();
         let found = if weakest > 0.01 * damping { weakest } else { 0.0 };
         let least_damping = found.larger(uniform).smaller(damping);
         if omega == 0.0 || damping == 0.0 {
@@ -270,7 +270,7 @@ impl<'a, const D: usize> Probe<'a, D> {
         Probe {
             x: system.state.x.clone(),
             v: Columns::zeros(places),
-            scratch: system.members.iter().map(|m| Column::zeros(m.potential.scratch_len())).collect(),
+            scratch: system.members.iter().map(|m| Column::zeros(m.potential.properties().scratch_len)).collect(),
             slots: Column::default(),
             force: Columns::zeros(places),
             at_rest: Columns::zeros(places),
@@ -297,7 +297,7 @@ impl<'a, const D: usize> Probe<'a, D> {
         }
         let mut power = [0.0; WIDTH];
         for (member, scratch) in system.members.iter().zip(&mut self.scratch) {
-            if damped_only && !member.potential.views().damping {
+            if damped_only && !member.potential.properties().views.damping {
                 continue;
             }
             member.potential.prepare(system.simd, &view, &member.memory, scratch)?;

@@ -22,7 +22,7 @@ pub use clamp::clamp;
 pub use dual::Dual;
 pub use kernel::{Blocks, Kernel};
 
-use crate::potential::{Definiteness, Potential, Sink, Views};
+use crate::potential::{Definiteness, Observe, Potential, Properties, Sink, Views};
 use crate::state::{At, Layout, OrderedSum, Parameter, View};
 use crate::tile::{TILE, Tile};
 use core::marker::PhantomData;
@@ -333,20 +333,11 @@ fn split(share: u32) -> (usize, usize) {
 }
 
 impl<L: Kernel<D, N, K>, const D: usize, const N: usize, const K: usize> Potential<D> for Stencils<L, N, K> {
-    fn name(&self) -> &'static str {
-        L::NAME
+    fn properties(&self) -> Properties {
+        Properties::new(L::NAME, Views { energy: true, hessian: true, symmetric: true, damping: self.damped })
     }
-    fn views(&self) -> Views {
-        Views { energy: true, hessian: true, symmetric: true, damping: self.damped }
-    }
-    fn spans(&self, visit: &mut dyn FnMut(u32, u32)) {
-        for element in &self.elements {
-            let (mut low, mut high) = (element[0], element[0]);
-            for &node in element {
-                (low, high) = (low.min(node), high.max(node));
-            }
-            visit(low, high);
-        }
+    fn stencils(&self, visit: &mut dyn FnMut(&[u32])) {
+        self.elements.iter().for_each(|element| visit(element));
     }
     fn add_force(&self, simd: Simd, view: &View<D>, _scratch: &[f64], tile: &mut Tile<D>) {
         simd.run(Force { stencils: self, view, tile });
@@ -397,6 +388,9 @@ impl<L: Kernel<D, N, K>, const D: usize, const N: usize, const K: usize> Potenti
             }
         }
     }
+}
+
+impl<L: Kernel<D, N, K>, const D: usize, const N: usize, const K: usize> Observe<D> for Stencils<L, N, K> {
     fn heap_bytes(&self) -> usize {
         let numbers =
             self.blocks.capacity() + self.list.capacity() + self.share_start.capacity() + self.share.capacity();

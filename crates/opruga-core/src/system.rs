@@ -5,7 +5,7 @@ use crate::error::StepError;
 use crate::inertia::Inertia;
 use crate::ledger::StepWork;
 use crate::pins::Held;
-use crate::potential::{Account, Potential};
+use crate::potential::{Account, Potential, Properties};
 use crate::state::{Columns, Layout, Parameter, View};
 use crate::tile::{TILE, Tile, TilePlan};
 use core::ops::Range;
@@ -213,10 +213,9 @@ impl<const D: usize> System<D> {
             self.inertia = Some(inertia);
         }
         let memory = potential.initial_memory();
-        let scratch = Column::zeros(potential.scratch_len());
-        let account = potential.account();
-        let flows = (potential.views().damping || account == Account::User).then_some(account);
-        let begins_tiles = potential.begins_tiles();
+        let Properties { account, views, scratch_len, begins_tiles, .. } = potential.properties();
+        let scratch = Column::zeros(scratch_len);
+        let flows = (views.damping || account == Account::User).then_some(account);
         self.members.push(Member { potential, memory, scratch, flows, begins_tiles });
     }
     /// Lays out tiles and buffers after the models, the pins or the integrator changed.
@@ -225,8 +224,10 @@ impl<const D: usize> System<D> {
         let stride = self.layout.stride();
         let mut spans = Vec::new();
         let mut last = (usize::MAX, usize::MAX);
-        for member in &self.members {
-            member.potential.spans(&mut |a, b| {
+        // Nodes of a stencil are not moved before the last of them has read the others.
+        for member in self.members.iter().filter(|member| !member.potential.properties().forces_in_prepare) {
+            member.potential.stencils(&mut |nodes| {
+                let (a, b) = nodes.iter().fold((u32::MAX, 0), |(a, b), node| (a.min(*node), b.max(*node)));
                 // Only pairs of different tiles matter; neighbours repeat.
                 let pair = (a as usize * stride, (b as usize + 1) * stride - 1);
                 let tiles = (pair.0 / TILE, pair.1 / TILE);
@@ -301,7 +302,7 @@ impl<const D: usize> System<D> {
             let (range, buffer) = (self.plan.range(tile), self.plan.buffer(tile));
             let mut force = self.forces.each_mut().map(|f| &mut f[buffer..buffer + range.len() + WIDTH]);
             force.iter_mut().for_each(|column| column.fill(0.0));
-            for member in self.members.iter().filter(|member| member.potential.account() == account) {
+            for member in self.members.iter().filter(|member| member.potential.properties().account == account) {
                 let mut tile = Tile {
                     range: range.clone(),
                     force: force.each_mut().map(|f| &mut **f),

@@ -1,9 +1,39 @@
-//! Animations as GIF: one palette for all frames, and of every frame only what has changed.
+//! Films as MP4, and as GIF: one palette for all frames, and of every frame only what has changed.
 
 use crate::error::DrawError;
 use crate::image::Image;
 use crate::palette::Palette;
 use std::io::Write;
+
+/// Writes a film with H.264 frame by frame (`opruga-video`).
+#[derive(Debug)]
+pub struct Mp4Writer<W: Write>(opruga_video::Mp4Writer<W>);
+
+impl<W: Write> Mp4Writer<W> {
+    /// Begins a film of frames of one size, in pixels; an odd side is shown with its last column or row twice.
+    ///
+    /// # Errors
+    /// [`DrawError::Video`] if the size or the rate is outside of what the format allows.
+    pub fn new(out: W, size: [u32; 2], frames_per_second: f64) -> Result<Mp4Writer<W>, DrawError> {
+        Ok(Mp4Writer(opruga_video::Mp4Writer::new(out, size, frames_per_second)?))
+    }
+
+    /// Adds a frame.
+    ///
+    /// # Errors
+    /// [`DrawError::Video`] if it has another size; the film goes on without it.
+    pub fn push(&mut self, image: &Image) -> Result<(), DrawError> {
+        Ok(self.0.push([image.width(), image.height()], image.pixels())?)
+    }
+
+    /// Writes the file and gives the writer back.
+    ///
+    /// # Errors
+    /// [`DrawError::Video`] if there is no frame, or the bytes cannot be written.
+    pub fn finish(self) -> Result<W, DrawError> {
+        Ok(self.0.finish()?)
+    }
+}
 
 /// Writes an animated GIF frame by frame.
 pub struct GifWriter<W: Write> {

@@ -50,6 +50,9 @@ pub enum DrawError {
     /// The rate of a video is not a finite number above zero.
     #[error("a video cannot have {0} frames per second")]
     Rate(f64),
+    /// The film could not be made.
+    #[error(transparent)]
+    Video(#[from] opruga_video::VideoError),
     /// The bytes could not be written.
     #[error("the bytes could not be written: {0}")]
     Write(#[from] std::io::Error),

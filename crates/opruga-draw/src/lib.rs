@@ -22,10 +22,9 @@ mod plot;
 mod solid;
 mod strip;
 mod ticks;
-mod video;
 mod view;
 
-pub use animation::GifWriter;
+pub use animation::{GifWriter, Mp4Writer};
 pub use canvas::FONT;
 pub use colour::{BODIES, ColourMap, OKABE_ITO};
 pub use error::DrawError;
@@ -41,7 +40,6 @@ pub use picture::{
 pub use plot::{Axis, Chart, HeatMap, HeatPanel, Level, Line, Marker, Panel};
 pub use strip::{StripStyle, best_count, captioned_strip, spread, strip};
 pub use ticks::{decades, format_tick, format_value, nice_length, nice_step, nice_ticks, scientific};
-pub use video::Mp4Writer;
 pub use view::View;
 
 /// Draws a picture as it is seen in a view.

@@ -4,11 +4,13 @@ pub mod as_published;
 pub mod bending;
 pub mod drag;
 pub mod fem;
+pub mod finite_difference;
 pub mod finite_volume;
 pub mod mass_spring;
 pub mod materials;
 pub mod pressure;
 pub mod shape_matching;
+mod vectors;
 
 use core::any::Any;
 use opruga_core::potential::Model;
@@ -44,6 +46,7 @@ fn list<const D: usize>() -> Vec<Box<dyn Model<D>>> {
         Box::new(pressure::PressureModel),
         Box::new(bending::BendingModel),
         Box::new(drag::DragModel),
+        Box::new(finite_difference::FiniteDifferenceModel),
         Box::new(as_published::AsPublishedModel),
         Box::new(shape_matching::ShapeMatchingModel),
     ]

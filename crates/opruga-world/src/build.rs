@@ -282,7 +282,7 @@ impl<const D: usize> Builder<'_, D> {
         self.check_cells(first).map_err(refuse)?;
         // Loads know their derivatives; a model may lack them.
         for member in &system.members[..first.models.len()] {
-            if !member.potential.views().include(integrator.needs()) {
+            if !member.potential.properties().views.include(integrator.needs()) {
                 return Err(refuse(no_view(&*member.potential, integrator.name())));
             }
         }
@@ -468,14 +468,17 @@ impl<const D: usize> Builder<'_, D> {
 
 /// A model without what an integrator needs.
 fn no_view<const D: usize>(model: &dyn Potential<D>, integrator: &str) -> BuildError {
-    let what = if model.views().hessian { "no symmetric second derivatives" } else { "no second derivatives" };
+    let properties = model.properties();
+    let (what, also) = match properties.views.hessian {
+        true => ("no symmetric second derivatives", ", and `equilibrium` finds where it comes to rest"),
+        false => ("no second derivatives", ""),
+    };
     let why = model.lacks().map_or(String::new(), |why| format!(": {why}"));
-    let also = if model.views().hessian { ", and `equilibrium` finds its rest" } else { "" };
     let message = format!(
         "the model has {what}, which `{integrator}` needs{why}; hint: an explicit integrator steps it, such as \
          `symplectic_euler`{also}"
     );
-    BuildError::new(model.name(), "integrator.needs", message)
+    BuildError::new(properties.name, "integrator.needs", message)
 }
 
 fn no_cells<const D: usize>(body: &BodyBlueprint<D>) -> WorldError {

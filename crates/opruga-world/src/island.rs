@@ -127,7 +127,7 @@ impl<const D: usize> Island<D> {
     /// Whether so many threads work on this island together: it is large, and its integrator knows how, or a model where
     /// there are fewer islands than threads; of an explicit step a part alone is shared.
     pub(crate) fn is_shared_by(&self, threads: usize, islands: usize) -> bool {
-        let models = || self.system.members.iter().any(|member| member.potential.shares_threads());
+        let models = || self.system.members.iter().any(|member| member.potential.properties().shares_threads);
         let known = || self.integrator.shares_threads() || islands < threads && models();
         threads > 1 && self.system.nodes >= SHARED_FROM && known()
     }

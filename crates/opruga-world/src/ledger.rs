@@ -140,7 +140,7 @@ pub(crate) fn take_stock<const D: usize>(system: &mut System<D>) -> Stock {
         threads: system.threads,
     };
     for member in &mut system.members {
-        if !member.potential.views().energy {
+        if !member.potential.properties().views.energy {
             continue;
         }
         // A model that refused the state would have ended the frame.
@@ -150,7 +150,7 @@ pub(crate) fn take_stock<const D: usize>(system: &mut System<D>) -> Stock {
             Layout::Single => sum_in_fixed_order(&energy),
             Layout::Batch => energy[..system.bodies].iter().sum(),
         };
-        match member.potential.account() {
+        match member.potential.properties().account {
             Account::Gas => out.gas += energy,
             _ => out.elastic += energy,
         }

@@ -1,7 +1,7 @@
 //! Forces from outside: loads, pushes, the pull of a pointer, a user's own law.
 
 use opruga_core::error::StepError;
-use opruga_core::potential::{Account, Definiteness, Potential, Sink, Views};
+use opruga_core::potential::{Account, Definiteness, Observe, Potential, Properties, Sink, Views};
 use opruga_core::state::{Layout, View};
 use opruga_core::system::along_path;
 use opruga_core::tile::Tile;
@@ -43,16 +43,9 @@ pub(crate) fn factor(curve: &[Vec<f64>], time: f64) -> f64 {
 }
 
 impl<const D: usize> Potential<D> for NodeForces<D> {
-    fn name(&self) -> &'static str {
-        "force"
+    fn properties(&self) -> Properties {
+        Properties { account: Account::User, ..Properties::new("force", USER) }
     }
-    fn views(&self) -> Views {
-        USER
-    }
-    fn account(&self) -> Account {
-        Account::User
-    }
-    fn spans(&self, _visit: &mut dyn FnMut(u32, u32)) {}
     fn add_force(&self, _simd: Simd, view: &View<D>, _scratch: &[f64], tile: &mut Tile<D>) {
         let factor = factor(&self.curve, view.time);
         let first = self.entries.partition_point(|(place, _)| *place < tile.range.start);
@@ -62,6 +55,8 @@ impl<const D: usize> Potential<D> for NodeForces<D> {
         }
     }
 }
+
+impl<const D: usize> Observe<D> for NodeForces<D> {}
 
 /// A pressure on sides of cells along their present inner normal, with a factor over time: F_a = −p ∫ Nₐ dA, integrated
 /// without error by the shape functions Nₐ of the sides.
@@ -89,20 +84,13 @@ impl<const D: usize> FollowerPressure<D> {
 }
 
 impl<const D: usize> Potential<D> for FollowerPressure<D> {
-    fn name(&self) -> &'static str {
-        "pressure load"
+    fn properties(&self) -> Properties {
+        Properties { account: Account::User, ..Properties::new("pressure load", USER) }
     }
-    fn views(&self) -> Views {
-        USER
-    }
-    fn account(&self) -> Account {
-        Account::User
-    }
-    fn spans(&self, visit: &mut dyn FnMut(u32, u32)) {
+    fn stencils(&self, visit: &mut dyn FnMut(&[u32])) {
         for side in &self.sides {
-            if let (Some(low), Some(high)) = (side.iter().min(), side.iter().max()) {
-                visit((low / self.stride) as u32, (high / self.stride) as u32);
-            }
+            let nodes: Vec<u32> = side.iter().map(|place| (place / self.stride) as u32).collect();
+            visit(&nodes);
         }
     }
     fn add_force(&self, _simd: Simd, view: &View<D>, _scratch: &[f64], tile: &mut Tile<D>) {
@@ -128,6 +116,8 @@ impl<const D: usize> Potential<D> for FollowerPressure<D> {
         }
     }
 }
+
+impl<const D: usize> Observe<D> for FollowerPressure<D> {}
 
 /// The symmetric part of −∂F/∂x of a pressure on sides: exact for a closed surface, whose pressure has a potential.
 impl<const D: usize> FollowerPressure<D> {
@@ -216,19 +206,13 @@ impl<const D: usize> Pull<D> {
 }
 
 impl<const D: usize> Potential<D> for Pull<D> {
-    fn name(&self) -> &'static str {
-        "drag"
-    }
-    fn views(&self) -> Views {
-        Views { damping: true, ..USER }
-    }
-    fn account(&self) -> Account {
-        Account::User
-    }
-    /// The force is known before any node moves: nothing is read tile by tile.
-    fn spans(&self, _visit: &mut dyn FnMut(u32, u32)) {}
-    fn scratch_len(&self) -> usize {
-        D
+    fn properties(&self) -> Properties {
+        Properties {
+            account: Account::User,
+            scratch_len: D,
+            forces_in_prepare: true,
+            ..Properties::new("drag", Views { damping: true, ..USER })
+        }
     }
     fn prepare(&self, _simd: Simd, view: &View<D>, _memory: &[f64], scratch: &mut [f64]) -> Result<(), StepError> {
         let (_, _, force, limited) = self.force(view);
@@ -256,6 +240,8 @@ impl<const D: usize> Potential<D> for Pull<D> {
         self.add_spring(view, self.damping, sink);
     }
 }
+
+impl<const D: usize> Observe<D> for Pull<D> {}
 
 impl<const D: usize> Pull<D> {
     /// A spring or damper of some strength at the held point; none where the force is at its limit.
@@ -287,16 +273,9 @@ impl<const D: usize> core::fmt::Debug for UserForce<D> {
 }
 
 impl<const D: usize> Potential<D> for UserForce<D> {
-    fn name(&self) -> &'static str {
-        "user force"
+    fn properties(&self) -> Properties {
+        Properties { account: Account::User, ..Properties::new("user force", Views { damping: true, ..USER }) }
     }
-    fn views(&self) -> Views {
-        Views { damping: true, ..USER }
-    }
-    fn account(&self) -> Account {
-        Account::User
-    }
-    fn spans(&self, _visit: &mut dyn FnMut(u32, u32)) {}
     fn add_force(&self, _simd: Simd, view: &View<D>, _scratch: &[f64], tile: &mut Tile<D>) {
         let stride = self.layout.stride();
         let nodes = tile.range.start / stride..tile.range.end.div_ceil(stride).min(view.nodes);
@@ -315,6 +294,8 @@ impl<const D: usize> Potential<D> for UserForce<D> {
         self.add_slope(view, [0.0, 1.0], sink);
     }
 }
+
+impl<const D: usize> Observe<D> for UserForce<D> {}
 
 impl<const D: usize> UserForce<D> {
     /// The symmetric part of −∂F/∂x or −∂F/∂v at every node, by central differences: the law is a black box.

@@ -60,10 +60,12 @@ impl<const D: usize> World<D> {
         // By itself: others side by side do not matter.
         let mut system = self.island_of(&[body], &BTreeMap::new(), &self.integrator)?.system;
         let has_modes = |views: Views| views.hessian && views.symmetric;
-        if let Some(member) = system.members.iter().find(|member| !has_modes(member.potential.views())) {
+        if let Some(member) = system.members.iter().find(|member| !has_modes(member.potential.properties().views)) {
             let message = match member.potential.lacks() {
-                Some(why) => format!("`{}` has no symmetric second derivatives: {why}", member.potential.name()),
-                None => format!("`{}` has no second derivatives", member.potential.name()),
+                Some(why) => {
+                    format!("`{}` has no symmetric second derivatives: {why}", member.potential.properties().name)
+                }
+                None => format!("`{}` has no second derivatives", member.potential.properties().name),
             };
             return Err(refuse("integrator.needs", message));
         }

@@ -172,8 +172,8 @@ fn elastic<const D: usize>(system: &System<D>, time: f64) -> Option<([f64; WIDTH
     let mut forces = Columns::<D>::zeros(system.places());
     let view = View { v: still.slices(), threads: 1, ..system.view(Stage::Current, time) };
     let mut energies = [0.0; WIDTH];
-    for member in system.members.iter().filter(|member| member.potential.name() == "fem") {
-        let mut scratch = Column::zeros(member.potential.scratch_len());
+    for member in system.members.iter().filter(|member| member.potential.properties().name == "fem") {
+        let mut scratch = Column::zeros(member.potential.properties().scratch_len);
         member.potential.prepare(system.simd, &view, &member.memory, &mut scratch).ok()?;
         let energy = member.potential.energy(system.simd, &view, &scratch);
         match system.layout {

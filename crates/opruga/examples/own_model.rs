@@ -22,13 +22,10 @@ impl Model<2> for BedModel {
 #[derive(Debug)]
 struct Bed(f64, Vec<[f64; 2]>);
 impl Potential<2> for Bed {
-    fn name(&self) -> &'static str {
-        SPEC.kind
+    fn properties(&self) -> Properties {
+        // Forces alone: implicit integrators need the Hessian, the ledger needs the energy.
+        Properties::new(SPEC.kind, Views::default())
     }
-    fn views(&self) -> Views {
-        Views::default() // forces alone: implicit integrators need the Hessian, the ledger needs the energy
-    }
-    fn spans(&self, _visit: &mut dyn FnMut(u32, u32)) {} // no node reads another one
     fn add_force(&self, _: Simd, view: &View<2>, _: &[f64], tile: &mut Tile<2>) {
         for node in tile.range.start..tile.range.end.min(self.1.len()) {
             for d in 0..2 {
@@ -37,6 +34,8 @@ impl Potential<2> for Bed {
         }
     }
 }
+
+impl Observe<2> for Bed {}
 
 /// A ring sags on the bed for half a swing; returns how far [m], and the closed form 2 m g / k [m].
 pub(crate) fn run() -> Result<[f64; 2], Box<dyn std::error::Error>> {

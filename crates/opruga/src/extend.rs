@@ -2,7 +2,9 @@
 
 pub use opruga_core::error::{BuildError, StepError};
 pub use opruga_core::integrator::{Amplification, HistorySize, Integrator, IntegratorKind};
-pub use opruga_core::potential::{Account, Definiteness, Ingredients, Model, Potential, Sink, Views};
+pub use opruga_core::potential::{
+    Account, Definiteness, Ingredients, Model, Observe, Potential, Properties, Sink, Views,
+};
 pub use opruga_core::spec::{Allowed, Default, Field, Spec, Value, Values};
 pub use opruga_core::state::{Parameter, View};
 pub use opruga_core::system::{Stage, State, System, Update};

@@ -71,6 +71,7 @@ pub(crate) fn bench(call: &BenchElements) -> Result<u8, Failure> {
                 densities: None,
                 thickness: 1.0,
                 gravity: [0.0; 3],
+                step: 1e-3,
             });
             let solid = solid.map_err(|e| Failure::call(e.to_string()))?;
             rows.push(measure(&*solid, mesh, element, material)?);
@@ -106,7 +107,7 @@ fn measure(
         x.set(k, [p[0] + 0.2 * p[1] * p[1], p[1] + 0.1 * p[0] * p[2], p[2] * (1.0 - 0.1 * p[0])]);
     }
     let view = View { x: x.slices(), v: v.slices(), nodes, layout: Layout::Single, time: 0.0, threads: 1 };
-    let mut scratch = Column::zeros(solid.scratch_len());
+    let mut scratch = Column::zeros(solid.properties().scratch_len);
     let mut force = Columns::<3>::zeros(places);
     let (mut slots, mut power) = (Column::default(), [0.0; WIDTH]);
     let elements = mesh.cells.len();

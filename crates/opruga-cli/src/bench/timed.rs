@@ -4,11 +4,12 @@ use super::processor_time;
 use opruga::Registry;
 use opruga::core::error::{BuildError, StepError};
 use opruga::core::potential::{
-    Account, CellState, Count, Definiteness, Ingredients, Model, Potential, Reading, Sink, Views,
+    CellState, Count, Definiteness, Ingredients, Model, Observe, Potential, Properties, Reading, Sink, Views,
 };
 use opruga::core::spec::Spec;
 use opruga::core::state::View;
 use opruga::core::tile::Tile;
+use opruga::math::message::AnyMessage;
 use opruga::math::{Simd, WIDTH};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -75,20 +76,11 @@ struct Timed<const D: usize> {
 }
 
 impl<const D: usize> Potential<D> for Timed<D> {
-    fn name(&self) -> &'static str {
-        self.inner.name()
+    fn properties(&self) -> Properties {
+        self.inner.properties()
     }
-    fn views(&self) -> Views {
-        self.inner.views()
-    }
-    fn account(&self) -> Account {
-        self.inner.account()
-    }
-    fn spans(&self, visit: &mut dyn FnMut(u32, u32)) {
-        self.inner.spans(visit);
-    }
-    fn bonds(&self) -> &[[u32; 2]] {
-        self.inner.bonds()
+    fn stencils(&self, visit: &mut dyn FnMut(&[u32])) {
+        self.inner.stencils(visit);
     }
     fn inertia(&self) -> &[(u32, u32, f64)] {
         self.inner.inertia()
@@ -96,14 +88,8 @@ impl<const D: usize> Potential<D> for Timed<D> {
     fn initial_memory(&self) -> Vec<f64> {
         self.inner.initial_memory()
     }
-    fn scratch_len(&self) -> usize {
-        self.inner.scratch_len()
-    }
     fn prepare(&self, simd: Simd, view: &View<D>, memory: &[f64], scratch: &mut [f64]) -> Result<(), StepError> {
         count(&self.spent.forces, || self.inner.prepare(simd, view, memory, scratch))
-    }
-    fn begins_tiles(&self) -> bool {
-        self.inner.begins_tiles()
     }
     fn add_force(&self, simd: Simd, view: &View<D>, scratch: &[f64], tile: &mut Tile<D>) {
         count(&self.spent.forces, || self.inner.add_force(simd, view, scratch, tile));
@@ -122,6 +108,15 @@ impl<const D: usize> Potential<D> for Timed<D> {
     }
     fn damping_matrix(&self, view: &View<D>, scratch: &[f64], sink: &mut dyn Sink<D>) {
         count(&self.spent.matrices, || self.inner.damping_matrix(view, scratch, sink));
+    }
+}
+
+impl<const D: usize> Observe<D> for Timed<D> {
+    fn lacks(&self) -> Option<AnyMessage> {
+        self.inner.lacks()
+    }
+    fn bonds(&self) -> &[[u32; 2]] {
+        self.inner.bonds()
     }
     fn readings(&self, view: &View<D>, scratch: &[f64], memory: &[f64], body: usize) -> Vec<Reading> {
         self.inner.readings(view, scratch, memory, body)

@@ -3,7 +3,7 @@
 
 use crate::common;
 use common::*;
-use opruga_core::potential::{Potential, Views};
+use opruga_core::potential::{Observe, Potential, Properties, Views};
 use opruga_core::spec::{Value, Values};
 use opruga_core::state::{Layout, View};
 use opruga_core::system::System;
@@ -144,14 +144,11 @@ fn same_bits_in_3d() {
 #[derive(Debug)]
 struct Jelly(Vec<(usize, usize, f64)>);
 impl<const D: usize> Potential<D> for Jelly {
-    fn name(&self) -> &'static str {
-        "jelly"
+    fn properties(&self) -> Properties {
+        Properties::new("jelly", Views { energy: true, damping: true, ..Views::default() })
     }
-    fn views(&self) -> Views {
-        Views { energy: true, damping: true, ..Views::default() }
-    }
-    fn spans(&self, visit: &mut dyn FnMut(u32, u32)) {
-        self.0.iter().for_each(|s| visit(s.0 as u32, s.1 as u32));
+    fn stencils(&self, visit: &mut dyn FnMut(&[u32])) {
+        self.0.iter().for_each(|s| visit(&[s.0 as u32, s.1 as u32]));
     }
     fn add_force(&self, _simd: Simd, view: &View<D>, _scratch: &[f64], tile: &mut Tile<D>) {
         for &(a, b, rest) in &self.0 {
@@ -166,6 +163,8 @@ impl<const D: usize> Potential<D> for Jelly {
         }
     }
 }
+
+impl<const D: usize> Observe<D> for Jelly {}
 
 #[test]
 fn a_body_at_rest_does_not_tremble() {

@@ -38,7 +38,7 @@ impl<const D: usize> Suite<'_, D> {
             }
             // Begun with the weight, by the model or before it.
             let mass = Parameter::from_items(case.layout, nodes, |n, l| self.bodies[l].mass[n]);
-            if case.potential.begins_tiles() {
+            if case.potential.properties().begins_tiles {
                 for cut in &cuts {
                     let before = case.forces(best, cut, Some((&mass, gravity, false)))?.0;
                     let fused = case.forces(best, cut, Some((&mass, gravity, true)))?.0;

@@ -106,7 +106,7 @@ impl<'a, const D: usize> Case<'a, D> {
         for place in nodes * layout.stride()..places {
             x.set(place, bodies[0].x[nodes - 1]);
         }
-        let (memory, scratch) = (potential.initial_memory(), Column::zeros(potential.scratch_len()));
+        let (memory, scratch) = (potential.initial_memory(), Column::zeros(potential.properties().scratch_len));
         Case { potential, layout, nodes, x, v, memory, scratch, time }
     }
     pub(super) fn places(&self) -> usize {

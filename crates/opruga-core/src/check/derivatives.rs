@@ -39,6 +39,39 @@ impl<const D: usize> Assembled<D> {
     }
 }
 
+/// How many entries of a Hessian couple nodes of which no stencil says so.
+struct Untold {
+    nodes: usize,
+    stride: usize,
+    told: Vec<bool>,
+    count: usize,
+}
+
+impl Untold {
+    fn of<const D: usize>(case: &Case<D>) -> usize {
+        let nodes = case.nodes;
+        let mut told = vec![false; nodes * nodes];
+        case.potential.stencils(&mut |stencil| {
+            for a in stencil {
+                stencil.iter().for_each(|b| told[*a as usize * nodes + *b as usize] = true);
+            }
+        });
+        let mut sink = Untold { nodes, stride: case.layout.stride(), told, count: 0 };
+        case.potential.hessian(&case.view(), &case.scratch, Definiteness::Exact, &mut sink);
+        sink.count
+    }
+}
+
+impl<const D: usize> Sink<D> for Untold {
+    fn block(&mut self, a: usize, b: usize, value: [[f64; D]; D]) {
+        let (a, b) = (a / self.stride, b / self.stride);
+        let coupled = a != b && value.iter().flatten().any(|entry| *entry != 0.0);
+        self.count += usize::from(coupled && !self.told[a * self.nodes + b]);
+    }
+    // What couples all nodes is no stencil.
+    fn low_rank(&mut self, _: f64, _: &[(usize, [f64; D])]) {}
+}
+
 impl<const D: usize> Sink<D> for Assembled<D> {
     fn block(&mut self, a: usize, b: usize, value: [[f64; D]; D]) {
         for i in 0..D {
@@ -145,9 +178,10 @@ impl<const D: usize> Suite<'_, D> {
         case.prepare(best)?;
         add("hessian", difference(&expected, &matrix, 1e-300), self.options.hessian_tolerance);
         let transposed: Vec<f64> = (0..size * size).map(|k| matrix[k % size * size + k / size]).collect();
-        if potential.views().symmetric {
+        if potential.properties().views.symmetric {
             add("symmetry", difference(&transposed, &matrix, 1e-300), 1e-11);
         }
+        add("stencils", Untold::of(&case) as f64, 0.0);
 
         // Product with a vector, of one body and of eight.
         let all = self.build(None)?;
@@ -173,7 +207,7 @@ impl<const D: usize> Suite<'_, D> {
         add("product", difference(&of_eight, &matrix, 1e-300), 1e-12);
 
         // Clamped stresses make no positive matrix where the tangent is not symmetric.
-        if !potential.views().symmetric {
+        if !potential.properties().views.symmetric {
             return Ok(());
         }
         let negative = scale > 0.0 && !is_positive(&clamped, size, 1e-9 * largest(&clamped) + 1e-300);

@@ -218,7 +218,7 @@ impl<const D: usize> Suite<'_, D> {
         }
         let mut add = |quantity, error, tolerance| rows.push(Row { quantity, state, error, tolerance });
         let potential = self.build(Some(0))?;
-        let views = potential.views();
+        let views = potential.properties().views;
         let claimed = self.model.views();
         let kept = !self.options.views || views.include(Views { damping: false, ..claimed });
         add("views", if kept { 0.0 } else { 1.0 }, 0.0);
@@ -232,7 +232,7 @@ impl<const D: usize> Suite<'_, D> {
         if self.options.rigid {
             self.invariance(random, &*potential, views, &mut add)?;
         }
-        if views.damping && potential.account() == crate::potential::Account::Elastic {
+        if views.damping && potential.properties().account == crate::potential::Account::Elastic {
             self.dissipation(random, &*potential, &mut add)?;
         }
         if views.damping && views.hessian && self.options.derivatives {

@@ -157,12 +157,6 @@ impl PairTable {
     pub fn pairs(&self) -> &[[u32; 2]] {
         &self.pairs
     }
-    /// The lowest and highest node of every pair.
-    pub fn spans(&self, visit: &mut dyn FnMut(u32, u32)) {
-        for &[a, b] in &self.pairs {
-            visit(a.min(b), a.max(b));
-        }
-    }
     /// Bytes on the heap.
     pub fn heap_bytes(&self) -> usize {
         let pull =

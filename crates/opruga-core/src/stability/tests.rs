@@ -3,7 +3,7 @@
 
 use super::*;
 use crate::integrator::Amplification;
-use crate::potential::{Potential, Views};
+use crate::potential::{Observe, Potential, Properties, Views};
 use crate::state::Parameter;
 use crate::system::Pin;
 use opruga_math::Simd;
@@ -16,13 +16,12 @@ struct Anchors {
 }
 
 impl<const D: usize> Potential<D> for Anchors {
-    fn name(&self) -> &'static str {
-        "anchors"
+    fn properties(&self) -> Properties {
+        Properties::new(
+            "anchors",
+            Views { energy: true, hessian: false, symmetric: false, damping: self.damping.iter().any(|c| *c > 0.0) },
+        )
     }
-    fn views(&self) -> Views {
-        Views { energy: true, hessian: false, symmetric: false, damping: self.damping.iter().any(|c| *c > 0.0) }
-    }
-    fn spans(&self, _visit: &mut dyn FnMut(u32, u32)) {}
     fn add_force(&self, _simd: Simd, view: &View<D>, _scratch: &[f64], tile: &mut Tile<D>) {
         for p in tile.range.clone().take(self.stiffness.len()) {
             for d in 0..D {
@@ -32,6 +31,8 @@ impl<const D: usize> Potential<D> for Anchors {
         }
     }
 }
+
+impl<const D: usize> Observe<D> for Anchors {}
 
 /// The amplification of symplectic Euler, or of explicit Euler.
 #[derive(Debug)]

@@ -3,13 +3,18 @@
 use super::kernel::Blocks;
 use opruga_math::{Lane, Pack, Register, Simd, WIDTH, Work, symmetric};
 
-/// The most rows of a stencil's Hessian.
-const MOST_ROWS: usize = 12;
+/// The rows of most stencils' Hessians, and the most rows: of a hexahedron.
+const ROWS: [usize; 2] = [12, 24];
 
 /// Removes the negative eigenvalues of symmetric block matrices, eight side by side.
 pub fn clamp<const D: usize, const N: usize>(matrices: &mut [Blocks<D, N>]) {
-    const { assert!(N * D <= MOST_ROWS, "room for the rows of a stencil") }
-    let mut square = [[[0.0; WIDTH]; MOST_ROWS]; MOST_ROWS];
+    const { assert!(N * D <= ROWS[1], "a stencil has at most as many rows as the largest square") }
+    if N * D <= ROWS[0] { clamp_in::<D, N, { ROWS[0] }>(matrices) } else { clamp_in::<D, N, { ROWS[1] }>(matrices) }
+}
+
+/// The same in squares of so many rows; rows that are not in use are zero and stay so.
+fn clamp_in<const D: usize, const N: usize, const M: usize>(matrices: &mut [Blocks<D, N>]) {
+    let mut square = [[[0.0; WIDTH]; M]; M];
     for some in matrices.chunks_mut(WIDTH) {
         for p in 0..N * D {
             for q in 0..N * D {
@@ -30,25 +35,25 @@ pub fn clamp<const D: usize, const N: usize>(matrices: &mut [Blocks<D, N>]) {
     }
 }
 
-/// The positive parts of eight matrices; rows that are not in use are zero and stay so.
-struct PositivePart<'a> {
-    square: &'a mut [[[f64; WIDTH]; MOST_ROWS]; MOST_ROWS],
+/// The positive parts of eight matrices.
+struct PositivePart<'a, const M: usize> {
+    square: &'a mut [[[f64; WIDTH]; M]; M],
 }
-impl Work for PositivePart<'_> {
+impl<const M: usize> Work for PositivePart<'_, M> {
     type Output = ();
     #[inline(always)]
     fn run<P: Pack>(self) {
         for part in 0..P::PARTS {
             let offset = part * P::Part::NUMBERS;
-            let mut matrix = [[P::Part::zero(); MOST_ROWS]; MOST_ROWS];
-            for p in 0..MOST_ROWS {
-                for q in 0..MOST_ROWS {
+            let mut matrix = [[P::Part::zero(); M]; M];
+            for p in 0..M {
+                for q in 0..M {
                     matrix[p][q] = P::Part::load(&self.square[p][q][offset..]);
                 }
             }
             let kept = symmetric::positive_part(&matrix);
-            for p in 0..MOST_ROWS {
-                for q in 0..MOST_ROWS {
+            for p in 0..M {
+                for q in 0..M {
                     kept[p][q].store(&mut self.square[p][q][offset..]);
                 }
             }

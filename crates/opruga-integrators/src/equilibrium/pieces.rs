@@ -18,8 +18,8 @@ pub(crate) fn pieces<const D: usize>(system: &System<D>) -> Vec<Vec<usize>> {
     let rest = Columns::zeros(system.places());
     let mut view = system.view(opruga_core::system::Stage::Current, system.time);
     view.v = rest.slices();
-    for member in system.members.iter().filter(|member| member.potential.views().hessian) {
-        let mut scratch = Column::zeros(member.potential.scratch_len());
+    for member in system.members.iter().filter(|member| member.potential.properties().views.hessian) {
+        let mut scratch = Column::zeros(member.potential.properties().scratch_len);
         if member.potential.prepare(system.simd, &view, &member.memory, &mut scratch).is_err() {
             return vec![whole(system)];
         }

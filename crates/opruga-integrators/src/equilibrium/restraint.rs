@@ -78,7 +78,8 @@ pub(super) fn unstiffened_motions<const D: usize>(
 /// What acts from outside, by what it does and not by the account on which it is entered: loads, and every model that ties nodes to
 /// space.
 pub(super) fn outer<const D: usize>(system: &System<D>) -> Vec<&Member<D>> {
-    let acts = |member: &&Member<D>| member.potential.account() == Account::User || ties_to_space(system, member);
+    let acts =
+        |member: &&Member<D>| member.potential.properties().account == Account::User || ties_to_space(system, member);
     system.members.iter().filter(acts).collect()
 }
 
@@ -90,7 +91,7 @@ const ALIKE: f64 = 1e-6;
 /// Whether a model resists motions of a body as a whole: forces between nodes do not, since they move and turn with these. A turn is
 /// looked at twice: the forces of a linear law do not follow a large one, and derivatives that leave something out resist a small one.
 fn ties_to_space<const D: usize>(system: &System<D>, member: &Member<D>) -> bool {
-    if !member.potential.views().hessian {
+    if !member.potential.properties().views.hessian {
         return false;
     }
     let (x, rest) = (&system.state.x, Columns::zeros(system.places()));
@@ -119,7 +120,9 @@ fn ties_to_space<const D: usize>(system: &System<D>, member: &Member<D>) -> bool
 /// Whether a model only pushes nodes against one another, at rest and in motion: then its forces and their moments sum to zero over a
 /// body, since its energy does not change where that moves or turns as a whole.
 pub(crate) fn acts_between_nodes<const D: usize>(system: &System<D>, member: &Member<D>) -> bool {
-    if member.potential.account() == Account::User || !member.potential.views().hessian || ties_to_space(system, member)
+    if member.potential.properties().account == Account::User
+        || !member.potential.properties().views.hessian
+        || ties_to_space(system, member)
     {
         return false;
     }
@@ -133,7 +136,7 @@ pub(crate) fn acts_between_nodes<const D: usize>(system: &System<D>, member: &Me
     let mut stiffness = Projection::of(&shapes);
     member.potential.hessian(&view, &scratch, Definiteness::Exact, &mut stiffness);
     let mut damping = Projection::of(&shapes);
-    if member.potential.views().damping {
+    if member.potential.properties().views.damping {
         member.potential.damping_matrix(&view, &scratch, &mut damping);
     }
     let brakes = |p: usize| damping.out[p * (shapes.len() + 1)].abs() > NO_TIE * damping.largest;
@@ -177,7 +180,7 @@ fn is_left_behind<const D: usize>(
 
 /// What a model works out in a state before it is asked; none where it has no meaning there.
 fn prepared<const D: usize>(system: &System<D>, member: &Member<D>, view: &View<'_, D>) -> Option<Column> {
-    let mut scratch = Column::zeros(member.potential.scratch_len());
+    let mut scratch = Column::zeros(member.potential.properties().scratch_len);
     member.potential.prepare(system.simd, view, &member.memory, &mut scratch).ok()?;
     Some(scratch)
 }
@@ -186,7 +189,7 @@ fn prepared<const D: usize>(system: &System<D>, member: &Member<D>, view: &View<
 pub(super) fn deliver_outer<const D: usize>(system: &System<D>, x: &Columns<D>, sink: &mut dyn Sink<D>) {
     let rest = Columns::zeros(system.places());
     let view = View { x: x.slices(), v: rest.slices(), ..system.view(Stage::Current, system.time) };
-    for member in outer(system).into_iter().filter(|member| member.potential.views().hessian) {
+    for member in outer(system).into_iter().filter(|member| member.potential.properties().views.hessian) {
         if let Some(scratch) = prepared(system, member, &view) {
             member.potential.hessian(&view, &scratch, Definiteness::Exact, sink);
         }

@@ -53,7 +53,7 @@ fn own_forces<const D: usize>(system: &System<D>, x: &Columns<D>) -> Option<Vec<
     let outer = outer(system);
     let own = |member: &&Member<D>| !outer.iter().any(|load| core::ptr::eq(*load, *member));
     for member in system.members.iter().filter(own) {
-        let mut scratch = Column::zeros(member.potential.scratch_len());
+        let mut scratch = Column::zeros(member.potential.properties().scratch_len);
         member.potential.prepare(system.simd, &view, &member.memory, &mut scratch).ok()?;
         add_forces_of(system, member, &scratch, &view, &mut force);
     }

@@ -23,7 +23,7 @@ fn energy_before<const D: usize>(
     h: f64,
 ) -> Result<Option<f64>, StepError> {
     let moves = |pin: &Pin<D>| pin.target(system.time).0 != pin.target(system.time + h).0;
-    let given = system.members.iter().any(|member| member.potential.account() != Account::Elastic);
+    let given = system.members.iter().any(|member| member.potential.properties().account != Account::Elastic);
     if given || system.pins.iter().any(moves) {
         return Ok(None);
     }

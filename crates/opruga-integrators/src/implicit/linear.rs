@@ -375,7 +375,7 @@ impl<const D: usize> Linear<D> {
 
 /// Whether the second derivatives of all models are a symmetric matrix.
 pub(crate) fn has_symmetric_matrix<const D: usize>(system: &System<D>) -> bool {
-    let views = system.members.iter().map(|member| member.potential.views());
+    let views = system.members.iter().map(|member| member.potential.properties().views);
     views.into_iter().all(|views| views.symmetric || !views.hessian)
 }
 

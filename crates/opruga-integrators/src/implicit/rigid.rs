@@ -192,11 +192,11 @@ impl<const D: usize> Rigid<D> {
         };
         let (system, view) = (mixture.system, mixture.system.view(mixture.stage, mixture.system.time + mixture.time));
         for (_, member) in self.outer(system) {
-            if member.potential.views().hessian {
+            if member.potential.properties().views.hessian {
                 sink.factor = 1.0;
                 member.potential.hessian(&view, &member.scratch, Definiteness::Exact, &mut sink);
             }
-            if member.potential.views().damping && mixture.beta != 0.0 {
+            if member.potential.properties().views.damping && mixture.beta != 0.0 {
                 sink.factor = mixture.beta;
                 member.potential.damping_matrix(&view, &member.scratch, &mut sink);
             }

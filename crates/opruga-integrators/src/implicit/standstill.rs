@@ -310,8 +310,8 @@ fn is_left_alone<const D: usize>(system: &System<D>) -> bool {
         && system.contacts.is_none()
         && system.members.iter().all(|member| {
             let potential = &member.potential;
-            potential.account() == Account::Elastic
-                && (!potential.views().energy || !potential.cell_states(&view, 0).is_empty())
+            potential.properties().account == Account::Elastic
+                && (!potential.properties().views.energy || !potential.cell_states(&view, 0).is_empty())
         })
 }
 
@@ -349,7 +349,7 @@ fn disturb_state<const D: usize>(
 fn stored<const D: usize>(system: &mut System<D>, force: &mut Columns<D>) -> Result<f64, StepError> {
     system.evaluate(Stage::Current, 0.0, 0.0, force)?;
     let view = system.view(Stage::Current, system.time);
-    let elastic = system.members.iter().filter(|member| member.potential.account() == Account::Elastic);
+    let elastic = system.members.iter().filter(|member| member.potential.properties().account == Account::Elastic);
     Ok(elastic.map(|member| sum_in_fixed_order(&member.potential.energy(system.simd, &view, &member.scratch))).sum())
 }
 

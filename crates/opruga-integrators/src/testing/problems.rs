@@ -1,7 +1,7 @@
 //! Small models, written once more and plainly, since integrators cannot see the crate of models.
 
 use opruga_core::error::StepError;
-use opruga_core::potential::{Definiteness, Potential, Sink, Views};
+use opruga_core::potential::{Definiteness, Observe, Potential, Properties, Sink, Views};
 use opruga_core::state::{Columns, Layout, Parameter, View};
 use opruga_core::system::System;
 use opruga_core::tile::Tile;
@@ -15,11 +15,14 @@ pub(crate) struct Anchors {
 }
 
 impl<const D: usize> Potential<D> for Anchors {
-    fn name(&self) -> &'static str {
-        "anchors"
-    }
-    fn views(&self) -> Views {
-        Views { energy: true, hessian: true, symmetric: true, damping: self.damping > 0.0 }
+    fn properties(&self) -> Properties {
+        Properties {
+            uniform_damping: self.damping,
+            ..Properties::new(
+                "anchors",
+                Views { energy: true, hessian: true, symmetric: true, damping: self.damping > 0.0 },
+            )
+        }
     }
     fn energy(&self, _simd: Simd, view: &View<D>, _scratch: &[f64]) -> [f64; 8] {
         let places = 0..view.nodes * view.layout.stride();
@@ -32,11 +35,6 @@ impl<const D: usize> Potential<D> for Anchors {
     fn damping_matrix(&self, view: &View<D>, _scratch: &[f64], sink: &mut dyn Sink<D>) {
         (0..view.nodes).for_each(|p| sink.block(p, p, diagonal(self.damping)));
     }
-    /// On nodes of 1 kg.
-    fn uniform_damping(&self) -> f64 {
-        self.damping
-    }
-    fn spans(&self, _visit: &mut dyn FnMut(u32, u32)) {}
     fn add_force(&self, _simd: Simd, view: &View<D>, _scratch: &[f64], tile: &mut Tile<D>) {
         for p in tile.range.clone() {
             for d in 0..D {
@@ -46,6 +44,8 @@ impl<const D: usize> Potential<D> for Anchors {
         }
     }
 }
+
+impl<const D: usize> Observe<D> for Anchors {}
 
 fn diagonal<const D: usize>(value: f64) -> [[f64; D]; D] {
     core::array::from_fn(|i| core::array::from_fn(|j| if i == j { value } else { 0.0 }))
@@ -101,11 +101,22 @@ impl Springs {
 }
 
 impl<const D: usize> Potential<D> for Springs {
-    fn name(&self) -> &'static str {
-        "springs"
+    fn properties(&self) -> Properties {
+        Properties {
+            scratch_len: 1,
+            ..Properties::new(
+                "springs",
+                Views {
+                    energy: true,
+                    hessian: self.gas == 0.0,
+                    symmetric: self.gas == 0.0,
+                    damping: self.damping > 0.0,
+                },
+            )
+        }
     }
-    fn views(&self) -> Views {
-        Views { energy: true, hessian: self.gas == 0.0, symmetric: self.gas == 0.0, damping: self.damping > 0.0 }
+    fn stencils(&self, visit: &mut dyn FnMut(&[u32])) {
+        self.pairs.iter().for_each(|pair| visit(&pair.map(|node| node as u32)));
     }
     fn energy(&self, _simd: Simd, view: &View<D>, _scratch: &[f64]) -> [f64; 8] {
         let stretch = |&[a, b]: &[usize; 2]| {
@@ -123,12 +134,6 @@ impl<const D: usize> Potential<D> for Springs {
     }
     fn damping_matrix(&self, view: &View<D>, _scratch: &[f64], sink: &mut dyn Sink<D>) {
         self.deliver(view, sink, |_| [self.damping, 0.0]);
-    }
-    fn spans(&self, visit: &mut dyn FnMut(u32, u32)) {
-        self.pairs.iter().for_each(|&[a, b]| visit(a.min(b) as u32, a.max(b) as u32));
-    }
-    fn scratch_len(&self) -> usize {
-        1
     }
     fn prepare(&self, _simd: Simd, view: &View<D>, _memory: &[f64], scratch: &mut [f64]) -> Result<(), StepError> {
         scratch[0] = if self.gas > 0.0 { self.gas / self.area(view) } else { 0.0 };
@@ -160,6 +165,8 @@ impl<const D: usize> Potential<D> for Springs {
         }
     }
 }
+
+impl<const D: usize> Observe<D> for Springs {}
 
 const TWO_NODES: Springs = Springs { pairs: Vec::new(), stiffness: 30.0, damping: 0.0, rest_length: 1.0, gas: 0.0 };
 const TWO_MASSES: [f64; 2] = [0.5, 1.5];

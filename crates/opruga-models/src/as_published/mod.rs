@@ -38,7 +38,7 @@ mod spec;
 pub use spec::SPEC;
 
 use opruga_core::error::{BuildError, StepError};
-use opruga_core::potential::{Account, Ingredients, Model, Potential, Reading, Views};
+use opruga_core::potential::{Account, Ingredients, Model, Observe, Potential, Properties, Reading, Views};
 use opruga_core::spec::{Spec, Values};
 use opruga_core::state::{Layout, Parameter, View};
 use opruga_core::system::along_path;
@@ -231,25 +231,19 @@ fn difference<const D: usize>(view: &View<D>, i: usize, j: usize) -> (f64, f64, 
 }
 
 impl<const D: usize> Potential<D> for AsPublished {
-    fn name(&self) -> &'static str {
-        SPEC.kind
+    fn properties(&self) -> Properties {
+        Properties {
+            account: Account::User,
+            scratch_len: 2 * self.layout.places(self.nodes) + NUMBERS,
+            forces_in_prepare: true,
+            ..Properties::new(SPEC.kind, Views { energy: false, hessian: false, symmetric: false, damping: true })
+        }
     }
-    fn views(&self) -> Views {
-        Views { energy: false, hessian: false, symmetric: false, damping: true }
+    fn stencils(&self, visit: &mut dyn FnMut(&[u32])) {
+        self.springs.iter().for_each(|spring| visit(spring));
     }
-    fn bonds(&self) -> &[[u32; 2]] {
-        &self.springs
-    }
-    fn account(&self) -> Account {
-        Account::User
-    }
-    /// Forces are known before any node moves.
-    fn spans(&self, _visit: &mut dyn FnMut(u32, u32)) {}
     fn initial_memory(&self) -> Vec<f64> {
         vec![0.0; MEMORY]
-    }
-    fn scratch_len(&self) -> usize {
-        2 * self.layout.places(self.nodes) + NUMBERS
     }
     fn prepare(&self, _simd: Simd, view: &View<D>, memory: &[f64], scratch: &mut [f64]) -> Result<(), StepError> {
         let (forces, numbers) = scratch.split_at_mut(2 * self.layout.places(self.nodes));
@@ -289,6 +283,12 @@ impl<const D: usize> Potential<D> for AsPublished {
             memory[2 * WIDTH + body] = numbers[2 * WIDTH + body];
         }
         [0.0; WIDTH]
+    }
+}
+
+impl<const D: usize> Observe<D> for AsPublished {
+    fn bonds(&self) -> &[[u32; 2]] {
+        &self.springs
     }
     fn readings(&self, _view: &View<D>, scratch: &[f64], memory: &[f64], body: usize) -> Vec<Reading> {
         let numbers = &scratch[2 * self.layout.places(self.nodes)..];

@@ -1,4 +1,4 @@
-//! Angles and vectors for the hinges, the same bits on every machine.
+//! Angles for the hinges, the same bits on every machine.
 
 use opruga_math::Lane;
 
@@ -38,49 +38,6 @@ pub(super) fn angle<S: Lane>(y: S, x: S) -> S {
     angle = S::select(steep, S::splat(core::f64::consts::FRAC_PI_2) - angle, angle);
     angle = S::select(x.less(S::zero()), S::splat(core::f64::consts::PI) - angle, angle);
     S::select(y.less(S::zero()), -angle, angle)
-}
-
-/// The number's inverse; zero for what is smaller than the smallest normal number.
-#[inline(always)]
-pub(super) fn inverse<S: Lane>(a: S) -> S {
-    let real = S::splat(f64::MIN_POSITIVE).less_or_equal(a);
-    S::select(real, S::one() / S::select(real, a, S::one()), S::zero())
-}
-
-/// A vector of space; in the plane its third coordinate is zero.
-#[inline(always)]
-pub(super) fn in_space<S: Lane, const D: usize>(a: &[S; D]) -> [S; 3] {
-    [a[0], a[1], if D == 3 { a[D - 1] } else { S::zero() }]
-}
-
-/// The vector without what exceeds the dimension.
-#[inline(always)]
-pub(super) fn in_dimension<S: Lane, const D: usize>(a: &[S; 3]) -> [S; D] {
-    opruga_math::lanes!(S, d => a[d])
-}
-
-/// a − b.
-#[inline(always)]
-pub(super) fn minus<S: Lane>(a: &[S; 3], b: &[S; 3]) -> [S; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-/// s a.
-#[inline(always)]
-pub(super) fn scaled<S: Lane>(a: &[S; 3], s: S) -> [S; 3] {
-    [a[0] * s, a[1] * s, a[2] * s]
-}
-
-/// Scalar product.
-#[inline(always)]
-pub(super) fn dot<S: Lane>(a: &[S; 3], b: &[S; 3]) -> S {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-/// Vector product.
-#[inline(always)]
-pub(super) fn cross<S: Lane>(a: &[S; 3], b: &[S; 3]) -> [S; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! The hinge of a surface: an edge between two triangles.
 
-use super::angle::{angle, cross, dot, in_dimension, in_space, inverse, minus, scaled};
+use super::angle::angle;
+use crate::vectors::{cross, dot, in_dimension, in_space, inverse, minus, scaled};
 use opruga_core::stencil::Kernel;
 use opruga_math::Lane;
 

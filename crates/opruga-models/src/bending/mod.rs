@@ -25,11 +25,11 @@ mod turn;
 
 pub use spec::SPEC;
 
-use angle::{cross, dot, in_space, minus};
+use crate::vectors::{cross, dot, in_space, minus};
 use hinge::Hinge;
 use opruga_core::error::BuildError;
 use opruga_core::memory::{Counts, Need};
-use opruga_core::potential::{Definiteness, Ingredients, Model, Potential, Sink, Views};
+use opruga_core::potential::{Definiteness, Ingredients, Model, Observe, Potential, Properties, Sink, Views};
 use opruga_core::spec::{ONE_OF, Spec, Values};
 use opruga_core::state::View;
 use opruga_core::stencil::Stencils;
@@ -160,16 +160,11 @@ impl Bending {
 }
 
 impl<const D: usize> Potential<D> for Bending {
-    fn name(&self) -> &'static str {
-        SPEC.kind
+    fn properties(&self) -> Properties {
+        Properties::new(SPEC.kind, Views { energy: true, hessian: true, symmetric: true, damping: self.damped })
     }
-    fn views(&self) -> Views {
-        Views { energy: true, hessian: true, symmetric: true, damping: self.damped }
-    }
-    fn spans(&self, visit: &mut dyn FnMut(u32, u32)) {
-        for part in self.parts::<D>() {
-            part.spans(visit);
-        }
+    fn stencils(&self, visit: &mut dyn FnMut(&[u32])) {
+        self.parts::<D>().iter().for_each(|part| part.stencils(visit));
     }
     fn add_force(&self, simd: Simd, view: &View<D>, scratch: &[f64], tile: &mut Tile<D>) {
         for part in self.parts::<D>() {
@@ -196,6 +191,9 @@ impl<const D: usize> Potential<D> for Bending {
             part.damping_matrix(view, scratch, sink);
         }
     }
+}
+
+impl<const D: usize> Observe<D> for Bending {
     fn heap_bytes(&self) -> usize {
         self.parts::<D>().iter().map(|part| part.heap_bytes()).sum()
     }

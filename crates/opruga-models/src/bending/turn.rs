@@ -1,6 +1,7 @@
 //! The hinge of an outline or chain: a node between two edges.
 
-use super::angle::{angle, cross, dot, in_dimension, in_space, inverse, minus};
+use super::angle::angle;
+use crate::vectors::{cross, dot, in_dimension, in_space, inverse, minus};
 use opruga_core::stencil::Kernel;
 use opruga_math::Lane;
 

@@ -13,7 +13,7 @@ mod spec;
 pub use spec::SPEC;
 
 use opruga_core::error::BuildError;
-use opruga_core::potential::{Ingredients, Model, Potential, Sink, Views};
+use opruga_core::potential::{Ingredients, Model, Observe, Potential, Properties, Sink, Views};
 use opruga_core::spec::Spec;
 use opruga_core::state::{Parameter, View};
 use opruga_core::tile::Tile;
@@ -45,16 +45,12 @@ impl<const D: usize> Model<D> for DragModel {
 }
 
 impl<const D: usize> Potential<D> for Drag {
-    fn name(&self) -> &'static str {
-        SPEC.kind
+    fn properties(&self) -> Properties {
+        Properties {
+            uniform_damping: (0..WIDTH).map(|body| self.rate.at(body)).fold(f64::INFINITY, Lane::smaller),
+            ..Properties::new(SPEC.kind, Views { energy: false, hessian: true, symmetric: true, damping: true })
+        }
     }
-    fn views(&self) -> Views {
-        Views { energy: false, hessian: true, symmetric: true, damping: true }
-    }
-    fn uniform_damping(&self) -> f64 {
-        (0..WIDTH).map(|body| self.rate.at(body)).fold(f64::INFINITY, Lane::smaller)
-    }
-    fn spans(&self, _visit: &mut dyn FnMut(u32, u32)) {}
     fn add_force(&self, simd: Simd, view: &View<D>, _scratch: &[f64], tile: &mut Tile<D>) {
         simd.run(Force { drag: self, view, tile });
     }
@@ -65,6 +61,9 @@ impl<const D: usize> Potential<D> for Drag {
             sink.block(place, place, block);
         }
     }
+}
+
+impl<const D: usize> Observe<D> for Drag {
     fn heap_bytes(&self) -> usize {
         self.rate.heap_bytes() + self.mass.heap_bytes()
     }

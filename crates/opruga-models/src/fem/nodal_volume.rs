@@ -237,6 +237,20 @@ impl<const D: usize> NodalVolumes<D> {
         sum / (D + 1) as f64
     }
 
+    /// The nodes of all cells around every node.
+    pub(super) fn stencils(&self, visit: &mut dyn FnMut(&[u32])) {
+        let mut nodes = Vec::new();
+        for node in 0..self.nodes {
+            nodes.clear();
+            for cell in &self.around[self.start[node] as usize..self.start[node + 1] as usize] {
+                nodes.extend_from_slice(self.corners(&self.cells[*cell as usize]));
+            }
+            nodes.sort_unstable();
+            nodes.dedup();
+            visit(&nodes);
+        }
+    }
+
     /// Delivers κ V ∂J/∂x ∂J/∂x of every node. What the pressures make of the second derivatives of J comes with the cells.
     pub(super) fn hessian(&self, view: &View<D>, sink: &mut dyn Sink<D>) {
         let bodies = self.bodies();

@@ -18,6 +18,8 @@ use opruga_math::{ROW, Simd, WIDTH};
 pub(super) trait Part<const D: usize>: Send + Sync + Debug {
     /// The shares, which may be evaluated side by side.
     fn shares(&self) -> &[Share];
+    /// The nodes of every element.
+    fn stencils(&self, visit: &mut dyn FnMut(&[u32]));
     /// Numbers that the evaluation of a share leaves: energies [J] and powers [W] of the bodies, forces [N] (−∂U/∂x and
     /// damping), and copies of what it read. For one body the forces of a node are a row, for eight a pack for every axis.
     fn scratch_len(&self, share: &Share) -> usize;
@@ -63,6 +65,9 @@ fn to_rows<const D: usize>(columns: &[&[f64]; D], nodes: &[u32], rows: &mut [f64
 impl<E: Shape<D, N>, const D: usize, const N: usize> Part<D> for Section<E, D, N> {
     fn shares(&self) -> &[Share] {
         &self.shares
+    }
+    fn stencils(&self, visit: &mut dyn FnMut(&[u32])) {
+        self.cells.iter().for_each(|cell| visit(&cell.nodes));
     }
     fn scratch_len(&self, share: &Share) -> usize {
         self.numbers_of(share)

@@ -5,7 +5,7 @@ use super::nodal_volume::{NodalVolumes, Pressures};
 use super::part::Part;
 use super::section::FORCES;
 use opruga_core::error::StepError;
-use opruga_core::potential::{CellState, Definiteness, Potential, Sink, Views};
+use opruga_core::potential::{CellState, Definiteness, Observe, Potential, Properties, Sink, Views};
 use opruga_core::state::{Layout, View};
 use opruga_core::threads::each_part;
 use opruga_core::tile::Tile;
@@ -98,26 +98,25 @@ impl Sums {
 }
 
 impl<const D: usize> Potential<D> for Solid<D> {
-    fn name(&self) -> &'static str {
-        SPEC.kind
+    fn properties(&self) -> Properties {
+        Properties {
+            scratch_len: self.cells_len() + self.volumes.as_ref().map_or(0, NodalVolumes::scratch_len),
+            shares_threads: self.shares.len() > 1,
+            forces_in_prepare: true,
+            ..Properties::new(SPEC.kind, Views { energy: true, hessian: true, symmetric: true, damping: self.damped })
+        }
     }
-    fn views(&self) -> Views {
-        Views { energy: true, hessian: true, symmetric: true, damping: self.damped }
+    fn stencils(&self, visit: &mut dyn FnMut(&[u32])) {
+        self.parts.iter().for_each(|part| part.stencils(visit));
+        if let Some(volumes) = &self.volumes {
+            volumes.stencils(visit);
+        }
     }
     fn inertia(&self) -> &[(u32, u32, f64)] {
         &self.inertia
     }
-    /// `prepare` has read all positions before any of them changes.
-    fn spans(&self, _visit: &mut dyn FnMut(u32, u32)) {}
     fn energy_parts(&self) -> f64 {
         self.energy_parts
-    }
-    fn shares_threads(&self) -> bool {
-        self.shares.len() > 1
-    }
-    /// Energies and powers, and what every share leaves.
-    fn scratch_len(&self) -> usize {
-        self.cells_len() + self.volumes.as_ref().map_or(0, NodalVolumes::scratch_len)
     }
     /// Evaluates every element once: energies, powers and the forces of all nodes.
     fn prepare(&self, simd: Simd, view: &View<D>, _memory: &[f64], scratch: &mut [f64]) -> Result<(), StepError> {
@@ -226,13 +225,16 @@ impl<const D: usize> Potential<D> for Solid<D> {
             part.damping_matrix(view, scratch, sink);
         }
     }
+}
+
+impl<const D: usize> Observe<D> for Solid<D> {
     fn cell_states(&self, view: &View<D>, body: usize) -> Vec<CellState> {
         let mut out = Vec::new();
         for part in &self.parts {
             part.cell_states(view, body, &mut out);
         }
         if let Some(volumes) = &self.volumes {
-            let mut scratch = vec![0.0; self.scratch_len()];
+            let mut scratch = vec![0.0; self.properties().scratch_len];
             let (cells, of_volumes) = scratch.split_at_mut(self.cells_len());
             self.press(Simd::best(), view, &mut cells[FORCES..], of_volumes);
             volumes.add_stresses(&volumes.pressures(of_volumes), body, &mut out);

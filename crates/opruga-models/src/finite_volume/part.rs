@@ -47,6 +47,8 @@ pub(super) trait Part<const D: usize>: Send + Sync + Debug {
     fn tangent(&self, matter: &Matter<D>, positions: Positions<'_, D>, keep: Definiteness, sink: &mut dyn Sink<D>);
     /// Stress and volume ratio of the cells of a body.
     fn cell_states(&self, matter: &Matter<D>, positions: Positions<'_, D>, body: usize, out: &mut Vec<CellState>);
+    /// Calls back with the nodes of every cell.
+    fn stencils(&self, visit: &mut dyn FnMut(&[u32]));
     /// Bytes on the heap.
     fn heap_bytes(&self) -> usize;
 }
@@ -126,15 +128,15 @@ impl<C: Cell<D, N>, const D: usize, const N: usize> Part<D> for Cells<C, D, N> {
                 simd.run(Contract { cells: self, group, tangent: &tangent, blocks: &mut blocks });
             }
             let count = (0..WIDTH).filter(|lane| self.item(pack, *lane).is_some()).count();
-            let mut places = [[0; WIDTH]; N];
+            let mut indices = [[0; WIDTH]; N];
             for a in 0..N {
-                for (lane, place) in places[a].iter_mut().enumerate() {
+                for (lane, index) in indices[a].iter_mut().enumerate() {
                     let body = if self.layout == Layout::Batch { lane as u32 } else { 0 };
-                    *place = self.nodes[(pack * N + a) * WIDTH + lane] * stride + body;
+                    *index = self.nodes[(pack * N + a) * WIDTH + lane] * stride + body;
                 }
             }
             if C::SIMPLEX {
-                sink.stencils(&StencilPack { nodes: N, count, places: places.as_flattened(), blocks: &blocks });
+                sink.stencils(&StencilPack { nodes: N, count, places: indices.as_flattened(), blocks: &blocks });
                 continue;
             }
             for lane in 0..count {
@@ -142,7 +144,7 @@ impl<C: Cell<D, N>, const D: usize, const N: usize> Part<D> for Cells<C, D, N> {
                     for b in 0..N {
                         let block = |i: usize, j: usize| blocks[(((a * N + b) * D + i) * D + j) * WIDTH + lane];
                         let block = core::array::from_fn(|i| core::array::from_fn(|j| block(i, j)));
-                        sink.block(places[a][lane] as usize, places[b][lane] as usize, block);
+                        sink.block(indices[a][lane] as usize, indices[b][lane] as usize, block);
                     }
                 }
             }
@@ -212,6 +214,9 @@ impl<C: Cell<D, N>, const D: usize, const N: usize> Part<D> for Cells<C, D, N> {
         }
     }
 
+    fn stencils(&self, visit: &mut dyn FnMut(&[u32])) {
+        self.list.iter().for_each(|cell| visit(cell));
+    }
     fn heap_bytes(&self) -> usize {
         Cells::heap_bytes(self)
     }

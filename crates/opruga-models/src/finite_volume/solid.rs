@@ -5,7 +5,7 @@ use super::kernels::Positions;
 use super::part::{Matter, Part};
 use super::refusals::Refusal;
 use opruga_core::error::StepError;
-use opruga_core::potential::{CellState, Definiteness, Potential, Sink, Views};
+use opruga_core::potential::{CellState, Definiteness, Observe, Potential, Properties, Sink, Views};
 use opruga_core::state::{Layout, View};
 use opruga_core::tile::Tile;
 use opruga_math::message::AnyMessage;
@@ -44,22 +44,20 @@ impl<const D: usize> Solid<D> {
 }
 
 impl<const D: usize> Potential<D> for Solid<D> {
-    fn name(&self) -> &'static str {
-        SPEC.kind
+    fn properties(&self) -> Properties {
+        let symmetric = self.is_simplicial;
+        let views = Views { energy: symmetric, hessian: true, symmetric, damping: false };
+        Properties {
+            scratch_len: ENERGY + self.rows() + self.forces(),
+            forces_in_prepare: true,
+            ..Properties::new(SPEC.kind, views)
+        }
     }
-    fn views(&self) -> Views {
-        Views { energy: self.is_simplicial, hessian: true, symmetric: self.is_simplicial, damping: false }
+    fn stencils(&self, visit: &mut dyn FnMut(&[u32])) {
+        self.parts.iter().for_each(|part| part.stencils(visit));
     }
-    fn lacks(&self) -> Option<AnyMessage> {
-        (!self.is_simplicial).then(|| Refusal::NoPotential {}.into())
-    }
-    /// `prepare` has read all positions before any of them changes.
-    fn spans(&self, _visit: &mut dyn FnMut(u32, u32)) {}
     fn energy_parts(&self) -> f64 {
         self.energy_parts
-    }
-    fn scratch_len(&self) -> usize {
-        ENERGY + self.rows() + self.forces()
     }
     fn prepare(&self, simd: Simd, view: &View<D>, _memory: &[f64], scratch: &mut [f64]) -> Result<(), StepError> {
         let (energy, rest) = scratch.split_at_mut(ENERGY);
@@ -111,6 +109,12 @@ impl<const D: usize> Potential<D> for Solid<D> {
         for part in &self.parts {
             part.tangent(&self.matter, positions, keep, sink);
         }
+    }
+}
+
+impl<const D: usize> Observe<D> for Solid<D> {
+    fn lacks(&self) -> Option<AnyMessage> {
+        (!self.is_simplicial).then(|| Refusal::NoPotential {}.into())
     }
     fn cell_states(&self, view: &View<D>, body: usize) -> Vec<CellState> {
         let mut rows = vec![0.0; self.rows()];

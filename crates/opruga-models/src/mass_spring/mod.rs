@@ -17,7 +17,7 @@ pub use spec::SPEC;
 use opruga_core::error::BuildError;
 use opruga_core::memory::{Counts, Need};
 use opruga_core::pair::PairTable;
-use opruga_core::potential::{Definiteness, Ingredients, Model, Potential, Sink, Views};
+use opruga_core::potential::{Definiteness, Ingredients, Model, Observe, Potential, Properties, Sink, Views};
 use opruga_core::spec::Spec;
 use opruga_core::state::{Layout, Parameter, View};
 use opruga_core::tile::Tile;
@@ -111,20 +111,17 @@ impl Springs {
 }
 
 impl<const D: usize> Potential<D> for Springs {
-    fn name(&self) -> &'static str {
-        "mass_spring"
+    fn properties(&self) -> Properties {
+        Properties {
+            begins_tiles: true,
+            ..Properties::new(
+                "mass_spring",
+                Views { energy: true, hessian: true, symmetric: true, damping: self.damped },
+            )
+        }
     }
-    fn views(&self) -> Views {
-        Views { energy: true, hessian: true, symmetric: true, damping: self.damped }
-    }
-    fn bonds(&self) -> &[[u32; 2]] {
-        self.table.pairs()
-    }
-    fn spans(&self, visit: &mut dyn FnMut(u32, u32)) {
-        self.table.spans(visit);
-    }
-    fn begins_tiles(&self) -> bool {
-        true
+    fn stencils(&self, visit: &mut dyn FnMut(&[u32])) {
+        self.table.pairs().iter().for_each(|pair| visit(pair));
     }
     fn add_force(&self, simd: Simd, view: &View<D>, _scratch: &[f64], tile: &mut Tile<D>) {
         if self.damped {
@@ -187,6 +184,12 @@ impl<const D: usize> Potential<D> for Springs {
                 sink.block(b, a, minus);
             }
         }
+    }
+}
+
+impl<const D: usize> Observe<D> for Springs {
+    fn bonds(&self) -> &[[u32; 2]] {
+        self.table.pairs()
     }
     fn heap_bytes(&self) -> usize {
         self.table.heap_bytes()

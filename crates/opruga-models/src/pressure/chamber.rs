@@ -234,11 +234,12 @@ impl Boundary {
         }
     }
 
-    /// The lowest and highest node of what lies next to each other.
-    pub(super) fn spans(&self, visit: &mut dyn FnMut(u32, u32)) {
-        // In space the area vectors are known before any node moves: forces read no neighbours.
-        if let Boundary::Plane(edges) = self {
-            edges.spans(visit);
+    /// The nodes of every facet.
+    pub(super) fn stencils(&self, visit: &mut dyn FnMut(&[u32])) {
+        match self {
+            Boundary::Plane(edges) => edges.pairs().iter().for_each(|edge| visit(edge)),
+            Boundary::Space(rings) => rings.facets.iter().for_each(|facet| visit(facet)),
+            Boundary::Curved(sides) => sides.terms.iter().for_each(|(nodes, _)| visit(nodes)),
         }
     }
 

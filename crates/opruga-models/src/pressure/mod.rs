@@ -24,7 +24,9 @@ pub use spec::SPEC;
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::memory::{Counts, Need};
 use opruga_core::pair::PairTable;
-use opruga_core::potential::{Account, Count, Definiteness, Ingredients, Model, Potential, Reading, Sink, Views};
+use opruga_core::potential::{
+    Account, Count, Definiteness, Ingredients, Model, Observe, Potential, Properties, Reading, Sink, Views,
+};
 use opruga_core::spec::{Spec, Values};
 use opruga_core::state::{Layout, View};
 use opruga_core::tile::Tile;
@@ -190,19 +192,16 @@ impl Pressure {
 }
 
 impl<const D: usize> Potential<D> for Pressure {
-    fn name(&self) -> &'static str {
-        "pressure"
-    }
-    fn views(&self) -> Views {
-        Views { energy: true, hessian: true, symmetric: true, damping: false }
-    }
-    fn account(&self) -> Account {
-        Account::Gas
-    }
-    fn spans(&self, visit: &mut dyn FnMut(u32, u32)) {
-        for chamber in &self.chambers {
-            chamber.boundary.spans(visit);
+    fn properties(&self) -> Properties {
+        Properties {
+            account: Account::Gas,
+            scratch_len: self.scratch_len,
+            forces_in_prepare: !self.chambers.iter().any(|chamber| matches!(chamber.boundary, Boundary::Plane(_))),
+            ..Properties::new("pressure", Views { energy: true, hessian: true, symmetric: true, damping: false })
         }
+    }
+    fn stencils(&self, visit: &mut dyn FnMut(&[u32])) {
+        self.chambers.iter().for_each(|chamber| chamber.boundary.stencils(visit));
     }
     fn initial_memory(&self) -> Vec<f64> {
         let mut memory = Vec::new();
@@ -211,9 +210,6 @@ impl<const D: usize> Potential<D> for Pressure {
             memory.extend((0..WIDTH).map(|body| chamber.gas(body).amount));
         }
         memory
-    }
-    fn scratch_len(&self) -> usize {
-        self.scratch_len
     }
     fn prepare(&self, simd: Simd, view: &View<D>, memory: &[f64], scratch: &mut [f64]) -> Result<(), StepError> {
         simd.run(Volumes { model: self, view, scratch });
@@ -300,6 +296,9 @@ impl<const D: usize> Potential<D> for Pressure {
             }
         }
     }
+}
+
+impl<const D: usize> Observe<D> for Pressure {
     fn readings(&self, _view: &View<D>, scratch: &[f64], _memory: &[f64], body: usize) -> Vec<Reading> {
         let mut volume = 0.0;
         let mut amount = 0.0;

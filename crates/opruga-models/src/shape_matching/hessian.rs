@@ -20,9 +20,9 @@ impl<const D: usize> Matching<D> {
                 let own = clusters.slots_start[node] as usize..clusters.slots_start[node + 1] as usize;
                 let mass: f64 =
                     clusters.slots_of[own].iter().map(|slot| clusters.mass[layout.place(*slot as usize, body)]).sum();
-                let place = layout.place(node, body);
+                let index = layout.place(node, body);
                 let strength = self.law.stiffness.at(body) * mass;
-                sink.block(place, place, matrix::scaled(&matrix::identity(), strength));
+                sink.block(index, index, matrix::scaled(&matrix::identity(), strength));
             }
         }
         let mut part = Vec::new();
@@ -52,7 +52,7 @@ impl<const D: usize> Matching<D> {
             part.clear();
             part.extend(slots.clone().map(|slot| {
                 let mass = clusters.mass[layout.place(slot, body)];
-                (clusters.places[slot] as usize + body, of_slot(layout.place(slot, body)).map(|x| mass * x))
+                (clusters.indices[slot] as usize + body, of_slot(layout.place(slot, body)).map(|x| mass * x))
             }));
             sink.low_rank(c, part);
         };
@@ -62,28 +62,28 @@ impl<const D: usize> Matching<D> {
             deliver(-stiffness * clusters.inverse_mass[at], &|_| axis);
             if share > 0.0 {
                 for column in &clusters.phi {
-                    deliver(-stiffness * share, &|place| axis.map(|x| x * column[place]));
+                    deliver(-stiffness * share, &|index| axis.map(|x| x * column[index]));
                 }
             }
         }
         if share >= 1.0 {
             return;
         }
-        let number = |column: usize| self.rooms.at(clusters, scratch, column, cluster, body);
+        let number = |column: usize| self.stored.at(clusters, scratch, column, cluster, body);
         let (mut frame, mut linear, mut rotation) = (matrix::zeros(), matrix::zeros(), matrix::zeros::<f64, D>());
         for d in 0..D {
             for k in 0..D {
                 frame[d][k] = clusters.frame[d * D + k][at];
-                linear[d][k] = number(self.rooms.moments + d * clusters.columns + k);
-                rotation[d][k] = number(self.rooms.rotation + d * D + k);
+                linear[d][k] = number(self.stored.moments + d * clusters.columns + k);
+                rotation[d][k] = number(self.stored.rotation + d * D + k);
             }
         }
         let goal = matrix::product(&rotation, &frame);
-        let moved = |place: usize| {
+        let moved = |index: usize| {
             let mut out = [0.0; D];
             for d in 0..D {
                 for k in 0..D {
-                    out[d] += goal[d][k] * clusters.phi[k][place];
+                    out[d] += goal[d][k] * clusters.phi[k][index];
                 }
             }
             out
@@ -102,8 +102,8 @@ impl<const D: usize> Matching<D> {
                 }
                 turned
             };
-            deliver(-stiffness * (1.0 - share) * weight, &|place| {
-                let q = moved(place);
+            deliver(-stiffness * (1.0 - share) * weight, &|index| {
+                let q = moved(index);
                 let z = if D == 3 { q[D - 1] } else { 0.0 };
                 let cross =
                     [axis[1] * z - axis[2] * q[1], axis[2] * q[0] - axis[0] * z, axis[0] * q[1] - axis[1] * q[0]];
@@ -120,13 +120,13 @@ fn rotations<const D: usize>(
     stretch: &[[f64; D]; D],
     keep: Definiteness,
 ) -> Vec<([f64; D], f64)> {
-    let held = |ratio: f64| match keep {
+    let clamped = |ratio: f64| match keep {
         Definiteness::Clamped if ratio < 1.0 => 1.0,
         _ => ratio,
     };
     if D == 2 {
         let size = matrix::trace(&matrix::product_transposed(frame, frame));
-        let ratio = held(matrix::trace(stretch) / size);
+        let ratio = clamped(matrix::trace(stretch) / size);
         let mut axis = [0.0; D];
         axis[0] = 1.0 / size.sqrt();
         let determined = size > 0.0 && ratio > UNDETERMINED;
@@ -156,7 +156,7 @@ fn rotations<const D: usize>(
                 axis[i] += root[i][j] * vectors[j][k];
             }
         }
-        let ratio = held(ratios[k]);
+        let ratio = clamped(ratios[k]);
         // An axis about which nothing turns has no part.
         if ratio > UNDETERMINED && axis.iter().any(|x| *x != 0.0) {
             out.push((axis, 1.0 / ratio));

@@ -10,7 +10,7 @@ use opruga_math::{Pack, WIDTH, Work, lanes};
 
 /// Where the numbers of the clusters lie in the scratch: columns of one number per cluster and body, and then the forces of slots.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Rooms {
+pub(super) struct Stored {
     /// Length of a column.
     pub(super) stride: usize,
     /// First columns of the goals Gₖ, of the moments cₖ = Σ m p φₖ and of the rotation R; the centres come first.
@@ -21,12 +21,12 @@ pub(super) struct Rooms {
     pub(super) forces: usize,
 }
 
-impl Rooms {
-    pub(super) fn of<const D: usize>(clusters: &Clusters<D>) -> Rooms {
+impl Stored {
+    pub(super) fn of<const D: usize>(clusters: &Clusters<D>) -> Stored {
         let stride = clusters.layout.places(clusters.len());
         let size = D * clusters.columns;
         let (goal, moments, rotation) = (D, D + size, D + 2 * size);
-        Rooms { stride, goal, moments, rotation, forces: (rotation + D * D) * stride }
+        Stored { stride, goal, moments, rotation, forces: (rotation + D * D) * stride }
     }
     /// Numbers in all.
     pub(super) fn len<const D: usize>(&self, clusters: &Clusters<D>) -> usize {
@@ -41,10 +41,10 @@ impl Rooms {
             Layout::Batch => P::load(&scratch[column * self.stride + cluster * WIDTH..]),
         }
     }
-    /// A number of clusters and bodies from a place of a column on.
+    /// A number of clusters and bodies from a index of a column on.
     #[inline(always)]
-    fn read<P: Pack>(&self, scratch: &[f64], column: usize, place: usize) -> P {
-        P::load(&scratch[column * self.stride + place..])
+    fn read<P: Pack>(&self, scratch: &[f64], column: usize, index: usize) -> P {
+        P::load(&scratch[column * self.stride + index..])
     }
     /// A number of a cluster of a body.
     pub(super) fn at<const D: usize>(
@@ -73,15 +73,15 @@ pub(super) struct Law {
 fn positions<P: Pack, const D: usize>(clusters: &Clusters<D>, view: &View<D>, slot: usize) -> [P; D] {
     match clusters.layout {
         Layout::Single if clusters.is_whole => load(&view.x, slot),
-        Layout::Single => lanes!(P, d => P::gather(view.x[d], &clusters.places[slot..slot + WIDTH])),
-        Layout::Batch => load(&view.x, clusters.places[slot] as usize),
+        Layout::Single => lanes!(P, d => P::gather(view.x[d], &clusters.indices[slot..slot + WIDTH])),
+        Layout::Batch => load(&view.x, clusters.indices[slot] as usize),
     }
 }
 
 /// Σ m p and cₖ = Σ m p φₖ of the clusters, with p from the position of their first node; and the centre x̄.
 pub(super) struct Moments<'a, const D: usize, const K: usize> {
     pub(super) clusters: &'a Clusters<D>,
-    pub(super) rooms: Rooms,
+    pub(super) stored: Stored,
     pub(super) view: &'a View<'a, D>,
     pub(super) scratch: &'a mut [f64],
 }
@@ -111,13 +111,13 @@ impl<const D: usize, const K: usize> Work for Moments<'_, D, K> {
     type Output = ();
     #[inline(always)]
     fn run<P: Pack>(self) {
-        let Moments { clusters, rooms, view, scratch } = self;
+        let Moments { clusters, stored, view, scratch } = self;
         for cluster in 0..clusters.len() {
             let range = clusters.range(cluster);
-            let place = clusters.places[range.start] as usize;
+            let index = clusters.indices[range.start] as usize;
             match clusters.layout {
                 Layout::Single => {
-                    let from: [P; D] = lanes!(P, d => P::splat(view.x[d][place]));
+                    let from: [P; D] = lanes!(P, d => P::splat(view.x[d][index]));
                     let mut first = [P::zero(); D];
                     let mut moments = [[P::zero(); K]; D];
                     for slot in range.step_by(WIDTH) {
@@ -126,15 +126,15 @@ impl<const D: usize, const K: usize> Work for Moments<'_, D, K> {
                     }
                     for d in 0..D {
                         let mean = first[d].sum() * clusters.inverse_mass[cluster];
-                        scratch[d * rooms.stride + cluster] = view.x[d][place] + mean;
+                        scratch[d * stored.stride + cluster] = view.x[d][index] + mean;
                         for k in 0..K {
-                            scratch[(rooms.moments + d * K + k) * rooms.stride + cluster] = moments[d][k].sum();
+                            scratch[(stored.moments + d * K + k) * stored.stride + cluster] = moments[d][k].sum();
                         }
                     }
                 }
                 Layout::Batch => {
-                    // The partial sums that one body has in its eight places, one after the other.
-                    let from: [P; D] = load(&view.x, place);
+                    // The partial sums that one body has in its eight indices, one after the other.
+                    let from: [P; D] = load(&view.x, index);
                     let mut firsts = [[P::zero(); WIDTH]; D];
                     let mut all = [[[P::zero(); WIDTH]; K]; D];
                     for rest in 0..WIDTH {
@@ -154,9 +154,9 @@ impl<const D: usize, const K: usize> Work for Moments<'_, D, K> {
                     let inverse = P::load(&clusters.inverse_mass[cluster * WIDTH..]);
                     for d in 0..D {
                         let center = from[d] + in_order(&firsts[d]) * inverse;
-                        center.store(&mut scratch[d * rooms.stride + cluster * WIDTH..]);
+                        center.store(&mut scratch[d * stored.stride + cluster * WIDTH..]);
                         for k in 0..K {
-                            let at = (rooms.moments + d * K + k) * rooms.stride + cluster * WIDTH;
+                            let at = (stored.moments + d * K + k) * stored.stride + cluster * WIDTH;
                             in_order(&all[d][k]).store(&mut scratch[at..]);
                         }
                     }
@@ -175,7 +175,7 @@ fn in_order<P: Pack>(a: &[P; WIDTH]) -> P {
 /// The rotations of all clusters, and the maps Gₖ = β cₖ + (1 − β) R Lₖ of the columns to the goals.
 pub(super) struct Fit<'a, const D: usize> {
     pub(super) clusters: &'a Clusters<D>,
-    pub(super) rooms: Rooms,
+    pub(super) stored: Stored,
     pub(super) law: &'a Law,
     pub(super) scratch: &'a mut [f64],
 }
@@ -187,26 +187,26 @@ impl<const D: usize> Work for Fit<'_, D> {
     type Output = ();
     #[inline(always)]
     fn run<P: Pack>(self) {
-        let Fit { clusters, rooms, law, scratch } = self;
+        let Fit { clusters, stored, law, scratch } = self;
         let columns = clusters.columns;
-        for place in (0..rooms.stride).step_by(WIDTH) {
+        for index in (0..stored.stride).step_by(WIDTH) {
             let mut frame = matrix::zeros::<P, D>();
             let mut linear = matrix::zeros::<P, D>();
             for d in 0..D {
                 for k in 0..D {
-                    frame[d][k] = P::load(&clusters.frame[d * D + k][place..]);
-                    linear[d][k] = rooms.read::<P>(scratch, rooms.moments + d * columns + k, place);
+                    frame[d][k] = P::load(&clusters.frame[d * D + k][index..]);
+                    linear[d][k] = stored.read::<P>(scratch, stored.moments + d * columns + k, index);
                 }
             }
             // A = Σ m p qᵀ = c Lᵀ.
             let rotation = nearest_rotation(&matrix::product_transposed(&linear, &frame));
             let turned = matrix::product(&rotation, &frame);
-            let share = law.share.load::<P>(place);
+            let share = law.share.load::<P>(index);
             let rest = P::one() - share;
             let mut factor = P::one();
             let mut there = P::zero().less(P::one());
             if law.keeps_volume {
-                // det T of T = c L⁻¹; where the fitted map has none, the rotation takes its place.
+                // det T of T = c L⁻¹; where the fitted map has none, the rotation takes its index.
                 let at_rest = matrix::determinant(&frame);
                 let now = matrix::determinant(&linear);
                 there = (P::splat(VOLUME) * at_rest.abs())
@@ -218,12 +218,12 @@ impl<const D: usize> Work for Fit<'_, D> {
                 for k in 0..D {
                     let fitted = P::select(there, factor * linear[d][k], turned[d][k]);
                     let goal = share * fitted + rest * turned[d][k];
-                    goal.store(&mut scratch[(rooms.goal + d * columns + k) * rooms.stride + place..]);
-                    rotation[d][k].store(&mut scratch[(rooms.rotation + d * D + k) * rooms.stride + place..]);
+                    goal.store(&mut scratch[(stored.goal + d * columns + k) * stored.stride + index..]);
+                    rotation[d][k].store(&mut scratch[(stored.rotation + d * D + k) * stored.stride + index..]);
                 }
                 for k in D..columns {
-                    let goal = share * rooms.read::<P>(scratch, rooms.moments + d * columns + k, place);
-                    goal.store(&mut scratch[(rooms.goal + d * columns + k) * rooms.stride + place..]);
+                    let goal = share * stored.read::<P>(scratch, stored.moments + d * columns + k, index);
+                    goal.store(&mut scratch[(stored.goal + d * columns + k) * stored.stride + index..]);
                 }
             }
         }
@@ -239,12 +239,12 @@ struct Goal<P, const D: usize, const K: usize> {
 
 impl<P: Pack, const D: usize, const K: usize> Goal<P, D, K> {
     #[inline(always)]
-    fn read(clusters: &Clusters<D>, rooms: &Rooms, scratch: &[f64], cluster: usize) -> Self {
+    fn read(clusters: &Clusters<D>, stored: &Stored, scratch: &[f64], cluster: usize) -> Self {
         let mut out = Goal { center: [P::zero(); D], map: [[P::zero(); K]; D] };
         for d in 0..D {
-            out.center[d] = rooms.spread(clusters.layout, scratch, d, cluster);
+            out.center[d] = stored.spread(clusters.layout, scratch, d, cluster);
             for k in 0..K {
-                out.map[d][k] = rooms.spread(clusters.layout, scratch, rooms.goal + d * K + k, cluster);
+                out.map[d][k] = stored.spread(clusters.layout, scratch, stored.goal + d * K + k, cluster);
             }
         }
         out
@@ -267,7 +267,7 @@ impl<P: Pack, const D: usize, const K: usize> Goal<P, D, K> {
 /// Forces on the slots of all clusters.
 pub(super) struct SlotForces<'a, const D: usize, const K: usize> {
     pub(super) clusters: &'a Clusters<D>,
-    pub(super) rooms: Rooms,
+    pub(super) stored: Stored,
     pub(super) law: &'a Law,
     pub(super) view: &'a View<'a, D>,
     pub(super) scratch: &'a mut [f64],
@@ -276,19 +276,19 @@ impl<const D: usize, const K: usize> Work for SlotForces<'_, D, K> {
     type Output = ();
     #[inline(always)]
     fn run<P: Pack>(self) {
-        let SlotForces { clusters, rooms, law, view, scratch } = self;
+        let SlotForces { clusters, stored, law, view, scratch } = self;
         let stride = clusters.layout.stride();
-        let places = clusters.slots() * stride;
-        let (numbers, forces) = scratch.split_at_mut(rooms.forces);
+        let indices = clusters.slots() * stride;
+        let (numbers, forces) = scratch.split_at_mut(stored.forces);
         let stiffness = law.stiffness.load::<P>(0);
         for cluster in 0..clusters.len() {
-            let goal = Goal::<P, D, K>::read(clusters, &rooms, numbers, cluster);
+            let goal = Goal::<P, D, K>::read(clusters, &stored, numbers, cluster);
             let range = clusters.range(cluster);
             for slot in range.step_by(WIDTH / stride) {
                 let at = slot * stride;
                 let force = goal.force(clusters, stiffness, at, &positions(clusters, view, slot));
                 for d in 0..D {
-                    force[d].store(&mut forces[d * places + at..]);
+                    force[d].store(&mut forces[d * indices + at..]);
                 }
             }
         }
@@ -298,7 +298,7 @@ impl<const D: usize, const K: usize> Work for SlotForces<'_, D, K> {
 /// Forces on the nodes of a tile where the body is one cluster.
 pub(super) struct Push<'a, 'b, 'c, const D: usize, const K: usize> {
     pub(super) clusters: &'a Clusters<D>,
-    pub(super) rooms: Rooms,
+    pub(super) stored: Stored,
     pub(super) law: &'a Law,
     pub(super) view: &'a View<'a, D>,
     pub(super) scratch: &'a [f64],
@@ -310,19 +310,19 @@ impl<const D: usize, const K: usize> Work for Push<'_, '_, '_, D, K> {
     type Output = ();
     #[inline(always)]
     fn run<P: Pack>(self) {
-        let Push { clusters, rooms, law, view, scratch, tile, works } = self;
+        let Push { clusters, stored, law, view, scratch, tile, works } = self;
         tile.settle_by::<P>();
-        let goal = Goal::<P, D, K>::read(clusters, &rooms, scratch, 0);
+        let goal = Goal::<P, D, K>::read(clusters, &stored, scratch, 0);
         let stiffness = law.stiffness.load::<P>(0);
         let start = tile.range.start;
         let mut power = P::from_array(*tile.power);
-        for place in tile.range.clone().step_by(WIDTH) {
-            let force = goal.force(clusters, stiffness, place, &load(&view.x, place));
+        for index in tile.range.clone().step_by(WIDTH) {
+            let force = goal.force(clusters, stiffness, index, &load(&view.x, index));
             for d in 0..D {
-                let k = place - start;
+                let k = index - start;
                 (P::load(&tile.force[d][k..]) + force[d]).store(&mut tile.force[d][k..]);
                 if works {
-                    power += force[d] * P::load(&view.v[d][place..]);
+                    power += force[d] * P::load(&view.v[d][index..]);
                 }
             }
         }
@@ -333,7 +333,7 @@ impl<const D: usize, const K: usize> Work for Push<'_, '_, '_, D, K> {
 /// ½ κ Σ m ((1 − β)|p − R q|² + β |p − Σ cₖ φₖ|²).
 pub(super) struct Energy<'a, const D: usize> {
     pub(super) clusters: &'a Clusters<D>,
-    pub(super) rooms: Rooms,
+    pub(super) stored: Stored,
     pub(super) law: &'a Law,
     pub(super) view: &'a View<'a, D>,
     pub(super) scratch: &'a [f64],
@@ -342,24 +342,24 @@ impl<const D: usize> Work for Energy<'_, D> {
     type Output = [f64; WIDTH];
     #[inline(always)]
     fn run<P: Pack>(self) -> [f64; WIDTH] {
-        let Energy { clusters, rooms, law, view, scratch } = self;
+        let Energy { clusters, stored, law, view, scratch } = self;
         let (columns, stride) = (clusters.columns, clusters.layout.stride());
         let share = law.share.load::<P>(0);
         let mut sum = OrderedSum::<P>::new(clusters.layout);
         for cluster in 0..clusters.len() {
             let (mut rotation, mut frame) = (matrix::zeros::<P, D>(), matrix::zeros::<P, D>());
             let mut moments = [[P::zero(); MOST_COLUMNS]; D];
-            let center: [P; D] = lanes!(P, d => rooms.spread(clusters.layout, scratch, d, cluster));
+            let center: [P; D] = lanes!(P, d => stored.spread(clusters.layout, scratch, d, cluster));
             for d in 0..D {
                 for k in 0..D {
-                    rotation[d][k] = rooms.spread(clusters.layout, scratch, rooms.rotation + d * D + k, cluster);
+                    rotation[d][k] = stored.spread(clusters.layout, scratch, stored.rotation + d * D + k, cluster);
                     frame[d][k] = match clusters.layout {
                         Layout::Single => P::splat(clusters.frame[d * D + k][cluster]),
                         Layout::Batch => P::load(&clusters.frame[d * D + k][cluster * WIDTH..]),
                     };
                 }
                 for k in 0..columns {
-                    moments[d][k] = rooms.spread(clusters.layout, scratch, rooms.moments + d * columns + k, cluster);
+                    moments[d][k] = stored.spread(clusters.layout, scratch, stored.moments + d * columns + k, cluster);
                 }
             }
             let turned: Matrix<P, D> = matrix::product(&rotation, &frame);

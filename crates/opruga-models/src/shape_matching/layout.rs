@@ -1,7 +1,7 @@
 //! How the clusters of a body, or of eight bodies side by side, lie in memory.
 //!
 //! A *slot* is a node in a cluster. The slots of a cluster are neighbours and fill whole packs; those without a node have no mass.
-//! Numbers of slots and clusters lie as the columns of nodes do ([`Layout::place`]), so that one body and eight bodies run the
+//! Numbers of slots and clusters lie as the columns of nodes do ([`Layout::index`]), so that one body and eight bodies run the
 //! same code and have the same bits.
 
 use super::shape::Shape;
@@ -21,8 +21,8 @@ pub(super) struct Clusters<const D: usize> {
     pub(super) start: Vec<u32>,
     /// How many slots of each cluster hold a node.
     pub(super) count: Vec<u32>,
-    /// The place of the node of every slot, of the first body.
-    pub(super) places: Vec<u32>,
+    /// The index of the node of every slot, of the first body.
+    pub(super) indices: Vec<u32>,
     /// Whether there is one cluster, whose slots are the nodes in their order.
     pub(super) is_whole: bool,
     /// The slots of each node.
@@ -57,7 +57,7 @@ impl<const D: usize> Clusters<D> {
             nodes,
             columns,
             count: lists.iter().map(|list| list.len() as u32).collect(),
-            places: vec![0; slots],
+            indices: vec![0; slots],
             is_whole,
             slots_of: Vec::new(),
             slots_start: Vec::new(),
@@ -74,7 +74,7 @@ impl<const D: usize> Clusters<D> {
             for slot in first..end {
                 // Slots without a node read the first one.
                 let node = list.get(slot - first).copied().unwrap_or(list[0]);
-                out.places[slot] = node * stride as u32;
+                out.indices[slot] = node * stride as u32;
             }
             for (k, node) in list.iter().enumerate() {
                 of_node[*node as usize].push((first + k) as u32);
@@ -115,7 +115,7 @@ impl<const D: usize> Clusters<D> {
     }
     /// Slots, with those that fill up packs.
     pub(super) fn slots(&self) -> usize {
-        self.places.len()
+        self.indices.len()
     }
     /// The slots of a cluster.
     pub(super) fn range(&self, cluster: usize) -> core::ops::Range<usize> {
@@ -127,6 +127,6 @@ impl<const D: usize> Clusters<D> {
         columns
             + self.mass.heap_bytes()
             + self.inverse_mass.heap_bytes()
-            + 4 * (lists + self.places.capacity() + self.slots_start.capacity())
+            + 4 * (lists + self.indices.capacity() + self.slots_start.capacity())
     }
 }

@@ -22,7 +22,7 @@
 //! √κ for all else.
 //!
 //! **As published**, T is divided by the D-th root of det T (of the linear fit), and κ may be α/h². That force has no potential:
-//! explicit integrators alone take it, and its power is entered as work from outside. Where det T is not above zero, R takes the place of T.
+//! explicit integrators alone take it, and its power is entered as work from outside. Where det T is not above zero, R takes the index of T.
 //! The paper's quadratic fit keeps its translation; here its columns are centred, so that no momentum arises.
 //!
 //! Limits: κ is no material's stiffness, and a finer body is as soft as a coarse one. R is not unique where the two smallest
@@ -39,11 +39,11 @@ mod spec;
 pub use refusals::Refusal;
 pub use spec::SPEC;
 
-use kernels::{Energy, Fit, Law, Moments, Push, Rooms, SlotForces};
+use kernels::{Energy, Fit, Law, Moments, Push, SlotForces, Stored};
 use layout::Clusters;
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::memory::{Counts, Need};
-use opruga_core::potential::{Account, Definiteness, Ingredients, Model, Potential, Sink, Views};
+use opruga_core::potential::{Account, Definiteness, Ingredients, Model, Observe, Potential, Properties, Sink, Views};
 use opruga_core::spec::Spec;
 use opruga_core::state::{Layout, Parameter, View};
 use opruga_core::tile::Tile;
@@ -59,7 +59,7 @@ pub struct ShapeMatchingModel;
 pub struct Matching<const D: usize> {
     clusters: Clusters<D>,
     law: Law,
-    rooms: Rooms,
+    stored: Stored,
     /// Whether the force is the published one, which is no gradient.
     is_published: bool,
     /// The substep [s] for which `goal_step` of each body counts, where it is given.
@@ -93,7 +93,7 @@ impl<const D: usize> Model<D> for ShapeMatchingModel {
             None => values.number("stiffness").unwrap_or(0.0),
         });
         Ok(Box::new(Matching {
-            rooms: Rooms::of(&clusters),
+            stored: Stored::of(&clusters),
             clusters,
             law: Law {
                 stiffness: Parameter::by_body(stiffness),
@@ -126,26 +126,29 @@ macro_rules! by_columns {
 }
 
 impl<const D: usize> Potential<D> for Matching<D> {
-    fn name(&self) -> &'static str {
-        SPEC.kind
-    }
-    fn views(&self) -> Views {
+    fn properties(&self) -> Properties {
         let is_gradient = !self.is_published;
-        Views { energy: is_gradient, hessian: is_gradient, symmetric: is_gradient, damping: false }
+        let views = Views { energy: is_gradient, hessian: is_gradient, symmetric: is_gradient, damping: false };
+        Properties {
+            account: if self.is_published { Account::User } else { Account::Elastic },
+            scratch_len: self.stored.len(&self.clusters),
+            begins_tiles: true,
+            forces_in_prepare: true,
+            ..Properties::new(SPEC.kind, views)
+        }
     }
-    fn lacks(&self) -> Option<AnyMessage> {
-        self.is_published.then(|| Refusal::NoPotential {}.into())
+    /// The clusters; none where one of them is the whole body.
+    fn stencils(&self, visit: &mut dyn FnMut(&[u32])) {
+        let stride = self.clusters.layout.stride() as u32;
+        for cluster in (0..self.clusters.len()).filter(|_| !self.clusters.is_whole) {
+            let first = self.clusters.range(cluster).start;
+            let slots = &self.clusters.indices[first..first + self.clusters.count[cluster] as usize];
+            let nodes: Vec<u32> = slots.iter().map(|index| index / stride).collect();
+            visit(&nodes);
+        }
     }
-    fn account(&self) -> Account {
-        if self.is_published { Account::User } else { Account::Elastic }
-    }
-    /// `prepare` has read all positions before any of them changes; a tile reads its own.
-    fn spans(&self, _visit: &mut dyn FnMut(u32, u32)) {}
     fn initial_memory(&self) -> Vec<f64> {
         self.step.map_or(Vec::new(), |step| vec![step; WIDTH])
-    }
-    fn scratch_len(&self) -> usize {
-        self.rooms.len(&self.clusters)
     }
     fn prepare(&self, simd: Simd, view: &View<D>, memory: &[f64], scratch: &mut [f64]) -> Result<(), StepError> {
         if let Some(declared) = self.step
@@ -154,30 +157,31 @@ impl<const D: usize> Potential<D> for Matching<D> {
             let refusal = Refusal::StepChanged { now: *now, declared, stiffness: self.law.stiffness.at(0) };
             return Err(StepError::Model { model: SPEC.kind, message: refusal.to_string() });
         }
-        let (clusters, rooms, law) = (&self.clusters, self.rooms, &self.law);
-        by_columns!(clusters.columns, simd, Moments { clusters: clusters, rooms: rooms, view: view, scratch: scratch });
-        simd.run(Fit { clusters, rooms, law, scratch });
+        let (clusters, stored, law) = (&self.clusters, self.stored, &self.law);
+        by_columns!(
+            clusters.columns,
+            simd,
+            Moments { clusters: clusters, stored: stored, view: view, scratch: scratch }
+        );
+        simd.run(Fit { clusters, stored, law, scratch });
         if !clusters.is_whole {
             by_columns!(
                 clusters.columns,
                 simd,
-                SlotForces { clusters: clusters, rooms: rooms, law: law, view: view, scratch: scratch }
+                SlotForces { clusters: clusters, stored: stored, law: law, view: view, scratch: scratch }
             );
         }
         Ok(())
     }
-    fn begins_tiles(&self) -> bool {
-        true
-    }
     fn add_force(&self, simd: Simd, view: &View<D>, scratch: &[f64], tile: &mut Tile<D>) {
-        let (clusters, rooms, law, works) = (&self.clusters, self.rooms, &self.law, self.is_published);
+        let (clusters, stored, law, works) = (&self.clusters, self.stored, &self.law, self.is_published);
         if clusters.is_whole {
             by_columns!(
                 clusters.columns,
                 simd,
                 Push {
                     clusters: clusters,
-                    rooms: rooms,
+                    stored: stored,
                     law: law,
                     view: view,
                     scratch: scratch,
@@ -188,7 +192,7 @@ impl<const D: usize> Potential<D> for Matching<D> {
             return;
         }
         tile.settle(simd);
-        simd.run(Gather { clusters, forces: &scratch[rooms.forces..], view, tile, works });
+        simd.run(Gather { clusters, forces: &scratch[stored.forces..], view, tile, works });
     }
     fn remember(&self, _simd: Simd, _view: &View<D>, h: f64, _scratch: &mut [f64], memory: &mut [f64]) -> [f64; WIDTH] {
         // A stiffness that depends on the step is refused where the step is another one.
@@ -196,12 +200,18 @@ impl<const D: usize> Potential<D> for Matching<D> {
         [0.0; WIDTH]
     }
     fn energy(&self, simd: Simd, view: &View<D>, scratch: &[f64]) -> [f64; WIDTH] {
-        simd.run(Energy { clusters: &self.clusters, rooms: self.rooms, law: &self.law, view, scratch })
+        simd.run(Energy { clusters: &self.clusters, stored: self.stored, law: &self.law, view, scratch })
     }
     fn hessian(&self, _view: &View<D>, scratch: &[f64], keep: Definiteness, sink: &mut dyn Sink<D>) {
         if !self.is_published {
             self.second_derivatives(scratch, keep, sink);
         }
+    }
+}
+
+impl<const D: usize> Observe<D> for Matching<D> {
+    fn lacks(&self) -> Option<AnyMessage> {
+        self.is_published.then(|| Refusal::NoPotential {}.into())
     }
     fn heap_bytes(&self) -> usize {
         self.clusters.heap_bytes()
@@ -222,23 +232,23 @@ impl<const D: usize> Work for Gather<'_, '_, '_, D> {
     fn run<P: Pack>(self) {
         let Gather { clusters, forces, view, tile, works } = self;
         let stride = clusters.layout.stride();
-        let places = clusters.slots() * stride;
+        let indices = clusters.slots() * stride;
         let start = tile.range.start;
         for node in start / stride..(tile.range.end / stride).min(clusters.nodes) {
             let own = &clusters.slots_of[clusters.slots_start[node] as usize..clusters.slots_start[node + 1] as usize];
-            let place = node * stride;
+            let index = node * stride;
             match clusters.layout {
                 Layout::Single => {
                     let mut sum = [0.0; D];
                     for slot in own {
                         for d in 0..D {
-                            sum[d] += forces[d * places + *slot as usize];
+                            sum[d] += forces[d * indices + *slot as usize];
                         }
                     }
                     for d in 0..D {
-                        tile.force[d][place - start] += sum[d];
+                        tile.force[d][index - start] += sum[d];
                         if works {
-                            tile.power[place % WIDTH] += sum[d] * view.v[d][place];
+                            tile.power[index % WIDTH] += sum[d] * view.v[d][index];
                         }
                     }
                 }
@@ -247,12 +257,12 @@ impl<const D: usize> Work for Gather<'_, '_, '_, D> {
                     for d in 0..D {
                         let mut sum = P::zero();
                         for slot in own {
-                            sum += P::load(&forces[d * places + *slot as usize * WIDTH..]);
+                            sum += P::load(&forces[d * indices + *slot as usize * WIDTH..]);
                         }
-                        let to = &mut tile.force[d][place - start..];
+                        let to = &mut tile.force[d][index - start..];
                         (P::load(to) + sum).store(to);
                         if works {
-                            power += sum * P::load(&view.v[d][place..]);
+                            power += sum * P::load(&view.v[d][index..]);
                         }
                     }
                     power.store(tile.power);

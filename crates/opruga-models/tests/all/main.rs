@@ -15,6 +15,7 @@ mod fem_closed_forms;
 mod fem_heat;
 mod fem_membrane;
 mod fem_refusals;
+mod finite_difference;
 mod finite_volume;
 mod shape_matching;
 #[path = "support/sparse.rs"]

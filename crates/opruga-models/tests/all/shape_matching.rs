@@ -180,7 +180,7 @@ fn another_step_is_refused_where_the_stiffness_depends_on_it() {
     let simd = body.simd;
     let potential = &body.members[0].potential;
     let mut memory = potential.initial_memory();
-    let mut scratch = vec![0.0; potential.scratch_len()];
+    let mut scratch = vec![0.0; potential.properties().scratch_len];
     potential.remember(simd, &view, 1e-3, &mut scratch, &mut memory);
     assert!(potential.prepare(simd, &view, &memory, &mut scratch).is_ok());
     potential.remember(simd, &view, 5e-4, &mut scratch, &mut memory);

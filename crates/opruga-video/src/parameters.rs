@@ -2,7 +2,7 @@
 
 use super::bits::{Bits, Unit, pack};
 use super::frame::BLOCK;
-use crate::error::DrawError;
+use crate::error::VideoError;
 
 /// The number of bits of the number of a picture.
 pub(crate) const NUMBER_BITS: u32 = 16;
@@ -40,9 +40,9 @@ pub(crate) struct Rate {
 
 impl Rate {
     /// The fraction of a number of frames a second: exact for numbers such as 20, 12.5 and 30000/1001.
-    pub(crate) fn new(frames_per_second: f64) -> Result<Rate, DrawError> {
+    pub(crate) fn new(frames_per_second: f64) -> Result<Rate, VideoError> {
         if !(1e-4..=1e4).contains(&frames_per_second) {
-            return Err(DrawError::Rate(frames_per_second));
+            return Err(VideoError::Rate { rate: frames_per_second });
         }
         for frame in 1..=1001_u32 {
             let ticks = frames_per_second * f64::from(frame);
@@ -74,8 +74,8 @@ impl Parameters {
     /// The parameters of a film.
     ///
     /// # Errors
-    /// [`DrawError::Size`] if a frame is larger than the format allows.
-    pub(crate) fn new([width, height]: [u32; 2], rate: Rate, quantiser: u8) -> Result<Parameters, DrawError> {
+    /// [`VideoError::Size`] if a frame is larger than the format allows.
+    pub(crate) fn new([width, height]: [u32; 2], rate: Rate, quantiser: u8) -> Result<Parameters, VideoError> {
         let blocks = [width, height].map(|side| u64::from(side).div_ceil(BLOCK as u64));
         let size = blocks[0] * blocks[1];
         let fits = |most: u64| size <= most && blocks.iter().all(|side| side * side <= 8 * most);
@@ -83,7 +83,7 @@ impl Parameters {
         let level = LEVELS.iter().find(|level| fits(level.2) && speed <= level.1);
         // A film of too many frames a second is played more slowly, but one of too large frames not at all.
         let level = level.or(LEVELS.last().filter(|level| fits(level.2)));
-        let level = level.ok_or(DrawError::Size { width, height })?.0;
+        let level = level.ok_or(VideoError::Size { width, height })?.0;
         Ok(Parameters {
             sequence: sequence([width, height], blocks.map(|side| side as u32), rate, level),
             picture: picture(quantiser),
@@ -175,7 +175,7 @@ mod tests {
         let odd = Rate::new(std::f64::consts::PI).expect("a rate").frames_per_second();
         assert!((odd - std::f64::consts::PI).abs() < 1e-3);
         for wrong in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-5, 1e5] {
-            assert!(matches!(Rate::new(wrong), Err(DrawError::Rate(_))), "{wrong}");
+            assert!(matches!(Rate::new(wrong), Err(VideoError::Rate { .. })), "{wrong}");
         }
     }
 
@@ -188,7 +188,7 @@ mod tests {
         assert_eq!(level(16, 16, 20.0).expect("a level"), 10);
         assert_eq!(level(800, 600, 20.0).expect("a level"), 31);
         assert_eq!(level(1920, 1080, 60.0).expect("a level"), 42);
-        assert!(matches!(level(16_384, 16_384, 20.0), Err(DrawError::Size { .. })));
+        assert!(matches!(level(16_384, 16_384, 20.0), Err(VideoError::Size { .. })));
         assert!(matches!(level(16_384, 16, 20.0), Ok(60)), "wide but low");
     }
 }

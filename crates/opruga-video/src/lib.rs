@@ -4,10 +4,15 @@
 //! is looked for in the frame before, and there is no deblocking, so that lines and letters stay sharp. The same frames
 //! give the same bytes everywhere. ITU-T recommendation H.264 is the source of every table and formula.
 
+// Only tests compute with floating-point functions: they compare pictures, not physics.
+#![cfg_attr(test, allow(clippy::disallowed_methods))]
+
 mod bits;
 mod encoder;
 mod entropy;
+mod error;
 mod frame;
+mod image;
 mod mp4;
 mod parameters;
 mod predict;
@@ -15,9 +20,10 @@ mod residual;
 mod tables;
 mod transform;
 
-use crate::error::DrawError;
-use crate::image::Image;
+pub use error::VideoError;
+
 use encoder::Encoder;
+use image::Image;
 use mp4::{Film, Sample};
 use parameters::{Parameters, Rate};
 use std::io::Write;
@@ -52,12 +58,12 @@ impl<W: Write> Mp4Writer<W> {
     /// Begins a film of frames of one size, in pixels; an odd side is shown with its last column or row twice.
     ///
     /// # Errors
-    /// [`DrawError`] if there are no pixels, more than the format allows (about 35 million), or the rate is not between
+    /// [`VideoError`] if there are no pixels, more than the format allows (about 35 million), or the rate is not between
     /// 0.0001 and 10,000 frames a second.
-    pub fn new(out: W, size: [u32; 2], frames_per_second: f64) -> Result<Mp4Writer<W>, DrawError> {
+    pub fn new(out: W, size: [u32; 2], frames_per_second: f64) -> Result<Mp4Writer<W>, VideoError> {
         let [width, height] = size;
         if width == 0 || height == 0 || width > 16_384 || height > 16_384 {
-            return Err(DrawError::Size { width, height });
+            return Err(VideoError::Size { width, height });
         }
         let rate = Rate::new(frames_per_second)?;
         let period = (PERIOD * rate.frames_per_second()).round().clamp(1.0, 600.0) as u32;
@@ -72,14 +78,15 @@ impl<W: Write> Mp4Writer<W> {
         })
     }
 
-    /// Adds a frame.
+    /// Adds a frame: four bytes a pixel, red, green, blue and an opacity that is not looked at, row by row from the top.
     ///
     /// # Errors
-    /// [`DrawError::FrameSize`] if it has another size; the film goes on without it.
-    pub fn push(&mut self, image: &Image) -> Result<(), DrawError> {
-        let found = [image.width(), image.height()];
-        if found != self.size {
-            return Err(DrawError::FrameSize { expected: self.size, found });
+    /// [`VideoError::FrameSize`] if it has another size; the film goes on without it.
+    pub fn push(&mut self, size: [u32; 2], pixels: &[u8]) -> Result<(), VideoError> {
+        let image = Image { size, pixels };
+        if size != self.size || pixels.len() as u64 != 4 * u64::from(size[0]) * u64::from(size[1]) {
+            let ([width, height], [film_width, film_height]) = (size, self.size);
+            return Err(VideoError::FrameSize { width, height, film_width, film_height });
         }
         let coded = self.encoder.code(image);
         self.samples.push(Sample { size: coded.unit.len() as u32 + 4, refresh: coded.refresh });
@@ -91,10 +98,10 @@ impl<W: Write> Mp4Writer<W> {
     /// Writes the file and gives the writer back.
     ///
     /// # Errors
-    /// [`DrawError`] if there is no frame, or the bytes cannot be written.
-    pub fn finish(mut self) -> Result<W, DrawError> {
+    /// [`VideoError`] if there is no frame, or the bytes cannot be written.
+    pub fn finish(mut self) -> Result<W, VideoError> {
         if self.samples.is_empty() {
-            return Err(DrawError::Empty("a film needs a frame"));
+            return Err(VideoError::Empty {});
         }
         let size = self.size.map(|side| side.next_multiple_of(2));
         let film = Film { size, rate: self.rate, parameters: &self.parameters, samples: &self.samples };

@@ -84,7 +84,7 @@ impl Encoder {
     }
 
     /// Codes an image.
-    pub(crate) fn code(&mut self, image: &Image) -> Coded {
+    pub(crate) fn code(&mut self, image: Image<'_>) -> Coded {
         let changed = self.take(image);
         let refresh = self.number.is_multiple_of(self.period);
         if refresh {
@@ -117,7 +117,7 @@ impl Encoder {
     }
 
     /// Takes the changed macroblocks of an image over, and says which they are.
-    fn take(&mut self, image: &Image) -> Vec<bool> {
+    fn take(&mut self, image: Image<'_>) -> Vec<bool> {
         let pixels = image.pixels();
         let row_bytes = 4 * image.width() as usize;
         let mut changed = vec![self.last.len() != pixels.len(); self.blocks[0] * self.blocks[1]];

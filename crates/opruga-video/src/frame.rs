@@ -60,7 +60,7 @@ impl Frame {
     ///
     /// The colours become those of BT.709 in the limited range. As decoders expect it, a difference of colour lies on
     /// the left one of its two columns, and between its two rows.
-    pub(crate) fn take(&mut self, image: &Image, [x, y]: [usize; 2]) {
+    pub(crate) fn take(&mut self, image: Image<'_>, [x, y]: [usize; 2]) {
         let (width, height) = (image.width() as usize, image.height() as usize);
         let pixels = image.pixels();
         let at = |column: usize, row: usize| -> [i32; 3] {
@@ -110,10 +110,11 @@ mod tests {
             ([0, 255, 0], [173, 42, 26]),
             ([0, 0, 255], [32, 240, 118]),
         ] {
-            let image = Image::new(17, 5, colour).expect("an image");
+            let pixels = [colour[0], colour[1], colour[2], 255].repeat(17 * 5);
+            let image = Image { size: [17, 5], pixels: &pixels };
             let mut frame = Frame::new(2, 1);
-            frame.take(&image, [0, 0]);
-            frame.take(&image, [1, 0]);
+            frame.take(image, [0, 0]);
+            frame.take(image, [1, 0]);
             for plane in 0..3 {
                 assert!(frame.planes[plane].iter().all(|value| *value == expected[plane]), "{colour:?} {plane}");
             }

@@ -1,0 +1,362 @@
+//! # Finite differences
+//!
+//! Elastic curves, surfaces and solids by differences of the metric tensor G and the curvature tensor B from those at rest, on a
+//! regular grid of material coordinates (Terzopoulos, Platt, Barr and Fleischer 1987, equations 5 to 8 and 14). With
+//! ε = ½ (G − G₀) and β = B − B₀,
+//!
+//! U = ∫ ½ EA ε² + ½ EI β² for curves,
+//! U = ∫ ½ Et/(1 − ν²) [(1 − ν) ε:ε + ν (tr ε)²] + ½ Et³/12(1 − ν²) [(1 − ν) β:β + ν (tr β)²] for surfaces,
+//! U = ∫ ½ λ (tr ε)² + μ ε:ε for solids (St. Venant and Kirchhoff).
+//!
+//! Differences are staggered: strains along an axis live on edges, shear strains in the middle of cells (of faces in space),
+//! curvatures at nodes and twists in the middle of cells. So the error falls with the square of the spacing, and no checkerboard is
+//! free. The paper puts all differences at nodes, which leaves one.
+//!
+//! Forces are the exact gradient of the discrete energy. The paper's force (its equation 9) leaves out how the normal n in
+//! B = n·x″ turns with the surface; what that costs is measured in docs/finite-differences.md.
+//!
+//! Limits: a curve in space has no torsion, and so no twist. A curve with a curvature at rest has no force where it is exactly
+//! straight, for then no direction is that of its curvature. St. Venant and Kirchhoff's law gives way below 1/√3 of the length. A
+//! degenerate tangent plane has no normal and no moment.
+
+mod curve;
+mod grid;
+mod plate;
+mod solid;
+mod spec;
+
+pub use spec::SPEC;
+
+use crate::vectors::{cross, dot, in_space, minus};
+use curve::{Bend, Stretch};
+use grid::{Grid, HEXAHEDRON, QUADRILATERAL, spacings};
+use opruga_core::error::BuildError;
+use opruga_core::memory::{Counts, Need};
+use opruga_core::potential::{Definiteness, Ingredients, Model, Observe, Potential, Properties, Sink, Views};
+use opruga_core::spec::{Spec, Values};
+use opruga_core::state::{Layout, View};
+use opruga_core::stencil::Stencils;
+use opruga_core::tile::Tile;
+use opruga_math::words::number;
+use opruga_math::{Simd, WIDTH};
+use opruga_mesh::Mesh;
+use plate::{Edge, Inner, Twist};
+use solid::{Hexahedron, Quadrilateral};
+
+/// The word in scenes.
+const KIND: &str = "finite_difference";
+
+opruga_math::messages! {
+    /// Why a body cannot be computed by finite differences.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum FiniteDifferenceError {
+        /// The body has no regular grid.
+        "model.not_a_grid"
+        #[error("the body is not a regular grid; allowed: line, ring, polyline, sheet, and a grid of quadrilaterals or hexahedra")]
+        NotAGrid {},
+        /// A cell is no rectangle or box; how far off it is, as a part of its least spacing.
+        "model.not_rectangular"
+        #[error("cell {cell} deviates from a rectangle by {} of its spacing; allowed: at most 1e-6", number(*deviation))]
+        NotRectangular { cell: usize, deviation: f64 },
+        /// The cells of a surface differ in their spacing.
+        "model.uneven_grid"
+        #[error("cell {cell} has a spacing of {} m where cell 0 has {} m; allowed: equal spacings", number(*spacing), number(*first))]
+        Uneven { cell: usize, spacing: f64, first: f64 },
+        /// A curve or a surface needs a thickness.
+        "model.no_thickness"
+        #[error("a curve or a surface needs `thickness`; allowed: > 0 m")]
+        NoThickness {},
+        /// A solid has no thickness of its own.
+        "model.solid_thickness"
+        #[error("`thickness` belongs to curves and surfaces; a solid has none")]
+        SolidThickness {},
+        /// An edge has no length at rest.
+        "model.zero_length"
+        #[error("edge {edge} has no length at rest; allowed: > 0 m")]
+        NoLength { edge: usize },
+    }
+}
+
+use FiniteDifferenceError as Refusal;
+
+impl From<FiniteDifferenceError> for BuildError {
+    fn from(refusal: FiniteDifferenceError) -> BuildError {
+        let code = opruga_math::message::Message::code(&refusal);
+        BuildError::new(KIND, code, refusal.to_string())
+    }
+}
+
+/// The kind `finite_difference`.
+#[derive(Debug)]
+pub struct FiniteDifferenceModel;
+
+/// Stencils of one body, or of eight alike ones, kind by kind.
+#[derive(Debug)]
+struct FiniteDifference<const D: usize> {
+    parts: Vec<Box<dyn Potential<D>>>,
+    damped: bool,
+}
+
+/// The elastic numbers of one body.
+#[derive(Clone, Copy, Debug)]
+struct Elastic {
+    youngs_modulus: f64,
+    poissons_ratio: f64,
+    thickness: f64,
+    damping: f64,
+    plane_stress: bool,
+}
+
+impl Elastic {
+    fn of(values: &Values) -> Elastic {
+        Elastic {
+            youngs_modulus: values.number("youngs_modulus").unwrap_or(0.0),
+            poissons_ratio: values.number("poissons_ratio").unwrap_or(0.3),
+            thickness: values.number("thickness").unwrap_or(0.0),
+            damping: values.number("damping").unwrap_or(0.0),
+            plane_stress: values.text("plane") == Some("stress"),
+        }
+    }
+    /// c₁, c₂, c₃ of a surface [N/m]: Et/(1 − ν²) times 1, ν, 2 (1 − ν).
+    fn membrane(&self) -> [f64; 3] {
+        let nu = self.poissons_ratio;
+        let whole = self.youngs_modulus * self.thickness / (1.0 - nu * nu);
+        [whole, nu * whole, 2.0 * (1.0 - nu) * whole]
+    }
+    /// c₁, c₂, c₃ of a solid [Pa]: λ + 2μ, λ, 4μ.
+    fn solid(&self) -> [f64; 3] {
+        let nu = self.poissons_ratio;
+        let mu = self.youngs_modulus / (2.0 * (1.0 + nu));
+        let whole = self.youngs_modulus * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));
+        let lambda = if self.plane_stress { 2.0 * whole * mu / (whole + 2.0 * mu) } else { whole };
+        [lambda + 2.0 * mu, lambda, 4.0 * mu]
+    }
+    /// The flexural rigidity of a surface D = Et³/12(1 − ν²) [N·m].
+    fn rigidity(&self) -> f64 {
+        let t = self.thickness;
+        self.membrane()[0] * t * t / 12.0
+    }
+    /// EA [N] and EI [N·m²] of a curve, which is so deep out of the plane [m], or round in space.
+    fn section(&self, depth: Option<f64>) -> [f64; 2] {
+        let t = self.thickness;
+        let round = core::f64::consts::PI * t * t / 4.0;
+        let [area, inertia] = depth.map_or([round, round * t * t / 16.0], |b| [t * b, t * t * t * b / 12.0]);
+        [self.youngs_modulus * area, self.youngs_modulus * inertia]
+    }
+}
+
+impl<const D: usize> Model<D> for FiniteDifferenceModel {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+    fn need(&self, counts: &Counts) -> Need {
+        // Eight numbers a stencil, and where their forces lie.
+        let couplings = counts.edges + 2.0 * counts.hinges + counts.cell_pairs;
+        Need { bytes: 160.0 * counts.edges, couplings }
+    }
+    fn build(&self, ingredients: &Ingredients<D>) -> Result<Box<dyn Potential<D>>, BuildError> {
+        let grid = Grid::of(ingredients.mesh)?;
+        let solid = matches!(grid, Grid::Plane { .. } | Grid::Space { .. });
+        for values in ingredients.values {
+            match (solid, values.number("thickness")) {
+                (true, Some(_)) => return Err(Refusal::SolidThickness {}.into()),
+                (false, None) => return Err(Refusal::NoThickness {}.into()),
+                _ => {}
+            }
+        }
+        let elastic: Vec<Elastic> = ingredients.values.iter().map(|values| Elastic::of(values)).collect();
+        let damped = elastic.iter().any(|body| body.damping > 0.0);
+        let plan = Plan { ingredients, elastic, damped };
+        let parts = match grid {
+            Grid::Curve { edges, nodes } => plan.curve(&edges, &nodes)?,
+            Grid::Surface { cells, inner, edge } => plan.surface(&cells, &inner, &edge)?,
+            Grid::Plane { cells } => plan.plane(&cells)?,
+            Grid::Space { cells } => plan.space(&cells)?,
+        };
+        Ok(Box::new(FiniteDifference { parts, damped }))
+    }
+}
+
+type Parts<const D: usize> = Vec<Box<dyn Potential<D>>>;
+
+/// What all parts of a body are built from.
+struct Plan<'a, const D: usize> {
+    ingredients: &'a Ingredients<'a, D>,
+    elastic: Vec<Elastic>,
+    damped: bool,
+}
+
+impl<const D: usize> Plan<'_, D> {
+    fn layout(&self) -> (Layout, usize) {
+        (self.ingredients.layout, self.ingredients.mesh.positions.len())
+    }
+    fn mesh(&self) -> &Mesh<D> {
+        self.ingredients.mesh
+    }
+    fn of(&self, body: usize) -> &Elastic {
+        &self.elastic[body.min(self.elastic.len() - 1)]
+    }
+    fn at(&self, node: u32) -> [f64; 3] {
+        in_space(&self.mesh().positions[node as usize])
+    }
+    fn length(&self, a: u32, b: u32) -> f64 {
+        let d = minus(&self.at(b), &self.at(a));
+        dot(&d, &d).sqrt()
+    }
+
+    fn curve(&self, edges: &[[u32; 2]], nodes: &[[u32; 3]]) -> Result<Parts<D>, Refusal> {
+        let lengths: Vec<f64> = edges.iter().map(|&[a, b]| self.length(a, b)).collect();
+        if let Some(edge) = lengths.iter().position(|length| *length <= 0.0) {
+            return Err(Refusal::NoLength { edge });
+        }
+        let depth = (D == 2).then_some(self.ingredients.thickness);
+        let (layout, count) = self.layout();
+        let stretch = Stencils::<Stretch, 2, 3>::new(layout, count, edges, self.damped, |edge, body| {
+            let (own, length) = (self.of(body), lengths[edge]);
+            [own.section(depth)[0] * length, 1.0 / (length * length), own.damping]
+        });
+        let bend = Stencils::<Bend, 3, 7>::new(layout, count, nodes, self.damped, |node, body| {
+            let [before, at, after] = nodes[node];
+            let (low, high) = (self.length(before, at), self.length(at, after));
+            let mean = 0.5 * (low + high);
+            let own = self.of(body);
+            let share = high / (low + high);
+            let rest = self.rest_curvature(nodes[node], [low, high], share);
+            [own.section(depth)[1] * mean, 1.0 / low, 1.0 / high, share, 1.0 / mean, rest, own.damping]
+        });
+        Ok(vec![Box::new(stretch), Box::new(bend)])
+    }
+    /// B₀ of a node of a curve [1/m].
+    fn rest_curvature(&self, [before, at, after]: [u32; 3], [low, high]: [f64; 2], share: f64) -> f64 {
+        let a = minus(&self.at(at), &self.at(before)).map(|c| c / low);
+        let b = minus(&self.at(after), &self.at(at)).map(|c| c / high);
+        let tangent: [f64; 3] = core::array::from_fn(|d| share * a[d] + (1.0 - share) * b[d]);
+        let normal = cross(&a, &b);
+        let size = dot(&tangent, &tangent).sqrt() * 0.5 * (low + high);
+        let across = if D == 2 { normal[2] } else { dot(&normal, &normal).sqrt() };
+        // Straight but for rounding: then every direction of bending is alike.
+        if D == 3 && across < 1e-9 { 0.0 } else { across / size }
+    }
+
+    /// The spacings of quadrilaterals.
+    fn rectangles(&self, cells: &[[u32; 4]]) -> Result<Vec<[f64; 2]>, Refusal> {
+        let (neighbours, steps) = QUADRILATERAL;
+        cells.iter().enumerate().map(|(k, cell)| spacings(self.mesh(), k, cell, neighbours, steps)).collect()
+    }
+    fn quadrilaterals(
+        &self,
+        cells: &[[u32; 4]],
+        sides: &[[f64; 2]],
+        law: impl Fn(&Elastic) -> [f64; 3],
+        depth: f64,
+    ) -> Box<dyn Potential<D>> {
+        let (layout, count) = self.layout();
+        Box::new(Stencils::<Quadrilateral, 4, 7>::new(layout, count, cells, self.damped, |cell, body| {
+            let [h1, h2] = sides[cell];
+            let own = self.of(body);
+            let c = law(own).map(|c| c * h1 * h2 * depth);
+            [c[0], c[1], c[2], 1.0 / (h1 * h1), 1.0 / (h2 * h2), 1.0 / (h1 * h2), own.damping]
+        }))
+    }
+    fn plane(&self, cells: &[[u32; 4]]) -> Result<Parts<D>, Refusal> {
+        let sides = self.rectangles(cells)?;
+        Ok(vec![self.quadrilaterals(cells, &sides, Elastic::solid, self.ingredients.thickness)])
+    }
+    fn space(&self, cells: &[[u32; 8]]) -> Result<Parts<D>, Refusal> {
+        let (neighbours, steps) = HEXAHEDRON;
+        let sides: Vec<[f64; 3]> = cells
+            .iter()
+            .enumerate()
+            .map(|(k, cell)| spacings(self.mesh(), k, cell, neighbours, steps))
+            .collect::<Result<_, _>>()?;
+        let (layout, count) = self.layout();
+        let part = Stencils::<Hexahedron, 8, 10>::new(layout, count, cells, self.damped, |cell, body| {
+            let [h1, h2, h3] = sides[cell];
+            let own = self.of(body);
+            let c = own.solid().map(|c| c * h1 * h2 * h3);
+            let over = |a: f64, b: f64| 1.0 / (a * b);
+            [
+                c[0],
+                c[1],
+                c[2],
+                over(h1, h1),
+                over(h2, h2),
+                over(h3, h3),
+                over(h1, h2),
+                over(h1, h3),
+                over(h2, h3),
+                own.damping,
+            ]
+        });
+        Ok(vec![Box::new(part)])
+    }
+
+    fn surface(&self, cells: &[[u32; 4]], inner: &[[u32; 5]], edge: &[[u32; 4]]) -> Result<Parts<D>, Refusal> {
+        let sides = self.rectangles(cells)?;
+        let [h1, h2] = sides[0];
+        for (cell, own) in sides.iter().enumerate() {
+            for (spacing, first) in own.iter().zip([h1, h2]) {
+                if (spacing - first).abs() > 1e-6 * first {
+                    return Err(Refusal::Uneven { cell, spacing: *spacing, first });
+                }
+            }
+        }
+        let area = h1 * h2;
+        let (layout, count) = self.layout();
+        // The grid is flat at rest, since its cells are equal rectangles; a rolled sheet has rectangles too, so B₀ is computed.
+        let at_inner = Stencils::<Inner, 5, 7>::new(layout, count, inner, self.damped, |node, body| {
+            let own = self.of(body);
+            let p = [own.rigidity() * area, own.poissons_ratio, 1.0 / h1, 1.0 / h2, 0.0, 0.0, own.damping];
+            let [b1, b2] = plate::curvatures(&p, &inner[node].map(|n| self.at(n)));
+            [p[0], p[1], p[2], p[3], b1, b2, p[6]]
+        });
+        let at_edge = Stencils::<Edge, 4, 5>::new(layout, count, edge, self.damped, |node, body| {
+            let own = self.of(body);
+            let nu = own.poissons_ratio;
+            let nodes = edge[node];
+            let (along, across) = (self.length(nodes[0], nodes[2]), self.length(nodes[0], nodes[3]));
+            let p = [0.5 * area * own.rigidity() * (1.0 - nu * nu), 1.0 / along, 1.0 / across, 0.0, own.damping];
+            [p[0], p[1], p[2], plate::edge_curvature(&p, &nodes.map(|n| self.at(n))), p[4]]
+        });
+        let twist = Stencils::<Twist, 4, 5>::new(layout, count, cells, self.damped, |cell, body| {
+            let own = self.of(body);
+            let whole = 2.0 * (1.0 - own.poissons_ratio) * own.rigidity() * area;
+            let p = [whole, 1.0 / h1, 1.0 / h2, 0.0, own.damping];
+            [p[0], p[1], p[2], plate::twist(&p, &cells[cell].map(|n| self.at(n))), p[4]]
+        });
+        let membrane = self.quadrilaterals(cells, &sides, Elastic::membrane, 1.0);
+        Ok(vec![membrane, Box::new(at_inner), Box::new(at_edge), Box::new(twist)])
+    }
+}
+
+impl<const D: usize> Potential<D> for FiniteDifference<D> {
+    fn properties(&self) -> Properties {
+        Properties::new(KIND, Views { energy: true, hessian: true, symmetric: true, damping: self.damped })
+    }
+    fn stencils(&self, visit: &mut dyn FnMut(&[u32])) {
+        self.parts.iter().for_each(|part| part.stencils(visit));
+    }
+    fn add_force(&self, simd: Simd, view: &View<D>, scratch: &[f64], tile: &mut Tile<D>) {
+        self.parts.iter().for_each(|part| part.add_force(simd, view, scratch, tile));
+    }
+    fn energy(&self, simd: Simd, view: &View<D>, scratch: &[f64]) -> [f64; WIDTH] {
+        let mut energy = [0.0; WIDTH];
+        for part in &self.parts {
+            let own = part.energy(simd, view, scratch);
+            (0..WIDTH).for_each(|l| energy[l] += own[l]);
+        }
+        energy
+    }
+    fn hessian(&self, view: &View<D>, scratch: &[f64], keep: Definiteness, sink: &mut dyn Sink<D>) {
+        self.parts.iter().for_each(|part| part.hessian(view, scratch, keep, sink));
+    }
+    fn damping_matrix(&self, view: &View<D>, scratch: &[f64], sink: &mut dyn Sink<D>) {
+        self.parts.iter().for_each(|part| part.damping_matrix(view, scratch, sink));
+    }
+}
+
+impl<const D: usize> Observe<D> for FiniteDifference<D> {
+    fn heap_bytes(&self) -> usize {
+        self.parts.iter().map(|part| part.heap_bytes()).sum()
+    }
+}

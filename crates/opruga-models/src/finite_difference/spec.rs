@@ -1,0 +1,51 @@
+//! Parameters of finite differences.
+
+use opruga_core::spec::{Allowed, Bound, Condition, Default, Field, Spec};
+
+/// The parameters of `finite_difference`.
+pub const SPEC: Spec = Spec {
+    kind: super::KIND,
+    summary: "an elastic curve, surface or solid by finite differences of its metric and its curvature",
+    documentation: "Energy of the differences of the metric tensor G and the curvature tensor B from those at rest, by differences on the regular grid of the body: \
+curves (`line`, `ring`, `polyline`, closed or open) with ½ EA ε² + ½ EI (B − B₀)² per length, surfaces (`sheet`) with \
+½ Et/(1 − ν²) [(1 − ν) ε:ε + ν (tr ε)²] and the same of the curvature with Et³/12(1 − ν²), solids (`grid`) with the law of St. Venant and Kirchhoff; \
+ε = ½ (G − G₀). EI is E t³/12 times the depth for a curve of the plane, E π t⁴/64 (a round wire) in space. Strains along an axis live on edges, \
+shear strains in the middle of cells or faces, curvatures at nodes: second order, without a free checkerboard. ν = 0 gives the uncoupled tensors of the paper. \
+Forces are the exact gradient; the paper leaves the turn of the normal out. A curve in space has no torsion: it resists bending, not twist. \
+A body that is no grid is refused. Source: Terzopoulos, Platt, Barr, Fleischer 1987, Elastically deformable models. Equations and limits: docs/finite-differences.md.",
+    dimensions: &[2, 3],
+    fields: &[
+        Field::new("youngs_modulus", Allowed::POSITIVE, "Pa", Default::Required, "Young's modulus E.").starts_at(1e5),
+        Field::new(
+            "poissons_ratio",
+            Allowed::Number { least: Bound::Open(-1.0), greatest: Bound::Open(0.5) },
+            "",
+            Default::Number(0.3),
+            "Poisson's ratio ν of surfaces and solids; 0 for the uncoupled tensors of the paper. Curves have none.",
+        ),
+        Field::new(
+            "thickness",
+            Allowed::POSITIVE,
+            "m",
+            Default::Absent,
+            "Thickness t of a curve or a surface, diameter of a wire in space; a solid has none.",
+        )
+        .starts_at(0.02),
+        Field::new(
+            "damping",
+            Allowed::NOT_NEGATIVE,
+            "s",
+            Default::Number(0.0),
+            "Retardation time τ: stresses and moments are those of ε + τ ε̇ and B + τ Ḃ.",
+        ),
+        Field::new(
+            "plane",
+            Allowed::Choice(&["strain", "stress"]),
+            "",
+            Default::Text("strain"),
+            "For solids of the plane: whether nothing moves across the plane, or no stress acts across it.",
+        )
+        .applies(&[Condition::Dimension(2)]),
+    ],
+    roles: &[],
+};

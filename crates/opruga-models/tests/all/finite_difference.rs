@@ -1,0 +1,224 @@
+//! Curves, surfaces and solids by finite differences: derivatives, closed forms, refusals.
+
+use crate::support::{Part, system};
+use opruga_core::check::{Options, conformance};
+use opruga_core::potential::{Ingredients, Model};
+use opruga_core::spec::Values;
+use opruga_core::state::{Layout, Parameter};
+use opruga_core::system::Stage;
+use opruga_mesh::Mesh;
+use opruga_models::finite_difference::FiniteDifferenceModel as FiniteDifference;
+
+fn chain<const D: usize>() -> Mesh<D> {
+    let at =
+        |k: u32| core::array::from_fn(|d| [0.1 * f64::from(k), 0.03 * f64::from(k % 3), 0.02 * f64::from(k % 2)][d]);
+    Mesh::polyline(&(0..29).map(at).collect::<Vec<_>>(), false).unwrap()
+}
+fn sheet(cells: [u32; 2]) -> Mesh<3> {
+    Mesh::sheet([0.0, 1.0, 0.0], [[1.0, 0.0, 0.0], [0.0, 0.0, 0.8]], cells).unwrap()
+}
+fn once() -> Options {
+    Options { states: 1, ..Options::default() }
+}
+
+#[test]
+fn curves_are_the_gradient_of_their_energy() {
+    let damped = [
+        values!(finite_difference, youngs_modulus: 5e4, thickness: 0.05, damping: 0.01),
+        values!(finite_difference, youngs_modulus: 1e4, thickness: 0.1),
+    ];
+    let ring = |n| Mesh::ring(0.5, n, [0.2, 2.0], 0.1).unwrap();
+    conformance("ring", &FiniteDifference, &damped, &ring(36), &Options::default()).assert();
+    conformance("ring of three", &FiniteDifference, &damped, &ring(3), &Options::default()).assert();
+    conformance("inside out", &FiniteDifference, &damped, &ring(36), &Options { mirrored: true, ..once() }).assert();
+    conformance("chain", &FiniteDifference, &damped, &chain::<2>(), &Options::default()).assert();
+    conformance("bent chain in space", &FiniteDifference, &damped, &chain::<3>(), &Options::default()).assert();
+    let line = Mesh::<3>::line([0.0; 3], [1.0, 0.3, 0.2], 12).unwrap();
+    conformance("line in space", &FiniteDifference, &damped, &line, &Options::default()).assert();
+    let large = Options { states: 1, derivatives: false, ..Options::default() };
+    conformance("long ring", &FiniteDifference, &damped, &ring(1700), &large).assert();
+}
+
+#[test]
+fn surfaces_are_the_gradient_of_their_energy() {
+    let damped = [
+        values!(finite_difference, youngs_modulus: 5e4, thickness: 0.2, damping: 0.01),
+        values!(finite_difference, youngs_modulus: 1e4, thickness: 0.3, poissons_ratio: 0.0),
+    ];
+    conformance("sheet", &FiniteDifference, &damped, &sheet([5, 4]), &Options::default()).assert();
+    conformance("one cell", &FiniteDifference, &damped, &sheet([1, 1]), &Options::default()).assert();
+    conformance("strip", &FiniteDifference, &damped, &sheet([1, 6]), &Options::default()).assert();
+    let large = Options { states: 1, derivatives: false, ..Options::default() };
+    conformance("large", &FiniteDifference, &damped, &sheet([37, 41]), &large).assert();
+}
+
+#[test]
+fn solids_are_the_gradient_of_their_energy() {
+    let damped = [
+        values!(finite_difference, youngs_modulus: 5e4, damping: 0.01),
+        values!(finite_difference, youngs_modulus: 1e4, poissons_ratio: 0.45),
+    ];
+    let stress = [values!(finite_difference, youngs_modulus: 5e4, plane: "stress")];
+    let plate = Mesh::<2>::grid([0.0, 1.0], [1.0, 0.6], [5, 3]).unwrap();
+    let block = Mesh::<3>::grid([0.0; 3], [1.0, 0.8, 0.6], [3, 2, 2]).unwrap();
+    conformance("plate", &FiniteDifference, &damped, &plate, &Options::default()).assert();
+    conformance("plane stress", &FiniteDifference, &stress, &plate, &Options::default()).assert();
+    conformance("block", &FiniteDifference, &damped, &block, &Options::default()).assert();
+    conformance("inside out", &FiniteDifference, &damped, &block, &Options { mirrored: true, ..once() }).assert();
+}
+
+/// The energy of a body [J] whose nodes are moved.
+fn energy<const D: usize>(mesh: &Mesh<D>, values: Values, moved: impl Fn([f64; D]) -> [f64; D]) -> f64 {
+    let parts: [Part<D>; 1] = [(&FiniteDifference, values)];
+    let mut system = system(mesh, &parts);
+    for (node, x) in mesh.positions.iter().enumerate() {
+        system.state.x.set(node, moved(*x));
+    }
+    let member = &system.members[0];
+    member.potential.energy(system.simd, &system.view(Stage::Current, 0.0), &member.scratch).iter().sum()
+}
+
+/// λ/2 (tr E)² + μ E:E with Green's strain of F.
+fn st_venant_kirchhoff<const D: usize>(f: [[f64; D]; D], [lambda, mu]: [f64; 2]) -> f64 {
+    let (mut trace, mut square) = (0.0, 0.0);
+    for i in 0..D {
+        for j in 0..D {
+            let c: f64 = (0..D).map(|k| f[k][i] * f[k][j]).sum();
+            let strain = 0.5 * (c - f64::from(u8::from(i == j)));
+            trace += if i == j { strain } else { 0.0 };
+            square += strain * strain;
+        }
+    }
+    0.5 * lambda * trace * trace + mu * square
+}
+
+fn lame(e: f64, nu: f64) -> [f64; 2] {
+    [e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), e / (2.0 * (1.0 + nu))]
+}
+
+fn affine<const D: usize>(f: [[f64; D]; D]) -> impl Fn([f64; D]) -> [f64; D] {
+    move |x| core::array::from_fn(|i| 0.3 + (0..D).map(|j| f[i][j] * x[j]).sum::<f64>())
+}
+
+#[test]
+fn solids_under_affine_motion_have_the_energy_of_st_venant_and_kirchhoff() {
+    let [lambda, mu] = lame(7e4, 0.28);
+    let plate = Mesh::<2>::grid([0.0, 1.0], [1.0, 0.6], [5, 3]).unwrap();
+    let f = [[1.2, 0.3], [-0.1, 0.9]];
+    let of = |values| energy(&plate, values, affine(f)) / 0.6;
+    let strain = values!(finite_difference, youngs_modulus: 7e4, poissons_ratio: 0.28);
+    let expected = st_venant_kirchhoff(f, [lambda, mu]);
+    assert!((of(strain) / expected - 1.0).abs() < 1e-13);
+    let stress = values!(finite_difference, youngs_modulus: 7e4, poissons_ratio: 0.28, plane: "stress");
+    let expected = st_venant_kirchhoff(f, [2.0 * lambda * mu / (lambda + 2.0 * mu), mu]);
+    assert!((of(stress) / expected - 1.0).abs() < 1e-13);
+
+    let block = Mesh::<3>::grid([0.0; 3], [1.0, 0.8, 0.6], [3, 2, 4]).unwrap();
+    let f = [[1.1, 0.2, -0.1], [0.05, 0.8, 0.3], [-0.2, 0.1, 1.3]];
+    let values = values!(finite_difference, youngs_modulus: 7e4, poissons_ratio: 0.28);
+    let found = energy(&block, values, affine(f)) / 0.48;
+    assert!((found / st_venant_kirchhoff(f, [lambda, mu]) - 1.0).abs() < 1e-13);
+}
+
+#[test]
+fn sheets_bend_and_twist_as_plates() {
+    let (e, t, nu) = (2e6, 0.01, 0.3);
+    let rigidity = e * t * t * t / (12.0 * (1.0 - nu * nu));
+    let sheet = |n| Mesh::sheet([0.0; 3], [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [n, n]).unwrap();
+    let of = |n, nu: f64, moved: &dyn Fn([f64; 3]) -> [f64; 3]| {
+        energy(&sheet(n), values!(finite_difference, youngs_modulus: e, thickness: t, poissons_ratio: nu), moved)
+    };
+    // A saddle z = c x y twists without bending: ½ D 2 (1 − ν) c² A, and membrane strains of fourth order in c.
+    let c = 1e-4;
+    let twisted = of(8, nu, &|[x, y, _]| [x, y, c * x * y]);
+    let expected = rigidity * (1.0 - nu) * c * c;
+    assert!((twisted / expected - 1.0).abs() < 1e-3, "{twisted} {expected}");
+    // Rolled up to a cylinder with its chords kept: each cell turns by the same angle. Without lateral coupling every row has
+    // ½ D κ² for its area, the first and last column of nodes none.
+    let rolled = |n: u32| {
+        let h = 1.0 / f64::from(n);
+        let turn = 0.4 * h;
+        #[allow(clippy::disallowed_methods, reason = "the reference")]
+        let moved = move |[x, y, _]: [f64; 3]| {
+            // The corners of a polygon with sides h whose directions turn by `turn` from one to the next.
+            let k = (x / h).round();
+            let (radius, angle) = (0.5 * h / (0.5 * turn).sin(), k * turn);
+            [radius * angle.sin(), y, radius * (1.0 - angle.cos())]
+        };
+        let rigidity = e * t * t * t / 12.0;
+        let inner = f64::from(n - 1) / f64::from(n);
+        of(n, 0.0, &moved) / (0.5 * rigidity * 0.16 * inner) - 1.0
+    };
+    let errors = [rolled(8), rolled(16)];
+    let order = (errors[0] / errors[1]).abs().ln() / 2.0_f64.ln();
+    assert!(errors[1].abs() < 1e-3 && (order - 2.0).abs() < 0.1, "{errors:?}, order {order}");
+}
+
+#[test]
+fn rings_and_wires_have_no_energy_at_rest_and_that_of_their_curvature_when_bent() {
+    let (e, t, depth) = (1e6, 0.02, 1.0);
+    let inertia = t * t * t / 12.0 * depth;
+    // A straight line bent to an arc of a polygon with sides h: B = 2 sin(φ/2) · cos(φ/2)/(h cos(φ/2)).
+    let bent = |n: u32| {
+        let h = 1.0 / f64::from(n);
+        let turn = 1.5 * h;
+        #[allow(clippy::disallowed_methods, reason = "the reference")]
+        let moved = move |[x, _]: [f64; 2]| {
+            let (radius, angle) = (0.5 * h / (0.5 * turn).sin(), (x / h).round() * turn);
+            [radius * angle.sin(), radius * (1.0 - angle.cos())]
+        };
+        let line = Mesh::<2>::line([0.0, 0.0], [1.0, 0.0], n).unwrap();
+        let found = energy(&line, values!(finite_difference, youngs_modulus: e, thickness: t), moved);
+        found / (0.5 * e * inertia * 2.25 * f64::from(n - 1) / f64::from(n)) - 1.0
+    };
+    let errors = [bent(10), bent(20)];
+    let order = (errors[0] / errors[1]).abs().ln() / 2.0_f64.ln();
+    assert!(errors[1].abs() < 1e-3 && (order - 2.0).abs() < 0.1, "{errors:?}, order {order}");
+    let ring = Mesh::ring(0.5, 24, [0.0, 0.0], 0.0).unwrap();
+    let rest = energy(&ring, values!(finite_difference, youngs_modulus: e, thickness: t), |x| x);
+    assert!(rest.abs() < 1e-20, "{rest}");
+}
+
+/// The code with which a body is refused.
+fn refused<const D: usize>(mesh: &Mesh<D>, values: &Values) -> Option<String> {
+    let mass = Parameter::uniform(1.0);
+    let ingredients = Ingredients {
+        mesh,
+        layout: Layout::Single,
+        values: &[values],
+        mass: &mass,
+        densities: None,
+        thickness: 1.0,
+        gravity: [0.0; D],
+        step: 1e-3,
+    };
+    FiniteDifference.build(&ingredients).err().map(|error| error.code.to_string())
+}
+
+#[test]
+fn bodies_that_are_no_regular_grid_are_refused() {
+    let curve = values!(finite_difference, youngs_modulus: 1e5, thickness: 0.02);
+    let solid = values!(finite_difference, youngs_modulus: 1e5);
+    let code = |text: &str| Some(format!("model.{text}"));
+    assert_eq!(refused(&Mesh::icosphere(0.5, 1).unwrap(), &curve), code("not_a_grid"));
+    let mut triangles = Mesh::<2>::grid([0.0; 2], [1.0, 1.0], [2, 2]).unwrap();
+    triangles = triangles.into_simplices().unwrap();
+    assert_eq!(refused(&triangles, &solid), code("not_a_grid"));
+    let mut branching = Mesh::<3>::line([0.0; 3], [1.0, 0.0, 0.0], 4).unwrap();
+    branching.wires.push([1, 4]);
+    assert_eq!(refused(&branching, &curve), code("not_a_grid"));
+    let skewed = Mesh::sheet([0.0; 3], [[1.0, 0.0, 0.0], [0.5, 1.0, 0.0]], [3, 3]).unwrap();
+    assert_eq!(refused(&skewed, &curve), code("not_rectangular"));
+    let mut moved = Mesh::<2>::grid([0.0; 2], [1.0, 1.0], [2, 2]).unwrap();
+    moved.positions[4] = [0.6, 0.5];
+    assert_eq!(refused(&moved, &solid), code("not_rectangular"));
+    let mut uneven = Mesh::sheet([0.0; 3], [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [2, 1]).unwrap();
+    for node in [1, 4] {
+        uneven.positions[node][0] = 0.4;
+    }
+    assert_eq!(refused(&uneven, &curve), code("uneven_grid"));
+    let line = Mesh::<2>::line([0.0; 2], [1.0, 0.0], 4).unwrap();
+    assert_eq!(refused(&line, &solid), code("no_thickness"));
+    assert_eq!(refused(&Mesh::<2>::grid([0.0; 2], [1.0, 1.0], [2, 2]).unwrap(), &curve), code("solid_thickness"));
+    assert_eq!(refused(&line, &curve), None);
+}
