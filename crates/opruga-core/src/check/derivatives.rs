@@ -192,8 +192,8 @@ impl<const D: usize> Suite<'_, D> {
         let assembled: Vec<f64> =
             (0..size).map(|p| (0..size).map(|q| matrix[p * size + q] * direction[q]).sum::<f64>()).collect();
         for case in [&case, &eight] {
-            let places = case.places();
-            let (mut along, mut out) = (Columns::<D>::zeros(places), Columns::<D>::zeros(places));
+            let length = case.places();
+            let (mut along, mut out) = (Columns::<D>::zeros(length), Columns::<D>::zeros(length));
             for node in 0..case.nodes {
                 let row = core::array::from_fn(|d| direction[node * D + d]);
                 along.set(case.layout.place(node, 0), row);
