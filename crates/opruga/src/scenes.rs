@@ -41,8 +41,6 @@ scenes![
     "cooks-membrane",
     "jelly",
     "jelly-crowd",
-    "shape-matched-letters",
-    "teran-cube",
     "drawings",
     "heart-solid",
     "spot-solid",

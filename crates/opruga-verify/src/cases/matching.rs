@@ -46,7 +46,9 @@ const SAG: Case = Case {
     ..BASE
 };
 
-pub(super) const CASES: &[Case] = &[
+pub(super) const STATICS: &[Case] = &[Case { name: "matching-sag-of-any-step", measure: sag, ..SAG }];
+
+pub(super) const DYNAMICS: &[Case] = &[
     Case { name: "matching-outside-2d", measure: |lab, b| plane(lab, b, "linear", Wanted::Last), ..SQUARE },
     Case { name: "matching-outside-3d", measure: |lab, b| space(lab, b, "linear", Wanted::Last), ..SQUARE },
     Case { name: "matching-strain-2d", measure: |lab, b| plane(lab, b, "linear", Wanted::Number(3)), ..STRAIN },
@@ -59,7 +61,6 @@ pub(super) const CASES: &[Case] = &[
     },
     Case { name: "matching-rigid-2d", measure: |lab, b| plane(lab, b, "linear", Wanted::Number(2)), ..RIGID },
     Case { name: "matching-rigid-3d", measure: |lab, b| space(lab, b, "linear", Wanted::Number(5)), ..RIGID },
-    Case { name: "matching-sag-of-any-step", measure: sag, ..SAG },
 ];
 
 /// κ [1/s²].

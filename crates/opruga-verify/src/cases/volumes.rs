@@ -100,9 +100,12 @@ pub(super) const CASES: &[Case] = &[
     Case { name: "finite-volume-lame-tube-quadrilaterals", measure: |lab, n| tube(lab, n, Cells::Boxes), ..TUBE },
     Case { name: "finite-volume-cook-triangles", measure: |lab, n| cook(lab, n, Cells::Linear), ..COOK },
     Case { name: "finite-volume-cook-quadrilaterals", measure: |lab, n| cook(lab, n, Cells::Boxes), ..COOK },
-    Case { name: "finite-volume-first-wave-triangles", measure: wave, ..WAVE },
-    Case { name: "finite-volume-uniaxial-stress-hexahedra", measure: |lab, x| pull(lab, x), ..RUBBER },
 ];
+
+pub(super) const MATERIALS: &[Case] =
+    &[Case { name: "finite-volume-uniaxial-stress-hexahedra", measure: |lab, x| pull(lab, x), ..RUBBER }];
+
+pub(super) const DYNAMICS: &[Case] = &[Case { name: "finite-volume-first-wave-triangles", measure: wave, ..WAVE }];
 
 fn solid(law: &str) -> String {
     format!("models = [{{ kind = \"finite_volume\", {law} }}]")
