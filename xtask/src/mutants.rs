@@ -38,7 +38,7 @@ const MUTANTS: [Mutant; 10] = [
     // The second derivative of a material has a wrong sign.
     Mutant {
         name: "fem",
-        file: "crates/opruga-models/src/fem/materials/neo_hookean.rs",
+        file: "crates/opruga-models/src/materials/neo_hookean.rs",
         text: "let factor = p.lambda * log - p.mu;",
         instead: "let factor = p.lambda * log + p.mu;",
         tests: &["--package", "opruga-models", "--test", "all", "every_material_on_every_element_in_the_plane"],

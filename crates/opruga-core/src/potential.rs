@@ -7,6 +7,7 @@ use crate::state::{Layout, View};
 use crate::tile::Tile;
 use core::fmt::Debug;
 use core::ops::Range;
+use opruga_math::message::AnyMessage;
 use opruga_math::{Simd, WIDTH};
 use opruga_mesh::Mesh;
 use std::borrow::Cow;
@@ -16,8 +17,10 @@ use std::borrow::Cow;
 pub struct Views {
     /// There is an energy whose negative gradient is the force at rest.
     pub energy: bool,
-    /// There is a Hessian, or forces do not depend on positions.
+    /// There are second derivatives −∂F/∂x, or forces do not depend on positions.
     pub hessian: bool,
+    /// The second derivatives are a symmetric matrix, as those of an energy are.
+    pub symmetric: bool,
     /// The force depends on velocities.
     pub damping: bool,
 }
@@ -25,7 +28,10 @@ pub struct Views {
 impl Views {
     /// Whether everything that is needed is there.
     pub fn include(self, needed: Views) -> bool {
-        (self.energy || !needed.energy) && (self.hessian || !needed.hessian) && (self.damping || !needed.damping)
+        (self.energy || !needed.energy)
+            && (self.hessian || !needed.hessian)
+            && (self.symmetric || !needed.symmetric)
+            && (self.damping || !needed.damping)
     }
 }
 
@@ -233,6 +239,10 @@ pub trait Potential<const D: usize>: Observe<D> + Send + Sync + Debug {
 
 /// What people and programs read of a model; no integrator asks for it.
 pub trait Observe<const D: usize> {
+    /// Why it has no energy, or no symmetric second derivatives, for refusals; nothing where it has both.
+    fn lacks(&self) -> Option<AnyMessage> {
+        None
+    }
     /// Pairs of nodes that a spring ties to each other, for pictures.
     fn bonds(&self) -> &[[u32; 2]] {
         &[]
@@ -342,6 +352,8 @@ pub struct Ingredients<'a, const D: usize> {
     pub thickness: f64,
     /// Acceleration of gravity [m/s²].
     pub gravity: [f64; D],
+    /// Length of a substep as the scene declares it [s]: for published schemes whose stiffness depends on it, and for nothing else.
+    pub step: f64,
 }
 
 impl<const D: usize> Ingredients<'_, D> {
@@ -355,9 +367,10 @@ impl<const D: usize> Ingredients<'_, D> {
 pub trait Model<const D: usize>: Send + Sync {
     /// Its parameters and documentation.
     fn spec(&self) -> &'static Spec;
-    /// Whether its potentials have an energy and second derivatives, whatever the parameters.
+    /// Whether its potentials have an energy and second derivatives, on every body and with the defaults of its parameters; what some
+    /// parameters take away, their documentation says.
     fn views(&self) -> Views {
-        Views { energy: true, hessian: true, damping: false }
+        Views { energy: true, hessian: true, symmetric: true, damping: false }
     }
     /// What it needs for one body beside the mesh and the state.
     fn need(&self, _counts: &Counts) -> Need {

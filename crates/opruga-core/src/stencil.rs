@@ -334,7 +334,7 @@ fn split(share: u32) -> (usize, usize) {
 
 impl<L: Kernel<D, N, K>, const D: usize, const N: usize, const K: usize> Potential<D> for Stencils<L, N, K> {
     fn properties(&self) -> Properties {
-        Properties::new(L::NAME, Views { energy: true, hessian: true, damping: self.damped })
+        Properties::new(L::NAME, Views { energy: true, hessian: true, symmetric: true, damping: self.damped })
     }
     fn stencils(&self, visit: &mut dyn FnMut(&[u32])) {
         self.elements.iter().for_each(|element| visit(element));

@@ -5,8 +5,11 @@ pub mod bending;
 pub mod drag;
 pub mod fem;
 pub mod finite_difference;
+pub mod finite_volume;
 pub mod mass_spring;
+pub mod materials;
 pub mod pressure;
+pub mod shape_matching;
 mod vectors;
 
 use core::any::Any;
@@ -26,11 +29,13 @@ pub fn all<const D: usize>() -> Vec<Box<dyn Model<D>>> {
 fn of_the_plane() -> Vec<Box<dyn Model<2>>> {
     let mut models = list();
     models.push(Box::new(fem::FemModel));
+    models.push(Box::new(finite_volume::FiniteVolumeModel));
     models
 }
 fn of_space() -> Vec<Box<dyn Model<3>>> {
     let mut models = list();
     models.push(Box::new(fem::FemModel));
+    models.push(Box::new(finite_volume::FiniteVolumeModel));
     models
 }
 
@@ -43,5 +48,6 @@ fn list<const D: usize>() -> Vec<Box<dyn Model<D>>> {
         Box::new(drag::DragModel),
         Box::new(finite_difference::FiniteDifferenceModel),
         Box::new(as_published::AsPublishedModel),
+        Box::new(shape_matching::ShapeMatchingModel),
     ]
 }

@@ -1,4 +1,4 @@
-//! The sparse factors of a matrix that need not be definite, by faer.
+//! The sparse factors of a matrix that need be neither definite nor symmetric, by faer.
 
 use crate::Indefinite;
 use crate::matrix::BlockMatrix;
@@ -15,6 +15,8 @@ pub struct Factors {
     scalars: Scalars,
     symbolic: Option<SymbolicLu<usize>>,
     factors: Option<Lu<usize, f64>>,
+    /// Whether the rows of the matrix are its columns.
+    is_symmetric: bool,
     parts: Woodbury,
 }
 
@@ -24,9 +26,11 @@ impl core::fmt::Debug for Factors {
     }
 }
 
-fn solve(factors: &Lu<usize, f64>, x: &mut [f64]) {
+/// The rows of a matrix were taken for its columns: one that is not symmetric has the factors of its transpose.
+fn solve(factors: &Lu<usize, f64>, is_symmetric: bool, x: &mut [f64]) {
     let rows = x.len();
-    factors.solve_in_place(MatMut::from_column_major_slice_mut(x, rows, 1));
+    let x = MatMut::from_column_major_slice_mut(x, rows, 1);
+    if is_symmetric { factors.solve_in_place(x) } else { factors.solve_transpose_in_place(x) }
 }
 
 impl Factors {
@@ -35,10 +39,23 @@ impl Factors {
     /// # Errors
     /// [`Indefinite`] where it is singular.
     pub fn update<const D: usize>(&mut self, matrix: &BlockMatrix<D>) -> Result<(), Indefinite> {
+        self.update_any(matrix, true)
+    }
+
+    /// Factors a matrix that may differ from its transpose; its parts of rank one are symmetric.
+    ///
+    /// # Errors
+    /// [`Indefinite`] where it is singular.
+    pub fn update_any<const D: usize>(
+        &mut self,
+        matrix: &BlockMatrix<D>,
+        is_symmetric: bool,
+    ) -> Result<(), Indefinite> {
+        self.is_symmetric = is_symmetric;
         self.factors = None;
         let anew = self.scalars.take(matrix, false);
         let factors = self.factored(anew)?;
-        self.parts.update(matrix, false, |x| solve(&factors, x))?;
+        self.parts.update(matrix, false, |x| solve(&factors, is_symmetric, x))?;
         self.factors = Some(factors);
         Ok(())
     }
@@ -59,7 +76,7 @@ impl Factors {
     /// Solves A x = b in place; says whether every number that comes out is finite.
     pub fn solve(&self, x: &mut [f64]) -> bool {
         let Some(factors) = &self.factors else { return false };
-        solve(factors, x);
+        solve(factors, self.is_symmetric, x);
         self.parts.correct(x);
         x.iter().all(|x| x.is_finite())
     }

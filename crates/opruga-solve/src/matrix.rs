@@ -88,6 +88,10 @@ impl<const D: usize> BlockMatrix<D> {
     pub fn blocks(&self) -> usize {
         self.column.len()
     }
+    /// The number of parts of rank one.
+    pub fn parts(&self) -> usize {
+        self.rank_one.len()
+    }
     /// Bytes on the heap.
     pub fn heap_bytes(&self) -> usize {
         let scripts: usize = self.scripts.iter().map(Script::heap_bytes).sum();

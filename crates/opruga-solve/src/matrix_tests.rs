@@ -252,3 +252,26 @@ fn modes_of_a_free_ring_come_in_pairs() {
         }
     }
 }
+
+/// A matrix that is not its transpose: the factors solve with it and not with the transpose.
+#[test]
+fn factors_of_an_unsymmetric_matrix_solve_with_it() {
+    let deliver = |sink: &mut dyn Sink<2>| {
+        sink.block(0, 0, [[4.0, 1.0], [-2.0, 5.0]]);
+        sink.block(0, 1, [[0.5, -1.0], [2.0, 0.0]]);
+        sink.block(1, 0, [[-1.0, 3.0], [0.0, 0.25]]);
+        sink.block(1, 1, [[6.0, -2.0], [1.0, 3.0]]);
+        sink.low_rank(0.7, &[(0, [1.0, 2.0]), (1, [0.5, -1.0])]);
+    };
+    let mut matrix = BlockMatrix::<2>::default();
+    matrix.assemble(2, 0, |matrix| deliver(matrix));
+    let x = [1.0, -2.0, 0.5, 3.0];
+    let mut b = [0.0; 4];
+    matrix.multiply(&x, &mut b);
+    let mut factors = Factors::default();
+    factors.update_any(&matrix, false).unwrap();
+    assert!(factors.solve(&mut b));
+    for (found, expected) in b.iter().zip(x) {
+        assert!((found - expected).abs() < 1e-13, "{b:?}");
+    }
+}

@@ -13,7 +13,7 @@ use crate::unfold;
 use opruga_collide::Colliders;
 use opruga_core::error::BuildError;
 use opruga_core::integrator::Integrator;
-use opruga_core::potential::Ingredients;
+use opruga_core::potential::{Ingredients, Potential};
 use opruga_core::spec::{Role, Value, Values};
 use opruga_core::state::{Columns, Layout, Parameter};
 use opruga_core::system::{Pin, Stabilisers, System};
@@ -210,6 +210,7 @@ impl<const D: usize> Builder<'_, D> {
                     densities: densities(first),
                     thickness: first.thickness,
                     gravity: self.blueprint.surroundings.gravity,
+                    step: self.blueprint.time.frame / f64::from(self.blueprint.time.substeps),
                 })
                 .map_err(refuse)?;
             system.add(potential);
@@ -243,7 +244,7 @@ impl<const D: usize> Builder<'_, D> {
         // Loads know their derivatives; a model may lack them.
         for member in &system.members[..first.models.len()] {
             if !member.potential.properties().views.include(integrator.needs()) {
-                return Err(refuse(no_view(member.potential.properties().name, integrator.name())));
+                return Err(refuse(no_view(&*member.potential, integrator.name())));
             }
         }
         if system.inertia.is_some() {
@@ -356,6 +357,7 @@ impl<const D: usize> Builder<'_, D> {
             densities: densities(body),
             thickness: body.thickness,
             gravity: self.blueprint.surroundings.gravity,
+            step: self.blueprint.time.frame / f64::from(self.blueprint.time.substeps),
         };
         system.add(model.build(&ingredients).map_err(refuse)?);
         Ok(())
@@ -429,12 +431,18 @@ impl<const D: usize> Builder<'_, D> {
 }
 
 /// A model without what an integrator needs.
-fn no_view(model: &str, integrator: &str) -> BuildError {
+fn no_view<const D: usize>(model: &dyn Potential<D>, integrator: &str) -> BuildError {
+    let properties = model.properties();
+    let (what, also) = match properties.views.hessian {
+        true => ("no symmetric second derivatives", ", and `equilibrium` finds where it comes to rest"),
+        false => ("no second derivatives", ""),
+    };
+    let why = model.lacks().map_or(String::new(), |why| format!(": {why}"));
     let message = format!(
-        "the model has no second derivatives, which `{integrator}` needs; hint: an explicit integrator steps it, such as \
-         `symplectic_euler`"
+        "the model has {what}, which `{integrator}` needs{why}; hint: an explicit integrator steps it, such as \
+         `symplectic_euler`{also}"
     );
-    BuildError::new(model, "integrator.needs", message)
+    BuildError::new(properties.name, "integrator.needs", message)
 }
 
 fn no_cells<const D: usize>(body: &BodyBlueprint<D>) -> WorldError {

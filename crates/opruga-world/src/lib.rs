@@ -67,8 +67,8 @@ pub use node_states::NodeState;
 pub use opruga_core::break_off::BreakOff;
 /// What the laws of the finite elements say at one deformation gradient.
 pub mod law {
-    pub use opruga_models::fem::materials::NAMES;
-    pub use opruga_models::fem::{AtPoint, SPEC, in_plane, in_space, own_fields};
+    pub use opruga_models::fem::{SPEC, own_fields};
+    pub use opruga_models::materials::{AtPoint, NAMES, in_plane, in_space};
 }
 pub use refused::RefusedCommand;
 pub use registry::{Registries, Registry};

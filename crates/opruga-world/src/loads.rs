@@ -10,7 +10,7 @@ use opruga_mesh::{MOST_SIDE_NODES, SidePoint, side_points, side_tangents, side_v
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, PoisonError, RwLock};
 
-const USER: Views = Views { energy: false, hessian: true, damping: false };
+const USER: Views = Views { energy: false, hessian: true, symmetric: true, damping: false };
 
 /// A multiple of the unit matrix.
 fn isotropic<const D: usize>(value: f64) -> [[f64; D]; D] {

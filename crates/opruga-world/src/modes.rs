@@ -9,7 +9,7 @@ use crate::any_scene::three;
 use crate::error::WorldError;
 use crate::world::World;
 use opruga_core::error::BuildError;
-use opruga_core::potential::{Definiteness, Sink};
+use opruga_core::potential::{Definiteness, Sink, Views};
 use opruga_core::state::Columns;
 use opruga_core::system::{Stage, System};
 use opruga_integrators::equilibrium::rigid::{shape_of, unheld_motions};
@@ -70,8 +70,14 @@ impl<const D: usize> World<D> {
         };
         // By itself: others side by side do not matter.
         let mut system = self.island_of(&[body], &BTreeMap::new(), &self.integrator)?.system;
-        if let Some(member) = system.members.iter().find(|member| !member.potential.properties().views.hessian) {
-            let message = format!("`{}` has no second derivatives", member.potential.properties().name);
+        let has_modes = |views: Views| views.hessian && views.symmetric;
+        if let Some(member) = system.members.iter().find(|member| !has_modes(member.potential.properties().views)) {
+            let message = match member.potential.lacks() {
+                Some(why) => {
+                    format!("`{}` has no symmetric second derivatives: {why}", member.potential.properties().name)
+                }
+                None => format!("`{}` has no second derivatives", member.potential.properties().name),
+            };
             return Err(refuse("integrator.needs", message));
         }
         let mut force = Columns::zeros(system.places());

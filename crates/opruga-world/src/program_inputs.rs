@@ -63,7 +63,7 @@ impl<const D: usize> World<D> {
         island.system.state.x.set(place, position);
         island.system.state.v.set(place, velocity);
         // What an integrator remembers does not lead to here.
-        island.system.history.numbers.fill(0.0);
+        island.system.history.reset();
         island.refresh();
         // Nobody's work or loss.
         let before = self.energy.total();

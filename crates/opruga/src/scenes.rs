@@ -40,6 +40,7 @@ scenes![
     "cantilever-beam",
     "cooks-membrane",
     "jelly",
+    "jelly-crowd",
     "drawings",
     "heart-solid",
     "spot-solid",

@@ -71,6 +71,7 @@ pub(crate) fn bench(call: &BenchElements) -> Result<u8, Failure> {
                 densities: None,
                 thickness: 1.0,
                 gravity: [0.0; 3],
+                step: 1e-3,
             });
             let solid = solid.map_err(|e| Failure::call(e.to_string()))?;
             rows.push(measure(&*solid, mesh, element, material)?);

@@ -8,6 +8,7 @@ use opruga::core::potential::{
 use opruga::core::spec::Spec;
 use opruga::core::state::View;
 use opruga::core::tile::Tile;
+use opruga::math::message::AnyMessage;
 use opruga::math::{Simd, WIDTH};
 use opruga::{Registries, Registry};
 use std::sync::Arc;
@@ -113,6 +114,9 @@ impl<const D: usize> Potential<D> for Timed<D> {
 }
 
 impl<const D: usize> Observe<D> for Timed<D> {
+    fn lacks(&self) -> Option<AnyMessage> {
+        self.inner.lacks()
+    }
     fn bonds(&self) -> &[[u32; 2]] {
         self.inner.bonds()
     }

@@ -19,7 +19,7 @@ impl<const D: usize> Potential<D> for Anchors {
     fn properties(&self) -> Properties {
         Properties::new(
             "anchors",
-            Views { energy: true, hessian: false, damping: self.damping.iter().any(|c| *c > 0.0) },
+            Views { energy: true, hessian: false, symmetric: false, damping: self.damping.iter().any(|c| *c > 0.0) },
         )
     }
     fn add_force(&self, _simd: Simd, view: &View<D>, _scratch: &[f64], tile: &mut Tile<D>) {

@@ -41,6 +41,7 @@ mod tests;
 
 use crate::implicit::balance::{Balance, Solved};
 use crate::implicit::convergence::report;
+use crate::implicit::linear::has_symmetric_matrix;
 use crate::implicit::memory;
 use crate::implicit::minimiser::Minimiser;
 use crate::implicit::newton::Newton;
@@ -342,6 +343,11 @@ impl<const D: usize> Integrator<D> for Equilibrium {
         Amplification::new([[kept, 0.0], [0.0, 0.0]])
     }
     fn check(&self, system: &System<D>, obstacles: bool) -> Result<(), BuildError> {
+        if self.settings.solver == Solver::MatrixFree && !has_symmetric_matrix(system) {
+            let message = "`linear_solver` is \"matrix_free\", whose conjugate gradients need a symmetric matrix, and that of the body is \
+                           none; allowed: \"auto\"";
+            return Err(BuildError::new(SPEC.kind, "integrator.no_matrix", message));
+        }
         if !obstacles {
             return rigid::refuse_free_motions(system);
         }

@@ -26,6 +26,8 @@ pub(crate) struct Linear<const D: usize> {
     filled: FilledCholesky<D>,
     is_filled: bool,
     is_slow: bool,
+    /// Whether the matrix differs from its transpose, as that of forces without an energy does.
+    is_unsymmetric: bool,
     cholesky: Cholesky,
     factors: Factors,
     directions: Directions,
@@ -33,6 +35,9 @@ pub(crate) struct Linear<const D: usize> {
 
 /// Iterations of conjugate gradients at most.
 const MOST_PRODUCTS: u32 = 20_000;
+
+/// Parts of rank one with which a sparse factor is worth its while: each takes a solution with it, and every pair a number.
+const MOST_PARTS: usize = 64;
 
 /// After so many the complete factor is asked for: a nearly incompressible solid takes an incomplete one thousands.
 const MANY_PRODUCTS: u32 = 1000;
@@ -177,6 +182,7 @@ impl<const D: usize> Linear<D> {
     /// Takes the derivatives of a state, after its forces were evaluated.
     pub(crate) fn assemble(&mut self, mixture: &Mixture<D>) {
         self.added.clear();
+        self.is_unsymmetric = !has_symmetric_matrix(mixture.system);
         if mixture.matrix_free {
             self.added.reserve(mixture.mass.len());
             self.diagonal.clear();
@@ -266,10 +272,12 @@ impl<const D: usize> Linear<D> {
                 *block = held(block, &filter.projectors[node]);
             }
             self.jacobi.update(self.diagonal.iter())?;
+        } else if self.is_unsymmetric {
+            self.factor(filter)?;
         } else {
             self.constrain(filter);
             self.is_filled = false;
-            if settings.solver.is_direct::<D>(self.full.rows()) {
+            if self.is_direct(settings.solver) {
                 self.cholesky.update(&self.constrained)?;
             } else {
                 self.is_filled = self.is_slow && self.filled.update(&self.constrained).is_ok();
@@ -301,7 +309,11 @@ impl<const D: usize> Linear<D> {
             let ended = conjugate_gradients(multiply, &self.jacobi, b, out, tolerance, most, &mut directions);
             self.directions = directions;
             ended?.iterations
-        } else if settings.solver.is_direct::<D>(self.full.rows()) {
+        } else if self.is_unsymmetric {
+            out.copy_from_slice(b);
+            self.solve_by_factors(out)?;
+            1
+        } else if self.is_direct(settings.solver) {
             out.copy_from_slice(b);
             self.cholesky.solve(out);
             1
@@ -309,6 +321,11 @@ impl<const D: usize> Linear<D> {
             self.by_gradients(tolerance, b, out)?
         };
         if out.iter().all(|x| x.is_finite()) { Ok(products) } else { Err(Indefinite) }
+    }
+
+    /// Whether the sparse factor is taken.
+    fn is_direct(&self, solver: Solver) -> bool {
+        solver == Solver::Cholesky || (solver.is_direct::<D>(self.full.rows()) && self.full.parts() <= MOST_PARTS)
     }
 
     /// Solves by conjugate gradients, with the complete factor where the incomplete one leads nowhere soon.
@@ -348,12 +365,18 @@ impl<const D: usize> Linear<D> {
     /// Factors the constrained matrix whatever the signs of its eigenvalues.
     pub(crate) fn factor(&mut self, filter: &Filter<D>) -> Result<(), Indefinite> {
         self.constrain(filter);
-        self.factors.update(&self.constrained)
+        self.factors.update_any(&self.constrained, !self.is_unsymmetric)
     }
     /// Solves with those factors in place.
     pub(crate) fn solve_by_factors(&self, x: &mut [f64]) -> Result<(), Indefinite> {
         if self.factors.solve(x) { Ok(()) } else { Err(Indefinite) }
     }
+}
+
+/// Whether the second derivatives of all models are a symmetric matrix.
+pub(crate) fn has_symmetric_matrix<const D: usize>(system: &System<D>) -> bool {
+    let views = system.members.iter().map(|member| member.potential.properties().views);
+    views.into_iter().all(|views| views.symmetric || !views.hessian)
 }
 
 /// Whether the solver of a body works without a matrix.

@@ -5,7 +5,7 @@ use super::direction::{Keep, find_direction};
 use super::initial_guess::begin;
 use super::instability::Instability;
 use super::line_search::{Stretches, line_search, slope_along};
-use super::linear::Filter;
+use super::linear::{Filter, has_symmetric_matrix};
 use super::minimiser::Minimiser;
 use super::rigid_balance;
 use super::rounding::{at_rounding, carries, in_doubt, most_rounding, random_error, settle, visible};
@@ -62,7 +62,7 @@ impl<const D: usize> Minimiser<D> for Newton {
         model_error.filter(|_| !run.solved.converged).map_or(Ok(run.solved), Err)
     }
     fn same_bits_everywhere(&self, system: &System<D>) -> bool {
-        !self.0.solver.is_direct::<D>(system.nodes)
+        !self.0.solver.is_direct::<D>(system.nodes) && has_symmetric_matrix(system)
     }
 }
 

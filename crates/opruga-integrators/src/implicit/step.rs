@@ -69,7 +69,7 @@ impl<R: Rule<D>, const D: usize> Integrator<D> for Implicit<R> {
         R::NAME
     }
     fn needs(&self) -> Views {
-        Views { hessian: true, ..Views::default() }
+        Views { hessian: true, symmetric: true, ..Views::default() }
     }
     fn work_columns(&self) -> usize {
         1

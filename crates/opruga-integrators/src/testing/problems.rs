@@ -18,7 +18,10 @@ impl<const D: usize> Potential<D> for Anchors {
     fn properties(&self) -> Properties {
         Properties {
             uniform_damping: self.damping,
-            ..Properties::new("anchors", Views { energy: true, hessian: true, damping: self.damping > 0.0 })
+            ..Properties::new(
+                "anchors",
+                Views { energy: true, hessian: true, symmetric: true, damping: self.damping > 0.0 },
+            )
         }
     }
     fn energy(&self, _simd: Simd, view: &View<D>, _scratch: &[f64]) -> [f64; 8] {
@@ -101,7 +104,15 @@ impl<const D: usize> Potential<D> for Springs {
     fn properties(&self) -> Properties {
         Properties {
             scratch_len: 1,
-            ..Properties::new("springs", Views { energy: true, hessian: self.gas == 0.0, damping: self.damping > 0.0 })
+            ..Properties::new(
+                "springs",
+                Views {
+                    energy: true,
+                    hessian: self.gas == 0.0,
+                    symmetric: self.gas == 0.0,
+                    damping: self.damping > 0.0,
+                },
+            )
         }
     }
     fn stencils(&self, visit: &mut dyn FnMut(&[u32])) {

@@ -84,7 +84,7 @@ impl<const D: usize> Model<D> for AsPublishedModel {
         &SPEC
     }
     fn views(&self) -> Views {
-        Views { energy: false, hessian: false, damping: true }
+        Views { energy: false, hessian: false, symmetric: false, damping: true }
     }
     fn build(&self, ingredients: &Ingredients<D>) -> Result<Box<dyn Potential<D>>, BuildError> {
         let refuse = |code, message: &str| Err(BuildError::new(SPEC.kind, code, message));
@@ -236,7 +236,7 @@ impl<const D: usize> Potential<D> for AsPublished {
             account: Account::User,
             scratch_len: 2 * self.layout.places(self.nodes) + NUMBERS,
             forces_in_prepare: true,
-            ..Properties::new(SPEC.kind, Views { energy: false, hessian: false, damping: true })
+            ..Properties::new(SPEC.kind, Views { energy: false, hessian: false, symmetric: false, damping: true })
         }
     }
     fn stencils(&self, visit: &mut dyn FnMut(&[u32])) {

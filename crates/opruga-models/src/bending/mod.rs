@@ -161,7 +161,7 @@ impl Bending {
 
 impl<const D: usize> Potential<D> for Bending {
     fn properties(&self) -> Properties {
-        Properties::new(SPEC.kind, Views { energy: true, hessian: true, damping: self.damped })
+        Properties::new(SPEC.kind, Views { energy: true, hessian: true, symmetric: true, damping: self.damped })
     }
     fn stencils(&self, visit: &mut dyn FnMut(&[u32])) {
         self.parts::<D>().iter().for_each(|part| part.stencils(visit));

@@ -36,7 +36,7 @@ impl<const D: usize> Model<D> for DragModel {
         &SPEC
     }
     fn views(&self) -> Views {
-        Views { energy: false, hessian: true, damping: true }
+        Views { energy: false, hessian: true, symmetric: true, damping: true }
     }
     fn build(&self, ingredients: &Ingredients<D>) -> Result<Box<dyn Potential<D>>, BuildError> {
         let rate = ingredients.by_body(|values| values.number("rate").unwrap_or(0.0));
@@ -48,7 +48,7 @@ impl<const D: usize> Potential<D> for Drag {
     fn properties(&self) -> Properties {
         Properties {
             uniform_damping: (0..WIDTH).map(|body| self.rate.at(body)).fold(f64::INFINITY, Lane::smaller),
-            ..Properties::new(SPEC.kind, Views { energy: false, hessian: true, damping: true })
+            ..Properties::new(SPEC.kind, Views { energy: false, hessian: true, symmetric: true, damping: true })
         }
     }
     fn add_force(&self, simd: Simd, view: &View<D>, _scratch: &[f64], tile: &mut Tile<D>) {

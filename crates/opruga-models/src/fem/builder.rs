@@ -1,12 +1,13 @@
 //! From the cells of a mesh to a solid, and what is refused on the way.
 
 use super::elements::{Cell, Shape, rest_gradient};
-use super::law::Law;
 use super::nodal_volume::NodalVolumes;
 use super::numbers::{Numbers, beyond};
 use super::section::{Plan, Section};
 use super::solid::{Built, Solid};
-use super::{mass, materials, refuse};
+use super::{mass, refuse};
+use crate::materials;
+use crate::materials::law::Law;
 use opruga_core::error::BuildError;
 use opruga_core::potential::Ingredients;
 use opruga_mesh::Mesh;

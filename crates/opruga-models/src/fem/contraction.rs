@@ -2,8 +2,8 @@
 
 use super::elements::Shape;
 use super::group::Group;
-use super::points::{INVARIANTS, PRINCIPAL, read_matrix, write_matrix};
 use super::work::geometry;
+use crate::materials::points::{INVARIANTS, PRINCIPAL, read_matrix, write_matrix};
 use core::marker::PhantomData;
 use opruga_math::matrix::{self, Matrix};
 use opruga_math::{Lane, Pack, Register, WIDTH, Work};
@@ -117,7 +117,7 @@ pub(super) struct ContractPrincipal<'a, E, const D: usize, const N: usize> {
     pub(super) group: Group<'a>,
     /// Which pack of the group.
     pub(super) pack: usize,
-    /// As [`super::law::Law::principal`] writes them.
+    /// As [`crate::materials::law::Law::principal`] writes them.
     pub(super) principal: &'a [f64],
     pub(super) blocks: &'a mut [f64],
 }
@@ -193,7 +193,7 @@ pub(super) struct ContractInvariants<'a, E, const D: usize, const N: usize> {
     pub(super) pack: usize,
     /// Deformation gradients.
     pub(super) gradient: &'a [f64],
-    /// As [`super::law::Form::Invariants`] says.
+    /// As [`crate::materials::law::Form::Invariants`] says.
     pub(super) invariants: &'a [f64],
     pub(super) blocks: &'a mut [f64],
 }

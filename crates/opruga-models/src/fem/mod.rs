@@ -15,49 +15,36 @@
 //! exact). How they bend and twist besides is the strain that assumed stresses have at small strain (Pian and Sumihara 1984, Pian
 //! and Tong 1986), carried along by the mean, and the law is asked at Gauss's points with that: see the folder `boxes`. A rectangular cell bends exactly for every ν, in plane strain, plane stress and space.
 //!
-//! **Materials** are functions of F in a file each ([`materials`]): [`materials::Linear`], [`materials::StVenantKirchhoff`],
-//! [`materials::Corotated`], [`materials::FixedCorotated`], [`materials::NeoHookean`], [`materials::StableNeoHookean`],
-//! [`materials::MooneyRivlin`]; plane stress makes a law of the plane of the law of space: the stretch of the thickness is
-//! that without stress across, at every point, and is condensed out of the tangent.
-//! Clamped tangents come from the analytic eigensystem of isotropic energies ([`material::Principal`]; Smith et al. 2019).
+//! **Materials** are functions of F in a file each: see [`crate::materials`].
 //!
 //! **Damping** is that of Kelvin and Voigt: P = F S, S = τ (2μ Ė + λ tr Ė 1), Ė = sym FᵀḞ; zero under rigid motion.
 //!
 //! **Heat**: a point that has grown by g = 1 + α ΔT has the energy g³ ψ(F/g), under the law of small strain ψ(ε − αΔT 1) (file
-//! `heat`); where nothing expands, nothing of that is computed.
+//! `materials/heat`); where nothing expands, nothing of that is computed.
 //!
 //! Limits: energies of quadratic cells are integrated at points of degree 2, exact for straight sides and linear laws. Boxes bend
 //! at small strain as Hooke's law of their E and ν lets them; how much a bent cell swells across is taken from there in all states.
 //! Corotated laws have no unique rotation, and so no unique force, where the two smallest stretches are opposite.
 
-mod at_point;
 mod boxes;
 mod builder;
 mod contraction;
 mod elements;
 mod group;
-mod heat;
-mod law;
 mod mass;
-pub mod material;
-pub mod materials;
 mod nodal_volume;
 mod numbers;
 mod part;
 mod pass;
-mod plane_stress;
-mod points;
 mod pressures;
-mod principal_frame;
 mod section;
 mod solid;
 mod spec;
 mod totals;
 mod work;
 
-pub use at_point::{AtPoint, in_plane, in_space, own_fields};
 pub use solid::Solid;
-pub use spec::SPEC;
+pub use spec::{SPEC, own_fields};
 
 use builder::Builder;
 use elements::{Hexahedron, QuadraticTetrahedron, QuadraticTriangle, Quadrilateral, Tetrahedron, Triangle};

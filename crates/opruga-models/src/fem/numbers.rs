@@ -1,6 +1,7 @@
 //! The numbers of the material of every cell: of the scene, or of the cells of the mesh.
 
 use super::{SPEC, refuse};
+use crate::materials::moduli::{lame, refuse_what_is_not_convex};
 use opruga_core::error::BuildError;
 use opruga_core::potential::Ingredients;
 use opruga_core::spec::{Field, Values};
@@ -136,36 +137,6 @@ impl<'a> Numbers<'a> {
         let of_body = || self.values[body.min(self.values.len() - 1)].number(field).unwrap_or(0.0);
         of_cells.map_or_else(of_body, |all| all[cell as usize])
     }
-}
-
-/// μ and λ [Pa] of Young's modulus [Pa] and Poisson's ratio.
-pub(super) fn lame(modulus: f64, ratio: f64) -> [f64; 2] {
-    [modulus / (2.0 * (1.0 + ratio)), modulus * ratio / ((1.0 + ratio) * (1.0 - 2.0 * ratio))]
-}
-
-/// Refuses a Mooney–Rivlin solid that is not convex with a Poisson's ratio.
-pub(super) fn refuse_what_is_not_convex(values: &Values, ratio: f64) -> Result<(), BuildError> {
-    if values.text("material") != Some("mooney_rivlin") {
-        return Ok(());
-    }
-    let (share, most) = (values.number("mooney_share").unwrap_or(0.0), ratio / (1.0 - 2.0 * ratio));
-    if share > most { Err(refuse("model.not_convex", not_convex(share, ratio, most))) } else { Ok(()) }
-}
-
-/// Why a share of the second constant of Mooney and Rivlin is refused with a Poisson's ratio that allows at most `most`.
-fn not_convex(share: f64, ratio: f64, most: f64) -> String {
-    if most < 0.0 {
-        // No share is allowed at all: λ < 0.
-        let least = share / (1.0 + 2.0 * share);
-        return format!(
-            "`poissons_ratio` is {ratio}, with which `mooney_rivlin` is not convex, whatever the `mooney_share`; allowed: at least \
-             {least}, so that {share} <= ν/(1 − 2ν); hint: a smaller `mooney_share` allows a smaller one, down to 0"
-        );
-    }
-    format!(
-        "`mooney_share` is {share} with `poissons_ratio` = {ratio}, and not convex; allowed: at most {most} = ν/(1 − 2ν); hint: a \
-         larger `poissons_ratio` allows a larger one"
-    )
 }
 
 /// The numbers of the mesh that a field names, which for the chosen cells must lie in the range of the field they stand for.

@@ -2,10 +2,10 @@
 
 use super::elements::Shape;
 use super::group::Group;
-use super::material::{Tangent, add_cofactor_derivative, no_tangent};
 use super::nodal_volume::Pressures;
-use super::points::{Points, read_matrix, write_matrix};
 use super::work::{Nodes, gather, geometry};
+use crate::materials::material::{Tangent, add_cofactor_derivative, no_tangent};
+use crate::materials::points::{Points, read_matrix, write_matrix};
 use core::marker::PhantomData;
 use opruga_core::state::Layout;
 use opruga_math::matrix;

@@ -14,9 +14,9 @@
 use super::boxes::{self, Boxes};
 use super::elements::{Cell, Shape, rest_gradient};
 use super::group::Group;
-use super::law::Law;
 use super::numbers::{NUMBERS, beyond};
 use super::work::Nodes;
+use crate::materials::law::Law;
 use core::fmt::Debug;
 use core::marker::PhantomData;
 use opruga_core::error::StepError;

@@ -103,7 +103,7 @@ impl<const D: usize> Potential<D> for Solid<D> {
             scratch_len: self.cells_len() + self.volumes.as_ref().map_or(0, NodalVolumes::scratch_len),
             shares_threads: self.shares.len() > 1,
             forces_in_prepare: true,
-            ..Properties::new(SPEC.kind, Views { energy: true, hessian: true, damping: self.damped })
+            ..Properties::new(SPEC.kind, Views { energy: true, hessian: true, symmetric: true, damping: self.damped })
         }
     }
     fn stencils(&self, visit: &mut dyn FnMut(&[u32])) {

@@ -1,7 +1,7 @@
 //! Parameters of finite elements.
 
-use super::materials::NAMES;
 use super::numbers::{EXPANSION, YOUNGS_MODULUS};
+use crate::materials::NAMES;
 use opruga_core::spec::{Allowed, Bound, Condition, Default, Field, Role, Spec};
 
 /// The parameters of `fem`.
@@ -158,3 +158,9 @@ cell: waves are then too fast where lumped masses make them too slow. For implic
 the volumes of nodes instead of those of cells, which does not lock (for them alone, and not in plane stress).",
         ),
     ], roles: &[Role::OwnsCells], };
+
+/// The fields of `fem` that say something of a law alone, beside `youngs_modulus`, `poissons_ratio` and `plane`.
+pub fn own_fields(material: &str) -> impl Iterator<Item = &'static str> + use<'_> {
+    let own = move |condition: &Condition| matches!(condition, Condition::Word("material", words) if words.contains(&material));
+    SPEC.fields.iter().filter(move |field| field.applies.iter().any(own)).map(|field| field.name)
+}

@@ -4,9 +4,9 @@
 
 use super::elements::Shape;
 use super::group::Group;
-use super::material::{Tangent, add_strain_tangent, no_tangent};
 use super::numbers::{NUMBERS, beyond};
-use super::points::{PARAMETERS, Points, read_matrix, write_matrix};
+use crate::materials::material::{Tangent, add_strain_tangent, no_tangent};
+use crate::materials::points::{PARAMETERS, Points, read_matrix, write_matrix};
 use core::marker::PhantomData;
 use opruga_core::state::Layout;
 use opruga_math::matrix::{self, Matrix};

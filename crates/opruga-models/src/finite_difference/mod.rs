@@ -331,7 +331,7 @@ impl<const D: usize> Plan<'_, D> {
 
 impl<const D: usize> Potential<D> for FiniteDifference<D> {
     fn properties(&self) -> Properties {
-        Properties::new(KIND, Views { energy: true, hessian: true, damping: self.damped })
+        Properties::new(KIND, Views { energy: true, hessian: true, symmetric: true, damping: self.damped })
     }
     fn stencils(&self, visit: &mut dyn FnMut(&[u32])) {
         self.parts.iter().for_each(|part| part.stencils(visit));

@@ -114,7 +114,10 @@ impl<const D: usize> Potential<D> for Springs {
     fn properties(&self) -> Properties {
         Properties {
             begins_tiles: true,
-            ..Properties::new("mass_spring", Views { energy: true, hessian: true, damping: self.damped })
+            ..Properties::new(
+                "mass_spring",
+                Views { energy: true, hessian: true, symmetric: true, damping: self.damped },
+            )
         }
     }
     fn stencils(&self, visit: &mut dyn FnMut(&[u32])) {

@@ -197,7 +197,7 @@ impl<const D: usize> Potential<D> for Pressure {
             account: Account::Gas,
             scratch_len: self.scratch_len,
             forces_in_prepare: !self.chambers.iter().any(|chamber| matches!(chamber.boundary, Boundary::Plane(_))),
-            ..Properties::new("pressure", Views { energy: true, hessian: true, damping: false })
+            ..Properties::new("pressure", Views { energy: true, hessian: true, symmetric: true, damping: false })
         }
     }
     fn stencils(&self, visit: &mut dyn FnMut(&[u32])) {

@@ -11,8 +11,11 @@ use opruga_mesh::Mesh;
 use opruga_models::as_published::AsPublishedModel as AsPublished;
 use opruga_models::bending::BendingModel as Bending;
 use opruga_models::drag::DragModel as Drag;
+use opruga_models::finite_volume::FiniteVolumeModel as FiniteVolume;
 use opruga_models::mass_spring::{self, MassSpring};
+use opruga_models::materials::NAMES;
 use opruga_models::pressure::PressureModel as Pressure;
+use opruga_models::shape_matching::ShapeMatchingModel as ShapeMatching;
 
 fn ring(vertices: u32) -> Mesh<2> {
     Mesh::ring(0.5, vertices, [0.2, 2.0], 0.1).unwrap()
@@ -143,6 +146,86 @@ fn bending_in_space() {
     conformance("inside out", &Bending, &damped, &sphere(), &mirrored()).assert();
 }
 
+#[test]
+fn shape_matching_in_the_plane() {
+    let rigid = [values!(shape_matching, stiffness: 300.0)];
+    let fitted = [
+        values!(shape_matching, stiffness: 300.0, fit_share: 0.7),
+        values!(shape_matching, stiffness: 50.0, fit_share: 1.0),
+    ];
+    let bent = [values!(shape_matching, stiffness: 300.0, fit_share: 0.9, fit: "quadratic")];
+    conformance("ring", &ShapeMatching, &rigid, &ring(36), &Options::default()).assert();
+    conformance("of three", &ShapeMatching, &fitted, &ring(3), &Options::default()).assert();
+    conformance("fitted", &ShapeMatching, &fitted, &plate(), &Options::default()).assert();
+    conformance("bent", &ShapeMatching, &bent, &plate(), &Options::default()).assert();
+    conformance("chain", &ShapeMatching, &bent, &chain::<2>(), &Options::default()).assert();
+    conformance("inside out", &ShapeMatching, &fitted, &plate(), &mirrored()).assert();
+    conformance("shrunk", &ShapeMatching, &fitted, &plate(), &shrunk()).assert();
+    let regions = [values!(shape_matching, stiffness: 300.0, fit_share: 0.5, region: 0.4)];
+    conformance("regions", &ShapeMatching, &regions, &plate(), &Options::default()).assert();
+}
+
+#[test]
+fn shape_matching_in_space() {
+    let rigid = [values!(shape_matching, stiffness: 300.0), values!(shape_matching, stiffness: 20.0)];
+    let fitted = [values!(shape_matching, stiffness: 300.0, fit_share: 0.7)];
+    let bent = [values!(shape_matching, stiffness: 300.0, fit_share: 0.9, fit: "quadratic")];
+    conformance("sphere", &ShapeMatching, &rigid, &sphere(), &Options::default()).assert();
+    conformance("cloth", &ShapeMatching, &fitted, &cloth(), &Options::default()).assert();
+    conformance("block", &ShapeMatching, &bent, &block(), &Options::default()).assert();
+    conformance("chain", &ShapeMatching, &fitted, &chain::<3>(), &Options::default()).assert();
+    conformance("inside out", &ShapeMatching, &fitted, &block(), &mirrored()).assert();
+    conformance("shrunk", &ShapeMatching, &bent, &block(), &shrunk()).assert();
+    let regions = [values!(shape_matching, stiffness: 300.0, fit_share: 0.5, region: 0.7)];
+    conformance("regions", &ShapeMatching, &regions, &block(), &Options::default()).assert();
+}
+
+/// The published force is no gradient: its bits and invariances alone are claimed.
+#[test]
+fn shape_matching_as_published() {
+    let published = [
+        values!(shape_matching, stiffness: 300.0, fit_share: 0.7, scheme: "as_published"),
+        values!(shape_matching, goal_step: 0.1, fit_share: 0.3, scheme: "as_published"),
+    ];
+    let options = Options { views: false, ..Options::default() };
+    conformance("plate", &ShapeMatching, &published, &plate(), &options).assert();
+    conformance("block", &ShapeMatching, &published, &block(), &options).assert();
+    conformance("inside out", &ShapeMatching, &published, &block(), &Options { mirrored: true, ..options }).assert();
+}
+
+#[test]
+fn finite_volume_in_the_plane() {
+    let mesh = plate().into_simplices().unwrap();
+    for material in NAMES {
+        for plane in ["strain", "stress"] {
+            let values = [
+                values!(finite_volume, youngs_modulus: 900.0, material: *material, plane: plane),
+                values!(finite_volume, youngs_modulus: 200.0, poissons_ratio: 0.4, material: *material, plane: plane),
+            ];
+            let options = Options { rigid: *material != "linear", coincident: false, ..once() };
+            conformance(material, &FiniteVolume, &values, &mesh, &options).assert();
+            // F differs between the faces of a quadrilateral: no torque vanishes, and there is no energy.
+            let options = Options { rigid: false, ..options };
+            conformance(material, &FiniteVolume, &values, &plate(), &options).assert();
+        }
+    }
+}
+
+#[test]
+fn finite_volume_in_space() {
+    let mesh = block().into_simplices().unwrap();
+    for material in NAMES {
+        let values = [
+            values!(finite_volume, youngs_modulus: 900.0, material: *material),
+            values!(finite_volume, youngs_modulus: 200.0, poissons_ratio: 0.4, material: *material),
+        ];
+        let options = Options { rigid: *material != "linear", coincident: false, ..once() };
+        conformance(material, &FiniteVolume, &values, &mesh, &options).assert();
+        let options = Options { rigid: false, ..options };
+        conformance(material, &FiniteVolume, &values, &block(), &options).assert();
+    }
+}
+
 /// Drag brakes rigid motion by design: it claims no row on it.
 #[test]
 fn drag() {
@@ -165,11 +248,15 @@ fn many_tiles() {
     let springs = [values!(mass_spring, stiffness: 300.0, damping: 2.0)];
     let gas = [values!(pressure, nRT: 70.0, ambient: 10.0)];
     let hinges = [values!(bending, stiffness: 0.3, damping: 0.02)];
+    let goals = [values!(shape_matching, stiffness: 300.0, fit_share: 0.5)];
+    let regions = [values!(shape_matching, stiffness: 300.0, fit_share: 0.5, region: 0.2)];
     let (ring, grid) = (ring(1700), Mesh::<2>::grid([0.0; 2], [1.0, 1.0], [37, 41]).unwrap());
     conformance("ring", &MassSpring, &springs, &ring, &large).assert();
     conformance("grid", &MassSpring, &springs, &grid, &large).assert();
     conformance("ring", &Pressure, &gas, &ring, &large).assert();
     conformance("ring", &Bending, &hinges, &ring, &large).assert();
+    conformance("whole", &ShapeMatching, &goals, &grid, &large).assert();
+    conformance("regions", &ShapeMatching, &regions, &grid, &large).assert();
     conformance("ring", &Drag, &[values!(drag, rate: 2.0)], &ring, &Options { rigid: false, ..large }).assert();
     let (sphere, cloth) = (
         Mesh::icosphere(0.5, 4).unwrap(),

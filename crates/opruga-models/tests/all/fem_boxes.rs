@@ -7,7 +7,7 @@ use opruga_core::potential::Model;
 use opruga_core::spec::Values;
 use opruga_mesh::Mesh;
 use opruga_models::fem::FemModel as Fem;
-use opruga_models::fem::materials::NAMES;
+use opruga_models::materials::NAMES;
 use support::{eigenvalues_below, forces, hessian, system};
 
 const RATIOS: [f64; 5] = [0.0, 0.3, 0.45, 0.49, 0.4999];

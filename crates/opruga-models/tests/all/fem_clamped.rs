@@ -7,7 +7,7 @@ use opruga_core::spec::Values;
 use opruga_core::system::Stage;
 use opruga_mesh::Mesh;
 use opruga_models::fem::FemModel as Fem;
-use opruga_models::fem::materials::NAMES;
+use opruga_models::materials::NAMES;
 use support::system;
 
 /// Blocks in the order in which they come.

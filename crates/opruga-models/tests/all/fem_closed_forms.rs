@@ -6,8 +6,8 @@ use opruga_core::potential::{CellState, Model, Potential};
 use opruga_core::spec::{Value, Values};
 use opruga_core::system::{Stage, System};
 use opruga_mesh::Mesh;
-use opruga_models::fem::materials::NAMES;
 use opruga_models::fem::{FemModel as Fem, SPEC};
+use opruga_models::materials::NAMES;
 use support::{eigenvalues_below, forces, hessian, newton, refusal, system};
 
 fn irregular<const D: usize>(cells: [u32; D]) -> Mesh<D> {

@@ -4,7 +4,7 @@ use opruga_core::check::{Options, conformance};
 use opruga_core::spec::Values;
 use opruga_mesh::Mesh;
 use opruga_models::fem::FemModel as Fem;
-use opruga_models::fem::materials::NAMES;
+use opruga_models::materials::NAMES;
 
 /// A grid whose nodes are moved, by up to a tenth of a cell.
 fn irregular<const D: usize>(cells: [u32; D]) -> Mesh<D> {

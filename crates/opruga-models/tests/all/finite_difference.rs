@@ -190,6 +190,7 @@ fn refused<const D: usize>(mesh: &Mesh<D>, values: &Values) -> Option<String> {
         densities: None,
         thickness: 1.0,
         gravity: [0.0; D],
+        step: 1e-3,
     };
     FiniteDifference.build(&ingredients).err().map(|error| error.code.to_string())
 }

@@ -16,6 +16,8 @@ mod fem_heat;
 mod fem_membrane;
 mod fem_refusals;
 mod finite_difference;
+mod finite_volume;
+mod shape_matching;
 #[path = "support/sparse.rs"]
 mod sparse;
 mod steps;

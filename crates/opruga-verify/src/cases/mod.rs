@@ -10,6 +10,7 @@ mod finite_differences;
 mod heat;
 mod integrators;
 mod ledgers;
+mod matching;
 mod materials;
 mod membranes;
 mod patches;
@@ -17,6 +18,7 @@ mod pressure;
 mod solids;
 mod springs;
 mod vibrations;
+mod volumes;
 
 use crate::case::{Case, Check, Family, Over, Scale};
 
@@ -47,11 +49,16 @@ pub fn cases() -> impl Iterator<Item = &'static Case> {
         solids::CASES,
         finite_differences::CASES,
         heat::CASES,
+        volumes::CASES,
+        matching::STATICS,
         materials::CASES,
+        volumes::MATERIALS,
         pressure::CASES,
         balloons::CASES,
         vibrations::CASES,
         contact::CASES,
+        volumes::DYNAMICS,
+        matching::DYNAMICS,
         integrators::CASES,
         ledgers::CASES,
     ];

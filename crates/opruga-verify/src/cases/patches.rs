@@ -46,7 +46,7 @@ pub(super) const CASES: &[Case] = &[
 ];
 
 /// Equal cells whose nodes are moved at random by up to an eighth of a cell.
-fn irregular<const D: usize>(n: f64, cells: Cells) -> Result<Mesh<D>, Trouble> {
+pub(super) fn irregular<const D: usize>(n: f64, cells: Cells) -> Result<Mesh<D>, Trouble> {
     let mut grid = Mesh::<D>::grid([0.0; D], [1.0; D], [n as u32; D])?;
     let mut random = 11u64;
     for c in grid.positions.iter_mut().flatten() {
@@ -57,7 +57,7 @@ fn irregular<const D: usize>(n: f64, cells: Cells) -> Result<Mesh<D>, Trouble> {
 }
 
 /// Displacements by up to a tenth: an affine one, or pure bending in plane stress with ν = 0.4.
-fn displaced<const D: usize>(x: &[f64; D], bends: bool) -> [f64; D] {
+pub(super) fn displaced<const D: usize>(x: &[f64; D], bends: bool) -> [f64; D] {
     if bends {
         let (curvature, poisson) = (0.1, 0.4);
         let z = if D == 3 { x[2] } else { 0.0 };
@@ -79,7 +79,7 @@ fn scene<const D: usize>(mesh: &Mesh<D>, bends: bool) -> Result<Scene, Trouble> 
     )
 }
 
-fn worst<const D: usize>(mesh: &Mesh<D>, bends: bool, now: impl Fn(u32) -> [f64; D]) -> f64 {
+pub(super) fn worst<const D: usize>(mesh: &Mesh<D>, bends: bool, now: impl Fn(u32) -> [f64; D]) -> f64 {
     let mut worst: f64 = 0.0;
     for (node, x) in mesh.positions.iter().enumerate() {
         let (u, now) = (displaced(x, bends), now(node as u32));

@@ -2,11 +2,11 @@
 
 use super::super::elements::Shape;
 use super::super::group::Group;
-use super::super::points::write_matrix;
 use super::super::work::{Nodes, gather};
 use super::hourglass::{MOST_MODES, modes};
 use super::rest::Rest;
 use super::{Frame, KEPT, Kept, Modes, cofactor_along};
+use crate::materials::points::write_matrix;
 use core::marker::PhantomData;
 use opruga_math::matrix::{self, Matrix};
 use opruga_math::{Lane, Pack, Register, WIDTH, Work};

@@ -8,11 +8,11 @@
 
 use super::super::elements::Shape;
 use super::super::group::Group;
-use super::super::material::{Tangent, add_cofactor_derivative, no_tangent};
-use super::super::points::read_matrix;
 use super::hourglass::{FIELDS, MOST_MODES, MOST_STRESSES, PAIRS, modes, pairs, term};
 use super::rest::Rest;
 use super::{Frame, KEPT, Kept, Modes, cofactor_along, corners};
+use crate::materials::material::{Tangent, add_cofactor_derivative, no_tangent};
+use crate::materials::points::read_matrix;
 use core::marker::PhantomData;
 use opruga_core::potential::Definiteness;
 use opruga_math::matrix::{self, Matrix};

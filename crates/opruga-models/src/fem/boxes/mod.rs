@@ -28,7 +28,7 @@ pub(super) use layout::{Boxes, Plan};
 pub(super) use matrices::{Contract, Of};
 pub(super) use push::{Push, Rates};
 
-use super::points::{read_matrix, write_matrix};
+use crate::materials::points::{read_matrix, write_matrix};
 use hourglass::{MOST_MODES, MOST_STRESSES, modes};
 use opruga_math::matrix::{self, Matrix};
 use opruga_math::{Lane, Register, WIDTH};

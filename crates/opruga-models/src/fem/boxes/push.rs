@@ -2,11 +2,11 @@
 
 use super::super::elements::Shape;
 use super::super::group::Group;
-use super::super::points::read_matrix;
 use super::super::work::scatter;
 use super::hourglass::{FIELDS, modes};
 use super::rest::Rest;
 use super::{Frame, KEPT, Kept, cofactor_along};
+use crate::materials::points::read_matrix;
 use core::marker::PhantomData;
 use opruga_math::matrix::{self};
 use opruga_math::{Lane, Pack, Register, WIDTH, Work};

@@ -73,6 +73,7 @@ pub(crate) fn system_with_mass<const D: usize>(mesh: &Mesh<D>, parts: &[Part<D>]
             densities: None,
             thickness: 1.0,
             gravity: [0.0; D],
+            step: 1e-3,
         };
         system.add(model.build(&ingredients).unwrap());
     }
@@ -91,6 +92,7 @@ pub(crate) fn refusal<const D: usize>(mesh: &Mesh<D>, model: &dyn Model<D>, valu
         densities: None,
         thickness: 1.0,
         gravity: [0.0; D],
+        step: 1e-3,
     };
     match model.build(&ingredients) {
         Ok(_) => "built".into(),

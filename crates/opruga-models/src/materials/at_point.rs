@@ -1,9 +1,9 @@
 //! What a law says at one deformation gradient: for tables, and to compare with other programs.
 
 use super::law::Law;
-use super::numbers::{lame, refuse_what_is_not_convex};
+use super::moduli::{lame, refuse_what_is_not_convex};
 use super::points::{PARAMETERS, Points};
-use super::{SPEC, materials, refuse};
+use super::{ALL, Entry, NAMES};
 use opruga_core::error::BuildError;
 use opruga_core::potential::Definiteness;
 use opruga_core::spec::{Values, nearest};
@@ -24,7 +24,7 @@ pub struct AtPoint<const D: usize> {
     pub across: Option<f64>,
 }
 
-/// What the law of these fields of `fem` says in the plane.
+/// What the law of these fields of a model says in the plane.
 ///
 /// # Errors
 /// `scene.unknown_name` where there is no such material, `model.not_convex`, and `model.no_value` where the law has no finite
@@ -38,7 +38,7 @@ pub fn in_plane(values: &Values, gradient: &[[f64; 2]; 2]) -> Result<AtPoint<2>,
     Ok(point)
 }
 
-/// What the law of these fields of `fem` says in space.
+/// What the law of these fields of a model says in space.
 ///
 /// # Errors
 /// As [`in_plane`].
@@ -46,12 +46,12 @@ pub fn in_space(values: &Values, gradient: &[[f64; 3]; 3]) -> Result<AtPoint<3>,
     ask(&*(entry(values)?.cold.space)(), values, gradient)
 }
 
-fn entry(values: &Values) -> Result<&'static materials::Entry, BuildError> {
+fn entry(values: &Values) -> Result<&'static Entry, BuildError> {
     let name = values.text("material").unwrap_or("");
-    materials::ALL.iter().find(|entry| entry.name == name).ok_or_else(|| {
-        let meant = nearest(name, materials::NAMES.iter().copied());
+    ALL.iter().find(|entry| entry.name == name).ok_or_else(|| {
+        let meant = nearest(name, NAMES.iter().copied());
         let hint = meant.map_or(String::new(), |meant| format!("; did you mean `{meant}`?"));
-        refuse("scene.unknown_name", format!("there is no material `{name}`{hint}"))
+        BuildError::new(values.kind(), "scene.unknown_name", format!("there is no material `{name}`{hint}"))
     })
 }
 
@@ -82,7 +82,7 @@ fn ask<const D: usize>(law: &dyn Law<D>, values: &Values, gradient: &[[f64; D]; 
              that the law can follow",
             values.text("material").unwrap_or("")
         );
-        return Err(refuse("model.no_value", message));
+        return Err(BuildError::new(values.kind(), "model.no_value", message));
     }
     let row = |row: usize| (0..D * D).map(|column| tangent[(row * D * D + column) * WIDTH]).collect();
     Ok(AtPoint {
@@ -92,11 +92,4 @@ fn ask<const D: usize>(law: &dyn Law<D>, values: &Values, gradient: &[[f64; D]; 
         tangent: (0..D * D).map(row).collect(),
         across: found.then_some(across[0]),
     })
-}
-
-/// The fields of `fem` that say something of a law alone, beside `youngs_modulus`, `poissons_ratio` and `plane`.
-pub fn own_fields(material: &str) -> impl Iterator<Item = &'static str> + use<'_> {
-    use opruga_core::spec::Condition;
-    let own = move |condition: &Condition| matches!(condition, Condition::Word("material", words) if words.contains(&material));
-    SPEC.fields.iter().filter(move |field| field.applies.iter().any(own)).map(|field| field.name)
 }

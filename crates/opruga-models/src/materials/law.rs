@@ -11,7 +11,7 @@ use opruga_core::potential::Definiteness;
 use opruga_math::{Lane, Pack, Register, Simd, WIDTH, Work};
 
 /// A material as elements see it.
-pub(super) trait Law<const D: usize>: Send + Sync + Debug {
+pub(crate) trait Law<const D: usize>: Send + Sync + Debug {
     /// Energy densities (one pack per pack of points) and stresses (D² packs).
     fn stress(&self, simd: Simd, points: Points<'_>, energy: &mut [f64], stress: &mut [f64]);
     /// Tangents (D⁴ packs per pack of points).
@@ -33,7 +33,7 @@ pub(super) trait Law<const D: usize>: Send + Sync + Debug {
 
 /// How a tangent is said.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Form {
+pub(crate) enum Form {
     /// D⁴ packs per pack of points.
     Whole,
     /// In the frame of the singular vectors: [`PRINCIPAL`] · D² packs per pack of points.
@@ -44,7 +44,7 @@ pub(super) enum Form {
 
 /// A material as a law.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Lift<M>(pub(super) M);
+pub(crate) struct Lift<M>(pub(crate) M);
 
 impl<M: Material<D>, const D: usize> Law<D> for Lift<M> {
     fn stress(&self, simd: Simd, points: Points<'_>, energy: &mut [f64], stress: &mut [f64]) {

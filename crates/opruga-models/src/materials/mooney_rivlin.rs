@@ -1,6 +1,6 @@
 //! The compressible Mooney–Rivlin solid of Ciarlet and Geymonat.
 
-use crate::fem::material::{
+use super::material::{
     Material, Parameters, Principal, Tangent, add_cofactor_derivative, add_identity, add_square, logarithm_of_volume,
     no_tangent,
 };

@@ -1,12 +1,30 @@
-//! The materials, one file each.
+//! # Materials
+//!
+//! Functions of the deformation gradient F in a file each, for every model of a solid: [`Linear`], [`StVenantKirchhoff`],
+//! [`Corotated`], [`FixedCorotated`], [`NeoHookean`], [`StableNeoHookean`], [`MooneyRivlin`]. Each has an energy density ψ(F),
+//! P = ∂ψ/∂F and ∂P/∂F, in space and in plane strain. Plane stress makes a law of the plane of the law of space: the stretch of
+//! the thickness is that without stress across, at every point, and is condensed out of the tangent. Heat makes a law of
+//! F/g of any of these (file `heat`).
+//!
+//! Clamped tangents come from the analytic eigensystem of isotropic energies ([`material::Principal`]; Smith et al. 2019).
 
+mod at_point;
 mod corotated;
 mod fixed_corotated;
+mod heat;
+pub(crate) mod law;
 mod linear;
+pub mod material;
+pub(crate) mod moduli;
 mod mooney_rivlin;
 mod neo_hookean;
+mod plane_stress;
+pub(crate) mod points;
+mod principal_frame;
 mod st_venant_kirchhoff;
 mod stable_neo_hookean;
+
+pub use at_point::{AtPoint, in_plane, in_space};
 
 pub use corotated::Corotated;
 pub use fixed_corotated::FixedCorotated;
@@ -16,24 +34,24 @@ pub use neo_hookean::NeoHookean;
 pub use st_venant_kirchhoff::StVenantKirchhoff;
 pub use stable_neo_hookean::StableNeoHookean;
 
-use super::heat::{Heated, HeatedSlice};
-use super::law::{Law, Lift};
-use super::plane_stress::PlaneStress;
+use heat::{Heated, HeatedSlice};
+use law::{Law, Lift};
+use plane_stress::PlaneStress;
 
 /// A material of the list: its word and its laws.
-pub(super) struct Entry {
-    pub(super) name: &'static str,
+pub(crate) struct Entry {
+    pub(crate) name: &'static str,
     /// At the temperature of rest.
-    pub(super) cold: Laws,
+    pub(crate) cold: Laws,
     /// Where any point may be warmer or colder.
-    pub(super) heated: Laws,
+    pub(crate) heated: Laws,
 }
 
 /// Laws of a material in the plane (strain and stress) and in space.
-pub(super) struct Laws {
-    pub(super) plane_strain: fn() -> Box<dyn Law<2>>,
-    pub(super) plane_stress: fn() -> Box<dyn Law<2>>,
-    pub(super) space: fn() -> Box<dyn Law<3>>,
+pub(crate) struct Laws {
+    pub(crate) plane_strain: fn() -> Box<dyn Law<2>>,
+    pub(crate) plane_stress: fn() -> Box<dyn Law<2>>,
+    pub(crate) space: fn() -> Box<dyn Law<3>>,
 }
 
 macro_rules! entries {
@@ -41,7 +59,7 @@ macro_rules! entries {
         /// The words of all materials.
         pub const NAMES: &[&str] = &[$($name),*];
         /// All materials.
-        pub(super) const ALL: &[Entry] = &[$(Entry {
+        pub(crate) const ALL: &[Entry] = &[$(Entry {
             name: $name,
             cold: Laws {
                 plane_strain: || Box::new(Lift($material)),

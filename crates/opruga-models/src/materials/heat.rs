@@ -20,13 +20,13 @@ use opruga_math::{Simd, WIDTH};
 
 /// A law in space, or of a plate, under heat.
 #[derive(Debug)]
-pub(super) struct Heated<const D: usize>(pub(super) Box<dyn Law<D>>);
+pub(crate) struct Heated<const D: usize>(pub(crate) Box<dyn Law<D>>);
 
 /// A law in plane strain under heat: that of space where a point is warmer or colder, that of the plane where it is not.
 #[derive(Debug)]
-pub(super) struct HeatedSlice {
-    pub(super) plane: Box<dyn Law<2>>,
-    pub(super) space: Box<dyn Law<3>>,
+pub(crate) struct HeatedSlice {
+    pub(crate) plane: Box<dyn Law<2>>,
+    pub(crate) space: Box<dyn Law<3>>,
 }
 
 /// g of the points of a pack.

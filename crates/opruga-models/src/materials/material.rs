@@ -163,7 +163,7 @@ impl<S: Lane, const D: usize> Principal<S, D> {
 
     /// For every pair of axes a < b what [`Principal::pair`] gives, at [a][b] and at [b][a].
     #[inline(always)]
-    pub(super) fn pairs(&self) -> Matrix<S, D> {
+    pub(crate) fn pairs(&self) -> Matrix<S, D> {
         let mut out = matrix::zeros();
         for a in 0..D {
             for b in a + 1..D {
@@ -183,7 +183,7 @@ impl<S: Lane, const D: usize> Principal<S, D> {
 /// The tangent of a law from what it is in the frame of the singular vectors: its second derivatives by stretches, and
 /// [`Principal::pairs`].
 #[inline(always)]
-pub(super) fn out_of_frame<S: Lane, const D: usize>(
+pub(crate) fn out_of_frame<S: Lane, const D: usize>(
     u: &Matrix<S, D>,
     v: &Matrix<S, D>,
     second: &Matrix<S, D>,
@@ -250,13 +250,13 @@ fn others<S: Lane, const D: usize>(sigma: &[S; D], i: usize, j: usize) -> S {
 
 /// A tangent of zeros.
 #[inline(always)]
-pub(super) fn no_tangent<S: Lane, const D: usize>() -> Tangent<S, D> {
+pub(crate) fn no_tangent<S: Lane, const D: usize>() -> Tangent<S, D> {
     [[[[S::zero(); D]; D]; D]; D]
 }
 
 /// Adds s on ∂Fᵢⱼ/∂Fᵢⱼ: the tangent of s/2 tr FᵀF.
 #[inline(always)]
-pub(super) fn add_identity<S: Lane, const D: usize>(to: &mut Tangent<S, D>, s: S) {
+pub(crate) fn add_identity<S: Lane, const D: usize>(to: &mut Tangent<S, D>, s: S) {
     for i in 0..D {
         for j in 0..D {
             to[i][j][i][j] += s;
@@ -266,7 +266,7 @@ pub(super) fn add_identity<S: Lane, const D: usize>(to: &mut Tangent<S, D>, s: S
 
 /// Adds s A ⊗ A.
 #[inline(always)]
-pub(super) fn add_square<S: Lane, const D: usize>(to: &mut Tangent<S, D>, s: S, a: &Matrix<S, D>) {
+pub(crate) fn add_square<S: Lane, const D: usize>(to: &mut Tangent<S, D>, s: S, a: &Matrix<S, D>) {
     for i in 0..D {
         for j in 0..D {
             let weight = s * a[i][j];
@@ -281,7 +281,7 @@ pub(super) fn add_square<S: Lane, const D: usize>(to: &mut Tangent<S, D>, s: S, 
 
 /// Adds s ∂²(det F)/∂F∂F, the derivative of the cofactors.
 #[inline(always)]
-pub(super) fn add_cofactor_derivative<S: Lane, const D: usize>(to: &mut Tangent<S, D>, s: S, f: &Matrix<S, D>) {
+pub(crate) fn add_cofactor_derivative<S: Lane, const D: usize>(to: &mut Tangent<S, D>, s: S, f: &Matrix<S, D>) {
     if D == 2 {
         for i in 0..D {
             for j in 0..D {
@@ -307,7 +307,7 @@ pub(super) fn add_cofactor_derivative<S: Lane, const D: usize>(to: &mut Tangent<
 /// Adds the tangent of a stress F·S with S = 2μE + λ tr E 1 but for the part of S itself:
 /// μ ((F Fᵀ)ᵢₖ δⱼₗ + Fᵢₗ Fₖⱼ) + λ Fᵢⱼ Fₖₗ.
 #[inline(always)]
-pub(super) fn add_strain_tangent<S: Lane, const D: usize>(to: &mut Tangent<S, D>, mu: S, lambda: S, f: &Matrix<S, D>) {
+pub(crate) fn add_strain_tangent<S: Lane, const D: usize>(to: &mut Tangent<S, D>, mu: S, lambda: S, f: &Matrix<S, D>) {
     let left = matrix::product_transposed(f, f);
     add_square(to, lambda, f);
     for i in 0..D {
@@ -323,12 +323,12 @@ pub(super) fn add_strain_tangent<S: Lane, const D: usize>(to: &mut Tangent<S, D>
 }
 
 /// Where the logarithm of the volume ratio goes over into a parabola: 1 % of the volume at rest.
-pub(super) const LEAST_VOLUME: f64 = 0.01;
+pub(crate) const LEAST_VOLUME: f64 = 0.01;
 
 /// ln J with its first two derivatives; below [`LEAST_VOLUME`] its parabola there, so that a point that is flat or turned
 /// inside out has an energy and is pushed back.
 #[inline(always)]
-pub(super) fn logarithm_of_volume<S: Lane>(j: S) -> [S; 3] {
+pub(crate) fn logarithm_of_volume<S: Lane>(j: S) -> [S; 3] {
     let least = S::splat(LEAST_VOLUME);
     let flat = j.less(least);
     let real = S::select(flat, least, j);

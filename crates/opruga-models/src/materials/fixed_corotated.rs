@@ -1,7 +1,7 @@
 //! Fixed corotated elasticity: distance from the nearest rotation, and change of volume.
 
 use super::corotated::distance_from_rotation;
-use crate::fem::material::{Material, Parameters, Principal};
+use super::material::{Material, Parameters, Principal};
 use opruga_math::Lane;
 use opruga_math::matrix::{self, Matrix};
 use opruga_math::rotation::nearest_rotation;

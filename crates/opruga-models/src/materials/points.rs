@@ -5,36 +5,36 @@ use opruga_math::matrix::Matrix;
 use opruga_math::{Register, WIDTH};
 
 /// Packs of points that are looked at together, at most.
-pub(super) const MOST_PACKS: usize = 9;
+pub(crate) const MOST_PACKS: usize = 9;
 
 /// Room for some packs of points.
 #[repr(align(64))]
-pub(super) struct Room<const SIZE: usize>(pub(super) [f64; SIZE]);
+pub(crate) struct Room<const SIZE: usize>(pub(crate) [f64; SIZE]);
 
 /// Numbers at a point: those of [`Parameters`], and the growth by heat.
-pub(super) const PARAMETERS: usize = 4;
+pub(crate) const PARAMETERS: usize = 4;
 
 /// Packs of points: for each pack D² packs of F, row by row, and [`PARAMETERS`] packs.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Points<'a> {
+pub(crate) struct Points<'a> {
     /// Packs.
-    pub(super) count: usize,
+    pub(crate) count: usize,
     /// Deformation gradients.
-    pub(super) gradient: &'a [f64],
+    pub(crate) gradient: &'a [f64],
     /// Parameters.
-    pub(super) parameters: &'a [f64],
+    pub(crate) parameters: &'a [f64],
 }
 
 /// Numbers of [`super::material::Invariants`].
-pub(super) const INVARIANTS: usize = 4;
+pub(crate) const INVARIANTS: usize = 4;
 
 /// Matrices of a tangent in the frame of the singular vectors: U, V, the second derivatives by stretches, and for pairs of
 /// axes what the tangent makes of u_a v_bᵀ (a < b): along itself at [a][b], along u_b v_aᵀ at [b][a].
-pub(super) const PRINCIPAL: usize = 4;
+pub(crate) const PRINCIPAL: usize = 4;
 
 /// The numbers of a part of a pack of points.
 #[inline(always)]
-pub(super) fn read<R: Register, const D: usize>(
+pub(crate) fn read<R: Register, const D: usize>(
     points: &Points<'_>,
     pack: usize,
     part: usize,
@@ -47,7 +47,7 @@ pub(super) fn read<R: Register, const D: usize>(
 
 /// A part of D² packs, row by row.
 #[inline(always)]
-pub(super) fn read_matrix<R: Register, const D: usize>(from: &[f64], part: usize) -> Matrix<R, D> {
+pub(crate) fn read_matrix<R: Register, const D: usize>(from: &[f64], part: usize) -> Matrix<R, D> {
     let from = &from[..D * D * WIDTH];
     let mut out = [[R::zero(); D]; D];
     for i in 0..D {
@@ -60,7 +60,7 @@ pub(super) fn read_matrix<R: Register, const D: usize>(from: &[f64], part: usize
 
 /// Writes a part of D² packs.
 #[inline(always)]
-pub(super) fn write_matrix<R: Register, const D: usize>(to: &mut [f64], part: usize, matrix: &Matrix<R, D>) {
+pub(crate) fn write_matrix<R: Register, const D: usize>(to: &mut [f64], part: usize, matrix: &Matrix<R, D>) {
     let to = &mut to[..D * D * WIDTH];
     for i in 0..D {
         for j in 0..D {
@@ -71,7 +71,7 @@ pub(super) fn write_matrix<R: Register, const D: usize>(to: &mut [f64], part: us
 
 /// Writes a part of D⁴ packs of a pack of points.
 #[inline(always)]
-pub(super) fn write_tangent<R: Register, const D: usize>(
+pub(crate) fn write_tangent<R: Register, const D: usize>(
     to: &mut [f64],
     pack: usize,
     part: usize,

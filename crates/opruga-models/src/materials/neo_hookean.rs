@@ -1,6 +1,6 @@
 //! The neo-Hookean solid in its logarithmic form.
 
-use crate::fem::material::{Invariants, Material, Parameters, Principal, logarithm_of_volume};
+use super::material::{Invariants, Material, Parameters, Principal, logarithm_of_volume};
 use opruga_math::Lane;
 use opruga_math::matrix::{self, Matrix};
 

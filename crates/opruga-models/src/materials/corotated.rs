@@ -1,6 +1,6 @@
 //! Corotated linear elasticity: Hooke's law beside the nearest rotation.
 
-use crate::fem::material::{Material, Parameters, Principal};
+use super::material::{Material, Parameters, Principal};
 use opruga_math::Lane;
 use opruga_math::matrix::{self, Matrix};
 use opruga_math::rotation::nearest_rotation;

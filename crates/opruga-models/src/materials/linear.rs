@@ -1,6 +1,6 @@
 //! Linear elasticity: small strain, small rotation.
 
-use crate::fem::material::{Material, Parameters, Principal, Tangent, add_identity, no_tangent};
+use super::material::{Material, Parameters, Principal, Tangent, add_identity, no_tangent};
 use opruga_math::Lane;
 use opruga_math::matrix::{self, Matrix};
 

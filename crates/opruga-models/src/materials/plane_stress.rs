@@ -11,7 +11,7 @@ use opruga_math::{Lane, Pack, Register, Simd, WIDTH, Work, symmetric};
 /// ψ(F) = min over t of ψ₃(diag(F, t)); P is the part of P₃ in the plane, and the tangent is condensed:
 /// Cᵢⱼₖₗ − Cᵢⱼ₃₃ C₃₃ₖₗ / C₃₃₃₃. Where no t > 0 has P₃₃ = 0, energy and stress are not numbers, and the step is refused.
 #[derive(Debug)]
-pub(super) struct PlaneStress(pub(super) Box<dyn Law<3>>);
+pub(crate) struct PlaneStress(pub(crate) Box<dyn Law<3>>);
 
 /// The most Newton iterations for the thickness; five are usual.
 const MOST_ITERATIONS: usize = 60;

@@ -1,6 +1,6 @@
 //! The stable neo-Hookean solid.
 
-use crate::fem::material::{Invariants, Material, Parameters, Principal};
+use super::material::{Invariants, Material, Parameters, Principal};
 use opruga_math::Lane;
 use opruga_math::matrix::{self, Matrix};
 

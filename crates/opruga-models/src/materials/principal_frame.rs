@@ -60,11 +60,11 @@ fn twin<R: Lane, const D: usize>(one: &Matrix<R, D>, other: &Matrix<R, D>) -> Ma
 }
 
 /// Singular vectors and values of F.
-pub(super) struct Frames<'a, const D: usize> {
-    pub(super) points: Points<'a>,
+pub(crate) struct Frames<'a, const D: usize> {
+    pub(crate) points: Points<'a>,
     /// Whether the law knows of rotations; one that does not is the same in every frame, and has that of the unit vectors.
-    pub(super) turns: bool,
-    pub(super) out: &'a mut [f64],
+    pub(crate) turns: bool,
+    pub(crate) out: &'a mut [f64],
 }
 impl<const D: usize> Work for Frames<'_, D> {
     type Output = ();
@@ -91,11 +91,11 @@ impl<const D: usize> Work for Frames<'_, D> {
 }
 
 /// What the material makes of the singular values.
-pub(super) struct InFrame<'a, M, const D: usize> {
-    pub(super) points: Points<'a>,
-    pub(super) out: &'a mut [f64],
+pub(crate) struct InFrame<'a, M, const D: usize> {
+    pub(crate) points: Points<'a>,
+    pub(crate) out: &'a mut [f64],
     #[allow(dead_code)] // says which material
-    pub(super) material: M,
+    pub(crate) material: M,
 }
 impl<M: Material<D>, const D: usize> Work for InFrame<'_, M, D> {
     type Output = ();
@@ -123,9 +123,9 @@ impl<M: Material<D>, const D: usize> Work for InFrame<'_, M, D> {
 }
 
 /// Leaves out negative eigenvalues.
-pub(super) struct Clamp<'a, const D: usize> {
-    pub(super) count: usize,
-    pub(super) out: &'a mut [f64],
+pub(crate) struct Clamp<'a, const D: usize> {
+    pub(crate) count: usize,
+    pub(crate) out: &'a mut [f64],
 }
 impl<const D: usize> Work for Clamp<'_, D> {
     type Output = ();
@@ -150,10 +150,10 @@ impl<const D: usize> Work for Clamp<'_, D> {
 }
 
 /// The whole tangents.
-pub(super) struct OutOfFrame<'a, const D: usize> {
-    pub(super) count: usize,
-    pub(super) principal: &'a [f64],
-    pub(super) tangent: &'a mut [f64],
+pub(crate) struct OutOfFrame<'a, const D: usize> {
+    pub(crate) count: usize,
+    pub(crate) principal: &'a [f64],
+    pub(crate) tangent: &'a mut [f64],
 }
 impl<const D: usize> Work for OutOfFrame<'_, D> {
     type Output = ();

@@ -1,6 +1,6 @@
 //! St. Venant–Kirchhoff: Hooke's law of Green's strain.
 
-use crate::fem::material::{Material, Parameters, Principal, Tangent, add_strain_tangent, no_tangent};
+use super::material::{Material, Parameters, Principal, Tangent, add_strain_tangent, no_tangent};
 use opruga_math::Lane;
 use opruga_math::matrix::{self, Matrix};
 

@@ -1,0 +1,255 @@
+//! From positions to deformation gradients, from stresses to forces, and from tangents to matrices, for every set of vector
+//! instructions.
+
+use super::cell::Cell;
+use super::cells::Cells;
+use crate::materials::points::{read_matrix, write_matrix};
+use core::ops::Range;
+use opruga_core::state::Layout;
+use opruga_math::matrix::{self, Matrix};
+use opruga_math::{Lane, Pack, ROW, Register, WIDTH, Work};
+
+/// Positions: of one body in rows, of eight bodies in the columns.
+#[derive(Clone, Copy)]
+pub(super) struct Positions<'a, const D: usize> {
+    pub(super) rows: &'a [f64],
+    pub(super) columns: [&'a [f64]; D],
+}
+
+/// Some packs, and some points of each of their cells: those that a law is asked for together.
+#[derive(Clone)]
+pub(super) struct Group {
+    pub(super) packs: Range<usize>,
+    pub(super) points: Range<usize>,
+}
+
+impl Group {
+    /// How many packs of points.
+    pub(super) fn len(&self) -> usize {
+        self.packs.len() * self.points.len()
+    }
+    fn number(&self, pack: usize, point: usize) -> usize {
+        (pack - self.packs.start) * self.points.len() + point - self.points.start
+    }
+}
+
+#[inline(always)]
+fn corners<R: Register, C: Cell<D, N>, const D: usize, const N: usize>(
+    cells: &Cells<C, D, N>,
+    x: &Positions<D>,
+    pack: usize,
+    offset: usize,
+) -> [[R; D]; N] {
+    let mut out = [[R::zero(); D]; N];
+    for a in 0..N {
+        let nodes = &cells.nodes[(pack * N + a) * WIDTH + offset..][..R::NUMBERS];
+        match cells.layout {
+            Layout::Single => {
+                let row = R::gather_rows(x.rows, nodes);
+                out[a].copy_from_slice(&row[..D]);
+            }
+            Layout::Batch => {
+                for d in 0..D {
+                    out[a][d] = R::load(&x.columns[d][nodes[0] as usize * WIDTH + offset..]);
+                }
+            }
+        }
+    }
+    out
+}
+
+/// F of a group, D² packs for every pack of points.
+pub(super) struct Gradients<'a, C, const D: usize, const N: usize> {
+    pub(super) cells: &'a Cells<C, D, N>,
+    pub(super) group: Group,
+    pub(super) positions: Positions<'a, D>,
+    pub(super) out: &'a mut [f64],
+}
+impl<C: Cell<D, N>, const D: usize, const N: usize> Work for Gradients<'_, C, D, N> {
+    type Output = ();
+    #[inline(always)]
+    fn run<P: Pack>(self) {
+        for pack in self.group.packs.clone() {
+            for part in 0..P::PARTS {
+                let offset = part * P::Part::NUMBERS;
+                let x = corners::<P::Part, C, D, N>(self.cells, &self.positions, pack, offset);
+                for q in self.group.points.clone() {
+                    let mut side = matrix::zeros::<P::Part, D>();
+                    for i in 0..D {
+                        for j in 0..D {
+                            if C::SIMPLEX {
+                                side[i][j] = x[j + 1][i] - x[0][i];
+                                continue;
+                            }
+                            for a in 0..N {
+                                side[i][j] += x[a][i] * P::Part::splat(C::SLOPES[q][a][j]);
+                            }
+                        }
+                    }
+                    let inverse: Matrix<P::Part, D> =
+                        read_matrix(&self.cells.inverse[(pack * C::POINTS + q) * D * D * WIDTH..], part);
+                    let at = self.group.number(pack, q) * D * D * WIDTH;
+                    write_matrix(&mut self.out[at..], part, &matrix::product(&side, &inverse));
+                }
+            }
+        }
+    }
+}
+
+/// Adds the tractions P S of a group to the forces on the corners of its cells, `[pack][corner][axis][lane]`.
+pub(super) struct Tractions<'a, C, const D: usize, const N: usize> {
+    pub(super) cells: &'a Cells<C, D, N>,
+    pub(super) group: Group,
+    pub(super) stress: &'a [f64],
+    pub(super) corners: &'a mut [f64],
+}
+impl<C: Cell<D, N>, const D: usize, const N: usize> Work for Tractions<'_, C, D, N> {
+    type Output = ();
+    #[inline(always)]
+    fn run<P: Pack>(self) {
+        let cells = self.cells;
+        for (number, pack) in self.group.packs.clone().enumerate() {
+            for part in 0..P::PARTS {
+                let offset = part * P::Part::NUMBERS;
+                let mut force = [[P::Part::zero(); D]; N];
+                for q in self.group.points.clone() {
+                    let at = self.group.number(pack, q) * D * D * WIDTH;
+                    let stress: Matrix<P::Part, D> = read_matrix(&self.stress[at..], part);
+                    let areas = if C::SIMPLEX { 0..D } else { q..q + 1 };
+                    for k in areas {
+                        for i in 0..D {
+                            let mut traction = P::Part::zero();
+                            for j in 0..D {
+                                let area = ((pack * Cells::<C, D, N>::AREAS + k) * D + j) * WIDTH + offset;
+                                traction += stress[i][j] * P::Part::load(&cells.areas[area..]);
+                            }
+                            // What acts on the part of one node acts against that of the other; the first corner has what the others leave.
+                            let [to, from] = if C::SIMPLEX { [k + 1, 0] } else { C::EDGES[q] };
+                            force[to][i] += traction;
+                            force[from][i] -= traction;
+                        }
+                    }
+                }
+                for a in 0..N {
+                    for d in 0..D {
+                        let to = &mut self.corners[((number * N + a) * D + d) * WIDTH + offset..];
+                        (P::Part::load(to) + force[a][d]).store(to);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Adds the forces on corners to those on nodes, cell by cell, so that one body and eight bodies add in the same order: rows of nodes
+/// of one body, columns of packs of eight.
+pub(super) struct Scatter<'a, C, const D: usize, const N: usize> {
+    pub(super) cells: &'a Cells<C, D, N>,
+    pub(super) packs: Range<usize>,
+    pub(super) corners: &'a [f64],
+    pub(super) forces: &'a mut [f64],
+}
+impl<C: Cell<D, N>, const D: usize, const N: usize> Work for Scatter<'_, C, D, N> {
+    type Output = ();
+    #[inline(always)]
+    fn run<P: Pack>(self) {
+        for (number, pack) in self.packs.clone().enumerate() {
+            let nodes = &self.cells.nodes[pack * N * WIDTH..(pack + 1) * N * WIDTH];
+            let corners = &self.corners[number * N * D * WIDTH..(number + 1) * N * D * WIDTH];
+            if self.cells.layout == Layout::Batch {
+                for a in 0..N {
+                    for d in 0..D {
+                        let to = &mut self.forces[(nodes[a * WIDTH] as usize * D + d) * WIDTH..];
+                        (P::load(to) + P::load(&corners[(a * D + d) * WIDTH..])).store(to);
+                    }
+                }
+                continue;
+            }
+            let mut rows = [[0.0; ROW * WIDTH]; N];
+            for a in 0..N {
+                for part in 0..P::PARTS {
+                    let offset = part * P::Part::NUMBERS;
+                    let mut row = [P::Part::zero(); ROW];
+                    for d in 0..D {
+                        row[d] = P::Part::load(&corners[(a * D + d) * WIDTH + offset..]);
+                    }
+                    P::Part::store_rows(row, &mut rows[a][offset * ROW..]);
+                }
+            }
+            for lane in 0..WIDTH {
+                for a in 0..N {
+                    let to = &mut self.forces[nodes[a * WIDTH + lane] as usize * ROW..][..ROW];
+                    for d in 0..ROW {
+                        to[d] += rows[a][lane * ROW + d];
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Adds −∂fₐ/∂x_b of the points of one pack to blocks `[a][b][row][column][lane]`.
+pub(super) struct Contract<'a, C, const D: usize, const N: usize> {
+    pub(super) cells: &'a Cells<C, D, N>,
+    pub(super) group: Group,
+    /// D⁴ packs for every pack of points.
+    pub(super) tangent: &'a [f64],
+    pub(super) blocks: &'a mut [f64],
+}
+impl<C: Cell<D, N>, const D: usize, const N: usize> Work for Contract<'_, C, D, N> {
+    type Output = ();
+    #[inline(always)]
+    fn run<P: Pack>(self) {
+        let (cells, pack) = (self.cells, self.group.packs.start);
+        for part in 0..P::PARTS {
+            let offset = part * P::Part::NUMBERS;
+            for q in self.group.points.clone() {
+                let inverse: Matrix<P::Part, D> =
+                    read_matrix(&cells.inverse[(pack * C::POINTS + q) * D * D * WIDTH..], part);
+                let at = self.group.number(pack, q) * D * D * D * D * WIDTH;
+                let mut slopes = [[P::Part::zero(); D]; N];
+                for b in 0..N {
+                    for l in 0..D {
+                        for m in 0..D {
+                            slopes[b][l] += P::Part::splat(C::SLOPES[q][b][m]) * inverse[m][l];
+                        }
+                    }
+                }
+                let areas = if C::SIMPLEX { 0..D } else { q..q + 1 };
+                for k in areas {
+                    // S pulled through the tangent: Sⱼ ∂Pᵢⱼ/∂Fₖₗ.
+                    let mut pulled = [[[P::Part::zero(); D]; D]; D];
+                    for i in 0..D {
+                        for j in 0..D {
+                            let area = ((pack * Cells::<C, D, N>::AREAS + k) * D + j) * WIDTH + offset;
+                            let area = P::Part::load(&cells.areas[area..]);
+                            let row: Matrix<P::Part, D> =
+                                read_matrix(&self.tangent[at + (i * D + j) * D * D * WIDTH..], part);
+                            for m in 0..D {
+                                for l in 0..D {
+                                    pulled[i][m][l] += area * row[m][l];
+                                }
+                            }
+                        }
+                    }
+                    let [to, from] = if C::SIMPLEX { [k + 1, 0] } else { C::EDGES[q] };
+                    for b in 0..N {
+                        for i in 0..D {
+                            for m in 0..D {
+                                let mut sum = P::Part::zero();
+                                for l in 0..D {
+                                    sum += pulled[i][m][l] * slopes[b][l];
+                                }
+                                for (a, sum) in [(to, -sum), (from, sum)] {
+                                    let at = (((a * N + b) * D + i) * D + m) * WIDTH + offset;
+                                    let block = &mut self.blocks[at..];
+                                    (P::Part::load(block) + sum).store(block);
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

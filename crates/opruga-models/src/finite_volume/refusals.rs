@@ -1,0 +1,48 @@
+//! Why a body is no solid of finite volumes.
+
+use super::SPEC;
+use opruga_core::error::BuildError;
+use opruga_math::message::Message;
+use opruga_math::messages;
+use opruga_math::words::number;
+
+messages! {
+    /// Why `finite_volume` refuses a body, its parameters or an integrator.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum Refusal {
+        /// Nothing to fill.
+        "model.no_cells"
+        #[error("the body has no cells: it is an outline, a surface or a chain; allowed: triangles, quadrilaterals, tetrahedra and hexahedra, as `grid`, shapes from files with a `filling` and volume meshes have")]
+        NoCells {},
+        /// Cells with nodes in the middle of edges.
+        "model.quadratic_cells"
+        #[error("the body has {count} quadratic cells, which have no dual faces here; allowed: linear cells; hint: `order = 1` for the body")]
+        Quadratic { count: usize },
+        /// A cell without volume, or inside out.
+        "model.inverted_cell"
+        #[error("cell {cell} has no volume or is turned inside out at rest: det ∂X/∂ξ = {} of a cell {} m long; allowed: more than 1e-12 of its size", number(*determinant), number(*size))]
+        InvertedCell { cell: usize, determinant: f64, size: f64 },
+        /// Linear cells near incompressibility.
+        "model.locking"
+        #[error("`poissons_ratio` is {} for triangles or tetrahedra, which lock near incompressibility; allowed: at most {}; hint: `locking = \"accept\"` takes them as they are, and `fem` has `order = 2` and `locking = \"nodal_volume\"`", number(*ratio), number(*most))]
+        Locks { ratio: f64, most: f64 },
+        /// A material that is not there.
+        "scene.unknown_name"
+        #[error("there is no material `{name}`")]
+        NoMaterial { name: String },
+        /// What quadrilaterals and hexahedra lack, as a part of a refusal.
+        "part.no_potential"
+        #[error("forces of quadrilaterals and hexahedra, with F at the middle of each dual face, are the gradient of no energy; triangles and tetrahedra have one (`simplices = true`, `order = 1`)")]
+        NoPotential {},
+        /// No thickness without stress across.
+        "run.no_thickness"
+        #[error("cell {cell} has no positive thickness without stress across the plane at t = {} s: it is stretched or turned inside out beyond what its material can follow in plane stress", number(*time))]
+        NoThickness { cell: usize, time: f64 },
+    }
+}
+
+impl From<Refusal> for BuildError {
+    fn from(refusal: Refusal) -> BuildError {
+        BuildError::new(SPEC.kind, refusal.code(), refusal.to_string())
+    }
+}

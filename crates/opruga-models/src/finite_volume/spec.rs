@@ -1,0 +1,60 @@
+//! Parameters of finite volumes.
+
+use crate::materials::NAMES;
+use opruga_core::spec::{Allowed, Bound, Condition, Default, Field, Role, Spec};
+
+/// The parameters of `finite_volume`.
+pub const SPEC: Spec = Spec {
+    kind: "finite_volume",
+    summary: "an elastic solid by finite volumes: tractions on the faces of the dual cell of each node",
+    documentation: "The force on a node is the traction P N of the first Piola–Kirchhoff stress, summed over the faces of its dual cell: \
+those between the middles of edges, sides and cells. On triangles and tetrahedra F is constant, and forces, energy and Hessian are those of linear finite elements \
+(`fem` with `order = 1`). On quadrilaterals and hexahedra F is taken at the middle of each dual face; forces are then no gradient, their tangent is not symmetric, \
+and explicit integrators and `equilibrium` alone step them. The ledger has no elastic energy of such bodies. \
+Materials, E and ν, plane strain and plane stress mean what they mean in `fem`. \
+Limits: triangles and tetrahedra lock in bending and above ν = 0.45, where they are refused unless `locking` says otherwise; there is no damping of its own (`world.drag`). \
+Equations and measurements: docs/finite-volumes.md. \
+Source: Teran, Blemker, Ng-Thow-Hing, Fedkiw 2003, Finite volume methods for the simulation of skeletal muscle.",
+    dimensions: &[2, 3],
+    fields: &[
+        Field::new(
+            "material",
+            Allowed::Choice(NAMES),
+            "",
+            Default::Text("stable_neo_hookean"),
+            "The law: small strain (`linear`), large rotation (`corotated`), or rubber.",
+        ),
+        Field::new("youngs_modulus", Allowed::POSITIVE, "Pa", Default::Required, "Young's modulus E."),
+        Field::new(
+            "poissons_ratio",
+            Allowed::Number { least: Bound::Open(-1.0), greatest: Bound::Open(0.5) },
+            "",
+            Default::Number(0.3),
+            "Poisson's ratio ν; rubber has nearly 0.5.",
+        ),
+        Field::new(
+            "plane",
+            Allowed::Choice(&["strain", "stress"]),
+            "",
+            Default::Text("strain"),
+            "Whether nothing moves across the plane, or no stress acts across it.",
+        )
+        .applies(&[Condition::Dimension(2)]),
+        Field::new(
+            "mooney_share",
+            Allowed::FRACTION,
+            "",
+            Default::Number(0.2),
+            "C₂/(C₁ + C₂), where 2(C₁ + C₂) = μ: 0.2 is C₁ : C₂ = 4 : 1; at most ν/(1 − 2ν).",
+        )
+        .applies(&[Condition::Word("material", &["mooney_rivlin"])]),
+        Field::new(
+            "locking",
+            Allowed::Choice(&["refuse", "accept"]),
+            "",
+            Default::Text("refuse"),
+            "What holds for triangles and tetrahedra above ν = 0.45: they are refused, or accepted although they lock.",
+        ),
+    ],
+    roles: &[Role::OwnsCells],
+};

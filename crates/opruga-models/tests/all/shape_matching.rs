@@ -1,0 +1,190 @@
+//! Shape matching against what its energy says in closed form, and on bodies of too few nodes.
+
+use crate::support::{energy, forces, hessian, refusal, system, system_with_mass};
+use opruga_core::system::System;
+use opruga_mesh::Mesh;
+use opruga_models::shape_matching::ShapeMatchingModel as Matching;
+
+fn block() -> Mesh<3> {
+    Mesh::grid([0.1, 0.2, 0.3], [1.0, 0.8, 0.6], [2, 2, 3]).unwrap()
+}
+fn plate() -> Mesh<2> {
+    Mesh::grid([0.1, 0.2], [1.0, 0.8], [3, 4]).unwrap()
+}
+/// Moves every node to where a map takes its rest position.
+fn moved<const D: usize>(mut system: System<D>, mesh: &Mesh<D>, map: impl Fn(&[f64; D]) -> [f64; D]) -> System<D> {
+    for (node, x) in mesh.positions.iter().enumerate() {
+        system.state.x.set(node, map(x));
+    }
+    system
+}
+fn size(v: &[f64]) -> f64 {
+    v.iter().fold(0.0, |most, x| if x.abs() > most { x.abs() } else { most })
+}
+/// The largest of |K δ − k δ|, with masses of 1 kg.
+fn off<const D: usize>(system: &mut System<D>, displacement: &[f64], k: f64) -> f64 {
+    let product = hessian(system).times(displacement);
+    size(&product.iter().zip(displacement).map(|(a, b)| a - k * b).collect::<Vec<f64>>())
+}
+fn field<const D: usize>(mesh: &Mesh<D>, of: impl Fn([f64; D]) -> [f64; D]) -> Vec<f64> {
+    let nodes = mesh.positions.len() as f64;
+    let center: [f64; D] = core::array::from_fn(|d| mesh.positions.iter().map(|x| x[d]).sum::<f64>() / nodes);
+    mesh.positions.iter().flat_map(|x| of(core::array::from_fn(|d| x[d] - center[d]))).collect()
+}
+
+/// At rest rigid motions have no stiffness, strains (1 − β)κ, and what no map follows κ.
+#[test]
+fn stiffness_of_motions_at_rest() {
+    let (stiffness, share) = (250.0, 0.6);
+    let mesh = block();
+    let linear = values!(shape_matching, stiffness: stiffness, fit_share: share);
+    let mut body = system(&mesh, &[(&Matching, linear)]);
+    let turn = field(&mesh, |q| [q[1] - 0.3 * q[2], -q[0] + 2.0 * q[2], 0.3 * q[0] - 2.0 * q[1]]);
+    assert!(off(&mut body, &turn, 0.0) < 1e-10 * stiffness);
+    assert!(off(&mut body, &field(&mesh, |_| [1.0, -2.0, 0.5]), 0.0) < 1e-10 * stiffness);
+    // A strain without rotation in the frame of the inertia: along an axis.
+    assert!(
+        off(&mut body, &field(&mesh, |q| [q[0], -0.4 * q[1], 0.1 * q[2]]), (1.0 - share) * stiffness)
+            < 1e-10 * stiffness
+    );
+    // A bend that is orthogonal to all linear maps: the square of a coordinate less its mean.
+    let mean = field(&mesh, |q| [q[0] * q[0], 0.0, 0.0]).iter().sum::<f64>() / mesh.positions.len() as f64;
+    let bend = field(&mesh, |q| [0.0, q[0] * q[0] - mean, 0.0]);
+    assert!(off(&mut body, &bend, stiffness) < 1e-10 * stiffness);
+    // The quadratic fit follows that too.
+    let quadratic = values!(shape_matching, stiffness: stiffness, fit_share: share, fit: "quadratic");
+    let mut body = system(&mesh, &[(&Matching, quadratic)]);
+    assert!(off(&mut body, &bend, (1.0 - share) * stiffness) < 1e-9 * stiffness);
+
+    let mesh = plate();
+    let linear = values!(shape_matching, stiffness: stiffness, fit_share: share);
+    let mut body = system(&mesh, &[(&Matching, linear)]);
+    assert!(off(&mut body, &field(&mesh, |q| [q[1], -q[0]]), 0.0) < 1e-10 * stiffness);
+    assert!(off(&mut body, &field(&mesh, |q| [q[0], 0.3 * q[1]]), (1.0 - share) * stiffness) < 1e-10 * stiffness);
+}
+
+/// A stretched body has U = ½ (1 − β) κ Σ m |x − R q|², and no energy in a rotation of it.
+#[test]
+fn energy_of_a_stretch() {
+    let (stiffness, share, stretch) = (250.0, 0.6, [1.2, 0.7, 1.1]);
+    let mesh = block();
+    let values = values!(shape_matching, stiffness: stiffness, fit_share: share);
+    let (c, s) = (0.6, 0.8);
+    let mut body = moved(system_with_mass(&mesh, &[(&Matching, values)], 0.25), &mesh, |x| {
+        let y: [f64; 3] = core::array::from_fn(|d| stretch[d] * x[d]);
+        [c * y[0] - s * y[1] + 40.0, s * y[0] + c * y[1], y[2] - 7.0]
+    });
+    let strain: f64 = field(&mesh, |q| core::array::from_fn(|d| (stretch[d] - 1.0) * q[d])).iter().map(|x| x * x).sum();
+    let expected = 0.5 * (1.0 - share) * stiffness * 0.25 * strain;
+    let found = energy(&mut body);
+    assert!((found - expected).abs() < 1e-12 * expected, "{found} {expected}");
+}
+
+/// Overlapping clusters: weights add up to one, so that stiffnesses do not grow with the number of clusters a node is in.
+#[test]
+fn clusters_share_the_mass_of_their_nodes() {
+    let mesh = Mesh::<3>::grid([0.0; 3], [1.0; 3], [6, 6, 6]).unwrap();
+    let values = values!(shape_matching, stiffness: 100.0, region: 0.5);
+    let mut body = system(&mesh, &[(&Matching, values)]);
+    let matrix = hessian(&mut body);
+    let rigid = matrix.times(&field(&mesh, |q| [q[1], -q[0], 0.0]));
+    assert!(size(&rigid) < 1e-9, "{}", size(&rigid));
+    // No motion is stiffer than a node by itself.
+    let nodes = mesh.positions.len();
+    assert_eq!(matrix.eigenvalues_below(100.0 * (1.0 + 1e-9)), 3 * nodes);
+    assert_eq!(matrix.eigenvalues_below(-1e-9), 0);
+    assert_eq!(matrix.eigenvalues_below(1e-6), 6);
+}
+
+/// Bodies of one, two and three nodes, lines and planes: finite forces, none at rest, and no resistance where nothing is.
+#[test]
+fn bodies_of_too_few_dimensions() {
+    let line: Vec<[f64; 3]> = (0..5).map(|k| [0.1 * f64::from(k), 0.2 * f64::from(k), -0.1 * f64::from(k)]).collect();
+    let flat = Mesh::sheet([0.0; 3], [[1.0, 0.0, 0.0], [0.0, 1.0, 1.0]], [2, 3]).unwrap();
+    let chain = Mesh::polyline(&line, false).unwrap();
+    let two = Mesh::polyline(&line[..2], false).unwrap();
+    for (mesh, rigid) in [(&flat, 6), (&chain, 5), (&two, 5)] {
+        for fit in ["linear", "quadratic"] {
+            let values = values!(shape_matching, stiffness: 100.0, fit_share: 0.5, fit: fit);
+            let mut body = system(mesh, &[(&Matching, values)]);
+            assert!(size(&forces(&mut body)) < 1e-12);
+            let matrix = hessian(&mut body);
+            assert!(matrix.entries.iter().all(|x| x.is_finite()));
+            // Rigid motions have no stiffness; no other motion of these nodes has less than (1 − β)κ, but those across a line or
+            // plane that a fitted map follows.
+            assert!(matrix.eigenvalues_below(1e-6) >= rigid, "{}", matrix.eigenvalues_below(1e-6));
+            assert_eq!(matrix.eigenvalues_below(-1e-6), 0);
+        }
+    }
+    let values = values!(shape_matching, stiffness: 100.0);
+    let mut body = moved(system(&flat, &[(&Matching, values.clone())]), &flat, |_| [1.0, 2.0, 3.0]);
+    assert!(forces(&mut body).iter().all(|f| f.is_finite()));
+    let mut body = moved(system(&flat, &[(&Matching, values.clone())]), &flat, |x| [x[0], 0.0, 0.0]);
+    assert!(forces(&mut body).iter().all(|f| f.is_finite()));
+    // A mirrored plate in space is a turned one: the best rotation takes it there, and no force is left.
+    let mut body = moved(system(&flat, &[(&Matching, values.clone())]), &flat, |x| [-x[0], x[1], x[2]]);
+    assert!(size(&forces(&mut body)) < 1e-10, "{}", size(&forces(&mut body)));
+    // A mirrored block is none: the rotation has det R = 1, and the energy is that of the least extent, Σ m (2 q)²/2 κ.
+    let mesh = block();
+    let mut body = moved(system(&mesh, &[(&Matching, values)]), &mesh, |x| [-x[0], x[1], x[2]]);
+    let least = field(&mesh, |q| [0.0, 0.0, 2.0 * q[2]]).iter().map(|x| x * x).sum::<f64>();
+    let other = field(&mesh, |q| [0.0, 2.0 * q[1], 0.0]).iter().map(|x| x * x).sum::<f64>();
+    let expected = 0.5 * 100.0 * if least < other { least } else { other };
+    assert!((energy(&mut body) - expected).abs() < 1e-9 * expected, "{} {expected}", energy(&mut body));
+}
+
+/// The published goal of a stretched square is a rectangle of its first area; with β = 1 the force draws to that.
+#[test]
+fn the_published_goal_keeps_the_volume() {
+    let mesh = plate();
+    let values = values!(shape_matching, stiffness: 100.0, fit_share: 1.0, scheme: "as_published");
+    let mut body = moved(system(&mesh, &[(&Matching, values.clone())]), &mesh, |x| [2.0 * x[0], 0.5 * x[1]]);
+    assert!(size(&forces(&mut body)) < 1e-10);
+    let mut body = moved(system(&mesh, &[(&Matching, values)]), &mesh, |x| [4.0 * x[0], x[1]]);
+    let expected = field(&mesh, |q| [-100.0 * 2.0 * q[0], -100.0 * 0.5 * q[1]]);
+    let wrong = forces(&mut body).iter().zip(&expected).map(|(a, b)| a - b).collect::<Vec<f64>>();
+    assert!(size(&wrong) < 1e-10, "{}", size(&wrong));
+    // α of the way in a step of 1 ms.
+    let goal = values!(shape_matching, goal_step: 0.3, scheme: "as_published");
+    let mut body = moved(system(&mesh, &[(&Matching, goal)]), &mesh, |x| [x[0] * 1.5, x[1]]);
+    let force = forces(&mut body);
+    let expected = field(&mesh, |q| [-0.3 / 1e-6 * 0.5 * q[0], 0.0]);
+    let wrong = force.iter().zip(&expected).map(|(a, b)| a - b).collect::<Vec<f64>>();
+    assert!(size(&wrong) < 1e-9 * size(&expected), "{}", size(&wrong));
+}
+
+#[test]
+fn what_has_no_meaning_is_refused_with_what_is_allowed() {
+    let mut mesh = plate();
+    mesh.groups.insert("left".into(), (0..8).collect());
+    let of = |values| refusal(&mesh, &Matching, values);
+    assert!(of(values!(shape_matching)).starts_with("model.one_of"));
+    let goal = of(values!(shape_matching, goal_step: 0.3));
+    assert!(goal.starts_with("model.goal_step") && goal.contains("stiffness = 300000"), "{goal}");
+    let missed = of(values!(shape_matching, stiffness: 1.0, groups: "left"));
+    assert!(missed.starts_with("model.cluster_misses") && missed.contains("12 of 20 nodes"), "{missed}");
+    let unknown = of(values!(shape_matching, stiffness: 1.0, groups: "left, rigth"));
+    assert!(unknown.starts_with("model.no_group") && unknown.contains("`left`"), "{unknown}");
+    assert!(of(values!(shape_matching, stiffness: 1.0, region: 1e-4)).starts_with("model.region"));
+    mesh.groups.insert("rest".into(), (6..20).collect());
+    assert_eq!(refusal(&mesh, &Matching, values!(shape_matching, stiffness: 1.0, groups: "left,rest")), "built");
+}
+
+/// `goal_step` counts for the declared step alone.
+#[test]
+fn another_step_is_refused_where_the_stiffness_depends_on_it() {
+    let mesh = plate();
+    let goal = values!(shape_matching, goal_step: 0.3, scheme: "as_published");
+    let mut body = system(&mesh, &[(&Matching, goal)]);
+    let view = body.view(opruga_core::system::Stage::Current, 0.0);
+    let simd = body.simd;
+    let potential = &body.members[0].potential;
+    let mut memory = potential.initial_memory();
+    let mut scratch = vec![0.0; potential.properties().scratch_len];
+    potential.remember(simd, &view, 1e-3, &mut scratch, &mut memory);
+    assert!(potential.prepare(simd, &view, &memory, &mut scratch).is_ok());
+    potential.remember(simd, &view, 5e-4, &mut scratch, &mut memory);
+    let refused = potential.prepare(simd, &view, &memory, &mut scratch).unwrap_err().to_string();
+    assert!(refused.contains("the substep is 0.0005 s"), "{refused}");
+    body.forces(false).unwrap();
+}
