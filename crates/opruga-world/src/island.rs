@@ -1,5 +1,6 @@
 //! Bodies that are stepped together, and the frame that they step through on their own.
 
+use crate::blueprint::BodyBlueprint;
 use crate::ledger::{Stock, Survey, survey, take_stock, total_of};
 use opruga_collide::Colliders;
 use opruga_core::error::StepError;
@@ -37,7 +38,7 @@ pub(crate) struct Island<const D: usize> {
 
 /// The state at the last good frame, or within a frame.
 #[derive(Debug)]
-struct Saved<const D: usize> {
+pub(crate) struct Saved<const D: usize> {
     x: Columns<D>,
     v: Columns<D>,
     memory: Vec<Vec<f64>>,
@@ -48,7 +49,7 @@ struct Saved<const D: usize> {
 }
 
 impl<const D: usize> Saved<D> {
-    fn of(system: &System<D>, time: f64) -> Self {
+    pub(crate) fn of(system: &System<D>, time: f64) -> Self {
         Saved {
             x: system.state.x.clone(),
             v: system.state.v.clone(),
@@ -101,8 +102,8 @@ pub(crate) struct FramePlan<'a, const D: usize> {
     pub(crate) h: f64,
     /// Substeps between two looks within the frame; 0: none.
     pub(crate) look_every: u32,
-    /// Whether bodies that rest in a degenerate shape are displaced.
-    pub(crate) unfold: bool,
+    /// The bodies of the world where those that rest in a degenerate shape are displaced.
+    pub(crate) unfold: Option<&'a [BodyBlueprint<D>]>,
 }
 
 impl<const D: usize> Island<D> {
@@ -212,7 +213,7 @@ impl<const D: usize> Island<D> {
             self.restore();
             outcome = self.attempt(plan, true);
         }
-        if plan.unfold && outcome.is_ok() {
+        if plan.unfold.is_some() && outcome.is_ok() {
             outcome = self.recover(plan, near);
         }
         match outcome {
@@ -337,6 +338,12 @@ impl<const D: usize> Island<D> {
         let look = self.looks.get_mut(number)?;
         look.swap(&mut self.system);
         Some(look.work)
+    }
+
+    /// Goes back to a state that was kept, with what had entered and left until then.
+    pub(crate) fn return_to(&mut self, mut kept: Saved<D>) {
+        kept.swap(&mut self.system);
+        (self.system.time, self.system.work) = (kept.time, kept.work);
     }
 
     /// Goes back to the last good frame.

@@ -21,7 +21,7 @@ impl<const D: usize> World<D> {
             substeps: self.blueprint.time.substeps,
             h: self.h(),
             look_every: self.looks.every,
-            unfold: self.blueprint.surroundings.unfold,
+            unfold: self.blueprint.surroundings.unfold.then_some(&self.blueprint.bodies[..]),
         };
         (self.looks.flows, self.looks.fresh) = (self.flows, false);
         let islands = &mut self.islands;

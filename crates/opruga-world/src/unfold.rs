@@ -30,7 +30,7 @@
 //! | `SIZES` | one displacement alone leaves no flat shape that is stable against it | `robust_steps::bodies_that_symmetry_holds…` |
 //! | `STRAINED` | folded bodies with sound cells stay | `robust_steps::every_rule_brings…` |
 
-use crate::island::{FramePlan, Island};
+use crate::island::{FramePlan, Island, Saved};
 use crate::ledger::{survey, take_stock};
 use opruga_core::error::StepError;
 use opruga_core::history::{Channel, PerBody};
@@ -38,6 +38,7 @@ use opruga_core::potential::{Account, CellState};
 use opruga_core::state::Columns;
 use opruga_core::system::{Stage, System};
 use opruga_math::{Lane, sum_in_fixed_order};
+use opruga_mesh::{Mesh, least_jacobian};
 use opruga_solve::dense::symmetric_eigen;
 
 /// How often a body was displaced since it left its last degenerate shape, one more where that was in vain.
@@ -80,10 +81,11 @@ impl<const D: usize> Island<D> {
     /// # Errors
     /// [`StepError`] where a model refuses the state.
     pub(crate) fn unfold(&mut self, plan: &FramePlan<D>, v0: &Columns<D>) -> Result<(), StepError> {
+        let Some(mesh) = plan.unfold.map(|bodies| &bodies[self.bodies[0]].mesh) else { return Ok(()) };
         let system = &mut self.system;
         let frame = f64::from(plan.substeps) * plan.h;
         let (times, last, until) = (system.history.get(TIMES), system.history.get(LAST), system.history.get(UNTIL));
-        let Some(size) = degenerate_size(system) else {
+        let Some(size) = degenerate_size(system, mesh) else {
             system.history.set(TIMES, if system.time > until { 0 } else { times });
             system.history.set(FLAT_FRAMES, 0);
             return Ok(());
@@ -117,30 +119,36 @@ impl<const D: usize> Island<D> {
     }
 
     /// Solves a frame of statics again from displaced shapes, as long as it ends in a degenerate one; `start` is the energy at the start
-    /// of the frame [J].
+    /// of the frame [J]. Where no other equilibrium is found, the first one stays.
     ///
     /// # Errors
-    /// [`StepError`] where no equilibrium is found.
+    /// [`StepError::BrokenOff`].
     pub(crate) fn unfold_statics(&mut self, plan: &FramePlan<D>, meets: bool, start: f64) -> Result<(), StepError> {
         // Along the curve of equilibria every point counts.
         if self.integrator.part_of_load(&self.system).is_some() {
             return Ok(());
         }
+        let Some(mesh) = plan.unfold.map(|bodies| &bodies[self.bodies[0]].mesh) else { return Ok(()) };
         for (times, part) in SIZES.iter().enumerate() {
-            let Some(size) = degenerate_size(&self.system) else { return Ok(()) };
-            let solver = self.system.work.solver;
+            let Some(size) = degenerate_size(&self.system, mesh) else { return Ok(()) };
+            let (found, solver) = (Saved::of(&self.system, self.system.time), self.system.work.solver);
+            // Displaced at the end of the frame: pins are where they lead to, and tear no cells on their way there once more.
+            displace(&mut self.system, part * size, times as u64);
             let shape = self.system.state.x.clone();
             self.restore();
             self.system.state.x = shape;
-            displace(&mut self.system, part * size, times as u64);
             // Statics enters the change of energy since it began; what displacing gave is work, too.
             let given = self.energy_here() - start;
-            self.attempt(plan, meets)?;
-            self.system.work.user[0] += given;
+            match self.attempt(plan, meets) {
+                Ok(_) => self.system.work.user[0] += given,
+                Err(StepError::BrokenOff) => return Err(StepError::BrokenOff),
+                // The balance that was found stays, and is reported as degenerate.
+                Err(_) => self.return_to(found),
+            }
             self.system.work.solver.add(&solver);
             self.system.work.solver.disturbed += 1;
         }
-        self.system.work.solver.odd_rests += u64::from(degenerate_size(&self.system).is_some());
+        self.system.work.solver.odd_rests += u64::from(degenerate_size(&self.system, mesh).is_some());
         Ok(())
     }
 
@@ -278,14 +286,29 @@ fn turned<const D: usize>(spin: &[f64; 3], arm: &[f64; D]) -> [f64; D] {
 }
 
 /// The size of a body that is degenerate, inverted or strained by nothing [m]; none where its shape is one of its own.
-fn degenerate_size<const D: usize>(system: &System<D>) -> Option<f64> {
-    let alone = nothing_acts(system);
-    let (mut volume, mut degenerate) = (0.0, false);
-    for cell in cells(system) {
+fn degenerate_size<const D: usize>(system: &System<D>, mesh: &Mesh<D>) -> Option<f64> {
+    let (alone, cells) = (nothing_acts(system), cells(system));
+    // Models without cells know no degenerate ones.
+    let mut degenerate = !cells.is_empty() && is_folded(system, mesh);
+    let mut volume = 0.0;
+    for cell in cells {
         degenerate |= cell.is_degenerate() || alone && (cell.volume_ratio - 1.0).abs() > STRAINED;
         volume += cell.measure;
     }
     degenerate.then(|| if D == 2 { volume.sqrt() } else { Lane::exp(Lane::ln(volume) / 3.0) })
+}
+
+/// Whether a cell of a body is certainly inverted somewhere, be it between its integration points, that is upright at rest.
+fn is_folded<const D: usize>(system: &System<D>, mesh: &Mesh<D>) -> bool {
+    let (mut now, mut rest) = (Vec::new(), Vec::new());
+    mesh.cells.iter().any(|(_, _, nodes)| {
+        now.clear();
+        now.extend(nodes.iter().map(|node| system.state.x.at(*node as usize)));
+        rest.clear();
+        rest.extend(nodes.iter().map(|node| mesh.positions[*node as usize]));
+        least_jacobian(&now).is_some_and(|least| least.is_inverted())
+            && least_jacobian(&rest).is_some_and(|least| least.is_positive())
+    })
 }
 
 /// The cells of a body in the present state.

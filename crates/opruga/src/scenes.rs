@@ -41,6 +41,8 @@ scenes![
     "cooks-membrane",
     "jelly",
     "jelly-crowd",
+    "terzopoulos-ring",
+    "terzopoulos-cloth",
     "drawings",
     "heart-solid",
     "spot-solid",

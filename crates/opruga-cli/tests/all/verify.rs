@@ -37,10 +37,10 @@ fn a_report_has_a_plot_for_every_case_and_is_not_replaced_unasked() {
 #[test]
 fn the_table_is_for_people_and_the_list_tells_sources() {
     let folder = tempfile::tempdir().expect("a folder");
-    let output = opruga(folder.path(), &["verify", "--filter", "hanging-bar-quadrilaterals"]);
+    let output = opruga(folder.path(), &["verify", "--filter", "finite-volume-hanging-bar-quadrilaterals"]);
     assert_eq!(code(&output), 0, "{}", said(&output));
     assert!(printed(&output).contains("1 of 1 pass") && printed(&output).contains("0.03924 m"), "{}", printed(&output));
-    assert!(said(&output).contains("pass  hanging-bar-quadrilaterals"), "{}", said(&output));
+    assert!(said(&output).contains("pass  finite-volume-hanging-bar-quadrilaterals"), "{}", said(&output));
     let list = printed(&opruga(folder.path(), &["verify", "--list"]));
     assert!(list.contains("nafems-le1-quadrilaterals") && list.contains("NAFEMS"), "{list}");
     let of_family = opruga(folder.path(), &["verify", "--list", "--filter", "materials", "--json"]);

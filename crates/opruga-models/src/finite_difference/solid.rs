@@ -174,8 +174,11 @@ pub(super) struct Hexahedron;
 const EDGES: [[[usize; 2]; 4]; 3] =
     [[[0, 1], [3, 2], [4, 5], [7, 6]], [[0, 3], [1, 2], [4, 7], [5, 6]], [[0, 4], [1, 5], [3, 7], [2, 6]]];
 
-/// For the axes (0, 1), (0, 2), (1, 2) the edges of both axes on each of two opposite faces, by their place in [`EDGES`].
-const FACES: [([usize; 2], [[[usize; 2]; 2]; 2]); 3] = [
+/// The two edges of each of two axes on a face, by their place in [`EDGES`].
+type Face = [[usize; 2]; 2];
+
+/// For the axes (0, 1), (0, 2), (1, 2) both opposite faces.
+const FACES: [([usize; 2], [Face; 2]); 3] = [
     ([0, 1], [[[0, 1], [0, 1]], [[2, 3], [2, 3]]]),
     ([0, 2], [[[0, 2], [0, 1]], [[1, 3], [2, 3]]]),
     ([1, 2], [[[0, 2], [0, 2]], [[1, 3], [1, 3]]]),

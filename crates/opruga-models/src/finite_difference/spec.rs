@@ -36,7 +36,7 @@ A body that is no grid is refused. Source: Terzopoulos, Platt, Barr, Fleischer 1
             Allowed::NOT_NEGATIVE,
             "s",
             Default::Number(0.0),
-            "Retardation time τ: stresses and moments are those of ε + τ ε̇ and B + τ Ḃ.",
+            "Retardation time τ of a Kelvin–Voigt solid: stresses and moments are those of ε + τ dε/dt and B + τ dB/dt.",
         ),
         Field::new(
             "plane",

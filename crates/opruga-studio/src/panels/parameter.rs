@@ -2,7 +2,7 @@
 
 use crate::words::{Language, Part};
 use egui::{ComboBox, DragValue, Response, RichText, Slider, SliderClamping, Ui};
-use opruga::core::spec::{Allowed, Bound, Default as Unset, Field, Spec, Value, Values};
+use opruga::core::spec::{Allowed, Bound, Condition, Default as Unset, Field, Spec, Value, Values};
 use std::collections::BTreeMap;
 
 /// A field of a kind in the panel of a scene of so many dimensions, in a language.
@@ -80,14 +80,29 @@ fn companions(spec: &Spec, name: &str) -> &'static [&'static str] {
 /// could begin, or where it is no such field.
 pub fn instead(spec: &'static Spec, values: &Values, field: &Field, dimension: usize) -> Option<Values> {
     let Unset::OneOf(set) = field.default else { return None };
-    let leave: Vec<&str> = set.iter().chain(set.iter().flat_map(|name| companions(spec, name))).copied().collect();
+    // Words that only another field of the choice asks for go with it.
+    let asked_for = |name: &&str| spec.fields.iter().find(|f| f.name == *name).into_iter().flat_map(words_of);
+    let words = set.iter().flat_map(asked_for).map(|(name, _)| name);
+    let companions = set.iter().flat_map(|name| companions(spec, name)).copied();
+    let leave: Vec<&str> = set.iter().copied().chain(companions).chain(words).collect();
     let mut new = without(spec, values, &leave, dimension);
+    for (name, word) in words_of(field) {
+        new.set(spec, name, Value::Text(word.into()), dimension).ok()?;
+    }
     let with = field.companions;
     for field in std::iter::once(field).chain(spec.fields.iter().filter(|other| with.contains(&other.name))) {
         let kept = values.get(field.name).cloned().or_else(|| starting(field))?;
         new.set(spec, field.name, kept, dimension).ok()?;
     }
     Some(new)
+}
+
+/// The words of other fields without which a field does not apply.
+fn words_of(field: &Field) -> impl Iterator<Item = (&'static str, &'static str)> {
+    field.applies.iter().filter_map(|condition| match condition {
+        Condition::Word(name, words) => words.first().map(|word| (*name, *word)),
+        _ => None,
+    })
 }
 
 /// A starting value for a field that the scene leaves silent.

@@ -212,7 +212,7 @@ pub(super) const FIELDS: &[(&str, &str, &str)] = &[
     (
         "model.finite_difference.damping",
         "prigušenje",
-        "Vrijeme zaostajanja τ: naprezanja i momenti su oni od ε + τ ε̇ i B + τ Ḃ.",
+        "Vrijeme zaostajanja τ Kelvin–Voigtova tijela: naprezanja i momenti su oni od ε + τ dε/dt i B + τ dB/dt.",
     ),
     (
         "model.finite_difference.plane",
@@ -552,6 +552,8 @@ pub(super) const SCENES: &[(&str, &str)] = &[
     ),
     ("integrators", "ista lopta na njihaju pod svakim eksplicitnim integratorom: eksplicitni Euler joj ne da mira"),
     ("jelly", "želei od konačnih elemenata"),
+    ("terzopoulos-ring", "prsten od konačnih razlika uz prsten od opruga"),
+    ("terzopoulos-cloth", "tkanina od konačnih razlika"),
     ("jelly-crowd", "osamdeset želea kakve znaju igre: podudaranje oblika, opruge i plin"),
     ("leaking-tyre", "guma koja pušta"),
     ("million-vertices", "27.778 lopti, milijun vrhova"),

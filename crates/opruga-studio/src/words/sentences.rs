@@ -298,12 +298,6 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
          {} m",
     ),
     // The world.
-    (
-        "the model has no second derivatives, which `{}` needs; hint: an explicit integrator steps it, such as \
-         `symplectic_euler`",
-        "model nema druge derivacije, koje treba `{}`; savjet: eksplicitni integrator može s njim, na primjer \
-         `symplectic_euler`",
-    ),
     ("there is no such model", "nema takvog modela"),
     ("there is no such integrator", "nema takvog integratora"),
     ("there is no such body", "nema takvog tijela"),
