@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// The most circles, and the most files in one of them. Whoever removes a circle lowers these numbers.
-const ALLOWED: [usize; 2] = [3, 4];
+const ALLOWED: [usize; 2] = [1, 3];
 
 /// The path of a module in its crate; that of the crate's root is empty.
 type Module = Vec<String>;

@@ -56,16 +56,77 @@ pub(super) const CASES: &[Case] = &[
         ..ROD
     },
     Case {
-        name: "finite-difference-ring-buckles",
-        family: Family::Pressure,
-        quantity: "outer pressure at which a ring of EI = 1 N m², R = 1 m, loses its roundness",
-        unit: "N/m",
-        source: "M. Lévy 1884: 3EI/R³ for the pressure of a fluid",
-        levels: &[16.0, 32.0, 64.0],
-        expected: &[3.0],
-        measure: ring_buckles,
+        name: "finite-difference-square-plate",
+        quantity: "sinking of the middle of a square plate with simply supported sides under an even load, w D/q a⁴",
+        source: "S. Timoshenko, S. Woinowsky-Krieger, Theory of Plates and Shells, table 8, by Navier's series",
+        over: Over::Cells("cells along a side"),
+        levels: &[8.0, 16.0, 32.0],
+        expected: &[0.004_062_353_2],
+        measure: |lab, n| plate(lab, [n, n], true),
         ..ROD
     },
+    Case {
+        name: "finite-difference-cylindrical-bending",
+        quantity: "sinking of the middle of a strip of ν = 0 between two simple supports under an even load, w D/q L⁴",
+        source: "L. Euler, D. Bernoulli: 5/384",
+        over: Over::Cells("cells along the strip"),
+        levels: &[8.0, 16.0, 32.0],
+        expected: &[5.0 / 384.0],
+        measure: |lab, n| plate(lab, [n, 2.0], false),
+        ..ROD
+    },
+];
+
+pub(super) const MATERIALS: &[Case] = &[
+    Case {
+        name: "finite-difference-uniaxial-stress",
+        quantity: "force over the area at rest of a block under uniaxial stress, E = 100 kPa, ν = 0.45",
+        unit: "Pa",
+        source: "exact: E λ (λ² − 1)/2; it is largest in compression at λ = 1/√3, beyond which the law gives way",
+        expected: &[-17_850.0, -14_400.0, -8_550.0, 26_400.0, 93_750.0],
+        measure: |lab, stretch| Ok(block(lab, stretch)?[0]),
+        ..COLUMN
+    },
+    Case {
+        name: "finite-difference-uniaxial-narrowing",
+        quantity: "stretch across a block under uniaxial stress, E = 100 kPa, ν = 0.45",
+        source: "exact: √(1 − ν (λ² − 1))",
+        expected: &[
+            1.108_828_210_319_344_3,
+            1.077_961_038_256_949_1,
+            1.041_873_312_836_066_4,
+            0.895_544_527_089_523_8,
+            0.661_437_827_766_147_7,
+        ],
+        measure: |lab, stretch| Ok(block(lab, stretch)?[1]),
+        ..COLUMN
+    },
+    Case {
+        name: "finite-difference-turning-point",
+        quantity: "stiffness of a block at the stretch 1/√3, over that at rest: the slope of the force between 0.577 and 0.5777",
+        source: "exact: (3λ² − 1)/2 is zero at 1/√3",
+        over: Over::Parameter("difference of two stretches about 1/√3"),
+        levels: &[0.002, 0.001],
+        scale: crate::case::Scale::Of(1.0),
+        tolerance: 1e-5,
+        measure: turning_point,
+        ..COLUMN
+    },
+];
+
+pub(super) const PRESSURE: &[Case] = &[Case {
+    name: "finite-difference-ring-buckles",
+    family: Family::Pressure,
+    quantity: "outer pressure at which a ring of EI = 1 N m², R = 1 m, loses its roundness",
+    unit: "N/m",
+    source: "M. Lévy 1884: 3EI/R³ for the pressure of a fluid",
+    levels: &[16.0, 32.0, 64.0],
+    expected: &[3.0],
+    measure: ring_buckles,
+    ..ROD
+}];
+
+pub(super) const DYNAMICS: &[Case] = &[
     Case {
         name: "finite-difference-beam-first",
         quantity: "(βL)² = ωL²√(ρA/EI) of the first bending of a rod that one end holds",
@@ -105,60 +166,6 @@ pub(super) const CASES: &[Case] = &[
         expected: &[2.683_281_572_999_747_7],
         measure: free_ring,
         ..BEAM
-    },
-    Case {
-        name: "finite-difference-square-plate",
-        quantity: "sinking of the middle of a square plate with simply supported sides under an even load, w D/q a⁴",
-        source: "S. Timoshenko, S. Woinowsky-Krieger, Theory of Plates and Shells, table 8, by Navier's series",
-        over: Over::Cells("cells along a side"),
-        levels: &[8.0, 16.0, 32.0],
-        expected: &[0.004_062_353_2],
-        measure: |lab, n| plate(lab, [n, n], true),
-        ..ROD
-    },
-    Case {
-        name: "finite-difference-cylindrical-bending",
-        quantity: "sinking of the middle of a strip of ν = 0 between two simple supports under an even load, w D/q L⁴",
-        source: "L. Euler, D. Bernoulli: 5/384",
-        over: Over::Cells("cells along the strip"),
-        levels: &[8.0, 16.0, 32.0],
-        expected: &[5.0 / 384.0],
-        measure: |lab, n| plate(lab, [n, 2.0], false),
-        ..ROD
-    },
-    Case {
-        name: "finite-difference-uniaxial-stress",
-        quantity: "force over the area at rest of a block under uniaxial stress, E = 100 kPa, ν = 0.45",
-        unit: "Pa",
-        source: "exact: E λ (λ² − 1)/2; it is largest in compression at λ = 1/√3, beyond which the law gives way",
-        expected: &[-17_850.0, -14_400.0, -8_550.0, 26_400.0, 93_750.0],
-        measure: |lab, stretch| Ok(block(lab, stretch)?[0]),
-        ..COLUMN
-    },
-    Case {
-        name: "finite-difference-uniaxial-narrowing",
-        quantity: "stretch across a block under uniaxial stress, E = 100 kPa, ν = 0.45",
-        source: "exact: √(1 − ν (λ² − 1))",
-        expected: &[
-            1.108_828_210_319_344_3,
-            1.077_961_038_256_949_1,
-            1.041_873_312_836_066_4,
-            0.895_544_527_089_523_8,
-            0.661_437_827_766_147_7,
-        ],
-        measure: |lab, stretch| Ok(block(lab, stretch)?[1]),
-        ..COLUMN
-    },
-    Case {
-        name: "finite-difference-turning-point",
-        quantity: "stiffness of a block at the stretch 1/√3, over that at rest: the slope of the force between 0.577 and 0.5777",
-        source: "exact: (3λ² − 1)/2 is zero at 1/√3",
-        over: Over::Parameter("difference of two stretches about 1/√3"),
-        levels: &[0.002, 0.001],
-        scale: crate::case::Scale::Of(1.0),
-        tolerance: 1e-5,
-        measure: turning_point,
-        ..COLUMN
     },
     Case {
         name: "finite-difference-bar-first-wave",
