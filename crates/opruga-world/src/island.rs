@@ -45,7 +45,7 @@ pub(crate) struct Saved<const D: usize> {
     history: History<D>,
     time: f64,
     /// What entered and left since the start of the frame.
-    work: Work8,
+    pub(crate) work: Work8,
 }
 
 impl<const D: usize> Saved<D> {
@@ -95,6 +95,7 @@ impl<const D: usize> Saved<D> {
 const SHARED_FROM: usize = 1000;
 
 /// What a frame needs to know.
+#[derive(Clone, Copy)]
 pub(crate) struct FramePlan<'a, const D: usize> {
     pub(crate) colliders: Option<&'a Arc<Colliders<D>>>,
     pub(crate) start: f64,
@@ -104,6 +105,13 @@ pub(crate) struct FramePlan<'a, const D: usize> {
     pub(crate) look_every: u32,
     /// The bodies of the world where those that rest in a degenerate shape are displaced.
     pub(crate) unfold: Option<&'a [BodyBlueprint<D>]>,
+}
+
+impl<const D: usize> FramePlan<'_, D> {
+    /// The same frame with each substep in so many parts, without looks in between.
+    pub(crate) fn in_parts(&self, parts: u32) -> Self {
+        FramePlan { substeps: self.substeps * parts, h: self.h / f64::from(parts), look_every: 0, ..*self }
+    }
 }
 
 impl<const D: usize> Island<D> {

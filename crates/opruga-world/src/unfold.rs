@@ -6,7 +6,8 @@
 //! acts on the body, its free nodes are displaced at random, the same in every run: first by 10⁻⁴ of its size, then, each time after it
 //! had time to leave, by a hundredth and a tenth. Every time is counted. A shape that is left after the last time is counted, too.
 //!
-//! In statics the frame is solved again from the displaced shape, up to three times.
+//! In statics a frame that ends so is solved again: first from its start, with pins and loads led in parts, since what one large step folds
+//! smaller ones may not; then from shapes that are displaced, up to three times.
 //!
 //! A body has left such a shape when it kept another one for as long as leaving takes. One that goes to and fro about the limit goes on
 //! where it was, and comes to the last time.
@@ -27,6 +28,7 @@
 //! |---|---|---|
 //! | `REST`, `BALANCED` | a body that creeps or swings is displaced on its way | `robust_steps::a_body_that_creeps_back…` |
 //! | `PATIENCE` | a body is displaced again before it could leave | `flat_bodies::disturbances_end…` |
+//! | `PARTS` | a plate that one step folds stays folded, though smaller steps lead it upright | `torn_by_pins::plates_that_are_pressed_at_once_and_may_unfold…` |
 //! | `SIZES` | one displacement alone leaves no flat shape that is stable against it | `robust_steps::bodies_that_symmetry_holds…` |
 //! | `STRAINED` | folded bodies with sound cells stay | `robust_steps::every_rule_brings…` |
 
@@ -67,6 +69,9 @@ const PATIENCE: f64 = 12.0;
 
 /// By how much nodes are displaced, in sizes of the body: the cube root of its volume, the square root of its area.
 const SIZES: [f64; 3] = [1e-4, 1e-2, 0.1];
+
+/// In how many parts statics goes through a frame again that ended folded.
+const PARTS: u32 = 8;
 
 /// Cells of a body on which nothing acts are strained where their volume has changed by more than this part of it.
 const STRAINED: f64 = 1e-3;
@@ -129,9 +134,15 @@ impl<const D: usize> Island<D> {
             return Ok(());
         }
         let Some(mesh) = plan.unfold.map(|bodies| &bodies[self.bodies[0]].mesh) else { return Ok(()) };
+        // What one step folds, smaller ones may not: pins and loads go the same way in parts, and nothing is displaced.
+        if degenerate_size(&self.system, mesh).is_some() {
+            let found = Saved::of(&self.system, self.system.time);
+            self.restore();
+            self.solve_again(&plan.in_parts(PARTS), meets, found)?;
+        }
         for (times, part) in SIZES.iter().enumerate() {
             let Some(size) = degenerate_size(&self.system, mesh) else { return Ok(()) };
-            let (found, solver) = (Saved::of(&self.system, self.system.time), self.system.work.solver);
+            let found = Saved::of(&self.system, self.system.time);
             // Displaced at the end of the frame: pins are where they lead to, and tear no cells on their way there once more.
             displace(&mut self.system, part * size, times as u64);
             let shape = self.system.state.x.clone();
@@ -139,17 +150,32 @@ impl<const D: usize> Island<D> {
             self.system.state.x = shape;
             // Statics enters the change of energy since it began; what displacing gave is work, too.
             let given = self.energy_here() - start;
-            match self.attempt(plan, meets) {
-                Ok(_) => self.system.work.user[0] += given,
-                Err(StepError::BrokenOff) => return Err(StepError::BrokenOff),
-                // The balance that was found stays, and is reported as degenerate.
-                Err(_) => self.return_to(found),
+            if self.solve_again(plan, meets, found)? {
+                self.system.work.user[0] += given;
             }
-            self.system.work.solver.add(&solver);
             self.system.work.solver.disturbed += 1;
         }
         self.system.work.solver.odd_rests += u64::from(degenerate_size(&self.system, mesh).is_some());
         Ok(())
+    }
+
+    /// Solves a frame again from the present state, and says whether that ended in an equilibrium; otherwise the one that was found
+    /// before stays. The solver's work on both counts.
+    fn solve_again(&mut self, plan: &FramePlan<D>, meets: bool, found: Saved<D>) -> Result<bool, StepError> {
+        let before = found.work.solver;
+        match self.attempt(plan, meets) {
+            Ok(_) => {
+                self.system.work.solver.add(&before);
+                Ok(true)
+            }
+            Err(StepError::BrokenOff) => Err(StepError::BrokenOff),
+            Err(_) => {
+                let tried = self.system.work.solver;
+                self.return_to(found);
+                self.system.work.solver.add(&tried);
+                Ok(false)
+            }
+        }
     }
 
     /// The energy of the present state [J].
