@@ -2,7 +2,7 @@
 //!
 //! A body that was squeezed onto a plane, a line or a point, or inverted, may be in equilibrium there by symmetry alone: no force leads
 //! out of the plane, though the energy falls on both sides of it. No solver may leave such a shape by itself, since it follows the forces.
-//! So the world looks at the bodies after every frame. Where one rests while cells are degenerate or inverted, or strained though nothing
+//! So the world looks at the bodies from time to time. Where one rests while cells are degenerate or inverted, or strained though nothing
 //! acts on the body, its free nodes are displaced at random, the same in every run: first by 10⁻⁴ of its size, then, each time after it
 //! had time to leave, by a hundredth and a tenth. Every time is counted. A shape that is left after the last time is counted, too.
 //!
@@ -27,6 +27,7 @@
 //! | constant | what breaks without it | test |
 //! |---|---|---|
 //! | `REST`, `BALANCED` | a body that creeps or swings is displaced on its way | `robust_steps::a_body_that_creeps_back…` |
+//! | `PERIODS` | every frame pays for a look, and a body is displaced before it swings freely | `flat_bodies::bodies_on_a_line_leave…` |
 //! | `PATIENCE` | a body is displaced again before it could leave | `flat_bodies::disturbances_end…` |
 //! | `PARTS` | a plate that one step folds stays folded, though smaller steps lead it upright | `torn_by_pins::plates_that_are_pressed_at_once_and_may_unfold…` |
 //! | `SIZES` | one displacement alone leaves no flat shape that is stable against it | `robust_steps::bodies_that_symmetry_holds…` |
@@ -47,15 +48,22 @@ use opruga_solve::dense::symmetric_eigen;
 const TIMES: PerBody<u64> = PerBody::new("unfold.times");
 /// When it was displaced last [s].
 const LAST: PerBody<f64> = PerBody::new("unfold.last");
-/// After how many frames in a row all of it was flat.
-const FLAT_FRAMES: PerBody<u64> = PerBody::new("unfold.flat_frames");
+/// At how many looks in a row all of it was flat.
+const FLAT_LOOKS: PerBody<u64> = PerBody::new("unfold.flat_looks");
+/// Frames since the last look.
+const SINCE: PerBody<u64> = PerBody::new("unfold.since");
+/// Whether the last look found nothing.
+const SOUND: PerBody<bool> = PerBody::new("unfold.sound");
 /// Until when another shape does not count as having left the degenerate one [s].
 const UNTIL: PerBody<f64> = PerBody::new("unfold.until");
 
 /// What is kept of every body.
-pub(crate) fn channels() -> [Channel; 4] {
-    [TIMES.declared(), LAST.declared(), FLAT_FRAMES.declared(), UNTIL.declared()]
+pub(crate) fn channels() -> [Channel; 6] {
+    [TIMES.declared(), LAST.declared(), FLAT_LOOKS.declared(), UNTIL.declared(), SINCE.declared(), SOUND.declared()]
 }
+
+/// Frames between two looks, and between two looks at a body that was sound: a look costs about as much as evaluating forces.
+const PERIODS: [u64; 2] = [24, 96];
 
 /// Kinetic energy, and what damping takes in the time to leave, that count as rest, as parts of the stored energy.
 const REST: f64 = 1e-3;
@@ -80,7 +88,7 @@ const STRAINED: f64 = 1e-3;
 const UNITS: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 impl<const D: usize> Island<D> {
-    /// Looks at a body after the substeps of a frame, and displaces it where it rests in a degenerate shape. `v0` holds the velocities
+    /// Looks at a body after the substeps of a frame, now and then, and displaces it where it rests in a degenerate shape. `v0` holds the velocities
     /// at the start of the frame.
     ///
     /// # Errors
@@ -89,14 +97,22 @@ impl<const D: usize> Island<D> {
         let Some(mesh) = plan.unfold.map(|bodies| &bodies[self.bodies[0]].mesh) else { return Ok(()) };
         let system = &mut self.system;
         let frame = f64::from(plan.substeps) * plan.h;
+        let since = system.history.get(SINCE) + 1;
+        let due = since >= PERIODS[usize::from(system.history.get(SOUND))];
+        system.history.set(SINCE, if due { 0 } else { since });
+        if !due {
+            return Ok(());
+        }
         let (times, last, until) = (system.history.get(TIMES), system.history.get(LAST), system.history.get(UNTIL));
         let Some(size) = degenerate_size(system, mesh) else {
             system.history.set(TIMES, if system.time > until { 0 } else { times });
-            system.history.set(FLAT_FRAMES, 0);
+            system.history.set(FLAT_LOOKS, 0);
+            system.history.set(SOUND, true);
             return Ok(());
         };
-        let flat = if is_flat(system) { system.history.get(FLAT_FRAMES) + 1 } else { 0 };
-        system.history.set(FLAT_FRAMES, flat);
+        system.history.set(SOUND, false);
+        let flat = if is_flat(system) { system.history.get(FLAT_LOOKS) + 1 } else { 0 };
+        system.history.set(FLAT_LOOKS, flat);
         let energy = stored(system)?;
         let Motion { kinetic, push, mass, fading } = motion(system, v0, frame)?;
         let patience = PATIENCE * size * (mass / energy).sqrt();
@@ -109,11 +125,11 @@ impl<const D: usize> Island<D> {
         let waits = times > 0 && system.time - last <= patience;
         let small = |part: f64| part <= REST * energy;
         let rests = small(kinetic) && push * size <= BALANCED * energy && small(fading * patience);
-        let stays = flat as f64 * frame > patience;
+        let stays = (flat * PERIODS[0]) as f64 * frame > patience;
         if waits || !(stays || rests) {
             return Ok(());
         }
-        system.history.set(FLAT_FRAMES, 0);
+        system.history.set(FLAT_LOOKS, 0);
         system.history.set(TIMES, times + 1);
         system.history.set(LAST, system.time);
         match SIZES.get(times as usize) {
