@@ -143,17 +143,25 @@ fn strip(lab: &Lab, n: f64, cells: Cells, across: f64) -> Result<f64, Trouble> {
 
 /// A chain whose last two nodes are led until it is a closed polygon of equal angles, and the moment of what leads them.
 fn roll_up(lab: &Lab, n: f64) -> Result<f64, Trouble> {
+    let l = 1.0 / (n - 1.0);
+    let models = format!(
+        "models = [{{ kind = \"bending\", stiffness = {:?} }}, {{ kind = \"mass_spring\", stiffness = {:?} }}]",
+        1.0 / l,
+        1e6 / l
+    );
+    roll_up_by(lab, n, &models)
+}
+
+/// The same by models with EI = 1 N m² that hardly stretch.
+pub(super) fn roll_up_by(lab: &Lab, n: f64, models: &str) -> Result<f64, Trouble> {
     let (count, l) = (n as usize, 1.0 / (n - 1.0));
     let place = |angle: f64, node: usize| {
         (0..node).fold([0.0; 2], |x, k| [x[0] + l * (k as f64 * angle).cos(), x[1] + l * (k as f64 * angle).sin()])
     };
     let mut text = format!(
-        "[[body]]\nname = \"rod\"\nmass = 1.0\nshape = {{ kind = \"line\", from = [0.0, 0.0], to = [{:?}, 0.0], segments = {n} }}\n\
-         models = [{{ kind = \"bending\", stiffness = {:?} }}, {{ kind = \"mass_spring\", stiffness = {:?} }}]\n\
+        "[[body]]\nname = \"rod\"\nmass = 1.0\nshape = {{ kind = \"line\", from = [0.0, 0.0], to = [{:?}, 0.0], segments = {n} }}\n{models}\n\
          pin = [{{ select = {{ nodes = [0, 1] }} }}",
-        n * l,
-        1.0 / l,
-        1e6 / l
+        n * l
     );
     let steps = 40;
     for node in [count - 1, count] {

@@ -5,7 +5,6 @@ use crate::bodies::displacement;
 use crate::case::{Case, Check, Family, Over};
 use crate::lab::{Lab, Scene, Trouble};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
-use std::fmt::Write as _;
 
 const ROD: Case = Case { over: Over::Cells("segments"), check: Check::Order(2.0), quick: true, ..BASE };
 
@@ -43,7 +42,7 @@ pub(super) const CASES: &[Case] = &[
         source: "exact: M = 2π EI/L",
         levels: &[12.0, 24.0, 48.0],
         expected: &[TAU],
-        measure: roll_up,
+        measure: |lab, n| super::beams::roll_up_by(lab, n, &stiff()),
         ..ROD
     },
     Case {
@@ -216,41 +215,6 @@ fn elastica(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     let mut world = lab.plane(scene)?;
     world.frame()?;
     Ok(-displacement(&world, [1.0, 0.0])[1])
-}
-
-/// A rod whose last two nodes are led until it is a closed polygon of equal angles, and the moment of what leads them.
-fn roll_up(lab: &Lab, n: f64) -> Result<f64, Trouble> {
-    let (count, l) = (n as usize, 1.0 / (n - 1.0));
-    let place = |angle: f64, node: usize| {
-        (0..node).fold([0.0; 2], |x, k| [x[0] + l * (k as f64 * angle).cos(), x[1] + l * (k as f64 * angle).sin()])
-    };
-    let mut text = format!(
-        "[[body]]\nname = \"rod\"\nmass = 1.0\nshape = {{ kind = \"line\", from = [0.0, 0.0], to = [{:?}, 0.0], segments = {n} }}\n{}\n\
-         pin = [{{ select = {{ nodes = [0, 1] }} }}",
-        n * l,
-        stiff()
-    );
-    let steps = 40;
-    for node in [count - 1, count] {
-        let start = place(0.0, node);
-        let _ = write!(text, ",\n {{ select = {{ node = {node} }}, motion = [");
-        for step in 0..=steps {
-            let part = f64::from(step) / f64::from(steps);
-            let x = place(part * TAU / (n - 1.0), node);
-            let _ = write!(text, "[{part:?}, {:?}, {:?}],", x[0] - start[0], x[1] - start[1]);
-        }
-        text.push_str("] }");
-    }
-    let rule = "equilibrium\ntolerance = 1e-8";
-    let mut world = lab.plane(Scene::new(2, 1.0 / f64::from(steps), 1, rule).add(&(text + "]")))?;
-    for _ in 0..steps {
-        world.frame()?;
-    }
-    let moment = [count - 1, count].map(|node| {
-        let (x, force) = (world.position(0, node as u32), world.reaction(0, &[node as u32]));
-        x[0] * force[1] - x[1] * force[0]
-    });
-    Ok(moment[0] + moment[1])
 }
 
 /// Where the square of the lowest frequency is zero, by the line through two loads.
