@@ -28,6 +28,7 @@ mod grid;
 mod plate;
 mod solid;
 mod spec;
+mod states;
 
 pub use spec::SPEC;
 
@@ -37,7 +38,9 @@ use curve::{Bend, Stretch};
 use grid::{Grid, HEXAHEDRON, QUADRILATERAL, spacings};
 use opruga_core::error::BuildError;
 use opruga_core::memory::{Counts, Need};
-use opruga_core::potential::{Definiteness, Ingredients, Model, Observe, Potential, Properties, Sink, Views};
+use opruga_core::potential::{
+    CellState, Definiteness, Ingredients, Model, Observe, Potential, Properties, Sink, Views,
+};
 use opruga_core::spec::{Spec, Values};
 use opruga_core::state::{Layout, View};
 use opruga_core::stencil::Stencils;
@@ -47,6 +50,7 @@ use opruga_math::{Simd, WIDTH};
 use opruga_mesh::Mesh;
 use plate::{Edge, Inner, Twist};
 use solid::{Hexahedron, Quadrilateral};
+use states::Cells;
 
 /// The word in scenes.
 const KIND: &str = "finite_difference";
@@ -108,6 +112,8 @@ pub struct FiniteDifferenceModel;
 struct FiniteDifference<const D: usize> {
     parts: Vec<Box<dyn Potential<D>>>,
     damped: bool,
+    /// The cells of a solid, and the elastic numbers of each body.
+    solid: Option<(Cells<D>, Vec<Elastic>)>,
 }
 
 /// The elastic numbers of one body.
@@ -190,17 +196,20 @@ impl<const D: usize> Model<D> for FiniteDifferenceModel {
         let elastic: Vec<Elastic> = ingredients.values.iter().map(|values| Elastic::of(values)).collect();
         let damped = elastic.iter().any(|body| body.damping > 0.0);
         let plan = Plan { ingredients, elastic, damped };
-        let parts = match grid {
-            Grid::Curve { edges, nodes } => plan.curve(&edges, &nodes)?,
-            Grid::Surface { cells, inner, edge } => plan.surface(&cells, &inner, &edge)?,
+        let (parts, cells) = match grid {
+            Grid::Curve { edges, nodes } => (plan.curve(&edges, &nodes)?, None),
+            Grid::Surface { cells, inner, edge } => (plan.surface(&cells, &inner, &edge)?, None),
             Grid::Plane { cells } => plan.plane(&cells)?,
             Grid::Space { cells } => plan.space(&cells)?,
         };
-        Ok(Box::new(FiniteDifference { parts, damped }))
+        let solid = cells.map(|cells| (cells, plan.elastic));
+        Ok(Box::new(FiniteDifference { parts, damped, solid }))
     }
 }
 
 type Parts<const D: usize> = Vec<Box<dyn Potential<D>>>;
+/// The parts of a solid and its cells.
+type Solid<const D: usize> = (Parts<D>, Option<Cells<D>>);
 
 /// What all parts of a body are built from.
 struct Plan<'a, const D: usize> {
@@ -315,11 +324,13 @@ impl<const D: usize> Plan<'_, D> {
             [c[0], c[1], c[2], 1.0 / (h1 * h1), 1.0 / (h2 * h2), 1.0 / (h1 * h2), own.damping]
         }))
     }
-    fn plane(&self, cells: &[[u32; 4]]) -> Result<Parts<D>, Refusal> {
-        let sides = self.rectangles(cells)?;
-        Ok(vec![self.quadrilaterals(cells, &sides, Elastic::solid, self.ingredients.thickness)])
+    fn plane(&self, cells: &[[u32; 4]]) -> Result<Solid<D>, Refusal> {
+        let (sides, depth) = (self.rectangles(cells)?, self.ingredients.thickness);
+        let part = self.quadrilaterals(cells, &sides, Elastic::solid, depth);
+        let sides = sides.iter().map(|side| core::array::from_fn(|d| side[d])).collect();
+        Ok((vec![part], Some(Cells::new(cells, sides, depth))))
     }
-    fn space(&self, cells: &[[u32; 8]]) -> Result<Parts<D>, Refusal> {
+    fn space(&self, cells: &[[u32; 8]]) -> Result<Solid<D>, Refusal> {
         let (neighbours, steps) = HEXAHEDRON;
         let sides: Vec<[f64; 3]> = cells
             .iter()
@@ -345,7 +356,8 @@ impl<const D: usize> Plan<'_, D> {
                 own.damping,
             ]
         });
-        Ok(vec![Box::new(part)])
+        let sides = sides.iter().map(|side| core::array::from_fn(|d| side[d])).collect();
+        Ok((vec![Box::new(part)], Some(Cells::new(cells, sides, 1.0))))
     }
 
     fn surface(&self, cells: &[[u32; 4]], inner: &[[u32; 5]], edge: &[[u32; 4]]) -> Result<Parts<D>, Refusal> {
@@ -413,7 +425,12 @@ impl<const D: usize> Potential<D> for FiniteDifference<D> {
 }
 
 impl<const D: usize> Observe<D> for FiniteDifference<D> {
+    fn cell_states(&self, view: &View<D>, body: usize) -> Vec<CellState> {
+        let Some((cells, elastic)) = &self.solid else { return Vec::new() };
+        cells.states(view, body, &elastic[body.min(elastic.len() - 1)])
+    }
     fn heap_bytes(&self) -> usize {
-        self.parts.iter().map(|part| part.heap_bytes()).sum()
+        let cells = self.solid.as_ref().map_or(0, |(cells, _)| cells.heap_bytes());
+        self.parts.iter().map(|part| part.heap_bytes()).sum::<usize>() + cells
     }
 }

@@ -1,6 +1,6 @@
 //! Parameters of finite differences.
 
-use opruga_core::spec::{Allowed, Bound, Condition, Default, Field, Spec};
+use opruga_core::spec::{Allowed, Bound, Condition, Default, Field, Role, Spec};
 
 /// The parameters of `finite_difference`.
 pub const SPEC: Spec = Spec {
@@ -55,5 +55,5 @@ A body that is no grid is refused. Source: Terzopoulos, Platt, Barr, Fleischer 1
         )
         .applies(&[Condition::Dimension(2)]),
     ],
-    roles: &[],
+    roles: &[Role::OwnsCells],
 };

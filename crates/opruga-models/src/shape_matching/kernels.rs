@@ -181,7 +181,7 @@ pub(super) struct Fit<'a, const D: usize> {
 }
 
 /// The fitted map has a volume of its own above this part of that at rest.
-const VOLUME: f64 = 1e-9;
+pub(super) const VOLUME: f64 = 1e-9;
 
 impl<const D: usize> Work for Fit<'_, D> {
     type Output = ();

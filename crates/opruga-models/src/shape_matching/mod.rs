@@ -39,14 +39,17 @@ mod spec;
 pub use refusals::Refusal;
 pub use spec::SPEC;
 
-use kernels::{Energy, Fit, Law, Moments, Push, SlotForces, Stored};
+use kernels::{Energy, Fit, Law, Moments, Push, SlotForces, Stored, VOLUME};
 use layout::Clusters;
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::memory::{Counts, Need};
-use opruga_core::potential::{Account, Definiteness, Ingredients, Model, Observe, Potential, Properties, Sink, Views};
+use opruga_core::potential::{
+    Account, Count, Definiteness, Ingredients, Model, Observe, Potential, Properties, Sink, Views,
+};
 use opruga_core::spec::Spec;
 use opruga_core::state::{Layout, Parameter, View};
 use opruga_core::tile::Tile;
+use opruga_math::matrix::determinant;
 use opruga_math::message::AnyMessage;
 use opruga_math::{Pack, Simd, WIDTH, Work};
 
@@ -148,11 +151,14 @@ impl<const D: usize> Potential<D> for Matching<D> {
         }
     }
     fn initial_memory(&self) -> Vec<f64> {
-        self.step.map_or(Vec::new(), |step| vec![step; WIDTH])
+        // The step with which the stiffness was declared, and how often a cluster was mirrored, of every body.
+        let mut memory = vec![self.step.unwrap_or(0.0); WIDTH];
+        memory.resize(2 * WIDTH, 0.0);
+        memory
     }
     fn prepare(&self, simd: Simd, view: &View<D>, memory: &[f64], scratch: &mut [f64]) -> Result<(), StepError> {
         if let Some(declared) = self.step
-            && let Some(now) = memory.iter().find(|now| **now != declared)
+            && let Some(now) = memory.iter().take(WIDTH).find(|now| **now != declared)
         {
             let refusal = Refusal::StepChanged { now: *now, declared, stiffness: self.law.stiffness.at(0) };
             return Err(StepError::Model { model: SPEC.kind, message: refusal.to_string() });
@@ -194,9 +200,14 @@ impl<const D: usize> Potential<D> for Matching<D> {
         tile.settle(simd);
         simd.run(Gather { clusters, forces: &scratch[stored.forces..], view, tile, works });
     }
-    fn remember(&self, _simd: Simd, _view: &View<D>, h: f64, _scratch: &mut [f64], memory: &mut [f64]) -> [f64; WIDTH] {
+    fn remember(&self, _simd: Simd, _view: &View<D>, h: f64, scratch: &mut [f64], memory: &mut [f64]) -> [f64; WIDTH] {
         // A stiffness that depends on the step is refused where the step is another one.
-        memory.fill(h);
+        let (steps, mirrored) = memory.split_at_mut(WIDTH);
+        steps.fill(h);
+        for (body, count) in mirrored.iter_mut().enumerate().take(self.clusters.layout.stride()) {
+            *count +=
+                (0..self.clusters.len()).filter(|cluster| self.is_mirrored(scratch, *cluster, body)).count() as f64;
+        }
         [0.0; WIDTH]
     }
     fn energy(&self, simd: Simd, view: &View<D>, scratch: &[f64]) -> [f64; WIDTH] {
@@ -209,7 +220,34 @@ impl<const D: usize> Potential<D> for Matching<D> {
     }
 }
 
+impl<const D: usize> Matching<D> {
+    /// Whether the fitted map of a cluster turns its rest shape inside out.
+    fn is_mirrored(&self, scratch: &[f64], cluster: usize, body: usize) -> bool {
+        let (clusters, stored) = (&self.clusters, self.stored);
+        let at = clusters.layout.place(cluster, body);
+        let mut map = [[0.0; D]; D];
+        let mut frame = [[0.0; D]; D];
+        for d in 0..D {
+            for k in 0..D {
+                map[d][k] = scratch[(stored.moments + d * clusters.columns + k) * stored.stride + at];
+                frame[d][k] = clusters.frame[d * D + k][at];
+            }
+        }
+        let at_rest = determinant(&frame);
+        // Below this part of its volume at rest its sign is rounding.
+        determinant(&map) * at_rest < -VOLUME * at_rest * at_rest
+    }
+}
+
 impl<const D: usize> Observe<D> for Matching<D> {
+    fn counts(&self, memory: &[f64]) -> Vec<Count> {
+        vec![Count {
+            code: "shape_matching.mirrored",
+            message: "a cluster was mirrored, counted per substep and cluster: rotations do not turn a mirrored shape back, so overlapping \
+                      clusters that are all mirrored may stay folded; hint: fewer, larger clusters",
+            count: memory.iter().skip(WIDTH).sum::<f64>() as u64,
+        }]
+    }
     fn lacks(&self) -> Option<AnyMessage> {
         self.is_published.then(|| Refusal::NoPotential {}.into())
     }

@@ -288,3 +288,42 @@ fn bodies_that_are_no_regular_grid_are_refused() {
     assert_eq!(refused(&straight, &torsion), code("no_torsion"));
     assert_eq!(refused(&sheet([2, 2]), &torsion), code("torsion_of_surface"));
 }
+
+/// Stress and volume ratio under an affine motion are those of finite elements of the same law.
+#[test]
+fn cells_under_affine_motion_have_the_stress_of_finite_elements() {
+    fn compare<const D: usize>(mesh: &Mesh<D>, f: [[f64; D]; D], plane: Option<&str>, element: &dyn Model<D>) {
+        let mut differences = values!(finite_difference, youngs_modulus: 1e5, poissons_ratio: 0.3);
+        let mut elements = values!(fem, material: "st_venant_kirchhoff", youngs_modulus: 1e5, poissons_ratio: 0.3);
+        if let Some(plane) = plane {
+            differences = values!(finite_difference, youngs_modulus: 1e5, poissons_ratio: 0.3, plane: plane);
+            elements =
+                values!(fem, material: "st_venant_kirchhoff", youngs_modulus: 1e5, poissons_ratio: 0.3, plane: plane);
+        }
+        let states = |model: &dyn Model<D>, values: Values| {
+            let parts: [Part<D>; 1] = [(model, values)];
+            let mut system = system(mesh, &parts);
+            let moved = affine(f);
+            mesh.positions.iter().enumerate().for_each(|(node, x)| system.state.x.set(node, moved(*x)));
+            system.members[0].potential.cell_states(&system.view(Stage::Current, 0.0), 0)
+        };
+        let (ours, theirs) = (states(&FiniteDifference, differences), states(element, elements));
+        assert_eq!(ours.len(), theirs.len());
+        for (a, b) in ours.iter().zip(&theirs) {
+            assert!(
+                (a.volume_ratio - b.volume_ratio).abs() < 1e-12 && (a.measure - b.measure).abs() < 1e-12,
+                "{a:?} {b:?}"
+            );
+            assert!((a.smallest_volume_ratio - b.smallest_volume_ratio).abs() < 1e-12, "{a:?} {b:?}");
+            let off = a.stress.iter().flatten().zip(b.stress.iter().flatten()).map(|(a, b)| (a - b).abs());
+            assert!(off.fold(0.0, Lane::larger) < 1e-7, "{a:?} {b:?}");
+        }
+    }
+    let plate = Mesh::<2>::grid([0.0, 1.0], [1.0, 0.6], [5, 3]).unwrap();
+    let block = Mesh::<3>::grid([0.0; 3], [1.0, 0.8, 0.6], [3, 2, 2]).unwrap();
+    let flat = [[1.1, 0.2], [-0.1, 0.9]];
+    compare(&plate, flat, Some("strain"), &opruga_models::fem::FemModel);
+    compare(&plate, flat, Some("stress"), &opruga_models::fem::FemModel);
+    let f = [[1.1, 0.2, 0.1], [-0.1, 0.9, 0.05], [0.0, 0.1, 1.2]];
+    compare(&block, f, None, &opruga_models::fem::FemModel);
+}

@@ -5,6 +5,7 @@
 use crate::common;
 mod contact;
 mod ledger;
+mod methods;
 mod parameters;
 mod state;
 mod world;
