@@ -8,6 +8,7 @@ pub mod blocks;
 mod cholesky;
 mod conjugate_gradients;
 pub mod dense;
+pub mod dense_system;
 pub mod eigen;
 mod filled;
 mod landing;
