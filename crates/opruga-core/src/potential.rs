@@ -322,6 +322,10 @@ pub trait Observe<const D: usize> {
     fn counts(&self, _memory: &[f64]) -> Vec<Count> {
         Vec::new()
     }
+    /// Whether what it was built of has the same bits on every processor: not where a library factored a matrix.
+    fn same_bits_everywhere(&self) -> bool {
+        true
+    }
     /// Bytes on the heap.
     fn heap_bytes(&self) -> usize {
         0

@@ -311,6 +311,9 @@ impl<const D: usize> Observe<D> for BoundaryElement<D> {
         };
         if self.turned > 0 { vec![count] } else { Vec::new() }
     }
+    fn same_bits_everywhere(&self) -> bool {
+        false
+    }
     fn heap_bytes(&self) -> usize {
         let matrices = self.bodies.iter().map(|body| body.stiffness.matrix.heap_bytes()).sum::<usize>();
         matrices + self.places.len() * self.rest.weights.len() * 4

@@ -18,6 +18,11 @@ impl IntoValue for f64 {
         Value::Number(self)
     }
 }
+impl IntoValue for bool {
+    fn value(self) -> Value {
+        Value::Boolean(self)
+    }
+}
 impl IntoValue for &str {
     fn value(self) -> Value {
         Value::Text(self.into())
