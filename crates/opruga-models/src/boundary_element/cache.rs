@@ -8,8 +8,23 @@ use std::sync::{Arc, Mutex, PoisonError, Weak};
 /// The bits of all that a stiffness follows from.
 type Key = Vec<u64>;
 
-/// Those that somebody holds. The list is as short as the number of different bodies.
-static KNOWN: Mutex<Vec<(Key, Weak<Stiffness>)>> = Mutex::new(Vec::new());
+/// Those that somebody holds, and the one that was asked for last: whoever reads a scene builds its bodies more than once, one after the
+/// other.
+struct Known {
+    held: Vec<(Key, Weak<Stiffness>)>,
+    last: Option<Arc<Stiffness>>,
+}
+
+static KNOWN: Mutex<Known> = Mutex::new(Known { held: Vec::new(), last: None });
+
+impl Known {
+    fn find(&mut self, key: &Key) -> Option<Arc<Stiffness>> {
+        self.held.retain(|(_, held)| held.strong_count() > 0);
+        let found = self.held.iter().find(|(own, _)| own == key).and_then(|(_, held)| held.upgrade())?;
+        self.last = Some(Arc::clone(&found));
+        Some(found)
+    }
+}
 
 fn key<const D: usize>(surface: &Surface<D>, poisson: f64, exterior: bool, asked: &[[f64; D]]) -> Key {
     let mut key = vec![D as u64, u64::from(exterior), poisson.to_bits(), surface.nodes as u64, asked.len() as u64];
@@ -26,19 +41,16 @@ pub(super) fn stiffness<const D: usize>(
     asked: &[[f64; D]],
 ) -> Result<Arc<Stiffness>, Refusal> {
     let key = key(surface, poisson, exterior, asked);
-    let find = |known: &mut Vec<(Key, Weak<Stiffness>)>| {
-        known.retain(|(_, held)| held.strong_count() > 0);
-        known.iter().find(|(own, _)| *own == key).and_then(|(_, held)| held.upgrade())
-    };
-    if let Some(held) = find(&mut KNOWN.lock().unwrap_or_else(PoisonError::into_inner)) {
+    if let Some(held) = KNOWN.lock().unwrap_or_else(PoisonError::into_inner).find(&key) {
         return Ok(held);
     }
     // Not under the lock: others build their own meanwhile, and the same numbers twice are the same bits.
     let made = Arc::new(Stiffness::new(surface, poisson, exterior, asked)?);
     let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(held) = find(&mut known) {
+    if let Some(held) = known.find(&key) {
         return Ok(held);
     }
-    known.push((key, Arc::downgrade(&made)));
+    known.held.push((key, Arc::downgrade(&made)));
+    known.last = Some(Arc::clone(&made));
     Ok(made)
 }
