@@ -5,7 +5,7 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt;
 use faer::linalg::lu::partial_pivoting::{factor, solve};
 use faer::perm::PermRef;
-use faer::{Conj, MatMut, MatRef, Par};
+use faer::{Conj, MatMut, MatRef, Par, Side};
 use opruga_core::dense::Dense;
 
 /// The factors of a square matrix, with pivots, in its memory.
@@ -79,6 +79,28 @@ pub fn cholesky(size: usize, mut numbers: Vec<f64>) -> Result<Dense, Indefinite>
     Ok(Dense::of_lower(size, |row, column| numbers[column * size + row]))
 }
 
+/// Takes the negative eigenvalues out of a symmetric matrix of `size` rows, given column by column; gives the norm of what was taken
+/// out as a part of that of the matrix. Eigenvalues that are rounding, below 1e-12 of the largest, stay.
+///
+/// # Errors
+/// [`Indefinite`] where an entry is not finite.
+pub fn clamp(size: usize, numbers: &mut [f64]) -> Result<f64, Indefinite> {
+    let matrix = MatRef::from_column_major_slice(numbers, size, size);
+    let found = matrix.self_adjoint_eigen(Side::Lower).map_err(|_| Indefinite)?;
+    let values: Vec<f64> = found.S().column_vector().iter().copied().collect();
+    let largest = values.iter().fold(0.0, |most, x| if x.abs() > most { x.abs() } else { most });
+    let all: f64 = values.iter().map(|x| x * x).sum();
+    let mut taken = 0.0;
+    for (k, value) in values.iter().enumerate().filter(|(_, value)| **value < -1e-12 * largest) {
+        taken += value * value;
+        let vector: Vec<f64> = found.U().col(k).iter().copied().collect();
+        for (column, weight) in numbers.chunks_exact_mut(size).zip(&vector) {
+            column.iter_mut().zip(&vector).for_each(|(entry, x)| *entry -= value * weight * x);
+        }
+    }
+    Ok((taken / all).sqrt())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -109,5 +131,9 @@ mod tests {
         factor.solve_as_factor(Simd::best(), &mut b);
         assert!(x.iter().zip(&b).all(|(x, b)| (x - b).abs() < 1e-11));
         assert!(cholesky(2, vec![1.0, 2.0, 2.0, 1.0]).is_err());
+        // Eigenvalues 3 and −1.
+        let mut clamped = vec![1.0, 2.0, 2.0, 1.0];
+        let taken = clamp(2, &mut clamped).unwrap();
+        assert!((taken - 0.1_f64.sqrt()).abs() < 1e-14 && clamped.iter().all(|x| (x - 1.5).abs() < 1e-14));
     }
 }

@@ -345,7 +345,9 @@ impl<const D: usize> Linear<D> {
     fn is_direct(&self, solver: Solver) -> bool {
         // A dense part has a factor that stays while the body turns.
         let dense = solver == Solver::Auto && self.full.has_dense();
-        solver == Solver::Cholesky || dense || (solver.is_direct::<D>(self.full.rows()) && self.full.parts() <= MOST_PARTS)
+        solver == Solver::Cholesky
+            || dense
+            || (solver.is_direct::<D>(self.full.rows()) && self.full.parts() <= MOST_PARTS)
     }
 
     /// Solves by conjugate gradients, with the complete factor where the incomplete one leads nowhere soon.

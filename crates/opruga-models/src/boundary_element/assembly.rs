@@ -13,7 +13,7 @@ use super::refusals::Refusal;
 use super::stresses;
 use super::surface::{Source, Surface};
 use opruga_core::dense::Dense;
-use opruga_solve::dense_system::{DenseFactors, cholesky};
+use opruga_solve::dense_system::{DenseFactors, cholesky, clamp};
 use std::sync::Arc;
 
 /// What was done to a stiffness so that it is that of a body, as parts of itself.
@@ -25,6 +25,8 @@ pub(super) struct Changes {
     pub(super) rigid: f64,
     /// The largest traction of a rotation by 1 rad, over μ: what the integrals are in error by.
     pub(super) rotation: f64,
+    /// The norm of the part with negative eigenvalues that was taken out, over that of K.
+    pub(super) negative: f64,
 }
 
 /// The stiffness of a boundary for a shear modulus of 1 and lengths of its size.
@@ -199,7 +201,7 @@ impl Stiffness {
         let mut k = forces_of_tractions(surface, rows, &h);
         drop(h);
         free_and_symmetrise(columns, &motions, &mut k, &mut changes);
-        refuse_negative(columns, &motions, &k)?;
+        make_positive(columns, surface.nodes, &motions, &mut k, &mut changes)?;
         let matrix = Dense::of_lower(columns, |row, column| k[column * columns + row]);
         Ok(Stiffness { matrix: Arc::new(matrix), changes, stresses })
     }
@@ -270,8 +272,57 @@ fn free_and_symmetrise(size: usize, motions: &[Vec<f64>], k: &mut [f64], changes
     changes.asymmetry = (skew / even).sqrt();
 }
 
-/// Refuses a stiffness that some motion makes energy from.
-fn refuse_negative(size: usize, motions: &[Vec<f64>], k: &[f64]) -> Result<(), Refusal> {
+/// Vertices up to which negative eigenvalues are looked for one by one: all eigenvectors take as long as the rest.
+const MOST_CLAMPED: usize = 1000;
+
+/// The part of a stiffness that may be taken out with its negative eigenvalues.
+const MOST_NEGATIVE: f64 = 0.05;
+
+/// Takes negative eigenvalues out, with which some motion would make energy: collocation may have them where sides are uneven.
+fn make_positive(
+    size: usize,
+    vertices: usize,
+    motions: &[Vec<f64>],
+    k: &mut [f64],
+    changes: &mut Changes,
+) -> Result<(), Refusal> {
+    if is_positive(size, motions, k) {
+        return Ok(());
+    }
+    let refused = |reason: &str| Refusal::Singular { reason: reason.into() };
+    if vertices > MOST_CLAMPED {
+        return Err(refused("the stiffness has negative eigenvalues, and more than 1000 vertices"));
+    }
+    changes.negative = clamp(size, k).map_err(|_| refused("the stiffness is not finite"))?;
+    if changes.negative > MOST_NEGATIVE {
+        return Err(refused("more than a twentieth of the stiffness has negative eigenvalues"));
+    }
+    // Rounding of eigenvectors is no rigid motion.
+    for _ in 0..2 {
+        for column in k.chunks_exact_mut(size) {
+            for motion in motions {
+                let along = opruga_solve::dot(motion, column);
+                column.iter_mut().zip(motion).for_each(|(entry, x)| *entry -= along * x);
+            }
+        }
+        for column in 0..size {
+            for row in column + 1..size {
+                let (a, b) = (k[column * size + row], k[row * size + column]);
+                (k[column * size + row], k[row * size + column]) = (b, a);
+            }
+        }
+    }
+    for column in 0..size {
+        for row in column + 1..size {
+            let mean = 0.5 * (k[column * size + row] + k[row * size + column]);
+            (k[column * size + row], k[row * size + column]) = (mean, mean);
+        }
+    }
+    Ok(())
+}
+
+/// Whether a stiffness has no negative eigenvalue but those of rounding, given its rigid motions.
+fn is_positive(size: usize, motions: &[Vec<f64>], k: &[f64]) -> bool {
     let mean = (0..size).map(|n| k[n * size + n]).sum::<f64>() / size as f64;
     let mut shifted = k.to_vec();
     for motion in motions {
@@ -279,10 +330,10 @@ fn refuse_negative(size: usize, motions: &[Vec<f64>], k: &[f64]) -> Result<(), R
             column.iter_mut().zip(motion).for_each(|(entry, x)| *entry += mean * weight * x);
         }
     }
-    match cholesky(size, shifted) {
-        Ok(_) => Ok(()),
-        Err(_) => Err(Refusal::Singular { reason: "the stiffness has a negative eigenvalue".into() }),
+    for n in 0..size {
+        shifted[n * size + n] += 1e-12 * mean;
     }
+    cholesky(size, shifted).is_ok()
 }
 
 #[cfg(test)]

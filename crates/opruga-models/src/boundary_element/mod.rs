@@ -294,6 +294,7 @@ impl<const D: usize> Observe<D> for BoundaryElement<D> {
             ("asymmetry".into(), changes.asymmetry),
             ("rigid_part".into(), changes.rigid),
             ("rotation_error".into(), changes.rotation),
+            ("negative_part".into(), changes.negative),
         ];
         let u = self.known(scratch, body).u;
         let components = stresses::components(D);

@@ -3,8 +3,8 @@
 use super::BASE;
 use crate::case::{Case, Check, Family, Over, Scale};
 use crate::lab::{Lab, Scene, Trouble, moved_pins};
-use opruga::World;
 use opruga::mesh::Mesh;
+use opruga::{AnyWorld, World};
 use std::fmt::Write as _;
 
 /// Pressures and stresses that strain the body so little that the small change of its shape does not matter [E].
@@ -205,7 +205,7 @@ fn forces<const D: usize>(forces: &[[f64; D]]) -> String {
 
 fn rotation(lab: &Lab, dimension: usize, level: f64) -> Result<f64, Trouble> {
     let shape = if dimension == 2 { ring(level) } else { icosphere(level) };
-    let scene = Scene::statics(dimension, 1e-13).add(&body(&shape, &solid(0.3, "")));
+    let scene = Scene::new(dimension, 1e-3, 1, "verlet").add(&body(&shape, &solid(0.3, "")));
     let readings = if dimension == 2 { lab.plane(scene)?.readings(0) } else { lab.space(scene)?.readings(0) };
     let found = readings.iter().find(|reading| reading.0 == "rotation_error").ok_or("no reading")?;
     Ok(found.1)
@@ -235,18 +235,39 @@ fn radius<const D: usize>(x: &[f64; D]) -> f64 {
     x.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// The mean displacement away from the origin of some nodes [m].
-fn outward<const D: usize>(world: &World<D>, nodes: impl Iterator<Item = u32>) -> f64 {
+/// Pins that hold a ball or a ring of so many nodes as a whole, and pull at nothing where loads balance: they stand at the two poles and beside
+/// the equator in space, at both ends of a diameter in the plane.
+fn held(dimension: usize, count: u32) -> String {
+    let pin = |node: u32, axes: &str| format!("{{ select = {{ node = {node} }}, axes = \"{axes}\" }}");
+    let pins = if dimension == 2 {
+        vec![pin(0, "xy"), pin(count / 2, "y")]
+    } else {
+        vec![pin(0, "xyz"), pin(count - 1, "xy"), pin(count / 2, "y")]
+    };
+    format!("pin = [{}]\n", pins.join(", "))
+}
+
+/// The mean displacement of some nodes away from their middle [m].
+fn outward<const D: usize>(world: &World<D>, nodes: std::ops::Range<u32>) -> f64 {
     let rest = &world.blueprint().bodies[0].mesh.positions;
-    let moves: Vec<f64> = nodes.map(|k| radius(&world.position(0, k)) - radius(&rest[k as usize])).collect();
-    moves.iter().sum::<f64>() / moves.len() as f64
+    let count = f64::from(nodes.end - nodes.start);
+    let mut moved = [0.0; D];
+    for node in nodes.clone() {
+        let now = world.position(0, node);
+        (0..D).for_each(|d| moved[d] += (now[d] - rest[node as usize][d]) / count);
+    }
+    let away = |node: u32| {
+        let now = world.position(0, node);
+        radius::<D>(&std::array::from_fn(|d| now[d] - moved[d])) - radius(&rest[node as usize])
+    };
+    nodes.map(away).sum::<f64>() / count
 }
 
 fn ball(lab: &Lab, edges: f64) -> Result<f64, Trouble> {
     let count = 10 * (edges * edges) as u32 + 2;
     let all: Vec<u32> = (0..count).collect();
     let scene = Scene::statics(3, 1e-13)
-        .add(&body(&icosphere(subdivisions(edges)), &solid(0.3, "")))
+        .add(&body(&icosphere(subdivisions(edges)), &format!("{}{}", solid(0.3, ""), held(3, count))))
         .add(&pressed(&all, SMALL));
     let mut world = lab.space(scene)?;
     world.frame()?;
@@ -272,10 +293,10 @@ fn shell_surface(edges: f64) -> Result<String, Trouble> {
 }
 
 fn shell(lab: &Lab, edges: f64, stress: bool) -> Result<f64, Trouble> {
+    let count = 10 * (edges * edges) as u32 + 2;
     let scene = Scene::statics(3, 1e-13)
         .file("shell.obj", shell_surface(edges)?)
-        .add(&body("kind = \"surface\", file = \"shell.obj\"", &solid(0.3, "")));
-    let count = 10 * (edges * edges) as u32 + 2;
+        .add(&body("kind = \"surface\", file = \"shell.obj\"", &format!("{}{}", solid(0.3, ""), held(3, count))));
     let inner: Vec<u32> = (0..count).collect();
     let mut world = lab.space(scene.add(&pressed(&inner, SMALL)))?;
     world.frame()?;
@@ -295,9 +316,9 @@ fn area(world: &World<3>, count: u32, now: bool) -> f64 {
     let own = mesh.facets.iter().filter(|facet| facet.iter().all(|node| *node < count));
     own.map(|facet| {
         let [a, b, c] = facet.map(at);
-        let (p, q): ([f64; 3], [f64; 3]) =
-            (std::array::from_fn(|d| b[d] - a[d]), std::array::from_fn(|d| c[d] - a[d]));
-        let normal: [f64; 3] = std::array::from_fn(|d| p[(d + 1) % 3] * q[(d + 2) % 3] - p[(d + 2) % 3] * q[(d + 1) % 3]);
+        let (p, q): ([f64; 3], [f64; 3]) = (std::array::from_fn(|d| b[d] - a[d]), std::array::from_fn(|d| c[d] - a[d]));
+        let normal: [f64; 3] =
+            std::array::from_fn(|d| p[(d + 1) % 3] * q[(d + 2) % 3] - p[(d + 2) % 3] * q[(d + 1) % 3]);
         0.5 * radius(&normal)
     })
     .sum()
@@ -307,7 +328,8 @@ fn tube(lab: &Lab, vertices: f64, stress: bool) -> Result<f64, Trouble> {
     let shape = format!("kind = \"rings\", centers = [[0, 0], [0, 0]], radii = [2.0, -1.0], vertices = {vertices}");
     let count = vertices as u32;
     let inner: Vec<u32> = (count..2 * count).collect();
-    let scene = Scene::statics(2, 1e-13).add(&body(&shape, &solid(0.3, ""))).add(&pressed(&inner, SMALL));
+    let rest = format!("{}{}", solid(0.3, ""), held(2, count));
+    let scene = Scene::statics(2, 1e-13).add(&body(&shape, &rest)).add(&pressed(&inner, SMALL));
     let mut world = lab.plane(scene)?;
     world.frame()?;
     if !stress {
@@ -357,8 +379,7 @@ fn cavity(lab: &Lab, edges: f64, poisson: f64) -> Result<f64, Trouble> {
     let mut pulls = vec![[0.0; 3]; mesh.positions.len()];
     for facet in &mesh.facets {
         let [a, b, c] = facet.map(|node| mesh.positions[node as usize]);
-        let (p, q): ([f64; 3], [f64; 3]) =
-            (std::array::from_fn(|d| b[d] - a[d]), std::array::from_fn(|d| c[d] - a[d]));
+        let (p, q): ([f64; 3], [f64; 3]) = (std::array::from_fn(|d| b[d] - a[d]), std::array::from_fn(|d| c[d] - a[d]));
         // σ n times a third of the area.
         facet.map(|node| pulls[node as usize][0] += SMALL * (p[1] * q[2] - p[2] * q[1]) / 6.0);
     }
@@ -388,7 +409,8 @@ fn cavity(lab: &Lab, edges: f64, poisson: f64) -> Result<f64, Trouble> {
 
 fn cantilever(lab: &Lab, cells: f64) -> Result<f64, Trouble> {
     let rest = "mass = 1.0\npin = [{ select = { side = \"left\" } }]\n";
-    let load = "[[load]]\nkind = \"traction\"\nbody = \"body\"\nselect = { side = \"right\" }\nvalue = [0.0, -1e-7, 0.0]\n";
+    let load =
+        "[[load]]\nkind = \"traction\"\nbody = \"body\"\nselect = { side = \"right\" }\nvalue = [0.0, -1e-7, 0.0]\n";
     let deflection = |shape: &str, model: &str| -> Result<f64, Trouble> {
         let scene = Scene::statics(3, 1e-12).add(&body(shape, &format!("{rest}{model}\n"))).add(load);
         let mut world = lab.space(scene)?;
@@ -443,12 +465,8 @@ fn flight(lab: &Lab, h: f64, kept: Kept) -> Result<f64, Trouble> {
         }
         let first = *before.get_or_insert(now);
         let change = match kept {
-            Kept::Momentum => {
-                radius::<3>(&std::array::from_fn(|d| now.linear.0[d] - first.linear.0[d])) / sum
-            }
-            Kept::AngularMomentum => {
-                radius::<3>(&std::array::from_fn(|d| now.angular[d] - first.angular[d])) / turning
-            }
+            Kept::Momentum => radius::<3>(&std::array::from_fn(|d| now.linear.0[d] - first.linear.0[d])) / sum,
+            Kept::AngularMomentum => radius::<3>(&std::array::from_fn(|d| now.angular[d] - first.angular[d])) / turning,
             Kept::Energy => world.energy().drift(),
         };
         worst = worst.max(change);
