@@ -64,15 +64,18 @@ impl Dense {
     pub fn multiply(&self, simd: Simd, x: &[f64], y: &mut [f64]) {
         let length = self.padded();
         let (mut x, mut y) = (x, y);
+        if x.len() == 3 * length && length > 0 {
+            return simd.run(Product::<3> { matrix: self, x, y });
+        }
         while x.len() >= 2 * length && length > 0 {
             simd.run(Product::<2> { matrix: self, x: &x[..2 * length], y: &mut y[..2 * length] });
             (x, y) = (&x[2 * length..], &mut y[2 * length..]);
         }
-        if x.len() >= length {
+        if x.len() >= length && length > 0 {
             simd.run(Product::<1> { matrix: self, x: &x[..length], y: &mut y[..length] });
         }
     }
-    /// Replaces b by x with L Lᵀ x = b, where the matrix is L, the lower triangle with its diagonal.
+    /// Replaces b by x with L Lᵀ x = b, where the matrix is L, the lower triangle with its diagonal; for vectors one after the other.
     pub fn solve_as_factor(&self, simd: Simd, b: &mut [f64]) {
         simd.run(Forward { matrix: self, b });
         simd.run(Backward { matrix: self, b });
@@ -167,20 +170,24 @@ impl Work for Forward<'_> {
     #[inline(always)]
     fn run<P: Pack>(self) {
         let Forward { matrix, b } = self;
-        for i in 0..matrix.padded() / SIDE {
-            let mut sums = [P::zero(); SIDE];
-            for j in 0..i {
-                along_rows(matrix.tile(i, j), &b[j * SIDE..], &mut sums);
-            }
-            let tile = matrix.tile(i, i);
-            for row in 0..SIDE {
-                let mut value = b[i * SIDE + row] - sums[row].sum();
-                for column in 0..row {
-                    value -= tile[row * SIDE + column] * b[i * SIDE + column];
+        let length = matrix.padded();
+        for i in 0..length / SIDE {
+            // A row of tiles serves all vectors while it is near.
+            for b in b.chunks_exact_mut(length) {
+                let mut sums = [P::zero(); SIDE];
+                for j in 0..i {
+                    along_rows(matrix.tile(i, j), &b[j * SIDE..], &mut sums);
                 }
-                let pivot = tile[row * SIDE + row];
-                // Rows that fill up the last tile have none.
-                b[i * SIDE + row] = if pivot == 0.0 { 0.0 } else { value / pivot };
+                let tile = matrix.tile(i, i);
+                for row in 0..SIDE {
+                    let mut value = b[i * SIDE + row] - sums[row].sum();
+                    for column in 0..row {
+                        value -= tile[row * SIDE + column] * b[i * SIDE + column];
+                    }
+                    let pivot = tile[row * SIDE + row];
+                    // Rows that fill up the last tile have none.
+                    b[i * SIDE + row] = if pivot == 0.0 { 0.0 } else { value / pivot };
+                }
             }
         }
     }
@@ -196,19 +203,22 @@ impl Work for Backward<'_> {
     #[inline(always)]
     fn run<P: Pack>(self) {
         let Backward { matrix, b } = self;
-        for i in (0..matrix.padded() / SIDE).rev() {
-            let tile = matrix.tile(i, i);
-            for row in (0..SIDE).rev() {
-                let mut value = b[i * SIDE + row];
-                for other in row + 1..SIDE {
-                    value -= tile[other * SIDE + row] * b[i * SIDE + other];
+        let length = matrix.padded();
+        for i in (0..length / SIDE).rev() {
+            for b in b.chunks_exact_mut(length) {
+                let tile = matrix.tile(i, i);
+                for row in (0..SIDE).rev() {
+                    let mut value = b[i * SIDE + row];
+                    for other in row + 1..SIDE {
+                        value -= tile[other * SIDE + row] * b[i * SIDE + other];
+                    }
+                    let pivot = tile[row * SIDE + row];
+                    b[i * SIDE + row] = if pivot == 0.0 { 0.0 } else { value / pivot };
                 }
-                let pivot = tile[row * SIDE + row];
-                b[i * SIDE + row] = if pivot == 0.0 { 0.0 } else { value / pivot };
-            }
-            let (before, own) = b.split_at_mut(i * SIDE);
-            for j in 0..i {
-                along_columns(matrix.tile(i, j), &own[..SIDE], &mut before[j * SIDE..], -P::one());
+                let (before, own) = b.split_at_mut(i * SIDE);
+                for j in 0..i {
+                    along_columns(matrix.tile(i, j), &own[..SIDE], &mut before[j * SIDE..], -P::one());
+                }
             }
         }
     }

@@ -125,17 +125,7 @@ impl TurnedFactor {
     }
     /// Replaces b by the solution.
     pub(crate) fn solve(&self, b: &mut [f64]) {
-        let turn = |b: &mut [f64], back: bool| {
-            let (n, frame) = (self.dimensions, &self.frame);
-            for node in b.chunks_exact_mut(n) {
-                let mut turned = [0.0; 3];
-                for i in 0..n {
-                    turned[i] = (0..n).map(|j| frame[if back { i * n + j } else { j * n + i }] * node[j]).sum();
-                }
-                node.copy_from_slice(&turned[..n]);
-            }
-        };
-        turn(b, false);
+        self.turn(b, false);
         match &self.solver {
             Some(Solver::Positive(factor)) => {
                 let mut padded = vec![0.0; factor.padded()];
@@ -146,7 +136,36 @@ impl TurnedFactor {
             Some(Solver::Any(factors)) => factors.solve(b),
             None => b.fill(f64::NAN),
         }
-        turn(b, true);
+        self.turn(b, true);
+    }
+    /// The same for many, with one way through the factor.
+    pub(crate) fn solve_all(&self, sides: &mut [Vec<f64>]) {
+        let Some(Solver::Positive(factor)) = &self.solver else {
+            return sides.iter_mut().for_each(|side| self.solve(side));
+        };
+        let length = factor.padded();
+        let mut padded = vec![0.0; length * sides.len()];
+        for (side, to) in sides.iter_mut().zip(padded.chunks_exact_mut(length)) {
+            self.turn(side, false);
+            to[..side.len()].copy_from_slice(side);
+        }
+        factor.solve_as_factor(Simd::best(), &mut padded);
+        for (side, from) in sides.iter_mut().zip(padded.chunks_exact(length)) {
+            let count = side.len();
+            side.copy_from_slice(&from[..count]);
+            self.turn(side, true);
+        }
+    }
+    /// Into the frame, or back.
+    fn turn(&self, b: &mut [f64], back: bool) {
+        let (n, frame) = (self.dimensions, &self.frame);
+        for node in b.chunks_exact_mut(n) {
+            let mut turned = [0.0; 3];
+            for i in 0..n {
+                turned[i] = (0..n).map(|j| frame[if back { i * n + j } else { j * n + i }] * node[j]).sum();
+            }
+            node.copy_from_slice(&turned[..n]);
+        }
     }
 }
 

@@ -47,7 +47,7 @@ impl Cholesky {
         if self.is_turned {
             self.turned.update(matrix, true)?;
             let turned = &self.turned;
-            self.parts.update(matrix, true, |x| turned.solve(x))?;
+            self.parts.update(matrix, true, |sides| turned.solve_all(sides))?;
             self.factored = true;
             return Ok(());
         }
@@ -55,7 +55,9 @@ impl Cholesky {
         self.factor(anew)?;
         let Some(symbolic) = &self.symbolic else { return Err(Indefinite) };
         let (values, stack) = (&self.values, &self.stack);
-        self.parts.update(matrix, true, |x| solve(symbolic, values, stack, x))?;
+        self.parts.update(matrix, true, |sides| {
+            sides.iter_mut().for_each(|x| solve(symbolic, values, stack, x));
+        })?;
         self.factored = true;
         Ok(())
     }

@@ -60,13 +60,15 @@ impl Factors {
         if matrix.has_dense() {
             let mut turned = TurnedFactor::default();
             turned.update(matrix, false)?;
-            self.parts.update(matrix, false, |x| turned.solve(x))?;
+            self.parts.update(matrix, false, |sides| turned.solve_all(sides))?;
             self.turned = Some(turned);
             return Ok(());
         }
         let anew = self.scalars.take(matrix, false);
         let factors = self.factored(anew)?;
-        self.parts.update(matrix, false, |x| solve(&factors, is_symmetric, x))?;
+        self.parts.update(matrix, false, |sides| {
+            sides.iter_mut().for_each(|x| solve(&factors, is_symmetric, x));
+        })?;
         self.factors = Some(factors);
         Ok(())
     }

@@ -153,20 +153,24 @@ impl<const D: usize> Rest<D> {
         let count = self.weights.len();
         let length = y.len();
         let exact = keep == Definiteness::Exact;
-        let mut turned = vec![vec![0.0; length]; 3];
-        let mut pulled = turned.clone();
-        for k in axes::<D>() {
+        // One way through K for all axes.
+        let first = axes::<D>().start;
+        let mut all = vec![0.0; 2 * axes::<D>().len() * length];
+        let (turns, pulls) = all.split_at_mut(axes::<D>().len() * length);
+        for (k, turned) in axes::<D>().zip(turns.chunks_exact_mut(length)) {
             for vertex in 0..count {
                 let spin = cross(&axis(k), &lift::<D>(&y[vertex * D..]));
-                turned[k][vertex * D..][..D].copy_from_slice(&spin[..D]);
+                turned[vertex * D..][..D].copy_from_slice(&spin[..D]);
             }
-            product(&turned[k], &mut pulled[k]);
         }
+        product(turns, pulls);
+        let turned = |k: usize| &turns[(k - first) * length..][..length];
+        let pulled = |k: usize| &pulls[(k - first) * length..][..length];
         // S: how U depends on the spin.
         let mut s = [[0.0; 3]; 3];
         for k in axes::<D>() {
             for l in axes::<D>() {
-                s[k][l] = turned[k].iter().zip(&pulled[l]).map(|(a, b)| a * b).sum();
+                s[k][l] = opruga_solve::dot(turned(k), pulled(l));
             }
         }
         if exact {
@@ -179,7 +183,7 @@ impl<const D: usize> Rest<D> {
                 let (w, x) = (self.weights[vertex], lift::<D>(&self.positions[vertex]));
                 let spin = |k: usize| cross(&frame.follows[k], &x).map(|c| w * c);
                 let mut z: Vector = core::array::from_fn(|d| {
-                    let own = if d < D { -pulled[k][vertex * D + d] } else { 0.0 };
+                    let own = if d < D { -pulled(k)[vertex * D + d] } else { 0.0 };
                     own + 0.5 * axes::<D>().map(|l| s[k][l] * spin(l)[d]).sum::<f64>()
                 });
                 if exact {

@@ -1,6 +1,7 @@
 //! Boundary elements: identities, closed solutions of balls, tubes, shells, holes and cavities, a cantilever, flight.
 
 use super::BASE;
+use super::boundary_shell::shell;
 use crate::case::{Case, Check, Family, Over, Scale};
 use crate::lab::{Lab, Scene, Trouble, moved_pins};
 use opruga::mesh::Mesh;
@@ -8,7 +9,7 @@ use opruga::{AnyWorld, World};
 use std::fmt::Write as _;
 
 /// Pressures and stresses that strain the body so little that the small change of its shape does not matter [E].
-const SMALL: f64 = 1e-6;
+pub(super) const SMALL: f64 = 1e-6;
 
 const ROTATION: Case = Case {
     quantity: "largest traction of a rotation by 1 rad of an outline, over the shear modulus",
@@ -40,9 +41,12 @@ const BALL: Case = Case {
     ..BASE
 };
 
+// Changed after its first run, on balls of equal numbers of vertices: 2 × 642 left 1.3 % and 2.0 %, most of it at the inner wall, whose edges
+// are now a quarter of the outer ones. The limits stay as they were set.
 const SHELL: Case = Case {
     quantity: "displacement of the inner wall of a thick sphere under inner pressure, times E/p; a = 1 m, b = 2 m, ν = 0.3",
     source: "G. Lamé 1852: u(a) = p a³/(b³ − a³) · ((1 − 2ν) a + (1 + ν) b³/2a²)/E",
+    levels: &[4.0, 8.0, 12.0],
     expected: &[0.8],
     ..BALL
 };
@@ -164,13 +168,13 @@ pub(super) const LEDGERS: &[Case] = &[
 ];
 
 /// A solid of E = 1 Pa, by further fields of its model.
-fn solid(poisson: f64, fields: &str) -> String {
+pub(super) fn solid(poisson: f64, fields: &str) -> String {
     format!(
         "mass = 1.0\nmodels = [{{ kind = \"boundary_element\", youngs_modulus = 1.0, poissons_ratio = {poisson:?}{fields} }}]\n"
     )
 }
 
-fn body(shape: &str, rest: &str) -> String {
+pub(super) fn body(shape: &str, rest: &str) -> String {
     format!("[[body]]\nname = \"body\"\nshape = {{ {shape} }}\n{rest}")
 }
 
@@ -186,7 +190,7 @@ fn subdivisions(edges: f64) -> f64 {
     edges.log2().round()
 }
 
-fn pressed(nodes: &[u32], pressure: f64) -> String {
+pub(super) fn pressed(nodes: &[u32], pressure: f64) -> String {
     format!("[[load]]\nkind = \"pressure\"\nbody = \"body\"\nselect = {{ nodes = {nodes:?} }}\nvalue = {pressure:?}\n")
 }
 
@@ -231,13 +235,13 @@ fn largest<const D: usize>(forces: &[[f64; D]]) -> f64 {
     forces.iter().flatten().fold(0.0, |most, x| most.max(x.abs()))
 }
 
-fn radius<const D: usize>(x: &[f64; D]) -> f64 {
+pub(super) fn radius<const D: usize>(x: &[f64; D]) -> f64 {
     x.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
 /// Pins that hold a ball or a ring of so many nodes as a whole, and pull at nothing where loads balance: they stand at the two poles and beside
 /// the equator in space, at both ends of a diameter in the plane.
-fn held(dimension: usize, count: u32) -> String {
+pub(super) fn held(dimension: usize, count: u32) -> String {
     let pin = |node: u32, axes: &str| format!("{{ select = {{ node = {node} }}, axes = \"{axes}\" }}");
     let pins = if dimension == 2 {
         vec![pin(0, "xy"), pin(count / 2, "y")]
@@ -248,7 +252,7 @@ fn held(dimension: usize, count: u32) -> String {
 }
 
 /// The mean displacement of some nodes away from their middle [m].
-fn outward<const D: usize>(world: &World<D>, nodes: std::ops::Range<u32>) -> f64 {
+pub(super) fn outward<const D: usize>(world: &World<D>, nodes: std::ops::Range<u32>) -> f64 {
     let rest = &world.blueprint().bodies[0].mesh.positions;
     let count = f64::from(nodes.end - nodes.start);
     let mut moved = [0.0; D];
@@ -272,56 +276,6 @@ fn ball(lab: &Lab, edges: f64) -> Result<f64, Trouble> {
     let mut world = lab.space(scene)?;
     world.frame()?;
     Ok(outward(&world, 0..count) / SMALL)
-}
-
-/// Two balls, one in the other, as the text of a file.
-fn shell_surface(edges: f64) -> Result<String, Trouble> {
-    let mut out = String::new();
-    let mut first = 1;
-    for (radius, inner) in [(1.0, true), (2.0, false)] {
-        let ball = Mesh::icosphere(radius, subdivisions(edges) as u32)?;
-        for [x, y, z] in &ball.positions {
-            writeln!(out, "v {x:?} {y:?} {z:?}")?;
-        }
-        for [a, b, c] in &ball.facets {
-            let [b, c] = if inner { [c, b] } else { [b, c] };
-            writeln!(out, "f {} {} {}", a + first, b + first, c + first)?;
-        }
-        first += ball.positions.len() as u32;
-    }
-    Ok(out)
-}
-
-fn shell(lab: &Lab, edges: f64, stress: bool) -> Result<f64, Trouble> {
-    let count = 10 * (edges * edges) as u32 + 2;
-    let scene = Scene::statics(3, 1e-13)
-        .file("shell.obj", shell_surface(edges)?)
-        .add(&body("kind = \"surface\", file = \"shell.obj\"", &format!("{}{}", solid(0.3, ""), held(3, count))));
-    let inner: Vec<u32> = (0..count).collect();
-    let mut world = lab.space(scene.add(&pressed(&inner, SMALL)))?;
-    world.frame()?;
-    let moved = outward(&world, 0..count) / SMALL;
-    if !stress {
-        return Ok(moved);
-    }
-    // σθθ = E ε/(1 − ν) + ν/(1 − ν) σrr with the same strain in both directions: the growth of the area of the wall.
-    let strain = 0.5 * (area(&world, count, true) / area(&world, count, false) - 1.0) / SMALL;
-    Ok((strain - 0.3) / 0.7)
-}
-
-/// The area of the triangles of the first nodes, now or at rest [m²].
-fn area(world: &World<3>, count: u32, now: bool) -> f64 {
-    let mesh = &world.blueprint().bodies[0].mesh;
-    let at = |node: u32| if now { world.position(0, node) } else { mesh.positions[node as usize] };
-    let own = mesh.facets.iter().filter(|facet| facet.iter().all(|node| *node < count));
-    own.map(|facet| {
-        let [a, b, c] = facet.map(at);
-        let (p, q): ([f64; 3], [f64; 3]) = (std::array::from_fn(|d| b[d] - a[d]), std::array::from_fn(|d| c[d] - a[d]));
-        let normal: [f64; 3] =
-            std::array::from_fn(|d| p[(d + 1) % 3] * q[(d + 2) % 3] - p[(d + 2) % 3] * q[(d + 1) % 3]);
-        0.5 * radius(&normal)
-    })
-    .sum()
 }
 
 fn tube(lab: &Lab, vertices: f64, stress: bool) -> Result<f64, Trouble> {
