@@ -74,14 +74,7 @@ fn bodies_without_a_surface_are_refused() {
     inside_out.facets.iter_mut().for_each(|facet| facet.swap(0, 1));
     assert_eq!(space(&inside_out), "built");
     let mut nested = block();
-    nested.positions.extend(
-        other
-            .positions
-            .iter()
-            .map(|x| [0.6, 0.6, 0.6].map(|c| 0.5 * c))
-            .zip(&other.positions)
-            .map(|(c, x)| core::array::from_fn(|d| c[d] + 0.5 * x[d])),
-    );
+    nested.positions.extend(other.positions.iter().map(|x| x.map(|c| 0.3 + 0.5 * c)));
     nested.facets.extend(other.facets.iter().map(|facet| facet.map(|node| node + first)));
     assert_eq!(space(&nested), "built");
 }
@@ -147,7 +140,8 @@ fn forces_do_not_depend_on_place_direction_order_and_units() {
 #[test]
 fn degenerate_states_have_finite_forces() {
     let mesh = block();
-    let states: [fn(usize, &[f64; 3]) -> [f64; 3]; 6] = [
+    type State = fn(usize, &[f64; 3]) -> [f64; 3];
+    let states: [State; 6] = [
         |_, x| [x[0], x[1], 0.0],
         |_, x| [x[0], 0.0, 0.0],
         |_, _| [0.0; 3],

@@ -311,7 +311,7 @@ fn hole(lab: &Lab, vertices: f64) -> Result<f64, Trouble> {
     for [a, b] in &mesh.facets {
         let (p, q) = (mesh.positions[*a as usize], mesh.positions[*b as usize]);
         // σ n of the tension, half for each end; n = (Δy, −Δx)/ℓ points into the medium.
-        [*a, *b].map(|node| pulls[node as usize][1] += 0.5 * SMALL * (p[0] - q[0]));
+        [*a, *b].iter().for_each(|node| pulls[*node as usize][1] += 0.5 * SMALL * (p[0] - q[0]));
     }
     let scene = Scene::statics(2, 1e-13)
         .add(&body(&ring(vertices), &solid(0.3, ", plane = \"stress\", exterior = true")))
@@ -335,7 +335,7 @@ fn cavity(lab: &Lab, edges: f64, poisson: f64) -> Result<f64, Trouble> {
         let [a, b, c] = facet.map(|node| mesh.positions[node as usize]);
         let (p, q): ([f64; 3], [f64; 3]) = (std::array::from_fn(|d| b[d] - a[d]), std::array::from_fn(|d| c[d] - a[d]));
         // σ n times a third of the area.
-        facet.map(|node| pulls[node as usize][0] += SMALL * (p[1] * q[2] - p[2] * q[1]) / 6.0);
+        facet.iter().for_each(|node| pulls[*node as usize][0] += SMALL * (p[1] * q[2] - p[2] * q[1]) / 6.0);
     }
     let scene = Scene::statics(3, 1e-13)
         .add(&body(&icosphere(subdivisions(edges)), &solid(poisson, ", exterior = true")))
