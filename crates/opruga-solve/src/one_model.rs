@@ -4,11 +4,10 @@ use crate::BlockMatrix;
 use opruga_core::potential::{Definiteness, Potential};
 use opruga_core::state::View;
 
-impl BlockMatrix<3> {
-    /// Fills the matrix with the second derivatives of one model in space. It is compiled here, with the loops that are to be
-    /// measured, and not with the program that calls it.
+impl<const D: usize> BlockMatrix<D> {
+    /// Fills the matrix with the second derivatives of one model.
     #[inline(never)]
-    pub fn assemble_one(&mut self, model: &dyn Potential<3>, view: &View<'_, 3>, scratch: &[f64], keep: Definiteness) {
+    pub fn assemble_one(&mut self, model: &dyn Potential<D>, view: &View<'_, D>, scratch: &[f64], keep: Definiteness) {
         self.assemble(view.nodes, 0, |sink| model.hessian(view, scratch, keep, sink));
     }
 }

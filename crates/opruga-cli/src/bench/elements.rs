@@ -1,7 +1,8 @@
-//! `opruga bench elements`: forces and Hessians of finite elements.
+//! `opruga bench elements`: forces and Hessians of every method of the survey.
 //!
-//! A cube of tetrahedra, hexahedra or quadratic tetrahedra, bent; one thread. Hessians go into the matrix of a solver,
-//! where the places of their blocks are known from the first time.
+//! A cube of tetrahedra, hexahedra or quadratic tetrahedra, or a ring, bent; one thread. Hessians go into the matrix of a
+//! solver, where the places of their blocks are known from the first time. Finite volumes, finite differences and shape
+//! matching stand beside the landed model that they are compared with, measured in the same run.
 
 use super::{Machine, best};
 use crate::arguments::BenchElements;
@@ -16,9 +17,10 @@ use opruga::{Registry, Simd};
 use opruga_solve::BlockMatrix;
 use serde_json::json;
 
-/// Times of one material on one kind of element [ns per element].
+/// Times of one model on one kind of element [ns per element or node].
 #[derive(serde::Serialize)]
 struct Row {
+    model: &'static str,
     element: &'static str,
     elements: usize,
     material: &'static str,
@@ -26,6 +28,20 @@ struct Row {
     forces: Vec<(&'static str, f64)>,
     hessian: f64,
     clamped_hessian: f64,
+    /// How many times the forces of the row that this one is compared with, with the best instructions.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ratio: Option<f64>,
+}
+
+/// One body under one model.
+struct Subject<'a, const D: usize> {
+    model: &'static str,
+    element: &'static str,
+    /// How many of them the body has.
+    elements: usize,
+    material: &'static str,
+    mesh: &'a Mesh<D>,
+    values: Vec<(&'static str, Value)>,
 }
 
 /// The materials of `fem`.
@@ -59,34 +75,26 @@ pub(crate) fn bench(call: &BenchElements) -> Result<u8, Failure> {
             if material != wanted && (element != "tetrahedron" || call.material.is_some()) {
                 continue;
             }
-            let mut values = Values::defaults(model.spec(), 3);
-            for (name, value) in [("material", Value::Text(material.into())), ("youngs_modulus", Value::Number(1e5))] {
-                values.set(model.spec(), name, value, 3).map_err(|e| Failure::call(e.to_string()))?;
-            }
-            let solid = model.build(&Ingredients {
-                mesh,
-                layout: Layout::Single,
-                values: &[&values],
-                mass: &Parameter::uniform(1.0),
-                densities: None,
-                thickness: 1.0,
-                gravity: [0.0; 3],
-                step: 1e-3,
-            });
-            let solid = solid.map_err(|e| Failure::call(e.to_string()))?;
-            rows.push(measure(&*solid, mesh, element, material)?);
+            let values = vec![("material", Value::Text(material.into())), modulus()];
+            rows.push(Subject { model: "fem", element, elements: mesh.cells.len(), material, mesh, values }.measure()?);
         }
+    }
+    if call.material.is_none() {
+        survey(&boxes, &tetrahedra, &mut rows)?;
     }
     let machine = Machine::measure(Simd::best());
     if call.json {
         print_data(&format!("{}\n", json!({ "rows": rows, "calibration": machine })))?;
         return Ok(0);
     }
-    let mut text = String::from("ns per element, one thread\n");
+    let mut text = String::from("ns per element or node, one thread; x: times the row that it is compared with\n");
     for row in &rows {
-        text += &format!("{} of {} ({})\n  forces and energy", row.element, row.material, row.elements);
+        text += &format!("{}: {} of {} ({})\n  forces and energy", row.model, row.element, row.material, row.elements);
         for (simd, time) in &row.forces {
             text += &format!("  {time:.1} ({simd})");
+        }
+        if let Some(ratio) = row.ratio {
+            text += &format!("  {ratio:.2} x");
         }
         text += &format!("\n  Hessian  {:.0}, clamped  {:.0}\n", row.hessian, row.clamped_hessian);
     }
@@ -94,23 +102,106 @@ pub(crate) fn bench(call: &BenchElements) -> Result<u8, Failure> {
     Ok(0)
 }
 
-fn measure(
-    solid: &dyn Potential<3>,
-    mesh: &Mesh<3>,
-    element: &'static str,
-    material: &'static str,
-) -> Result<Row, Failure> {
+/// E = 1e5 Pa.
+fn modulus() -> (&'static str, Value) {
+    ("youngs_modulus", Value::Number(1e5))
+}
+/// Vertices of the rings.
+const RING: u32 = 4096;
+
+/// The other methods, each with the landed model beside which it stands.
+fn survey(boxes: &Mesh<3>, tetrahedra: &Mesh<3>, rows: &mut Vec<Row>) -> Result<(), Failure> {
+    let refused = |error: opruga::mesh::MeshError| Failure::call(error.to_string());
+    let of = |rows: &[Row], element: &str, material: &str| {
+        rows.iter().find(|row| row.element == element && row.material == material).map_or(f64::NAN, Row::best)
+    };
+    let tetrahedron = of(rows, "tetrahedron", "linear");
+    let values = vec![("material", Value::Text("linear".into())), modulus()];
+    let (model, element, material) = ("finite_volume", "tetrahedron", "linear");
+    let elements = tetrahedra.cells.len();
+    let subject = Subject { model, element, elements, material, mesh: tetrahedra, values };
+    rows.push(subject.measure()?.beside(tetrahedron));
+
+    let (model, element, material) = ("finite_difference", "hexahedron", "St. Venant-Kirchhoff");
+    let hexahedron = of(rows, "hexahedron", "neo_hookean");
+    let subject =
+        Subject { model, element, elements: boxes.cells.len(), material, mesh: boxes, values: vec![modulus()] };
+    rows.push(subject.measure()?.beside(hexahedron));
+
+    let ring = Mesh::<2>::ring(0.5, RING, [0.0; 2], 0.0).map_err(refused)?;
+    let ring = |model, material, values| {
+        Subject { model, element: "vertex of a ring", elements: RING as usize, material, mesh: &ring, values }.measure()
+    };
+    let springs = ring("mass_spring", "springs", vec![("stiffness", Value::Number(1e5))])?;
+    let spring = springs.best();
+    rows.push(springs);
+    let curve = vec![modulus(), ("thickness", Value::Number(0.02))];
+    rows.push(ring("finite_difference", "stretch and bending", curve)?.beside(spring));
+
+    let nodes = boxes.positions.len();
+    let side = 4.0 * boxes.positions.get(1).map_or(1.0, |p| p[0]);
+    let clusters = |material, region: Option<f64>| {
+        let mut values = vec![("stiffness", Value::Number(1e3)), ("fit_share", Value::Number(0.5))];
+        values.extend(region.map(|side| ("region", Value::Number(side))));
+        Subject { model: "shape_matching", element: "node", elements: nodes, material, mesh: boxes, values }.measure()
+    };
+    rows.push(clusters("one cluster", None)?);
+    rows.push(clusters("overlapping clusters", Some(side))?);
+    Ok(())
+}
+
+impl Row {
+    /// With the best vector instructions.
+    fn best(&self) -> f64 {
+        self.forces.iter().map(|(_, time)| *time).fold(f64::INFINITY, f64::min)
+    }
+    fn beside(self, reference: f64) -> Row {
+        Row { ratio: Some(self.best() / reference), ..self }
+    }
+}
+
+impl<const D: usize> Subject<'_, D> {
+    /// Builds the model and takes its times.
+    fn measure(self) -> Result<Row, Failure> {
+        let registry = Registry::<D>::default();
+        let model = registry.model(self.model).ok_or_else(|| Failure::call(format!("there is no {}", self.model)))?;
+        let mut values = Values::defaults(model.spec(), D);
+        for (name, value) in &self.values {
+            values.set(model.spec(), name, value.clone(), D).map_err(|e| Failure::call(e.to_string()))?;
+        }
+        let potential = model.build(&Ingredients {
+            mesh: self.mesh,
+            layout: Layout::Single,
+            values: &[&values],
+            mass: &Parameter::uniform(1.0),
+            densities: None,
+            thickness: 1.0,
+            gravity: [0.0; D],
+            step: 1e-3,
+        });
+        let potential = potential.map_err(|e| Failure::call(e.to_string()))?;
+        let (forces, [hessian, clamped_hessian]) = times(&*potential, self.mesh, self.elements)?;
+        let Subject { model, element, elements, material, .. } = self;
+        Ok(Row { model, element, elements, material, forces, hessian, clamped_hessian, ratio: None })
+    }
+}
+
+/// Forces by set of vector instructions, and the exact and the clamped Hessian [ns per element].
+type Times = (Vec<(&'static str, f64)>, [f64; 2]);
+
+fn times<const D: usize>(solid: &dyn Potential<D>, mesh: &Mesh<D>, elements: usize) -> Result<Times, Failure> {
     let nodes = mesh.positions.len();
     let places = Layout::Single.places(nodes);
-    let (mut x, v) = (Columns::<3>::zeros(places), Columns::<3>::zeros(places));
+    let (mut x, v) = (Columns::<D>::zeros(places), Columns::<D>::zeros(places));
     for (k, p) in mesh.positions.iter().enumerate() {
-        x.set(k, [p[0] + 0.2 * p[1] * p[1], p[1] + 0.1 * p[0] * p[2], p[2] * (1.0 - 0.1 * p[0])]);
+        let across = p.get(2).copied().unwrap_or(0.0);
+        let bent = [p[0] + 0.2 * p[1] * p[1], p[1] + 0.1 * p[0] * across, across * (1.0 - 0.1 * p[0])];
+        x.set(k, core::array::from_fn(|d| bent[d]));
     }
     let view = View { x: x.slices(), v: v.slices(), nodes, layout: Layout::Single, time: 0.0, threads: 1 };
     let mut scratch = Column::zeros(solid.properties().scratch_len);
-    let mut force = Columns::<3>::zeros(places);
+    let mut force = Columns::<D>::zeros(places);
     let (mut slots, mut power) = (Column::default(), [0.0; WIDTH]);
-    let elements = mesh.cells.len();
     let per_element = |seconds: f64| seconds * 1e9 / elements as f64;
     let mut forces = Vec::new();
     let mut refused = None;
@@ -131,12 +222,12 @@ fn measure(
     if let Some(error) = refused {
         return Err(Failure::call(error.to_string()));
     }
-    let mut matrix = BlockMatrix::<3>::default();
+    let mut matrix = BlockMatrix::<D>::default();
     let mut hessian = |keep: Definiteness| {
         let mut assemble = || matrix.assemble_one(solid, &view, &scratch, keep);
         assemble();
         per_element(best(5, assemble))
     };
     let (exact, clamped) = (hessian(Definiteness::Exact), hessian(Definiteness::Clamped));
-    Ok(Row { element, elements, material, forces, hessian: exact, clamped_hessian: clamped })
+    Ok((forces, [exact, clamped]))
 }

@@ -249,6 +249,10 @@ impl<const D: usize> Potential<D> for AsPublished {
         let (forces, numbers) = scratch.split_at_mut(2 * self.layout.places(self.nodes));
         for body in 0..self.layout.stride() {
             numbers[body] = self.step(view, body, memory[body], forces);
+            if numbers[body] == 0.0 {
+                let message = "the published \"volume\" Σ ½ |Δx| |Δy| is zero: every edge lies along an axis; hint: turn the body a little";
+                return Err(StepError::Model { model: SPEC.kind, message: message.into() });
+            }
             let (press, vertex) = self.mouse(view, body, memory, forces);
             numbers[WIDTH + body] = press as f64;
             numbers[2 * WIDTH + body] = vertex as f64;

@@ -19,7 +19,7 @@ use opruga_math::Lane;
 /// ∂θ/∂a and ∂θ/∂b follow, since moving the edge by itself along a normal is moving c or d the other way, in proportion
 /// to how far along the edge they stand.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Hinge;
+pub(crate) struct Hinge;
 
 /// The edge, the normals and what turns θ.
 struct Folded<S> {
@@ -27,6 +27,13 @@ struct Folded<S> {
     cosine: S,
     /// ∂θ/∂x of a, b, c, d.
     slope: [[S; 3]; 4],
+}
+
+/// cos θ and sin θ of four points in the order of [`Hinge`].
+pub(crate) fn direction(x: &[[f64; 3]; 4]) -> [f64; 2] {
+    let folded = Hinge::folded(x);
+    let length = (folded.cosine * folded.cosine + folded.sine * folded.sine).sqrt();
+    [folded.cosine / length, folded.sine / length]
 }
 
 impl Hinge {

@@ -19,7 +19,7 @@
 //! which they bend; a chain in space with a rest angle has no force where it is exactly straight.
 
 mod angle;
-mod hinge;
+pub(crate) mod hinge;
 mod spec;
 mod turn;
 

@@ -15,7 +15,11 @@
 //! Forces are the exact gradient of the discrete energy. The paper's force (its equation 9) leaves out how the normal n in
 //! B = n·x″ turns with the surface; what that costs is measured in docs/finite-differences.md.
 //!
-//! Limits: a curve in space has no torsion, and so no twist. A curve with a curvature at rest has no force where it is exactly
+//! A curve in space may also resist a change of its Frenet torsion τ, U = ∫ ½ GJ (τ − τ₀)²: on an edge of length L between two
+//! nodes with a curvature, τ is the angle between their osculating planes over L.
+//!
+//! Limits: the Frenet torsion is that of the centre line and no twist of the section; where a curve becomes straight it has no value
+//! and no force, and close to that its force grows with the inverse of the curvature. A curve with a curvature at rest has no force where it is exactly
 //! straight, for then no direction is that of its curvature. St. Venant and Kirchhoff's law gives way below 1/√3 of the length. A
 //! degenerate tangent plane has no normal and no moment.
 
@@ -27,6 +31,7 @@ mod spec;
 
 pub use spec::SPEC;
 
+use crate::bending::hinge::{self, Hinge};
 use crate::vectors::{cross, dot, in_space, minus};
 use curve::{Bend, Stretch};
 use grid::{Grid, HEXAHEDRON, QUADRILATERAL, spacings};
@@ -70,6 +75,14 @@ opruga_math::messages! {
         "model.solid_thickness"
         #[error("`thickness` belongs to curves and surfaces; a solid has none")]
         SolidThickness {},
+        /// Torsion belongs to curves.
+        "model.torsion_of_surface"
+        #[error("`torsion` belongs to curves (`line`, `ring`, `polyline`); a surface or solid resists its own shear")]
+        TorsionOfSurface {},
+        /// A curve without curvature has no torsion.
+        "model.no_torsion"
+        #[error("the curve is straight at node {node}, where its torsion has no value; hint: leave `torsion` out, or bend the rest shape")]
+        NoFrame { node: u32 },
         /// An edge has no length at rest.
         "model.zero_length"
         #[error("edge {edge} has no length at rest; allowed: > 0 m")]
@@ -105,6 +118,7 @@ struct Elastic {
     thickness: f64,
     damping: f64,
     plane_stress: bool,
+    torsion: bool,
 }
 
 impl Elastic {
@@ -115,6 +129,7 @@ impl Elastic {
             thickness: values.number("thickness").unwrap_or(0.0),
             damping: values.number("damping").unwrap_or(0.0),
             plane_stress: values.text("plane") == Some("stress"),
+            torsion: values.flag("torsion"),
         }
     }
     /// c₁, c₂, c₃ of a surface [N/m]: Et/(1 − ν²) times 1, ν, 2 (1 − ν).
@@ -136,6 +151,10 @@ impl Elastic {
         let t = self.thickness;
         self.membrane()[0] * t * t / 12.0
     }
+    /// GJ of a round wire [N·m²]: E/2(1 + ν) times π t⁴/32.
+    fn torsional_rigidity(&self) -> f64 {
+        self.section(None)[1] / (1.0 + self.poissons_ratio)
+    }
     /// EA [N] and EI [N·m²] of a curve, which is so deep out of the plane [m], or round in space.
     fn section(&self, depth: Option<f64>) -> [f64; 2] {
         let t = self.thickness;
@@ -151,13 +170,17 @@ impl<const D: usize> Model<D> for FiniteDifferenceModel {
     }
     fn need(&self, counts: &Counts) -> Need {
         // Eight numbers a stencil, and where their forces lie.
-        let couplings = counts.edges + 2.0 * counts.hinges + counts.cell_pairs;
+        // A curve has no cell pairs; its torsion couples nodes three edges apart.
+        let couplings = 2.0 * counts.edges + 2.0 * counts.hinges + counts.cell_pairs;
         Need { bytes: 160.0 * counts.edges, couplings }
     }
     fn build(&self, ingredients: &Ingredients<D>) -> Result<Box<dyn Potential<D>>, BuildError> {
         let grid = Grid::of(ingredients.mesh)?;
         let solid = matches!(grid, Grid::Plane { .. } | Grid::Space { .. });
         for values in ingredients.values {
+            if values.flag("torsion") && !matches!(grid, Grid::Curve { .. }) {
+                return Err(Refusal::TorsionOfSurface {}.into());
+            }
             match (solid, values.number("thickness")) {
                 (true, Some(_)) => return Err(Refusal::SolidThickness {}.into()),
                 (false, None) => return Err(Refusal::NoThickness {}.into()),
@@ -224,7 +247,41 @@ impl<const D: usize> Plan<'_, D> {
             let rest = self.rest_curvature(nodes[node], [low, high], share);
             [own.section(depth)[1] * mean, 1.0 / low, 1.0 / high, share, 1.0 / mean, rest, own.damping]
         });
-        Ok(vec![Box::new(stretch), Box::new(bend)])
+        let mut parts: Parts<D> = vec![Box::new(stretch), Box::new(bend)];
+        if self.elastic.iter().any(|body| body.torsion) {
+            parts.push(self.torsion(nodes)?);
+        }
+        Ok(parts)
+    }
+    /// The torsion of a curve in space, on its edges between two nodes with a curvature.
+    fn torsion(&self, nodes: &[[u32; 3]]) -> Result<Box<dyn Potential<D>>, Refusal> {
+        for &[before, at, after] in nodes {
+            let (a, b) = (minus(&self.at(at), &self.at(before)), minus(&self.at(after), &self.at(at)));
+            let normal = cross(&a, &b);
+            // The plane of three nodes has a direction down to where rounding decides it.
+            if dot(&normal, &normal) <= 1e-18 * dot(&a, &a) * dot(&b, &b) {
+                return Err(Refusal::NoFrame { node: at });
+            }
+        }
+        let (layout, count) = self.layout();
+        // Where each node stands between its neighbours.
+        let mut around = vec![None; count];
+        for node in nodes {
+            around[node[1] as usize] = Some(*node);
+        }
+        let twisted = |&[before, at, after]: &[u32; 3]| match around[after as usize] {
+            Some([low, _, high]) if low == at => Some([at, after, before, high]),
+            _ => None,
+        };
+        let edges: Vec<[u32; 4]> = nodes.iter().filter_map(twisted).collect();
+        Ok(Box::new(Stencils::<Hinge, 4, 4>::new(layout, count, &edges, self.damped, |edge, body| {
+            let [at, after, ..] = edges[edge];
+            let own = self.of(body);
+            let rigidity = if own.torsion { own.torsional_rigidity() } else { 0.0 };
+            let stiffness = rigidity / self.length(at, after);
+            let [cosine, sine] = hinge::direction(&edges[edge].map(|n| self.at(n)));
+            [stiffness, own.damping * stiffness, cosine, sine]
+        })))
     }
     /// B₀ of a node of a curve [1/m].
     fn rest_curvature(&self, [before, at, after]: [u32; 3], [low, high]: [f64; 2], share: f64) -> f64 {

@@ -11,7 +11,7 @@ curves (`line`, `ring`, `polyline`, closed or open) with ½ EA ε² + ½ EI (B �
 ½ Et/(1 − ν²) [(1 − ν) ε:ε + ν (tr ε)²] and the same of the curvature with Et³/12(1 − ν²), solids (`grid`) with the law of St. Venant and Kirchhoff; \
 ε = ½ (G − G₀). EI is E t³/12 times the depth for a curve of the plane, E π t⁴/64 (a round wire) in space. Strains along an axis live on edges, \
 shear strains in the middle of cells or faces, curvatures at nodes: second order, without a free checkerboard. ν = 0 gives the uncoupled tensors of the paper. \
-Forces are the exact gradient; the paper leaves the turn of the normal out. A curve in space has no torsion: it resists bending, not twist. \
+Forces are the exact gradient; the paper leaves the turn of the normal out. A curve in space may resist a change of its Frenet torsion with GJ = EI/(1 + ν) of a round wire; this is the torsion of its centre line and no twist of its section. \
 A body that is no grid is refused. Source: Terzopoulos, Platt, Barr, Fleischer 1987, Elastically deformable models. Equations and limits: docs/finite-differences.md.",
     dimensions: &[2, 3],
     fields: &[
@@ -38,6 +38,14 @@ A body that is no grid is refused. Source: Terzopoulos, Platt, Barr, Fleischer 1
             Default::Number(0.0),
             "Retardation time τ of a Kelvin–Voigt solid: stresses and moments are those of ε + τ dε/dt and B + τ dB/dt.",
         ),
+        Field::new(
+            "torsion",
+            Allowed::Boolean,
+            "",
+            Default::Boolean(false),
+            "Whether a curve resists a change of its Frenet torsion; it must have a curvature at every inner node.",
+        )
+        .applies(&[Condition::Dimension(3)]),
         Field::new(
             "plane",
             Allowed::Choice(&["strain", "stress"]),

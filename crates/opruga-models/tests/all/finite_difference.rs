@@ -40,6 +40,62 @@ fn curves_are_the_gradient_of_their_energy() {
     conformance("long ring", &FiniteDifference, &damped, &ring(1700), &large).assert();
 }
 
+/// A helix of radius r and slope c, whose curvature is r/(r² + c²) and whose torsion is c/(r² + c²) [1/m].
+#[allow(clippy::disallowed_methods, reason = "the reference")]
+fn helix(count: u32, radius: f64, slope: f64) -> Vec<[f64; 3]> {
+    let whole = 1.0 / (radius * radius + slope * slope).sqrt();
+    let at = |k: u32| {
+        let t = 6.0 * f64::from(k) / f64::from(count - 1) * whole;
+        [radius * t.cos(), radius * t.sin(), slope * t]
+    };
+    (0..count).map(at).collect()
+}
+
+#[test]
+fn curves_with_torsion_are_the_gradient_of_their_energy() {
+    let with = [
+        values!(finite_difference, youngs_modulus: 5e4, thickness: 0.05, torsion: true, damping: 0.01),
+        values!(finite_difference, youngs_modulus: 1e4, thickness: 0.1),
+    ];
+    let open = Mesh::polyline(&helix(14, 0.5, 0.2), false).unwrap();
+    conformance("helix", &FiniteDifference, &with, &open, &Options::default()).assert();
+    let closed = Mesh::polyline(&helix(12, 0.5, 0.05), true).unwrap();
+    conformance("closed", &FiniteDifference, &with, &closed, &Options::default()).assert();
+}
+
+/// A helix bent to another of the same length and curvature and another torsion holds ½ GJ (τ − τ₀)² L.
+#[test]
+fn the_energy_of_torsion_has_second_order() {
+    let whole = |curvature: f64, torsion: f64| {
+        let square = curvature * curvature + torsion * torsion;
+        [curvature / square, torsion / square]
+    };
+    let [rest, moved] = [whole(1.2, 0.5), whole(1.2, 0.9)];
+    let error = |count: u32| {
+        let mesh = Mesh::polyline(&helix(count, rest[0], rest[1]), false).unwrap();
+        let places = helix(count, moved[0], moved[1]);
+        let of = |torsion: bool| {
+            let values = values!(finite_difference, youngs_modulus: 1e6, thickness: 0.05, torsion: torsion);
+            let parts: [Part<3>; 1] = [(&FiniteDifference, values)];
+            let mut system = system(&mesh, &parts);
+            places.iter().enumerate().for_each(|(node, x)| system.state.x.set(node, *x));
+            let member = &system.members[0];
+            let energy = member.potential.energy(system.simd, &system.view(Stage::Current, 0.0), &member.scratch);
+            energy.iter().sum::<f64>()
+        };
+        let t2 = 0.05 * 0.05;
+        let rigidity = 1e6 * core::f64::consts::PI * t2 * t2 / 64.0 / 1.3;
+        // Edges at the ends have no torsion: the curve is shorter by two of them.
+        let length = 6.0 * (f64::from(count) - 3.0) / (f64::from(count) - 1.0);
+        (of(true) - of(false)) / (0.5 * rigidity * 0.16 * length) - 1.0
+    };
+    let errors = [error(25), error(49), error(97)];
+    assert!(errors[2].abs() < 2e-3, "{errors:?}");
+    for pair in errors.windows(2) {
+        assert!((pair[0] / pair[1] - 4.0).abs() < 0.3, "{errors:?}");
+    }
+}
+
 #[test]
 fn surfaces_are_the_gradient_of_their_energy() {
     let damped = [
@@ -227,4 +283,8 @@ fn bodies_that_are_no_regular_grid_are_refused() {
     assert_eq!(refused(&line, &solid), code("no_thickness"));
     assert_eq!(refused(&Mesh::<2>::grid([0.0; 2], [1.0, 1.0], [2, 2]).unwrap(), &curve), code("solid_thickness"));
     assert_eq!(refused(&line, &curve), None);
+    let torsion = values!(finite_difference, youngs_modulus: 1e5, thickness: 0.02, torsion: true);
+    let straight = Mesh::<3>::line([0.0; 3], [1.0, 0.3, 0.2], 4).unwrap();
+    assert_eq!(refused(&straight, &torsion), code("no_torsion"));
+    assert_eq!(refused(&sheet([2, 2]), &torsion), code("torsion_of_surface"));
 }

@@ -220,6 +220,11 @@ pub(super) const FIELDS: &[(&str, &str, &str)] = &[
         "Vrijeme zaostajanja τ Kelvin–Voigtova tijela: naprezanja i momenti su oni od ε + τ dε/dt i B + τ dB/dt.",
     ),
     (
+        "model.finite_difference.torsion",
+        "torzija",
+        "Opire li se krivulja promjeni svoje Frenetove torzije; mora imati zakrivljenost u svakom unutarnjem čvoru.",
+    ),
+    (
         "model.finite_difference.plane",
         "ravnina",
         "Za tijela u ravnini: ništa se ne miče poprijeko, ili poprijeko ne djeluje naprezanje.",

@@ -19,6 +19,7 @@ mod implicit;
 mod invariance;
 mod islands;
 mod ledger_at_rest;
+mod methods;
 mod modes;
 mod numerical_damping;
 mod pictures;
