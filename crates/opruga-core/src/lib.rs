@@ -5,6 +5,7 @@ mod advance;
 pub mod break_off;
 pub mod check;
 pub mod contacts;
+pub mod dense;
 pub mod error;
 pub mod history;
 mod implicit;

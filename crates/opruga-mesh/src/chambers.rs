@@ -308,7 +308,7 @@ impl<const D: usize> Mesh<D> {
 ///
 /// # Source
 /// van Oosterom and Strackee, "The solid angle of a plane triangle", IEEE Trans. Biomed. Eng. 30 (1983), equation 8.
-pub(crate) fn winding_number<const D: usize>(facets: &[[u32; D]], positions: &[[f64; D]], point: &[f64; D]) -> f64 {
+pub fn winding_number<const D: usize>(facets: &[[u32; D]], positions: &[[f64; D]], point: &[f64; D]) -> f64 {
     let o = lift(point);
     let from = |node: u32| subtract(lift(&positions[node as usize]), o);
     let mut total = 0.0;

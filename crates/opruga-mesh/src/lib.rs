@@ -60,7 +60,7 @@ mod transform;
 pub use adjacency::{Adjacency, node_neighbours};
 pub use bending::{bends, hinges};
 pub use boundary::Cut;
-pub use chambers::Component;
+pub use chambers::{Component, winding_number};
 pub use check::{Problem, SHORT_EDGE, THIN_ELEMENT};
 pub use crossings::Crossings;
 pub use edges::{EdgeRun, EdgeSet, bandwidth, edge_runs};

@@ -2,6 +2,7 @@
 
 pub mod as_published;
 pub mod bending;
+pub mod boundary_element;
 pub mod drag;
 pub mod fem;
 pub mod finite_difference;
@@ -47,6 +48,7 @@ fn list<const D: usize>() -> Vec<Box<dyn Model<D>>> {
         Box::new(bending::BendingModel),
         Box::new(drag::DragModel),
         Box::new(finite_difference::FiniteDifferenceModel),
+        Box::new(boundary_element::BoundaryElementModel),
         Box::new(as_published::AsPublishedModel),
         Box::new(shape_matching::ShapeMatchingModel),
     ]

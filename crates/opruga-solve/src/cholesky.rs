@@ -1,6 +1,7 @@
 //! The sparse Cholesky factor, by faer; parts of rank one by Woodbury's formula.
 
 use crate::Indefinite;
+use crate::beside::TurnedFactor;
 use crate::matrix::BlockMatrix;
 use crate::scalars::Scalars;
 use crate::woodbury::Woodbury;
@@ -24,6 +25,9 @@ pub struct Cholesky {
     /// Memory that the library works in.
     stack: Mutex<Option<MemBuffer>>,
     parts: Woodbury,
+    /// What factors a matrix with dense parts, where there are some.
+    turned: TurnedFactor,
+    is_turned: bool,
 }
 
 impl core::fmt::Debug for Cholesky {
@@ -39,11 +43,21 @@ impl Cholesky {
     /// [`Indefinite`] where it is not positive definite, or not without its parts of rank one.
     pub fn update<const D: usize>(&mut self, matrix: &BlockMatrix<D>) -> Result<(), Indefinite> {
         self.factored = false;
+        self.is_turned = matrix.has_dense();
+        if self.is_turned {
+            self.turned.update(matrix, true)?;
+            let turned = &self.turned;
+            self.parts.update(matrix, true, |sides| turned.solve_all(sides))?;
+            self.factored = true;
+            return Ok(());
+        }
         let anew = self.scalars.take(matrix, true);
         self.factor(anew)?;
         let Some(symbolic) = &self.symbolic else { return Err(Indefinite) };
         let (values, stack) = (&self.values, &self.stack);
-        self.parts.update(matrix, true, |x| solve(symbolic, values, stack, x))?;
+        self.parts.update(matrix, true, |sides| {
+            sides.iter_mut().for_each(|x| solve(symbolic, values, stack, x));
+        })?;
         self.factored = true;
         Ok(())
     }
@@ -86,6 +100,10 @@ impl Cholesky {
 
     /// Solves A x = b in place.
     pub fn solve(&self, x: &mut [f64]) {
+        if self.is_turned && self.factored {
+            self.turned.solve(x);
+            return self.parts.correct(x);
+        }
         let Some(symbolic) = self.symbolic.as_ref().filter(|_| self.factored) else { return };
         solve(symbolic, &self.values, &self.stack, x);
         self.parts.correct(x);

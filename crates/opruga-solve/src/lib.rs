@@ -4,10 +4,12 @@
 //! sums have one order, so that it gives the same bits on every processor ([`Packed`]: in vector instructions and on threads), or by [`Cholesky`] and [`Factors`] (the library
 //! faer), which choose their instructions by the class of the processor. [`eigen`] finds the lowest natural frequencies.
 
+mod beside;
 pub mod blocks;
 mod cholesky;
 mod conjugate_gradients;
 pub mod dense;
+pub mod dense_system;
 pub mod eigen;
 mod filled;
 mod landing;

@@ -1,6 +1,7 @@
 //! The sparse factors of a matrix that need be neither definite nor symmetric, by faer.
 
 use crate::Indefinite;
+use crate::beside::TurnedFactor;
 use crate::matrix::BlockMatrix;
 use crate::scalars::Scalars;
 use crate::woodbury::Woodbury;
@@ -18,6 +19,8 @@ pub struct Factors {
     /// Whether the rows of the matrix are its columns.
     is_symmetric: bool,
     parts: Woodbury,
+    /// What factors a matrix with dense parts, where there are some.
+    turned: Option<TurnedFactor>,
 }
 
 impl core::fmt::Debug for Factors {
@@ -53,9 +56,19 @@ impl Factors {
     ) -> Result<(), Indefinite> {
         self.is_symmetric = is_symmetric;
         self.factors = None;
+        self.turned = None;
+        if matrix.has_dense() {
+            let mut turned = TurnedFactor::default();
+            turned.update(matrix, false)?;
+            self.parts.update(matrix, false, |sides| turned.solve_all(sides))?;
+            self.turned = Some(turned);
+            return Ok(());
+        }
         let anew = self.scalars.take(matrix, false);
         let factors = self.factored(anew)?;
-        self.parts.update(matrix, false, |x| solve(&factors, is_symmetric, x))?;
+        self.parts.update(matrix, false, |sides| {
+            sides.iter_mut().for_each(|x| solve(&factors, is_symmetric, x));
+        })?;
         self.factors = Some(factors);
         Ok(())
     }
@@ -75,6 +88,11 @@ impl Factors {
 
     /// Solves A x = b in place; says whether every number that comes out is finite.
     pub fn solve(&self, x: &mut [f64]) -> bool {
+        if let Some(turned) = &self.turned {
+            turned.solve(x);
+            self.parts.correct(x);
+            return x.iter().all(|x| x.is_finite());
+        }
         let Some(factors) = &self.factors else { return false };
         solve(factors, self.is_symmetric, x);
         self.parts.correct(x);

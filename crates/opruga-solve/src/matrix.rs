@@ -2,8 +2,9 @@
 
 use crate::blocks::{Block, isotropic, nodes, nodes_mut, product, times};
 
+use crate::beside::Beside;
 use crate::landing::{Landing, is_known};
-use opruga_core::potential::{Sink, StencilPack, StencilPacks};
+use opruga_core::potential::{DensePart, Sink, StencilPack, StencilPacks};
 use opruga_core::threads::each_part;
 use opruga_math::{Simd, WIDTH};
 
@@ -31,6 +32,7 @@ pub struct BlockMatrix<const D: usize> {
     factor: f64,
     rank_one: Vec<RankOne<D>>,
     ranks: usize,
+    beside: Vec<Beside<D>>,
 }
 
 /// How many orders of calls are remembered.
@@ -116,6 +118,7 @@ impl<const D: usize> BlockMatrix<D> {
             if self.recording {
                 self.scripts[self.script].clear();
             }
+            self.beside.clear();
             deliver(self);
             if self.missing.is_empty() {
                 break;
@@ -263,12 +266,12 @@ impl<const D: usize> BlockMatrix<D> {
 
     /// y = A x, over all rows in the order of columns: the same bits everywhere.
     pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
-        let x = nodes::<D>(x);
+        let by_node = nodes::<D>(x);
         for (row, out) in nodes_mut::<D>(y).iter_mut().enumerate() {
-            *out = self.row_times(row, x);
+            *out = self.row_times(row, by_node);
         }
         for part in &self.rank_one {
-            let along = part.factor * part.along(x);
+            let along = part.factor * part.along(by_node);
             let y = nodes_mut::<D>(y);
             for (node, u) in &part.entries {
                 for d in 0..D {
@@ -276,6 +279,7 @@ impl<const D: usize> BlockMatrix<D> {
                 }
             }
         }
+        self.add_dense(x, y);
     }
     #[inline(always)]
     fn row_times(&self, row: usize, x: &[[f64; D]]) -> [f64; D] {
@@ -324,6 +328,9 @@ impl<const D: usize> BlockMatrix<D> {
                 }
             }
         }
+        for part in &mut self.beside {
+            part.constrain(free, projectors);
+        }
     }
 
     /// Becomes a copy of another matrix, in memory that is there already; orders of calls are not copied.
@@ -341,12 +348,16 @@ impl<const D: usize> BlockMatrix<D> {
             own.entries.clone_from(&part.entries);
         }
         self.ranks = other.ranks;
+        self.beside.clone_from(&other.beside);
     }
     /// The block of a node with itself.
     pub fn diagonal_block(&self, node: usize) -> &Block<D> {
         &self.values[self.diagonal[node] as usize]
     }
 
+    pub(crate) fn beside(&self) -> &[Beside<D>] {
+        &self.beside
+    }
     pub(crate) fn rank_one(&self) -> &[RankOne<D>] {
         &self.rank_one
     }
@@ -400,6 +411,9 @@ impl<const D: usize> Sink<D> for BlockMatrix<D> {
         part.entries.clear();
         part.entries.extend(u.iter().map(|(place, entry)| (*place as u32, *entry)));
         self.ranks += 1;
+    }
+    fn dense(&mut self, part: &DensePart<'_, D>) {
+        self.beside.push(Beside::new(self.factor, part));
     }
     fn stencils(&mut self, pack: &StencilPack<'_>) {
         let (places, slots) = (pack.places.len(), pack.count * pack.nodes * pack.nodes);

@@ -19,7 +19,7 @@ impl Woodbury {
         &mut self,
         matrix: &BlockMatrix<D>,
         positive: bool,
-        solve: impl Fn(&mut [f64]),
+        solve: impl Fn(&mut [Vec<f64>]),
     ) -> Result<(), Indefinite> {
         let parts: Vec<_> = matrix.rank_one().iter().filter(|part| part.factor != 0.0).collect();
         let n = parts.len();
@@ -29,8 +29,8 @@ impl Woodbury {
             self.directions[k].resize(matrix.rows() * D, 0.0);
             part.write(&mut self.directions[k]);
             self.solved[k].clone_from(&self.directions[k]);
-            solve(&mut self.solved[k]);
         }
+        solve(&mut self.solved);
         let mut core = vec![0.0; n * n];
         for i in 0..n {
             for j in 0..n {

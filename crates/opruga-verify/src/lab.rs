@@ -55,6 +55,12 @@ impl Scene {
         self
     }
 
+    /// A file that the scene names.
+    pub(crate) fn file(mut self, name: &str, text: String) -> Scene {
+        self.files.push((name.into(), text.into_bytes().into()));
+        self
+    }
+
     /// A body of a mesh, with what else it says on lines of their own.
     pub(crate) fn body<const D: usize>(mut self, mesh: &Mesh<D>, rest: &str) -> Result<Scene, Trouble> {
         let written = opruga::io::meshes::write(mesh, "vtk").map_err(|e| e.to_string())?;

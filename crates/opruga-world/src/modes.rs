@@ -120,6 +120,8 @@ impl<const D: usize> World<D> {
         let mut fastest: f64 = 0.0;
         for (k, m) in mass.iter().enumerate() {
             let ratio = if held[k] { 0.0 } else { stiffness.diagonal_block(k / D)[k % D][k % D].abs() / m };
+            let dense = if held[k] || !stiffness.has_dense() { 0.0 } else { stiffness.diagonal_size(k / D) / m };
+            let ratio = if dense > ratio { dense } else { ratio };
             fastest = if ratio > fastest { ratio } else { fastest };
         }
         let fastest = if fastest > 0.0 { fastest } else { 1.0 };

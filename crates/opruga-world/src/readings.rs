@@ -40,7 +40,11 @@ impl<const D: usize> World<D> {
     }
     /// Whether the same bits come out on every processor, and not only on those of one class.
     pub fn same_bits_everywhere(&self) -> bool {
-        self.islands.iter().all(|island| island.integrator.same_bits_everywhere(&island.system))
+        self.islands.iter().all(|island| {
+            let mut members = island.system.members.iter();
+            members.all(|member| member.potential.same_bits_everywhere())
+                && island.integrator.same_bits_everywhere(&island.system)
+        })
     }
     /// How many islands there are: bodies that are stepped together.
     pub fn islands(&self) -> usize {

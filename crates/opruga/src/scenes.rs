@@ -43,6 +43,7 @@ scenes![
     "jelly-crowd",
     "terzopoulos-ring",
     "terzopoulos-cloth",
+    "artdefo",
     "drawings",
     "heart-solid",
     "spot-solid",

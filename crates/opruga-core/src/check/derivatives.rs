@@ -3,7 +3,7 @@
 use super::Suite;
 use super::case::{Answer, Body, Case, by_node, difference, largest, mean_edge};
 use super::random::Random;
-use crate::potential::{Definiteness, Potential, Sink};
+use crate::potential::{Definiteness, DensePart, Potential, Sink};
 use crate::state::{Columns, Layout};
 use opruga_math::{Lane, Simd, WIDTH, sum_in_fixed_order};
 
@@ -70,6 +70,7 @@ impl<const D: usize> Sink<D> for Untold {
     }
     // What couples all nodes is no stencil.
     fn low_rank(&mut self, _: f64, _: &[(usize, [f64; D])]) {}
+    fn dense(&mut self, _: &DensePart<'_, D>) {}
 }
 
 impl<const D: usize> Sink<D> for Assembled<D> {

@@ -1,6 +1,6 @@
 //! The motions of a body or a piece as a whole: translations and rotations, and which of them pins hold.
 
-use opruga_core::potential::Sink;
+use opruga_core::potential::{DensePart, Sink};
 use opruga_core::state::Columns;
 use opruga_core::system::System;
 use opruga_solve::blocks::Block;
@@ -71,6 +71,24 @@ impl<const D: usize> Sink<D> for Projection<'_> {
                 let block = core::array::from_fn(|i| core::array::from_fn(|j| c * x[i] * y[j]));
                 Sink::<D>::block(self, *a, *b, block);
             }
+        }
+    }
+    fn dense(&mut self, part: &DensePart<'_, D>) {
+        let n = self.motions.len();
+        for q in 0..n {
+            let motion = &self.motions[q];
+            let pulled = part.product(|place| core::array::from_fn(|d| motion[place * D + d]));
+            for p in 0..n {
+                for (place, pulled) in part.places.iter().zip(&pulled) {
+                    let own = &self.motions[p][*place as usize * D..];
+                    self.out[p * n + q] += (0..D).map(|d| own[d] * pulled[d]).sum::<f64>();
+                }
+            }
+        }
+        // Of a matrix without negative eigenvalues the largest entry stands on the diagonal.
+        for number in 0..part.places.len() {
+            let sizes = part.block(number, number).into_iter().flatten().map(|x: f64| x.abs());
+            self.largest = sizes.fold(self.largest, |most, x| if x > most { x } else { most });
         }
     }
 }

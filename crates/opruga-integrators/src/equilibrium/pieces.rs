@@ -1,6 +1,6 @@
 //! The pieces of a body: nodes that its models tie to one another. A map with islands is one body of many pieces.
 
-use opruga_core::potential::{Definiteness, Sink};
+use opruga_core::potential::{Definiteness, DensePart, Sink};
 use opruga_core::state::Columns;
 use opruga_core::system::System;
 use opruga_math::Column;
@@ -64,5 +64,8 @@ impl<const D: usize> Sink<D> for Ties {
     }
     fn low_rank(&mut self, _c: f64, u: &[(usize, [f64; D])]) {
         u.windows(2).for_each(|pair| self.tie(pair[0].0, pair[1].0));
+    }
+    fn dense(&mut self, part: &DensePart<'_, D>) {
+        part.places.windows(2).for_each(|pair| self.tie(pair[0] as usize, pair[1] as usize));
     }
 }

@@ -1,7 +1,7 @@
 //! The direction of an iteration: (σM + βC + K) Δ = b in the directions that are free.
 
 use super::settings::{Settings, Solver};
-use opruga_core::potential::{Definiteness, Sink};
+use opruga_core::potential::{Definiteness, DensePart, Sink};
 use opruga_core::system::{Stage, System};
 use opruga_math::Lane;
 use opruga_solve::blocks::{Block, held, isotropic, nodes, nodes_mut, times};
@@ -118,6 +118,15 @@ impl<const D: usize> Sink<D> for ProductSink<'_, D> {
             }
         }
     }
+    fn dense(&mut self, part: &DensePart<'_, D>) {
+        let x = self.x;
+        let product = part.product(|place| x[place]);
+        for (place, value) in part.places.iter().zip(product) {
+            for d in 0..D {
+                self.y[*place as usize][d] += self.factor * value[d];
+            }
+        }
+    }
 }
 
 /// Keeps the diagonal blocks of what arrives.
@@ -143,6 +152,11 @@ impl<const D: usize> Sink<D> for DiagonalSink<'_, D> {
                     self.blocks[*place][i][j] += self.factor * c * entry[i] * entry[j];
                 }
             }
+        }
+    }
+    fn dense(&mut self, part: &DensePart<'_, D>) {
+        for (number, place) in part.places.iter().enumerate() {
+            Sink::<D>::block(self, *place as usize, *place as usize, part.block(number, number));
         }
     }
 }
@@ -216,8 +230,7 @@ impl<const D: usize> Linear<D> {
     /// Raises the diagonal by a part of itself.
     pub(crate) fn raise(&mut self, part: f64) {
         for node in 0..self.full.rows() {
-            let block = self.full.diagonal_block(node);
-            let size = (0..D).map(|d| block[d][d].abs()).sum::<f64>() / D as f64;
+            let size = self.full.diagonal_size(node);
             self.full.add_diagonal(node, part * if size > 0.0 { size } else { 1.0 });
         }
         // Without a matrix the products have to learn of it as well.
@@ -249,7 +262,10 @@ impl<const D: usize> Linear<D> {
 
     /// The size of the diagonal block of a node.
     pub(crate) fn size_at(&self, mixture: &Mixture<D>, node: usize) -> f64 {
-        let block = if mixture.matrix_free { &self.diagonal[node] } else { self.full.diagonal_block(node) };
+        if !mixture.matrix_free {
+            return D as f64 * self.full.diagonal_size(node);
+        }
+        let block = &self.diagonal[node];
         let mut size = 0.0;
         for d in 0..D {
             size += block[d][d].abs();
@@ -279,6 +295,8 @@ impl<const D: usize> Linear<D> {
             self.is_filled = false;
             if self.is_direct(settings.solver) {
                 self.cholesky.update(&self.constrained)?;
+            } else if self.constrained.has_dense() {
+                self.jacobi.update(self.constrained.diagonal_blocks().iter())?;
             } else {
                 self.is_filled = self.is_slow && self.filled.update(&self.constrained).is_ok();
                 if !self.is_filled {
@@ -325,7 +343,11 @@ impl<const D: usize> Linear<D> {
 
     /// Whether the sparse factor is taken.
     fn is_direct(&self, solver: Solver) -> bool {
-        solver == Solver::Cholesky || (solver.is_direct::<D>(self.full.rows()) && self.full.parts() <= MOST_PARTS)
+        // A dense part has a factor that stays while the body turns.
+        let dense = solver == Solver::Auto && self.full.has_dense();
+        solver == Solver::Cholesky
+            || dense
+            || (solver.is_direct::<D>(self.full.rows()) && self.full.parts() <= MOST_PARTS)
     }
 
     /// Solves by conjugate gradients, with the complete factor where the incomplete one leads nowhere soon.
@@ -333,12 +355,16 @@ impl<const D: usize> Linear<D> {
         let mut products = 0;
         // The complete factor is tried once; where it is none, there is no end to the products but the last.
         for most in [if self.is_slow { MOST_PRODUCTS } else { MANY_PRODUCTS }, MOST_PRODUCTS] {
-            let Linear { constrained, incomplete, filled, is_filled, directions, .. } = self;
-            let by: &dyn Preconditioner = if *is_filled { filled } else { incomplete };
+            let Linear { constrained, incomplete, filled, is_filled, directions, jacobi, .. } = self;
+            let by: &dyn Preconditioner = match (constrained.has_dense(), *is_filled) {
+                (true, _) => jacobi,
+                (false, true) => filled,
+                (false, false) => incomplete,
+            };
             let multiply = |x: &[f64], y: &mut [f64]| constrained.multiply(x, y);
             let ended = conjugate_gradients(multiply, by, b, out, tolerance, most, directions)?;
             products += ended.iterations;
-            if ended.residual <= tolerance || most == MOST_PRODUCTS {
+            if ended.residual <= tolerance || most == MOST_PRODUCTS || constrained.has_dense() {
                 break;
             }
             self.is_slow = true;

@@ -11,6 +11,7 @@ use super::direction::wanted_forces;
 use super::linear::{Filter, Mixture};
 use super::rigid_balance::settles;
 use super::settings::Settings;
+use super::slenderness::has_dense;
 use super::stage::{evaluate, judge, look};
 use super::workspace::Workspace;
 use opruga_core::error::StepError;
@@ -277,7 +278,7 @@ pub(super) enum Trust {
 fn is_direct<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, settings: &Settings) -> bool {
     let direct = match workspace.direct {
         Some((solver, direct)) if solver == settings.solver => direct,
-        _ => settings.solver.is_direct_in_real_time(system),
+        _ => settings.solver.is_direct_in_real_time(system) || has_dense(system),
     };
     workspace.direct = Some((settings.solver, direct));
     direct

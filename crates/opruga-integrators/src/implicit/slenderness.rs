@@ -1,7 +1,7 @@
 //! Whether a body is slender, by which of its nodes touch: then the sparse factor is narrow, and conjugate gradients, which pass
 //! news on by one cell a product, are slow and end before the whole has bent.
 
-use opruga_core::potential::{Definiteness, Sink};
+use opruga_core::potential::{Definiteness, DensePart, Sink};
 use opruga_core::system::{Stage, System};
 
 /// A body is slender where no layer of cells has more nodes than so many times the number of layers.
@@ -23,6 +23,25 @@ impl<const D: usize> Sink<D> for Touching {
     }
     /// Parts of rank one are kept apart from the matrix that is factored.
     fn low_rank(&mut self, _c: f64, _u: &[(usize, [f64; D])]) {}
+    fn dense(&mut self, _part: &DensePart<'_, D>) {}
+}
+
+/// Whether something dense arrives.
+struct Dense(bool);
+
+impl<const D: usize> Sink<D> for Dense {
+    fn block(&mut self, _a: usize, _b: usize, _value: [[f64; D]; D]) {}
+    fn low_rank(&mut self, _c: f64, _u: &[(usize, [f64; D])]) {}
+    fn dense(&mut self, _part: &DensePart<'_, D>) {
+        self.0 = true;
+    }
+}
+
+/// Whether a model of a body delivers a dense part, which has a factor and no sparse rows to multiply with.
+pub(crate) fn has_dense<const D: usize>(system: &System<D>) -> bool {
+    let mut found = Dense(false);
+    system.hessian(Stage::Current, 0.0, Definiteness::Exact, &mut found);
+    found.0
 }
 
 /// Whether the factor of a body's matrix is narrow for its size. It depends on what touches what alone, not on the state.

@@ -10,6 +10,7 @@ use opruga_math::Simd;
 use opruga_mesh::Mesh;
 use opruga_models::as_published::AsPublishedModel as AsPublished;
 use opruga_models::bending::BendingModel as Bending;
+use opruga_models::boundary_element::BoundaryElementModel as BoundaryElement;
 use opruga_models::drag::DragModel as Drag;
 use opruga_models::finite_volume::FiniteVolumeModel as FiniteVolume;
 use opruga_models::mass_spring::{self, MassSpring};
@@ -178,6 +179,36 @@ fn shape_matching_in_space() {
     conformance("shrunk", &ShapeMatching, &bent, &block(), &shrunk()).assert();
     let regions = [values!(shape_matching, stiffness: 300.0, fit_share: 0.5, region: 0.7)];
     conformance("regions", &ShapeMatching, &regions, &block(), &Options::default()).assert();
+}
+
+/// Collapsed bodies have no frame that follows them: no row is claimed of coincident nodes.
+#[test]
+fn boundary_element_in_the_plane() {
+    let options = Options { coincident: false, ..once() };
+    let values = [
+        values!(boundary_element, youngs_modulus: 900.0),
+        values!(boundary_element, youngs_modulus: 200.0, poissons_ratio: 0.4, plane: "stress"),
+    ];
+    conformance("ring", &BoundaryElement, &values, &ring(36), &options).assert();
+    conformance("of five", &BoundaryElement, &values, &ring(5), &options).assert();
+    let exterior = [values!(boundary_element, youngs_modulus: 900.0, exterior: true)];
+    let options = Options { rigid: false, ..options };
+    conformance("outside", &BoundaryElement, &exterior, &ring(20), &options).assert();
+}
+
+#[test]
+fn boundary_element_in_space() {
+    let options = Options { coincident: false, ..once() };
+    let values = [
+        values!(boundary_element, youngs_modulus: 900.0),
+        values!(boundary_element, youngs_modulus: 200.0, poissons_ratio: 0.4),
+    ];
+    conformance("sphere", &BoundaryElement, &values, &sphere(), &options).assert();
+    let surface = Mesh::box_surface([0.0; 3], [1.0, 0.8, 0.6], [2, 2, 1]).unwrap();
+    conformance("block", &BoundaryElement, &values, &surface, &options).assert();
+    let exterior = [values!(boundary_element, youngs_modulus: 900.0, exterior: true)];
+    let options = Options { rigid: false, ..options };
+    conformance("outside", &BoundaryElement, &exterior, &sphere(), &options).assert();
 }
 
 /// The published force is no gradient: its bits and invariances alone are claimed.

@@ -5,6 +5,7 @@ mod support;
 
 mod as_published;
 mod bending;
+mod boundary_element;
 mod closed_forms;
 mod conformance;
 mod drag;

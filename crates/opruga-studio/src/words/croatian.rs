@@ -62,6 +62,11 @@ pub(super) const KINDS: &[(&str, &str, &str)] = &[
         "elastično tijelo od konačnih volumena: naprezanja na plohama dualne ćelije svakog čvora",
     ),
     (
+        "model.boundary_element",
+        "rubni elementi",
+        "elastično tijelo samo od svoje granice: Kelvinovo rješenje na bridovima obrisa ili trokutima plohe",
+    ),
+    (
         "model.shape_matching",
         "podudaranje oblika",
         "skupine čvorova koje vuče njihov oblik u mirovanju, zakrenut ili prilagođen čvorovima",
@@ -339,6 +344,16 @@ pub(super) const FIELDS: &[(&str, &str, &str)] = &[
         "shema",
         "Je li sila gradijent od U, ili objavljena, koja čuva obujam prilagođenog preslikavanja.",
     ),
+    (
+        "model.boundary_element.exterior",
+        "okolina",
+        "Je li tijelo beskonačno sredstvo oko granice umjesto onoga što je unutra.",
+    ),
+    (
+        "model.boundary_element.stress_points",
+        "točke naprezanja",
+        "Točke tijela u mirovanju čije se naprezanje čita: stress0.xx, stress0.xy, …, u okviru R.",
+    ),
     // Obstacles.
     ("obstacle.*.restitution", "restitucija", "Omjer normalnih brzina nakon sudara i prije njega."),
     ("obstacle.*.friction", "trenje", "Coulombov koeficijent µ, jednak za mirovanje i klizanje."),
@@ -559,6 +574,7 @@ pub(super) const SCENES: &[(&str, &str)] = &[
     ("jelly", "želei od konačnih elemenata"),
     ("terzopoulos-ring", "prsten od konačnih razlika uz prsten od opruga"),
     ("terzopoulos-cloth", "tkanina od konačnih razlika"),
+    ("artdefo", "krava koju vuku za kožu"),
     ("jelly-crowd", "osamdeset želea kakve znaju igre: podudaranje oblika, opruge i plin"),
     ("leaking-tyre", "guma koja pušta"),
     ("million-vertices", "27.778 lopti, milijun vrhova"),

@@ -5,6 +5,8 @@
 
 mod balloons;
 mod beams;
+mod boundary;
+mod boundary_shell;
 mod contact;
 mod finite_differences;
 mod heat;
@@ -51,6 +53,7 @@ pub fn cases() -> impl Iterator<Item = &'static Case> {
         heat::CASES,
         volumes::CASES,
         matching::STATICS,
+        boundary::STATICS,
         finite_differences::MATERIALS,
         materials::CASES,
         volumes::MATERIALS,
@@ -64,6 +67,7 @@ pub fn cases() -> impl Iterator<Item = &'static Case> {
         matching::DYNAMICS,
         integrators::CASES,
         ledgers::CASES,
+        boundary::LEDGERS,
     ];
     lists.into_iter().flatten()
 }
@@ -76,7 +80,6 @@ pub const LEFT_OUT: &[(&str, &str)] = &[
     ),
     ("two bars that swap their velocities", "bodies do not collide with one another yet"),
     ("thin membranes of rubber", "there is no model of membranes; springs have another law"),
-    ("boundary elements", "there is no such model yet"),
 ];
 
 #[cfg(test)]

@@ -1,0 +1,56 @@
+//! Stiffnesses that bodies hold, by what they follow from: a body that is built again, or alike another, takes what is there.
+
+use super::assembly::Stiffness;
+use super::refusals::Refusal;
+use super::surface::Surface;
+use std::sync::{Arc, Mutex, PoisonError, Weak};
+
+/// The bits of all that a stiffness follows from.
+type Key = Vec<u64>;
+
+/// Those that somebody holds, and the one that was asked for last: whoever reads a scene builds its bodies more than once, one after the
+/// other.
+struct Known {
+    held: Vec<(Key, Weak<Stiffness>)>,
+    last: Option<Arc<Stiffness>>,
+}
+
+static KNOWN: Mutex<Known> = Mutex::new(Known { held: Vec::new(), last: None });
+
+impl Known {
+    fn find(&mut self, key: &Key) -> Option<Arc<Stiffness>> {
+        self.held.retain(|(_, held)| held.strong_count() > 0);
+        let found = self.held.iter().find(|(own, _)| own == key).and_then(|(_, held)| held.upgrade())?;
+        self.last = Some(Arc::clone(&found));
+        Some(found)
+    }
+}
+
+fn key<const D: usize>(surface: &Surface<D>, poisson: f64, exterior: bool, asked: &[[f64; D]]) -> Key {
+    let mut key = vec![D as u64, u64::from(exterior), poisson.to_bits(), surface.nodes as u64, asked.len() as u64];
+    key.extend(surface.points.iter().chain(asked).flatten().map(|x| x.to_bits()));
+    key.extend(surface.facets.iter().flatten().map(|node| u64::from(*node)));
+    key
+}
+
+/// The stiffness of a boundary, made where nobody holds it.
+pub(super) fn stiffness<const D: usize>(
+    surface: &Surface<D>,
+    poisson: f64,
+    exterior: bool,
+    asked: &[[f64; D]],
+) -> Result<Arc<Stiffness>, Refusal> {
+    let key = key(surface, poisson, exterior, asked);
+    if let Some(held) = KNOWN.lock().unwrap_or_else(PoisonError::into_inner).find(&key) {
+        return Ok(held);
+    }
+    // Not under the lock: others build their own meanwhile, and the same numbers twice are the same bits.
+    let made = Arc::new(Stiffness::new(surface, poisson, exterior, asked)?);
+    let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(held) = known.find(&key) {
+        return Ok(held);
+    }
+    known.held.push((key, Arc::downgrade(&made)));
+    known.last = Some(Arc::clone(&made));
+    Ok(made)
+}

@@ -1,0 +1,250 @@
+//! The frame of a body that moves: the rotation nearest to its deformation, forces and second derivatives in it.
+//!
+//! With weights w of the vertices (their shares of the boundary, Σ w = 1, Σ w X = 0), A = Σ w (x − x̄) Xᵀ, R the rotation nearest to
+//! A, y = Rᵀ(x − x̄), u = y − X and g = K u,
+//!
+//! U = ½ uᵀ g,  f = −R (g − w λ × X),  G λ = τ = Σ y × g,  G = (tr B) 1 − B,  B = Rᵀ A.
+//!
+//! R follows a displacement R d by the spin θ = G⁻¹ J d with J d = Σ w X × d; so f is the exact gradient of U, and Σ y × f = τ − G λ = 0.
+//! The second derivatives are R K Rᵀ and 2 (in the plane) or 6 parts of rank one,
+//!
+//! δ²U = dᵀK d + 2 θ·Z d + θᵀ S θ,
+//! θ·Z d = −(θ × y)ᵀ K d − θ·Σ d × g + Σ w (θ·λ X·d − X·θ λ·d),
+//! θᵀ S θ = (θ × y)ᵀ K (θ × y) + Σ (g·θ y·θ − g·y θ·θ) + λ·(θ × B θ),
+//!
+//! which vanish at rest. Without the parts of g and λ the sum is that of K (d − θ × y), which is never negative.
+//!
+//! Why not the R that makes U least: K knows strains and no rotation, so U(R) is of fourth order in a rotation from rest, and any
+//! uniform expansion 1 + e of the plane has U = 0 in the frame turned by arccos 1/(1 + e). A body in that frame would not resist
+//! expansion (docs/boundary-elements.md, "The frame").
+
+use opruga_core::potential::Definiteness;
+use opruga_math::rotation::nearest_rotation;
+use opruga_math::{matrix, symmetric};
+
+/// Less than this part of what a body has at rest, and its rotation is not determined: then it does not follow.
+const UNDETERMINED: f64 = 1e-12;
+
+type Vector = [f64; 3];
+
+/// A body at rest.
+#[derive(Clone, Debug)]
+pub(super) struct Rest<const D: usize> {
+    /// X of each vertex [m], Σ w X = 0.
+    pub(super) positions: Vec<[f64; D]>,
+    /// w of each vertex.
+    pub(super) weights: Vec<f64>,
+    /// Σ w |X|² [m²].
+    pub(super) inertia: f64,
+}
+
+/// A frame, and how it follows.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Frame<const D: usize> {
+    pub(super) rotation: [[f64; D]; D],
+    /// B [m²].
+    pub(super) stretch: [[f64; 3]; 3],
+    /// G⁻¹ [1/m²].
+    pub(super) follows: [[f64; 3]; 3],
+}
+
+fn lift<const D: usize>(x: &[f64]) -> Vector {
+    [x[0], x[1], if D == 3 { x[2] } else { 0.0 }]
+}
+fn cross(a: &Vector, b: &Vector) -> Vector {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+fn dot(a: &Vector, b: &Vector) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+fn times(a: &[[f64; 3]; 3], x: &Vector) -> Vector {
+    core::array::from_fn(|i| dot(&a[i], x))
+}
+fn axis(k: usize) -> Vector {
+    core::array::from_fn(|d| if d == k { 1.0 } else { 0.0 })
+}
+/// The axes of rotations: the third alone in the plane.
+fn axes<const D: usize>() -> core::ops::Range<usize> {
+    if D == 2 { 2..3 } else { 0..3 }
+}
+
+impl<const D: usize> Rest<D> {
+    /// From positions about any point [m] and the shares of vertices, of any sum.
+    pub(super) fn new(positions: &[[f64; D]], shares: &[f64]) -> Rest<D> {
+        let all: f64 = shares.iter().sum();
+        let weights: Vec<f64> = shares.iter().map(|share| share / all).collect();
+        let mut mean = [0.0; D];
+        for (x, w) in positions.iter().zip(&weights) {
+            (0..D).for_each(|d| mean[d] += w * x[d]);
+        }
+        let positions: Vec<[f64; D]> = positions.iter().map(|x| core::array::from_fn(|d| x[d] - mean[d])).collect();
+        let inertia = positions.iter().zip(&weights).map(|(x, w)| w * x.iter().map(|x| x * x).sum::<f64>()).sum();
+        Rest { positions, weights, inertia }
+    }
+
+    /// The frame of a state; leaves y and u, vertex by vertex.
+    pub(super) fn frame(&self, x: impl Fn(usize) -> [f64; D], y: &mut [f64], u: &mut [f64]) -> Frame<D> {
+        let first = x(0);
+        let mut mean = [0.0; D];
+        for (vertex, w) in self.weights.iter().enumerate() {
+            let x = x(vertex);
+            (0..D).for_each(|d| mean[d] += w * (x[d] - first[d]));
+        }
+        let arm = |vertex: usize| -> [f64; D] {
+            let x = x(vertex);
+            core::array::from_fn(|d| (x[d] - first[d]) - mean[d])
+        };
+        let mut moments = [[0.0; D]; D];
+        for (vertex, (rest, w)) in self.positions.iter().zip(&self.weights).enumerate() {
+            let arm = arm(vertex);
+            for i in 0..D {
+                for j in 0..D {
+                    moments[i][j] += w * arm[i] * rest[j];
+                }
+            }
+        }
+        let rotation = nearest_rotation(&moments);
+        for (vertex, rest) in self.positions.iter().enumerate() {
+            let arm = arm(vertex);
+            for j in 0..D {
+                let turned = (0..D).map(|i| rotation[i][j] * arm[i]).sum::<f64>();
+                y[vertex * D + j] = turned;
+                u[vertex * D + j] = turned - rest[j];
+            }
+        }
+        let stretch = matrix::transposed_product(&rotation, &moments);
+        let mut out = Frame { rotation, stretch: [[0.0; 3]; 3], follows: [[0.0; 3]; 3] };
+        for i in 0..D {
+            for j in 0..D {
+                out.stretch[i][j] = 0.5 * (stretch[i][j] + stretch[j][i]);
+            }
+        }
+        out.follows = inverse_of::<D>(&out.stretch, UNDETERMINED * self.inertia);
+        out
+    }
+
+    /// λ, the multiplier of the frame [N/m].
+    pub(super) fn multiplier(&self, frame: &Frame<D>, y: &[f64], g: &[f64]) -> Vector {
+        let mut torque = [0.0; 3];
+        for (y, g) in y.chunks_exact(D).zip(g.chunks_exact(D)).take(self.weights.len()) {
+            let part = cross(&lift::<D>(y), &lift::<D>(g));
+            (0..3).for_each(|d| torque[d] += part[d]);
+        }
+        times(&frame.follows, &torque)
+    }
+
+    /// The force on a vertex [N].
+    pub(super) fn force(&self, frame: &Frame<D>, multiplier: &Vector, vertex: usize, g: &[f64]) -> [f64; D] {
+        let follows = cross(multiplier, &lift::<D>(&self.positions[vertex]));
+        let w = self.weights[vertex];
+        let pulled: [f64; D] = core::array::from_fn(|j| g[vertex * D + j] - w * follows[j]);
+        core::array::from_fn(|i| -(0..D).map(|j| frame.rotation[i][j] * pulled[j]).sum::<f64>())
+    }
+
+    /// The second derivatives beside R K Rᵀ: pairs (j, z) of vectors in space that add j zᵀ + z jᵀ. `product` multiplies with K.
+    pub(super) fn parts(
+        &self,
+        frame: &Frame<D>,
+        multiplier: &Vector,
+        [y, g]: [&[f64]; 2],
+        keep: Definiteness,
+        mut product: impl FnMut(&[f64], &mut [f64]),
+    ) -> Vec<[Vec<[f64; D]>; 2]> {
+        let count = self.weights.len();
+        let length = y.len();
+        let exact = keep == Definiteness::Exact;
+        // One way through K for all axes.
+        let first = axes::<D>().start;
+        let mut all = vec![0.0; 2 * axes::<D>().len() * length];
+        let (turns, pulls) = all.split_at_mut(axes::<D>().len() * length);
+        for (k, turned) in axes::<D>().zip(turns.chunks_exact_mut(length)) {
+            for vertex in 0..count {
+                let spin = cross(&axis(k), &lift::<D>(&y[vertex * D..]));
+                turned[vertex * D..][..D].copy_from_slice(&spin[..D]);
+            }
+        }
+        product(turns, pulls);
+        let turned = |k: usize| &turns[(k - first) * length..][..length];
+        let pulled = |k: usize| &pulls[(k - first) * length..][..length];
+        // S: how U depends on the spin.
+        let mut s = [[0.0; 3]; 3];
+        for k in axes::<D>() {
+            for l in axes::<D>() {
+                s[k][l] = opruga_solve::dot(turned(k), pulled(l));
+            }
+        }
+        if exact {
+            self.add_stress(frame, multiplier, [y, g], &mut s);
+        }
+        let mut out = Vec::new();
+        for k in axes::<D>() {
+            let (mut follows, mut along) = (Vec::with_capacity(count), Vec::with_capacity(count));
+            for vertex in 0..count {
+                let (w, x) = (self.weights[vertex], lift::<D>(&self.positions[vertex]));
+                let spin = |k: usize| cross(&frame.follows[k], &x).map(|c| w * c);
+                let mut z: Vector = core::array::from_fn(|d| {
+                    let own = if d < D { -pulled(k)[vertex * D + d] } else { 0.0 };
+                    own + 0.5 * axes::<D>().map(|l| s[k][l] * spin(l)[d]).sum::<f64>()
+                });
+                if exact {
+                    let stress = cross(&lift::<D>(&g[vertex * D..]), &axis(k));
+                    (0..3).for_each(|d| z[d] += w * (multiplier[k] * x[d] - x[k] * multiplier[d]) - stress[d]);
+                }
+                let turn = |v: &Vector| -> [f64; D] {
+                    core::array::from_fn(|i| (0..D).map(|j| frame.rotation[i][j] * v[j]).sum())
+                };
+                follows.push(turn(&spin(k)));
+                along.push(turn(&z));
+            }
+            out.push([follows, along]);
+        }
+        out
+    }
+
+    /// The parts of S that forces have.
+    fn add_stress(&self, frame: &Frame<D>, multiplier: &Vector, [y, g]: [&[f64]; 2], s: &mut [[f64; 3]; 3]) {
+        let mut pull = [[0.0; 3]; 3];
+        for (y, g) in y.chunks_exact(D).zip(g.chunks_exact(D)).take(self.weights.len()) {
+            let (y, g) = (lift::<D>(y), lift::<D>(g));
+            for k in 0..3 {
+                for l in 0..3 {
+                    pull[k][l] += 0.5 * (g[k] * y[l] + g[l] * y[k]);
+                }
+            }
+        }
+        let trace = matrix::trace(&pull);
+        for k in 0..3 {
+            for l in 0..3 {
+                let column: Vector = core::array::from_fn(|m| frame.stretch[m][l]);
+                let row: Vector = core::array::from_fn(|m| frame.stretch[m][k]);
+                let turned = 0.5 * (cross(&column, multiplier)[k] + cross(&row, multiplier)[l]);
+                s[k][l] += pull[k][l] - if k == l { trace } else { 0.0 } + turned;
+            }
+        }
+    }
+}
+
+/// G⁻¹ without the axes about which G is not above `least`.
+fn inverse_of<const D: usize>(stretch: &[[f64; 3]; 3], least: f64) -> [[f64; 3]; 3] {
+    let trace = matrix::trace(stretch);
+    let mut out = [[0.0; 3]; 3];
+    if D == 2 {
+        out[2][2] = if trace > least { 1.0 / trace } else { 0.0 };
+        return out;
+    }
+    let mut g = [[0.0; 3]; 3];
+    for i in 0..3 {
+        for j in 0..3 {
+            g[i][j] = if i == j { trace } else { 0.0 } - stretch[i][j];
+        }
+    }
+    let (values, vectors) = symmetric::eigen(&g);
+    for k in (0..3).filter(|k| values[*k] > least) {
+        for i in 0..3 {
+            for j in 0..3 {
+                out[i][j] += vectors[i][k] * vectors[j][k] / values[k];
+            }
+        }
+    }
+    out
+}

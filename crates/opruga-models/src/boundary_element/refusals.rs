@@ -1,0 +1,76 @@
+//! Why a body has no surface that the boundary element method can be written on.
+
+use super::SPEC;
+use opruga_core::error::BuildError;
+use opruga_math::message::Message;
+use opruga_math::messages;
+use opruga_math::words::number;
+use opruga_mesh::MeshError;
+
+messages! {
+    /// Why `boundary_element` refuses a body or its parameters.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum Refusal {
+        /// No facets.
+        "model.no_surface"
+        #[error("the body has no closed boundary: it is a line, a sheet, a chain or a node; allowed: closed outlines in the plane, closed surfaces in space")]
+        NoSurface {},
+        /// An open boundary.
+        "model.open_surface"
+        #[error("{problem}; allowed: a closed boundary; hint: `cap = true` closes a surface from a file")]
+        Open { problem: String },
+        /// A boundary that is none at some places.
+        "model.not_manifold"
+        #[error("{problem}; allowed: a boundary that has an inside and an outside everywhere")]
+        NotManifold { problem: String },
+        /// Facets that face against one another.
+        "model.orientation"
+        #[error("{problem}; allowed: facets that all face the same way")]
+        Orientation { problem: String },
+        /// Facets that cross.
+        "model.crossing_surface"
+        #[error("{count} pairs of facets cross or touch, the first of them facets {first} and {second}; allowed: a boundary that does not meet itself")]
+        Crossing { count: usize, first: u32, second: u32 },
+        /// A facet without a normal.
+        "model.degenerate_facet"
+        #[error("facet {facet} has a measure of {} with an edge of {} m; allowed: more than 1e-10 of the edge (in space, of its square)", number(*measure), number(*edge))]
+        Degenerate { facet: usize, measure: f64, edge: f64 },
+        /// Nodes that are not on the surface.
+        "model.inner_nodes"
+        #[error("{count} of {nodes} nodes are not on the boundary, the first of them node {first}; allowed: nodes of the boundary alone, since the method knows no others; hint: the surface without its filling")]
+        InnerNodes { count: usize, nodes: usize, first: usize },
+        /// Several solids.
+        "model.several_solids"
+        #[error("the boundary encloses {solids} solids that do not touch; allowed: one, with cavities; hint: a body for each")]
+        SeveralSolids { solids: usize },
+        /// A boundary in a boundary, outside of which all is filled.
+        "model.nested_exterior"
+        #[error("`exterior` is true, and facet {facet} belongs to a boundary inside another one; allowed: cavities beside one another")]
+        NestedExterior { facet: u32 },
+        /// More vertices than a dense matrix is made for.
+        "limit.memory"
+        #[error("the boundary has {nodes} vertices, whose dense matrices take about {} bytes while they are made; allowed: at most {most} vertices; hint: a coarser surface (`spacing`), or `fem` on its filling", number(*bytes))]
+        TooMany { nodes: usize, bytes: f64, most: usize },
+        /// A system without a solution.
+        "model.singular"
+        #[error("the equations of the boundary have no solution: {reason}; hint: facets of more even size")]
+        Singular { reason: String },
+    }
+}
+
+impl From<Refusal> for BuildError {
+    fn from(refusal: Refusal) -> BuildError {
+        BuildError::new(SPEC.kind, refusal.code(), refusal.to_string())
+    }
+}
+
+impl From<MeshError> for Refusal {
+    fn from(error: MeshError) -> Refusal {
+        let problem = error.to_string();
+        match error {
+            MeshError::Open { .. } => Refusal::Open { problem },
+            MeshError::InconsistentOrientation { .. } | MeshError::InsideOut { .. } => Refusal::Orientation { problem },
+            _ => Refusal::NotManifold { problem },
+        }
+    }
+}

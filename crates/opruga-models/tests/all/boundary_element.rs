@@ -1,0 +1,163 @@
+//! Boundary elements: what is refused, the energy of uniform strains, and what a body is not to depend on.
+
+use crate::support::{energy, forces, refusal, system};
+use opruga_mesh::Mesh;
+use opruga_models::boundary_element::BoundaryElementModel as Boundary;
+
+fn ring() -> Mesh<2> {
+    Mesh::ring(0.5, 24, [0.2, 2.0], 0.1).unwrap()
+}
+fn block() -> Mesh<3> {
+    Mesh::box_surface([0.1, 0.2, 0.3], [1.0, 0.8, 0.6], [3, 2, 2]).unwrap()
+}
+fn moved<const D: usize>(mesh: &Mesh<D>, map: impl Fn(&[f64; D]) -> [f64; D]) -> Mesh<D> {
+    Mesh { positions: mesh.positions.iter().map(map).collect(), ..mesh.clone() }
+}
+/// The forces of a body in a state, and its energy.
+fn pulled<const D: usize>(rest: &Mesh<D>, young: f64, map: impl Fn(usize, &[f64; D]) -> [f64; D]) -> (Vec<f64>, f64) {
+    let mut body = system(rest, &[(&Boundary, values!(boundary_element, youngs_modulus: young))]);
+    for (node, x) in rest.positions.iter().enumerate() {
+        body.state.x.set(node, map(node, x));
+    }
+    (forces(&mut body), energy(&mut body))
+}
+fn size(v: &[f64]) -> f64 {
+    v.iter().fold(0.0, |most, x| if x.abs() > most { x.abs() } else { most })
+}
+fn off(a: &[f64], b: &[f64]) -> f64 {
+    size(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<f64>>()) / size(b)
+}
+/// A displacement without symmetry, a twentieth of the size.
+fn shaken<const D: usize>(node: usize, x: &[f64; D]) -> [f64; D] {
+    core::array::from_fn(|d| x[d] + 0.05 * (((node * 7 + d * 5) % 11) as f64 / 5.0 - 1.0))
+}
+
+/// Rows 26, 27, 31, 32, 34, 35, 37 and 39 of the list of bad bodies.
+#[test]
+fn bodies_without_a_surface_are_refused() {
+    let plane = |mesh: &Mesh<2>| refusal(mesh, &Boundary, values!(boundary_element, youngs_modulus: 1.0));
+    let space = |mesh: &Mesh<3>| refusal(mesh, &Boundary, values!(boundary_element, youngs_modulus: 1.0));
+    let starts = |found: String, code: &str| assert!(found.starts_with(code), "{found}");
+
+    starts(plane(&Mesh { positions: vec![[0.0; 2]], ..Mesh::default() }), "model.no_surface");
+    starts(plane(&Mesh::line([0.0; 2], [1.0, 0.0], 4).unwrap()), "model.no_surface");
+    starts(space(&Mesh::sheet([0.0; 3], [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [2, 2]).unwrap()), "model.no_surface");
+    starts(space(&Mesh::grid([0.0; 3], [1.0; 3], [2, 2, 2]).unwrap()), "model.inner_nodes");
+    let mut open = block();
+    open.facets.pop();
+    starts(space(&open), "model.open_surface");
+    let mut wrong = block();
+    wrong.facets[3].swap(0, 1);
+    starts(space(&wrong), "model.orientation");
+    let mut sliver = block();
+    let [a, b, _] = sliver.facets[0];
+    sliver.positions[a as usize] = sliver.positions[b as usize];
+    starts(space(&sliver), "model.degenerate_facet");
+    // A bow.
+    let bow = [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]];
+    let facets = vec![[0, 1], [1, 2], [2, 3], [3, 0]];
+    starts(plane(&Mesh { positions: bow.to_vec(), facets, ..Mesh::default() }), "model.crossing_surface");
+    // A third triangle at an edge.
+    let mut crowded = block();
+    crowded.facets.push(crowded.facets[0]);
+    starts(space(&crowded), "model.not_manifold");
+    // Two boxes beside one another; a sphere of too many vertices.
+    let (mut two, other) = (block(), block());
+    let first = two.nodes() as u32;
+    two.positions.extend(other.positions.iter().map(|x| [x[0] + 3.0, x[1], x[2]]));
+    two.facets.extend(other.facets.iter().map(|facet| facet.map(|node| node + first)));
+    starts(space(&two), "model.several_solids");
+    let large = space(&Mesh::icosphere(1.0, 4).unwrap());
+    assert!(large.starts_with("limit.memory") && large.contains("bytes"), "{large}");
+    // Inside out: turned. Nested: a cavity, whatever way it faces.
+    let mut inside_out = block();
+    inside_out.facets.iter_mut().for_each(|facet| facet.swap(0, 1));
+    assert_eq!(space(&inside_out), "built");
+    let mut nested = block();
+    nested.positions.extend(other.positions.iter().map(|x| x.map(|c| 0.3 + 0.5 * c)));
+    nested.facets.extend(other.facets.iter().map(|facet| facet.map(|node| node + first)));
+    assert_eq!(space(&nested), "built");
+}
+
+/// U of a uniform strain is V σ:ε/2; expansion is resisted, which it would not be in the frame of least energy.
+#[test]
+fn uniform_strains_have_their_energy() {
+    let nu = 0.3;
+    let (mu, lambda) = (1.0 / (2.0 * (1.0 + nu)), nu / ((1.0 + nu) * (1.0 - 2.0 * nu)));
+    for strain in [[0.1, 0.1, 0.1], [0.05, -0.02, 0.0], [-0.1, 0.0, 0.03]] {
+        let mesh = block();
+        let (_, found) = pulled(&mesh, 1.0, |_, x| core::array::from_fn(|d| (1.0 + strain[d]) * x[d]));
+        let trace: f64 = strain.iter().sum();
+        let squares: f64 = strain.iter().map(|e| e * e).sum();
+        let expected = 0.48 * (0.5 * lambda * trace * trace + mu * squares);
+        assert!((found / expected - 1.0).abs() < 1e-8, "{found} {expected}");
+    }
+}
+
+#[test]
+fn forces_do_not_depend_on_place_direction_order_and_units() {
+    let mesh = block();
+    let (own, energy) = pulled(&mesh, 900.0, shaken);
+    // Translation by 1e6 m: positions are rounded to 1e-10 m.
+    let far = |x: &[f64; 3]| [x[0] + 1e6, x[1] - 1e6, x[2]];
+    let (found, _) = pulled(&moved(&mesh, far), 900.0, |node, x| far(&shaken(node, &[x[0] - 1e6, x[1] + 1e6, x[2]])));
+    assert!(off(&found, &own) < 1e-8, "{}", off(&found, &own));
+    // Rotation of the rest shape and of the state.
+    let turn = |x: &[f64; 3]| [0.6 * x[0] - 0.8 * x[1], 0.8 * x[0] + 0.6 * x[1], x[2]];
+    let turned = moved(&mesh, turn);
+    let (found, other) = pulled(&turned, 900.0, |node, _| turn(&shaken(node, &mesh.positions[node])));
+    let expected: Vec<f64> = own.chunks(3).flat_map(|f| turn(&[f[0], f[1], f[2]])).collect();
+    assert!(off(&found, &expected) < 1e-9 && (other / energy - 1.0).abs() < 1e-9);
+    // Of the state alone.
+    let (found, other) = pulled(&mesh, 900.0, |node, x| turn(&shaken(node, x)));
+    assert!(off(&found, &expected) < 1e-11 && (other / energy - 1.0).abs() < 1e-11);
+    // A mirror, in which facets are turned.
+    let mirror = |x: &[f64; 3]| [-x[0], x[1], x[2]];
+    let mut mirrored = moved(&mesh, mirror);
+    mirrored.facets.iter_mut().for_each(|facet| facet.swap(1, 2));
+    let (found, _) = pulled(&mirrored, 900.0, |node, _| mirror(&shaken(node, &mesh.positions[node])));
+    let expected: Vec<f64> = own.chunks(3).flat_map(|f| mirror(&[f[0], f[1], f[2]])).collect();
+    assert!(off(&found, &expected) < 1e-9, "{}", off(&found, &expected));
+    // Millimetres: forces of E in N/mm².
+    let scaled = moved(&mesh, |x| x.map(|c| 1e3 * c));
+    let (found, _) = pulled(&scaled, 900.0 * 1e-6, |node, _| shaken(node, &mesh.positions[node]).map(|c| 1e3 * c));
+    assert!(off(&found, &own) < 1e-11);
+    // Another order of the vertices.
+    let count = mesh.nodes();
+    let number = |node: usize| (node * 5 + 3) % count;
+    let mut permuted = mesh.clone();
+    for node in 0..count {
+        permuted.positions[number(node)] = mesh.positions[node];
+    }
+    permuted.facets.iter_mut().flatten().for_each(|node| *node = number(*node as usize) as u32);
+    let back = |place: usize| (0..count).find(|node| number(*node) == place).unwrap();
+    let (found, _) = pulled(&permuted, 900.0, |place, x| shaken(back(place), x));
+    let sorted: Vec<f64> = (0..count).flat_map(|node| found[3 * number(node)..][..3].to_vec()).collect();
+    assert!(off(&sorted, &own) < 1e-9, "{}", off(&sorted, &own));
+}
+
+/// Collapsed, mirrored and scattered states have finite forces that do not push and turn the body as a whole.
+#[test]
+fn degenerate_states_have_finite_forces() {
+    let mesh = block();
+    type State = fn(usize, &[f64; 3]) -> [f64; 3];
+    let states: [State; 6] = [
+        |_, x| [x[0], x[1], 0.0],
+        |_, x| [x[0], 0.0, 0.0],
+        |_, _| [0.0; 3],
+        |_, x| [-x[0], x[1], x[2]],
+        |node, _| core::array::from_fn(|d| ((node * 37 + d * 11) % 17) as f64 / 17.0),
+        |_, x| [10.0 * x[0], x[1], x[2]],
+    ];
+    for (number, state) in states.into_iter().enumerate() {
+        let (found, energy) = pulled(&mesh, 900.0, state);
+        assert!(energy.is_finite() && found.iter().all(|f| f.is_finite()), "{number}");
+        for d in 0..3 {
+            let net: f64 = found.iter().skip(d).step_by(3).sum();
+            assert!(net.abs() < 1e-9 * size(&found), "{number}: {net}");
+        }
+    }
+    let ring = ring();
+    let (found, _) = pulled(&ring, 900.0, |_, x| [x[0], 0.0]);
+    assert!(found.iter().all(|f| f.is_finite()));
+}

@@ -1,0 +1,139 @@
+//! Large dense systems, by the library faer. Results have the same bits on processors of one class only.
+
+use crate::Indefinite;
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt;
+use faer::linalg::lu::partial_pivoting::{factor, solve};
+use faer::perm::PermRef;
+use faer::{Conj, MatMut, MatRef, Par, Side};
+use opruga_core::dense::Dense;
+
+/// The factors of a square matrix, with pivots, in its memory.
+pub struct DenseFactors {
+    size: usize,
+    numbers: Vec<f64>,
+    rows: Vec<usize>,
+    inverse: Vec<usize>,
+}
+
+impl core::fmt::Debug for DenseFactors {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("DenseFactors").field("size", &self.size).finish_non_exhaustive()
+    }
+}
+
+impl DenseFactors {
+    /// Factors a matrix of `size` rows, given column by column.
+    ///
+    /// # Errors
+    /// [`Indefinite`] where it is singular or has an entry that is not finite.
+    pub fn new(size: usize, mut numbers: Vec<f64>) -> Result<DenseFactors, Indefinite> {
+        let (mut rows, mut inverse) = (vec![0; size], vec![0; size]);
+        let mut memory =
+            MemBuffer::new(factor::lu_in_place_scratch::<usize, f64>(size, size, Par::Seq, Default::default()));
+        let matrix = MatMut::from_column_major_slice_mut(&mut numbers, size, size);
+        factor::lu_in_place(matrix, &mut rows, &mut inverse, Par::Seq, MemStack::new(&mut memory), Default::default());
+        let regular = (0..size).all(|k| numbers[k * size + k] != 0.0 && numbers[k * size + k].is_finite());
+        if regular { Ok(DenseFactors { size, numbers, rows, inverse }) } else { Err(Indefinite) }
+    }
+    /// Replaces right-hand sides, given one after the other, by the solutions.
+    pub fn solve(&self, sides: &mut [f64]) {
+        self.solve_any(sides, false);
+    }
+    /// The same with the transposed matrix.
+    pub fn solve_transposed(&self, sides: &mut [f64]) {
+        self.solve_any(sides, true);
+    }
+    fn solve_any(&self, sides: &mut [f64], transposed: bool) {
+        let size = self.size;
+        if size == 0 {
+            return;
+        }
+        let count = sides.len() / size;
+        let mut memory = MemBuffer::new(solve::solve_in_place_scratch::<usize, f64>(size, count, Par::Seq));
+        let factors = MatRef::from_column_major_slice(&self.numbers, size, size);
+        let rows = PermRef::new_checked(&self.rows, &self.inverse, size);
+        let sides = MatMut::from_column_major_slice_mut(sides, size, count);
+        let stack = MemStack::new(&mut memory);
+        if transposed {
+            solve::solve_transpose_in_place_with_conj(factors, factors, rows, Conj::No, sides, Par::Seq, stack);
+        } else {
+            solve::solve_in_place_with_conj(factors, factors, rows, Conj::No, sides, Par::Seq, stack);
+        }
+    }
+}
+
+/// The lower factor L of a symmetric matrix L Lᵀ of `size` rows, whose lower half is given column by column.
+///
+/// # Errors
+/// [`Indefinite`] where it is not positive definite.
+pub fn cholesky(size: usize, mut numbers: Vec<f64>) -> Result<Dense, Indefinite> {
+    let mut memory = MemBuffer::new(llt::factor::cholesky_in_place_scratch::<f64>(size, Par::Seq, Default::default()));
+    let matrix = MatMut::from_column_major_slice_mut(&mut numbers, size, size);
+    let stack = MemStack::new(&mut memory);
+    llt::factor::cholesky_in_place(matrix, Default::default(), Par::Seq, stack, Default::default())
+        .map_err(|_| Indefinite)?;
+    if (0..size).any(|k| !numbers[k * size + k].is_finite()) {
+        return Err(Indefinite);
+    }
+    Ok(Dense::of_lower(size, |row, column| numbers[column * size + row]))
+}
+
+/// Takes the negative eigenvalues out of a symmetric matrix of `size` rows, given column by column; gives the norm of what was taken
+/// out as a part of that of the matrix. Eigenvalues that are rounding, below 1e-12 of the largest, stay.
+///
+/// # Errors
+/// [`Indefinite`] where an entry is not finite.
+pub fn clamp(size: usize, numbers: &mut [f64]) -> Result<f64, Indefinite> {
+    let matrix = MatRef::from_column_major_slice(numbers, size, size);
+    let found = matrix.self_adjoint_eigen(Side::Lower).map_err(|_| Indefinite)?;
+    let values: Vec<f64> = found.S().column_vector().iter().copied().collect();
+    let largest = values.iter().fold(0.0, |most, x| if x.abs() > most { x.abs() } else { most });
+    let all: f64 = values.iter().map(|x| x * x).sum();
+    let mut taken = 0.0;
+    for (k, value) in values.iter().enumerate().filter(|(_, value)| **value < -1e-12 * largest) {
+        taken += value * value;
+        let vector: Vec<f64> = found.U().col(k).iter().copied().collect();
+        for (column, weight) in numbers.chunks_exact_mut(size).zip(&vector) {
+            column.iter_mut().zip(&vector).for_each(|(entry, x)| *entry -= value * weight * x);
+        }
+    }
+    Ok((taken / all).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use opruga_math::Simd;
+
+    #[test]
+    fn factors_solve_and_singular_matrices_are_told() {
+        let size = 40;
+        let entry = |i: usize, j: usize| ((i * 13 + j * 7) % 17) as f64 + if i == j { 30.0 } else { 0.0 };
+        let x: Vec<f64> = (0..size).map(|k| (k % 5) as f64 - 2.0).collect();
+        let numbers: Vec<f64> = (0..size * size).map(|k| entry(k % size, k / size)).collect();
+        let factors = DenseFactors::new(size, numbers).unwrap();
+        let mut b: Vec<f64> = (0..size).map(|i| (0..size).map(|j| entry(i, j) * x[j]).sum()).collect();
+        factors.solve(&mut b);
+        assert!(x.iter().zip(&b).all(|(x, b)| (x - b).abs() < 1e-11));
+        let mut b: Vec<f64> = (0..size).map(|i| (0..size).map(|j| entry(j, i) * x[j]).sum()).collect();
+        factors.solve_transposed(&mut b);
+        assert!(x.iter().zip(&b).all(|(x, b)| (x - b).abs() < 1e-11));
+        assert!(DenseFactors::new(3, vec![0.0; 9]).is_err());
+
+        let symmetric = |i: usize, j: usize| entry(i, j) + entry(j, i) + if i == j { 300.0 } else { 0.0 };
+        let numbers: Vec<f64> = (0..size * size).map(|k| symmetric(k % size, k / size)).collect();
+        let factor = cholesky(size, numbers).unwrap();
+        let mut b = vec![0.0; factor.padded()];
+        for i in 0..size {
+            b[i] = (0..size).map(|j| symmetric(i, j) * x[j]).sum();
+        }
+        factor.solve_as_factor(Simd::best(), &mut b);
+        assert!(x.iter().zip(&b).all(|(x, b)| (x - b).abs() < 1e-11));
+        assert!(cholesky(2, vec![1.0, 2.0, 2.0, 1.0]).is_err());
+        // Eigenvalues 3 and −1.
+        let mut clamped = vec![1.0, 2.0, 2.0, 1.0];
+        let taken = clamp(2, &mut clamped).unwrap();
+        assert!((taken - 0.1_f64.sqrt()).abs() < 1e-14 && clamped.iter().all(|x| (x - 1.5).abs() < 1e-14));
+    }
+}
