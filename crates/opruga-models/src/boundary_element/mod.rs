@@ -87,6 +87,10 @@ impl<const D: usize> Model<D> for BoundaryElementModel {
         Need { bytes: bytes(D, counts.nodes), couplings: 0.0 }
     }
     fn build(&self, ingredients: &Ingredients<D>) -> Result<Box<dyn Potential<D>>, BuildError> {
+        // Large dense systems would take a quarter of a megabyte of a page that has four.
+        if cfg!(target_arch = "wasm32") {
+            return Err(Refusal::Page {}.into());
+        }
         let mesh = ingredients.mesh;
         let nodes = mesh.nodes();
         if nodes > MOST_VERTICES {

@@ -51,6 +51,10 @@ messages! {
         "limit.memory"
         #[error("the boundary has {nodes} vertices, whose dense matrices take about {} bytes while they are made; allowed: at most {most} vertices; hint: a coarser surface (`spacing`), or `fem` on its filling", number(*bytes))]
         TooMany { nodes: usize, bytes: f64, most: usize },
+        /// The page has no dense systems.
+        "model.not_on_the_page"
+        #[error("the page does not compute boundary elements; hint: the studio and the command line do")]
+        Page {},
         /// A system without a solution.
         "model.singular"
         #[error("the equations of the boundary have no solution: {reason}; hint: facets of more even size")]
