@@ -125,7 +125,10 @@ impl Reasons {
         let said = said.trim_start_matches("body `body`: ").trim_start_matches(&format!("{model}: "));
         let said = said.split("; ").next().unwrap_or_default().replace(&format!("`{rule}`"), "the integrator");
         // Numbers belong to the body of this test.
-        let said: String = said.split(|c: char| c.is_ascii_digit()).collect::<Vec<_>>().join("#");
+        let mut said: String = said.split(|c: char| c.is_ascii_digit()).collect::<Vec<_>>().join("#");
+        while said.contains("##") {
+            said = said.replace("##", "#");
+        }
         let reason = format!("{said} (`{code}`)");
         let at = self.0.iter().position(|known| *known == reason).unwrap_or_else(|| {
             self.0.push(reason);

@@ -1,0 +1,274 @@
+//! A body of boundary elements: its stiffness, its frame and its forces.
+
+use super::assembly::Stiffness;
+use super::frame::{Frame, Rest};
+use super::surface::Surface;
+use super::{SPEC, cache, stresses};
+use opruga_core::error::{BuildError, StepError};
+use opruga_core::potential::{
+    Count, Definiteness, DensePart, Ingredients, Observe, Potential, Properties, Reading, Sink, Views,
+};
+use opruga_core::spec::Values;
+use opruga_core::state::{Layout, View};
+use opruga_core::tile::Tile;
+use opruga_math::{Simd, WIDTH};
+use std::sync::Arc;
+
+/// One body, or eight alike ones with their own moduli.
+#[derive(Debug)]
+pub struct BoundaryElement<const D: usize> {
+    layout: Layout,
+    rest: Rest<D>,
+    exterior: bool,
+    bodies: Vec<Body>,
+    /// Places of the vertices of each body.
+    places: Vec<Vec<u32>>,
+    /// Numbers of a column.
+    column: usize,
+    turned: usize,
+}
+
+/// What is of one body.
+#[derive(Debug)]
+struct Body {
+    stiffness: Arc<Stiffness>,
+    /// What makes the forces of a stiffness of units those of the body [N/m].
+    strength: f64,
+    /// What makes the stresses those of the body [Pa/m].
+    stress: f64,
+}
+
+/// Numbers of a body in the scratch beside y, u and g: its frame, λ and U.
+const NUMBERS: usize = 32;
+
+impl<const D: usize> BoundaryElement<D> {
+    pub(super) fn new(ingredients: &Ingredients<D>) -> Result<BoundaryElement<D>, BuildError> {
+        let (mesh, nodes) = (ingredients.mesh, ingredients.mesh.nodes());
+        let exterior = ingredients.values.iter().any(|values| values.flag("exterior"));
+        let surface = Surface::of(mesh, exterior)?;
+        let mut bodies = Vec::new();
+        for values in ingredients.values {
+            bodies.push(Body::of(ingredients, values, &surface)?);
+        }
+        let mut shares = vec![0.0; nodes];
+        for (facet, side) in surface.facets.iter().zip(&surface.sides) {
+            facet.iter().for_each(|node| shares[*node as usize] += side.measure);
+        }
+        let positions: Vec<[f64; D]> = surface.points.iter().map(|x| x.map(|x| surface.size * x)).collect();
+        let layout = ingredients.layout;
+        let place = |body: usize| (0..nodes).map(|node| layout.place(node, body) as u32).collect();
+        let rest = if exterior {
+            Rest { positions: mesh.positions.clone(), weights: vec![0.0; nodes], inertia: 0.0 }
+        } else {
+            Rest::new(&positions, &shares)
+        };
+        Ok(BoundaryElement {
+            layout,
+            rest,
+            exterior,
+            column: bodies[0].stiffness.matrix.padded(),
+            bodies,
+            places: (0..layout.stride()).map(place).collect(),
+            turned: surface.turned,
+        })
+    }
+}
+
+impl Body {
+    fn of<const D: usize>(
+        ingredients: &Ingredients<D>,
+        values: &Values,
+        surface: &Surface<D>,
+    ) -> Result<Body, BuildError> {
+        let young = values.number("youngs_modulus").unwrap_or(0.0);
+        let ratio = values.number("poissons_ratio").unwrap_or(0.0);
+        let shear = young / (2.0 * (1.0 + ratio));
+        // Without stress across the plane: that of another ratio at the same shear modulus.
+        let stress = D == 2 && values.text("plane") == Some("stress");
+        let poisson = if stress { ratio / (1.0 + ratio) } else { ratio };
+        let asked: Vec<[f64; D]> = values
+            .rows("stress_points")
+            .iter()
+            .map(|row| core::array::from_fn(|d| (row[d] - surface.center[d]) / surface.size))
+            .collect();
+        let exterior = values.flag("exterior");
+        let stiffness = cache::stiffness(surface, poisson, exterior, &asked)?;
+        let depth = if D == 2 { ingredients.thickness } else { surface.size };
+        Ok(Body { stiffness, strength: shear * depth, stress: shear / surface.size })
+    }
+    /// g = K u.
+    fn product(&self, simd: Simd, u: &[f64], g: &mut [f64]) {
+        self.stiffness.matrix.multiply(simd, u, g);
+        g.iter_mut().for_each(|g| *g *= self.strength);
+    }
+}
+
+/// What `prepare` leaves of a body.
+struct Known<'a, const D: usize> {
+    frame: Frame<D>,
+    multiplier: [f64; 3],
+    energy: f64,
+    y: &'a [f64],
+    u: &'a [f64],
+    g: &'a [f64],
+}
+
+impl<const D: usize> BoundaryElement<D> {
+    fn body(&self, body: usize) -> &Body {
+        &self.bodies[body.min(self.bodies.len() - 1)]
+    }
+    fn forces_len(&self) -> usize {
+        D * self.layout.places(self.rest.weights.len())
+    }
+    fn of_body(&self) -> usize {
+        3 * self.column + NUMBERS
+    }
+    fn known<'a>(&self, scratch: &'a [f64], body: usize) -> Known<'a, D> {
+        let own = &scratch[self.forces_len() + body * self.of_body()..][..self.of_body()];
+        let (y, own) = own.split_at(self.column);
+        let (u, own) = own.split_at(self.column);
+        let (g, numbers) = own.split_at(self.column);
+        let mut at = numbers.iter().copied();
+        let mut next = || at.next().unwrap_or(0.0);
+        let mut frame = Frame { rotation: [[0.0; D]; D], stretch: [[0.0; 3]; 3], follows: [[0.0; 3]; 3] };
+        frame.rotation.iter_mut().flatten().for_each(|x| *x = next());
+        frame.stretch.iter_mut().flatten().for_each(|x| *x = next());
+        frame.follows.iter_mut().flatten().for_each(|x| *x = next());
+        let multiplier = core::array::from_fn(|_| next());
+        Known { frame, multiplier, energy: next(), y, u, g }
+    }
+    fn prepare_body(&self, simd: Simd, view: &View<D>, body: usize, scratch: &mut [f64]) {
+        let (forces, own) = scratch.split_at_mut(self.forces_len());
+        let own = &mut own[body * self.of_body()..][..self.of_body()];
+        let (y, own) = own.split_at_mut(self.column);
+        let (u, own) = own.split_at_mut(self.column);
+        let (g, numbers) = own.split_at_mut(self.column);
+        let place = |node: usize| view.layout.place(node, body);
+        let frame = if self.exterior {
+            for (node, rest) in self.rest.positions.iter().enumerate() {
+                let x = view.position(place(node));
+                (0..D).for_each(|d| u[node * D + d] = x[d] - rest[d]);
+            }
+            let rotation = opruga_math::matrix::identity();
+            Frame { rotation, stretch: [[0.0; 3]; 3], follows: [[0.0; 3]; 3] }
+        } else {
+            self.rest.frame(|node| view.position(place(node)), y, u)
+        };
+        self.body(body).product(simd, u, g);
+        let multiplier = if self.exterior { [0.0; 3] } else { self.rest.multiplier(&frame, y, g) };
+        let places = self.forces_len() / D;
+        for node in 0..self.rest.weights.len() {
+            let force = self.rest.force(&frame, &multiplier, node, g);
+            (0..D).for_each(|d| forces[d * places + place(node)] = force[d]);
+        }
+        let energy = 0.5 * opruga_solve::dot(u, g);
+        let all = frame.rotation.iter().flatten().chain(frame.stretch.iter().flatten());
+        let all = all.chain(frame.follows.iter().flatten()).chain(&multiplier).chain([&energy]);
+        numbers.iter_mut().zip(all).for_each(|(to, x)| *to = *x);
+    }
+}
+
+impl<const D: usize> Potential<D> for BoundaryElement<D> {
+    fn properties(&self) -> Properties {
+        let views = Views { energy: true, hessian: true, symmetric: true, damping: false };
+        Properties {
+            scratch_len: self.forces_len() + self.layout.stride() * self.of_body(),
+            forces_in_prepare: true,
+            ..Properties::new(SPEC.kind, views)
+        }
+    }
+    fn prepare(&self, simd: Simd, view: &View<D>, _memory: &[f64], scratch: &mut [f64]) -> Result<(), StepError> {
+        for body in 0..self.layout.stride() {
+            self.prepare_body(simd, view, body, scratch);
+        }
+        Ok(())
+    }
+    fn add_force(&self, _simd: Simd, _view: &View<D>, scratch: &[f64], tile: &mut Tile<D>) {
+        let places = self.forces_len() / D;
+        for d in 0..D {
+            let from = &scratch[d * places..(d + 1) * places];
+            for (force, own) in tile.force[d].iter_mut().zip(&from[tile.range.start.min(places)..]) {
+                *force += own;
+            }
+        }
+    }
+    fn energy(&self, _simd: Simd, _view: &View<D>, scratch: &[f64]) -> [f64; WIDTH] {
+        let mut out = [0.0; WIDTH];
+        for (body, energy) in out.iter_mut().enumerate().take(self.layout.stride()) {
+            *energy = self.known(scratch, body).energy;
+        }
+        out
+    }
+    fn hessian(&self, _view: &View<D>, scratch: &[f64], keep: Definiteness, sink: &mut dyn Sink<D>) {
+        for (number, places) in self.places.iter().enumerate() {
+            let (body, known) = (self.body(number), self.known(scratch, number));
+            sink.dense(&DensePart {
+                factor: body.strength,
+                frame: &known.frame.rotation,
+                places,
+                matrix: &body.stiffness.matrix,
+            });
+            if self.exterior {
+                continue;
+            }
+            let product = |x: &[f64], y: &mut [f64]| body.product(Simd::best(), x, y);
+            let parts = self.rest.parts(&known.frame, &known.multiplier, [known.y, known.g], keep, product);
+            for [follows, along] in &parts {
+                add_pair(places, follows, along, sink);
+            }
+        }
+    }
+}
+
+/// Adds j zᵀ + z jᵀ as ½ (a j + z/a)(…)ᵀ − ½ (a j − z/a)(…)ᵀ with vectors of one size.
+fn add_pair<const D: usize>(places: &[u32], j: &[[f64; D]], z: &[[f64; D]], sink: &mut dyn Sink<D>) {
+    let size = |v: &[[f64; D]]| v.iter().flatten().map(|x| x * x).sum::<f64>().sqrt();
+    let ratio = size(z) / size(j);
+    if !(ratio > 0.0 && ratio.is_finite()) {
+        return;
+    }
+    let a = ratio.sqrt();
+    for sign in [1.0, -1.0] {
+        let entries: Vec<(usize, [f64; D])> = places
+            .iter()
+            .zip(j.iter().zip(z))
+            .map(|(place, (j, z))| (*place as usize, core::array::from_fn(|d| a * j[d] + sign * z[d] / a)))
+            .collect();
+        sink.low_rank(0.5 * sign, &entries);
+    }
+}
+
+impl<const D: usize> Observe<D> for BoundaryElement<D> {
+    fn readings(&self, _view: &View<D>, scratch: &[f64], _memory: &[f64], body: usize) -> Vec<Reading> {
+        let own = self.body(body);
+        let changes = own.stiffness.changes;
+        let mut out: Vec<Reading> = vec![
+            ("asymmetry".into(), changes.asymmetry),
+            ("rigid_part".into(), changes.rigid),
+            ("rotation_error".into(), changes.rotation),
+            ("negative_part".into(), changes.negative),
+        ];
+        let u = self.known(scratch, body).u;
+        let components = stresses::components(D);
+        for (number, row) in own.stiffness.stresses.iter().enumerate() {
+            let (point, (_, _, name)) = (number / components.len(), components[number % components.len()]);
+            out.push((format!("stress{point}.{name}").into(), own.stress * opruga_solve::dot(row, &u[..row.len()])));
+        }
+        out
+    }
+    fn counts(&self, _memory: &[f64]) -> Vec<Count> {
+        let count = Count {
+            code: "mesh.turned",
+            message: "facets were turned, so that the solid is behind each: those of a boundary inside another one bound a cavity",
+            count: self.turned as u64,
+        };
+        if self.turned > 0 { vec![count] } else { Vec::new() }
+    }
+    fn same_bits_everywhere(&self) -> bool {
+        false
+    }
+    fn heap_bytes(&self) -> usize {
+        let matrices = self.bodies.iter().map(|body| body.stiffness.matrix.heap_bytes()).sum::<usize>();
+        matrices + self.places.len() * self.rest.weights.len() * 4
+    }
+}
