@@ -1,9 +1,9 @@
 //! The sparse Cholesky factor, by faer; parts of rank one by Woodbury's formula.
 
 use crate::Indefinite;
-use crate::beside::TurnedFactor;
 use crate::matrix::BlockMatrix;
 use crate::scalars::Scalars;
+use crate::turned_factor::TurnedFactor;
 use crate::woodbury::Woodbury;
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::sparse::linalg::cholesky::{

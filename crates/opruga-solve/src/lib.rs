@@ -19,6 +19,7 @@ mod one_model;
 pub mod packed;
 mod preconditioner;
 mod scalars;
+mod turned_factor;
 mod woodbury;
 
 pub use cholesky::Cholesky;

@@ -1,9 +1,9 @@
 //! The sparse factors of a matrix that need be neither definite nor symmetric, by faer.
 
 use crate::Indefinite;
-use crate::beside::TurnedFactor;
 use crate::matrix::BlockMatrix;
 use crate::scalars::Scalars;
+use crate::turned_factor::TurnedFactor;
 use crate::woodbury::Woodbury;
 use faer::MatMut;
 use faer::linalg::solvers::Solve;

@@ -11,16 +11,16 @@ type Key = Vec<u64>;
 /// Those that somebody holds, and the one that was asked for last: whoever reads a scene builds its bodies more than once, one after the
 /// other.
 struct Known {
-    held: Vec<(Key, Weak<Stiffness>)>,
+    shared: Vec<(Key, Weak<Stiffness>)>,
     last: Option<Arc<Stiffness>>,
 }
 
-static KNOWN: Mutex<Known> = Mutex::new(Known { held: Vec::new(), last: None });
+static KNOWN: Mutex<Known> = Mutex::new(Known { shared: Vec::new(), last: None });
 
 impl Known {
     fn find(&mut self, key: &Key) -> Option<Arc<Stiffness>> {
-        self.held.retain(|(_, held)| held.strong_count() > 0);
-        let found = self.held.iter().find(|(own, _)| own == key).and_then(|(_, held)| held.upgrade())?;
+        self.shared.retain(|(_, shared)| shared.strong_count() > 0);
+        let found = self.shared.iter().find(|(own, _)| own == key).and_then(|(_, shared)| shared.upgrade())?;
         self.last = Some(Arc::clone(&found));
         Some(found)
     }
@@ -41,16 +41,16 @@ pub(super) fn stiffness<const D: usize>(
     asked: &[[f64; D]],
 ) -> Result<Arc<Stiffness>, Refusal> {
     let key = key(surface, poisson, exterior, asked);
-    if let Some(held) = KNOWN.lock().unwrap_or_else(PoisonError::into_inner).find(&key) {
-        return Ok(held);
+    if let Some(shared) = KNOWN.lock().unwrap_or_else(PoisonError::into_inner).find(&key) {
+        return Ok(shared);
     }
     // Not under the lock: others build their own meanwhile, and the same numbers twice are the same bits.
     let made = Arc::new(Stiffness::new(surface, poisson, exterior, asked)?);
     let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(held) = known.find(&key) {
-        return Ok(held);
+    if let Some(shared) = known.find(&key) {
+        return Ok(shared);
     }
-    known.held.push((key, Arc::downgrade(&made)));
+    known.shared.push((key, Arc::downgrade(&made)));
     known.last = Some(Arc::clone(&made));
     Ok(made)
 }

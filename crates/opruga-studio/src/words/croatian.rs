@@ -344,6 +344,13 @@ pub(super) const FIELDS: &[(&str, &str, &str)] = &[
         "shema",
         "Je li sila gradijent od U, ili objavljena, koja čuva obujam prilagođenog preslikavanja.",
     ),
+    ("model.boundary_element.youngs_modulus", "Youngov modul", "Youngov modul E."),
+    ("model.boundary_element.poissons_ratio", "Poissonov omjer", "Poissonov omjer ν; guma ima gotovo 0,5."),
+    (
+        "model.boundary_element.plane",
+        "ravnina",
+        "U 2D: nema li pomaka okomito na ravninu, ili nema naprezanja okomito na nju.",
+    ),
     (
         "model.boundary_element.exterior",
         "okolina",

@@ -1,19 +1,17 @@
 //! Boundary elements: identities, closed solutions of balls, tubes, shells, holes and cavities, a cantilever, flight.
 
 use super::BASE;
+use super::boundary_bodies::{SMALL, body, outward, pinned, pressed, radius, solid};
 use super::boundary_shell::shell;
 use crate::case::{Case, Check, Family, Over, Scale};
 use crate::lab::{Lab, Scene, Trouble, moved_pins};
+use opruga::AnyWorld;
 use opruga::mesh::Mesh;
-use opruga::{AnyWorld, World};
 use std::fmt::Write as _;
-
-/// Pressures and stresses that strain the body so little that the small change of its shape does not matter [E].
-pub(super) const SMALL: f64 = 1e-6;
 
 const ROTATION: Case = Case {
     quantity: "largest traction of a rotation by 1 rad of an outline, over the shear modulus",
-    source: "exact: 0",
+    source: "exact: 0 of a rigid motion",
     over: Over::Parameter("vertices"),
     levels: &[5.0, 36.0, 200.0],
     scale: Scale::Of(1.0),
@@ -84,7 +82,7 @@ const CANTILEVER: Case = Case {
     over: Over::Cells("cells along its height"),
     levels: &[2.0, 3.0, 4.0],
     expected: &[1.0],
-    tolerance: 0.02,
+    tolerance: 0.01,
     check: Check::Finest,
     ..BASE
 };
@@ -135,9 +133,9 @@ pub(super) const STATICS: &[Case] = &[
         ..TUBE
     },
     Case { name: "boundary-hole-in-sheet", measure: hole, ..HOLE },
-    Case { name: "boundary-cavity-0.25", measure: |lab, n| cavity(lab, n, 0.25), ..CAVITY },
+    Case { name: "boundary-cavity-nu-25", measure: |lab, n| cavity(lab, n, 0.25), ..CAVITY },
     Case {
-        name: "boundary-cavity-0.3",
+        name: "boundary-cavity-nu-30",
         quantity: "largest stress at a cavity in an infinite body under tension, over the tension; from the strain of its triangles; ν = 0.3",
         expected: &[2.045_454_545_454_545_5],
         measure: |lab, n| cavity(lab, n, 0.3),
@@ -167,17 +165,6 @@ pub(super) const LEDGERS: &[Case] = &[
     },
 ];
 
-/// A solid of E = 1 Pa, by further fields of its model.
-pub(super) fn solid(poisson: f64, fields: &str) -> String {
-    format!(
-        "mass = 1.0\nmodels = [{{ kind = \"boundary_element\", youngs_modulus = 1.0, poissons_ratio = {poisson:?}{fields} }}]\n"
-    )
-}
-
-pub(super) fn body(shape: &str, rest: &str) -> String {
-    format!("[[body]]\nname = \"body\"\nshape = {{ {shape} }}\n{rest}")
-}
-
 fn ring(vertices: f64) -> String {
     format!("kind = \"ring\", radius = 1.0, vertices = {vertices}")
 }
@@ -188,10 +175,6 @@ fn icosphere(subdivisions: f64) -> String {
 
 fn subdivisions(edges: f64) -> f64 {
     edges.log2().round()
-}
-
-pub(super) fn pressed(nodes: &[u32], pressure: f64) -> String {
-    format!("[[load]]\nkind = \"pressure\"\nbody = \"body\"\nselect = {{ nodes = {nodes:?} }}\nvalue = {pressure:?}\n")
 }
 
 /// Forces on nodes.
@@ -235,43 +218,11 @@ fn largest<const D: usize>(forces: &[[f64; D]]) -> f64 {
     forces.iter().flatten().fold(0.0, |most, x| most.max(x.abs()))
 }
 
-pub(super) fn radius<const D: usize>(x: &[f64; D]) -> f64 {
-    x.iter().map(|x| x * x).sum::<f64>().sqrt()
-}
-
-/// Pins that hold a ball or a ring of so many nodes as a whole, and pull at nothing where loads balance: they stand at the two poles and beside
-/// the equator in space, at both ends of a diameter in the plane.
-pub(super) fn held(dimension: usize, count: u32) -> String {
-    let pin = |node: u32, axes: &str| format!("{{ select = {{ node = {node} }}, axes = \"{axes}\" }}");
-    let pins = if dimension == 2 {
-        vec![pin(0, "xy"), pin(count / 2, "y")]
-    } else {
-        vec![pin(0, "xyz"), pin(count - 1, "xy"), pin(count / 2, "y")]
-    };
-    format!("pin = [{}]\n", pins.join(", "))
-}
-
-/// The mean displacement of some nodes away from their middle [m].
-pub(super) fn outward<const D: usize>(world: &World<D>, nodes: std::ops::Range<u32>) -> f64 {
-    let rest = &world.blueprint().bodies[0].mesh.positions;
-    let count = f64::from(nodes.end - nodes.start);
-    let mut moved = [0.0; D];
-    for node in nodes.clone() {
-        let now = world.position(0, node);
-        (0..D).for_each(|d| moved[d] += (now[d] - rest[node as usize][d]) / count);
-    }
-    let away = |node: u32| {
-        let now = world.position(0, node);
-        radius::<D>(&std::array::from_fn(|d| now[d] - moved[d])) - radius(&rest[node as usize])
-    };
-    nodes.map(away).sum::<f64>() / count
-}
-
 fn ball(lab: &Lab, edges: f64) -> Result<f64, Trouble> {
     let count = 10 * (edges * edges) as u32 + 2;
     let all: Vec<u32> = (0..count).collect();
     let scene = Scene::statics(3, 1e-13)
-        .add(&body(&icosphere(subdivisions(edges)), &format!("{}{}", solid(0.3, ""), held(3, count))))
+        .add(&body(&icosphere(subdivisions(edges)), &format!("{}{}", solid(0.3, ""), pinned(3, count))))
         .add(&pressed(&all, SMALL));
     let mut world = lab.space(scene)?;
     world.frame()?;
@@ -282,7 +233,7 @@ fn tube(lab: &Lab, vertices: f64, stress: bool) -> Result<f64, Trouble> {
     let shape = format!("kind = \"rings\", centers = [[0, 0], [0, 0]], radii = [2.0, -1.0], vertices = {vertices}");
     let count = vertices as u32;
     let inner: Vec<u32> = (count..2 * count).collect();
-    let rest = format!("{}{}", solid(0.3, ""), held(2, count));
+    let rest = format!("{}{}", solid(0.3, ""), pinned(2, count));
     let scene = Scene::statics(2, 1e-13).add(&body(&shape, &rest)).add(&pressed(&inner, SMALL));
     let mut world = lab.plane(scene)?;
     world.frame()?;

@@ -1,6 +1,6 @@
 //! The thick sphere of Lamé by boundary elements.
 
-use super::boundary::{SMALL, body, held, outward, pressed, radius, solid};
+use super::boundary_bodies::{SMALL, body, outward, pinned, pressed, radius, solid};
 use crate::lab::{Lab, Scene, Trouble};
 use opruga::World;
 use opruga::mesh::Mesh;
@@ -74,7 +74,7 @@ pub(super) fn shell(lab: &Lab, edges: f64, stress: bool) -> Result<f64, Trouble>
     let count = 10 * (edges * edges) as u32 + 2;
     let scene = Scene::statics(3, 1e-13)
         .file("shell.obj", shell_surface(edges)?)
-        .add(&body("kind = \"surface\", file = \"shell.obj\"", &format!("{}{}", solid(0.3, ""), held(3, count))));
+        .add(&body("kind = \"surface\", file = \"shell.obj\"", &format!("{}{}", solid(0.3, ""), pinned(3, count))));
     let inner: Vec<u32> = (0..count).collect();
     let mut world = lab.space(scene.add(&pressed(&inner, SMALL)))?;
     world.frame()?;

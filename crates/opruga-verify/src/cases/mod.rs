@@ -6,6 +6,7 @@
 mod balloons;
 mod beams;
 mod boundary;
+mod boundary_bodies;
 mod boundary_shell;
 mod contact;
 mod finite_differences;

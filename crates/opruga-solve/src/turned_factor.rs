@@ -1,0 +1,225 @@
+//! Factors of matrices with dense parts that turn with their body, in the frame of the body.
+
+use crate::Indefinite;
+use crate::blocks::{Block, nodes, nodes_mut, product};
+use crate::dense_system::{DenseFactors, cholesky};
+use crate::matrix::BlockMatrix;
+use core::ops::Range;
+use opruga_core::dense::Dense;
+use opruga_math::Simd;
+use std::sync::Arc;
+
+/// The factor of a matrix with dense parts, in the frame of the body where there is one such part.
+///
+/// Where all that stands beside the dense part is the same in every frame (masses, nodes that are held whole), the factor does not
+/// depend on the frame, and is kept while the body turns and moves.
+#[derive(Default)]
+pub(crate) struct TurnedFactor {
+    size: usize,
+    dimensions: usize,
+    /// The rotation, row by row.
+    frame: Vec<f64>,
+    solver: Option<Solver>,
+    /// What the factor was made of, where that does not turn; and the matrix itself, which keeps its address.
+    made_of: Vec<u64>,
+    matrix: Option<Arc<Dense>>,
+}
+
+enum Solver {
+    Positive(Dense),
+    Any(DenseFactors),
+}
+
+impl core::fmt::Debug for TurnedFactor {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("TurnedFactor").field("size", &self.size).finish_non_exhaustive()
+    }
+}
+
+impl TurnedFactor {
+    /// Factors a matrix without its parts of rank one.
+    pub(crate) fn update<const D: usize>(&mut self, matrix: &BlockMatrix<D>, positive: bool) -> Result<(), Indefinite> {
+        let parts = matrix.beside();
+        let mut frame = [[0.0; D]; D];
+        (0..D).for_each(|d| frame[d][d] = 1.0);
+        if let [only] = parts {
+            frame = only.frame;
+        }
+        self.dimensions = D;
+        self.frame = frame.iter().flatten().copied().collect();
+        let made_of = unturned(matrix, positive);
+        let known = made_of.is_some() && made_of.as_ref() == Some(&self.made_of) && self.solver.is_some();
+        let same = parts.len() == 1 && self.matrix.as_ref().is_some_and(|own| Arc::ptr_eq(own, &parts[0].matrix));
+        if known && same {
+            return Ok(());
+        }
+        self.solver = None;
+        let numbers = in_frame(matrix, &frame);
+        self.size = matrix.rows() * D;
+        self.solver = Some(if positive {
+            Solver::Positive(cholesky(self.size, numbers)?)
+        } else {
+            Solver::Any(DenseFactors::new(self.size, numbers)?)
+        });
+        self.matrix = parts.first().map(|part| Arc::clone(&part.matrix));
+        self.made_of = made_of.unwrap_or_default();
+        Ok(())
+    }
+    /// Replaces b by the solution.
+    pub(crate) fn solve(&self, b: &mut [f64]) {
+        self.turn(b, false);
+        match &self.solver {
+            Some(Solver::Positive(factor)) => {
+                let mut padded = vec![0.0; factor.padded()];
+                padded[..b.len()].copy_from_slice(b);
+                factor.solve_as_factor(Simd::best(), &mut padded);
+                b.copy_from_slice(&padded[..b.len()]);
+            }
+            Some(Solver::Any(factors)) => factors.solve(b),
+            None => b.fill(f64::NAN),
+        }
+        self.turn(b, true);
+    }
+    /// The same for many, with one way through the factor.
+    pub(crate) fn solve_all(&self, sides: &mut [Vec<f64>]) {
+        let Some(Solver::Positive(factor)) = &self.solver else {
+            return sides.iter_mut().for_each(|side| self.solve(side));
+        };
+        let length = factor.padded();
+        let mut padded = vec![0.0; length * sides.len()];
+        for (side, to) in sides.iter_mut().zip(padded.chunks_exact_mut(length)) {
+            self.turn(side, false);
+            to[..side.len()].copy_from_slice(side);
+        }
+        factor.solve_as_factor(Simd::best(), &mut padded);
+        for (side, from) in sides.iter_mut().zip(padded.chunks_exact(length)) {
+            let count = side.len();
+            side.copy_from_slice(&from[..count]);
+            self.turn(side, true);
+        }
+    }
+    /// Into the frame, or back.
+    fn turn(&self, b: &mut [f64], back: bool) {
+        let (n, frame) = (self.dimensions, &self.frame);
+        for node in b.chunks_exact_mut(n) {
+            let mut turned = [0.0; 3];
+            for i in 0..n {
+                turned[i] = (0..n).map(|j| frame[if back { i * n + j } else { j * n + i }] * node[j]).sum();
+            }
+            node.copy_from_slice(&turned[..n]);
+        }
+    }
+}
+
+/// The bits of all that the factor is made of, where that is the same in every frame.
+fn unturned<const D: usize>(matrix: &BlockMatrix<D>, positive: bool) -> Option<Vec<u64>> {
+    let [only] = matrix.beside() else { return None };
+    let mut out = vec![u64::from(positive), only.factor.to_bits()];
+    out.extend(only.places.iter().map(|place| u64::from(*place)));
+    for (number, projector) in &only.pinned {
+        if projector.iter().flatten().any(|x| *x != 0.0) {
+            return None;
+        }
+        out.push(u64::from(*number));
+    }
+    for row in 0..matrix.rows() {
+        let range = matrix.row(row);
+        for (column, block) in matrix.column[range.clone()].iter().zip(&matrix.values[range]) {
+            let even = (0..D).all(|i| (0..D).all(|j| block[i][j] == if i == j { block[0][0] } else { 0.0 }));
+            let zero = block.iter().flatten().all(|x| *x == 0.0);
+            if *column as usize == row && even {
+                out.push(block[0][0].to_bits());
+            } else if !zero {
+                return None;
+            }
+        }
+    }
+    Some(out)
+}
+
+/// 𝓡ᵀ A 𝓡 column by column, without parts of rank one.
+fn in_frame<const D: usize>(matrix: &BlockMatrix<D>, frame: &Block<D>) -> Vec<f64> {
+    let size = matrix.rows() * D;
+    let mut out = vec![0.0; size * size];
+    let transposed: Block<D> = core::array::from_fn(|i| core::array::from_fn(|j| frame[j][i]));
+    let turned = |block: &Block<D>| product(&transposed, &product(block, frame));
+    let mut add = |a: usize, b: usize, block: &Block<D>| {
+        for j in 0..D {
+            for i in 0..D {
+                out[(b * D + j) * size + a * D + i] += block[i][j];
+            }
+        }
+    };
+    for row in 0..matrix.rows() {
+        let range: Range<usize> = matrix.row(row);
+        for (column, block) in matrix.column[range.clone()].iter().zip(&matrix.values[range]) {
+            add(row, *column as usize, &turned(block));
+        }
+    }
+    let alone = matrix.beside().len() == 1;
+    for part in matrix.beside() {
+        let mut projectors: Vec<Option<Block<D>>> = vec![None; part.places.len()];
+        for (number, projector) in &part.pinned {
+            projectors[*number as usize] = Some(if alone { turned(projector) } else { *projector });
+        }
+        for (a, row) in part.places.iter().enumerate() {
+            for (b, column) in part.places.iter().enumerate() {
+                let mut block: Block<D> = if alone {
+                    core::array::from_fn(|i| {
+                        core::array::from_fn(|j| part.factor * part.matrix.at(a * D + i, b * D + j))
+                    })
+                } else {
+                    part.part().block(a, b)
+                };
+                if let Some(projector) = &projectors[a] {
+                    block = product(projector, &block);
+                }
+                if let Some(projector) = &projectors[b] {
+                    block = product(&block, projector);
+                }
+                add(*row as usize, *column as usize, &block);
+            }
+        }
+    }
+    out
+}
+
+impl<const D: usize> BlockMatrix<D> {
+    /// Whether there are dense parts beside the blocks.
+    pub fn has_dense(&self) -> bool {
+        !self.beside().is_empty()
+    }
+    /// The mean size of the diagonal entries of a node, dense parts included.
+    pub fn diagonal_size(&self, node: usize) -> f64 {
+        let block = self.diagonal_block(node);
+        let mut size = (0..D).map(|d| block[d][d].abs()).sum::<f64>() / D as f64;
+        for part in self.beside() {
+            if let Some(number) = part.number_of(node) {
+                size += part.size_at(number);
+            }
+        }
+        size
+    }
+    /// The diagonal blocks of all nodes, dense parts included.
+    pub fn diagonal_blocks(&self) -> Vec<Block<D>> {
+        let mut out: Vec<Block<D>> = (0..self.rows()).map(|node| *self.diagonal_block(node)).collect();
+        for part in self.beside() {
+            let mut own: Vec<Block<D>> = (0..part.places.len()).map(|number| part.diagonal_block(number)).collect();
+            for (number, projector) in &part.pinned {
+                own[*number as usize] = product(projector, &product(&own[*number as usize], projector));
+            }
+            for (place, block) in part.places.iter().zip(&own) {
+                for i in 0..D {
+                    (0..D).for_each(|j| out[*place as usize][i][j] += block[i][j]);
+                }
+            }
+        }
+        out
+    }
+    /// Adds the products of the dense parts.
+    pub(crate) fn add_dense(&self, x: &[f64], y: &mut [f64]) {
+        for part in self.beside() {
+            part.add_product(nodes::<D>(x), nodes_mut::<D>(y));
+        }
+    }
+}
