@@ -125,8 +125,8 @@ pub struct DensePart<'a, const D: usize> {
     pub factor: f64,
     /// The rotation R, by rows.
     pub frame: &'a [[f64; D]; D],
-    /// The places of the nodes that K knows, in its order; every one once.
-    pub places: &'a [u32],
+    /// The indices of the nodes that K knows, in its order; every one once.
+    pub indices: &'a [u32],
     /// K, D rows a node.
     pub matrix: &'a Arc<Dense>,
 }
@@ -137,7 +137,7 @@ impl<const D: usize> DensePart<'_, D> {
         let length = self.matrix.padded();
         let mut turned = vec![0.0; 2 * length];
         let (own, out) = turned.split_at_mut(length);
-        for (to, place) in own.chunks_exact_mut(D).zip(self.places) {
+        for (to, place) in own.chunks_exact_mut(D).zip(self.indices) {
             let x = x(*place as usize);
             for j in 0..D {
                 to[j] = (0..D).map(|i| self.frame[i][j] * x[i]).sum();
@@ -146,7 +146,7 @@ impl<const D: usize> DensePart<'_, D> {
         self.matrix.multiply(Simd::best(), own, out);
         let back =
             |g: &[f64]| core::array::from_fn(|i| self.factor * (0..D).map(|j| self.frame[i][j] * g[j]).sum::<f64>());
-        out.chunks_exact(D).take(self.places.len()).map(back).collect()
+        out.chunks_exact(D).take(self.indices.len()).map(back).collect()
     }
     /// The block of two of its nodes, by their numbers in the list.
     pub fn block(&self, a: usize, b: usize) -> [[f64; D]; D] {
@@ -175,8 +175,8 @@ pub trait Sink<const D: usize> {
     /// Adds a dense matrix that turns with its body. A sink that keeps a sparse matrix keeps this part beside it, as it is; one that looks
     /// at entries alone sees them block by block.
     fn dense(&mut self, part: &DensePart<'_, D>) {
-        for (a, row) in part.places.iter().enumerate() {
-            for (b, column) in part.places.iter().enumerate() {
+        for (a, row) in part.indices.iter().enumerate() {
+            for (b, column) in part.indices.iter().enumerate() {
                 self.block(*row as usize, *column as usize, part.block(a, b));
             }
         }
@@ -398,10 +398,10 @@ impl<const D: usize> Sink<D> for ProductSink<'_, '_, D> {
     }
     fn dense(&mut self, part: &DensePart<'_, D>) {
         let direction = self.direction;
-        let product = part.product(|place| core::array::from_fn(|d| direction[d][place]));
-        for (place, value) in part.places.iter().zip(product) {
+        let product = part.product(|index| core::array::from_fn(|d| direction[d][index]));
+        for (index, value) in part.indices.iter().zip(product) {
             for d in 0..D {
-                self.out[d][*place as usize] += value[d];
+                self.out[d][*index as usize] += value[d];
             }
         }
     }

@@ -10,7 +10,7 @@ use std::sync::Arc;
 pub(crate) struct Beside<const D: usize> {
     pub(crate) factor: f64,
     pub(crate) frame: Block<D>,
-    pub(crate) places: Vec<u32>,
+    pub(crate) indices: Vec<u32>,
     pub(crate) matrix: Arc<Dense>,
     /// By the numbers of nodes in the list.
     pub(crate) pinned: Vec<(u32, Block<D>)>,
@@ -21,13 +21,13 @@ impl<const D: usize> Beside<D> {
         Beside {
             factor: factor * part.factor,
             frame: *part.frame,
-            places: part.places.to_vec(),
+            indices: part.indices.to_vec(),
             matrix: Arc::clone(part.matrix),
             pinned: Vec::new(),
         }
     }
     pub(crate) fn part(&self) -> DensePart<'_, D> {
-        DensePart { factor: self.factor, frame: &self.frame, places: &self.places, matrix: &self.matrix }
+        DensePart { factor: self.factor, frame: &self.frame, indices: &self.indices, matrix: &self.matrix }
     }
     /// The mean of the diagonal entries of a node in its list.
     pub(crate) fn size_at(&self, number: usize) -> f64 {
@@ -39,33 +39,33 @@ impl<const D: usize> Beside<D> {
     }
     /// Adds A x to y.
     pub(crate) fn add_product(&self, x: &[[f64; D]], y: &mut [[f64; D]]) {
-        let mut free: Vec<[f64; D]> = self.places.iter().map(|place| x[*place as usize]).collect();
+        let mut free: Vec<[f64; D]> = self.indices.iter().map(|index| x[*index as usize]).collect();
         for (number, projector) in &self.pinned {
             free[*number as usize] = times(projector, &free[*number as usize]);
         }
-        // The list is in the order of the matrix, which a part reads by places.
-        let order: Vec<u32> = (0..self.places.len() as u32).collect();
-        let mut out = DensePart { places: &order, ..self.part() }.product(|number| free[number]);
+        // The list is in the order of the matrix, which a part reads by indices.
+        let order: Vec<u32> = (0..self.indices.len() as u32).collect();
+        let mut out = DensePart { indices: &order, ..self.part() }.product(|number| free[number]);
         for (number, projector) in &self.pinned {
             out[*number as usize] = times(projector, &out[*number as usize]);
         }
-        for (place, value) in self.places.iter().zip(&out) {
-            (0..D).for_each(|d| y[*place as usize][d] += value[d]);
+        for (index, value) in self.indices.iter().zip(&out) {
+            (0..D).for_each(|d| y[*index as usize][d] += value[d]);
         }
     }
     /// Holds directions: those of nodes that are not free, by their projectors.
     pub(crate) fn constrain(&mut self, free: &[bool], projectors: &[Block<D>]) {
         self.pinned.clear();
-        for (number, place) in self.places.iter().enumerate().filter(|(_, place)| !free[**place as usize]) {
-            self.pinned.push((number as u32, projectors[*place as usize]));
+        for (number, index) in self.indices.iter().enumerate().filter(|(_, index)| !free[**index as usize]) {
+            self.pinned.push((number as u32, projectors[*index as usize]));
         }
     }
     /// The number of a node in its list.
     pub(crate) fn number_of(&self, node: usize) -> Option<usize> {
         // Bodies by themselves list their nodes in order.
-        if self.places.get(node) == Some(&(node as u32)) {
+        if self.indices.get(node) == Some(&(node as u32)) {
             return Some(node);
         }
-        self.places.iter().position(|place| *place as usize == node)
+        self.indices.iter().position(|index| *index as usize == node)
     }
 }

@@ -115,7 +115,7 @@ impl TurnedFactor {
 fn unturned<const D: usize>(matrix: &BlockMatrix<D>, positive: bool) -> Option<Vec<u64>> {
     let [only] = matrix.beside() else { return None };
     let mut out = vec![u64::from(positive), only.factor.to_bits()];
-    out.extend(only.places.iter().map(|place| u64::from(*place)));
+    out.extend(only.indices.iter().map(|index| u64::from(*index)));
     for (number, projector) in &only.pinned {
         if projector.iter().flatten().any(|x| *x != 0.0) {
             return None;
@@ -158,12 +158,12 @@ fn in_frame<const D: usize>(matrix: &BlockMatrix<D>, frame: &Block<D>) -> Vec<f6
     }
     let alone = matrix.beside().len() == 1;
     for part in matrix.beside() {
-        let mut projectors: Vec<Option<Block<D>>> = vec![None; part.places.len()];
+        let mut projectors: Vec<Option<Block<D>>> = vec![None; part.indices.len()];
         for (number, projector) in &part.pinned {
             projectors[*number as usize] = Some(if alone { turned(projector) } else { *projector });
         }
-        for (a, row) in part.places.iter().enumerate() {
-            for (b, column) in part.places.iter().enumerate() {
+        for (a, row) in part.indices.iter().enumerate() {
+            for (b, column) in part.indices.iter().enumerate() {
                 let mut block: Block<D> = if alone {
                     core::array::from_fn(|i| {
                         core::array::from_fn(|j| part.factor * part.matrix.at(a * D + i, b * D + j))
@@ -204,13 +204,13 @@ impl<const D: usize> BlockMatrix<D> {
     pub fn diagonal_blocks(&self) -> Vec<Block<D>> {
         let mut out: Vec<Block<D>> = (0..self.rows()).map(|node| *self.diagonal_block(node)).collect();
         for part in self.beside() {
-            let mut own: Vec<Block<D>> = (0..part.places.len()).map(|number| part.diagonal_block(number)).collect();
+            let mut own: Vec<Block<D>> = (0..part.indices.len()).map(|number| part.diagonal_block(number)).collect();
             for (number, projector) in &part.pinned {
                 own[*number as usize] = product(projector, &product(&own[*number as usize], projector));
             }
-            for (place, block) in part.places.iter().zip(&own) {
+            for (index, block) in part.indices.iter().zip(&own) {
                 for i in 0..D {
-                    (0..D).for_each(|j| out[*place as usize][i][j] += block[i][j]);
+                    (0..D).for_each(|j| out[*index as usize][i][j] += block[i][j]);
                 }
             }
         }

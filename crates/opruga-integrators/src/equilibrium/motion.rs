@@ -77,16 +77,16 @@ impl<const D: usize> Sink<D> for Projection<'_> {
         let n = self.motions.len();
         for q in 0..n {
             let motion = &self.motions[q];
-            let pulled = part.product(|place| core::array::from_fn(|d| motion[place * D + d]));
+            let pulled = part.product(|index| core::array::from_fn(|d| motion[index * D + d]));
             for p in 0..n {
-                for (place, pulled) in part.places.iter().zip(&pulled) {
-                    let own = &self.motions[p][*place as usize * D..];
+                for (index, pulled) in part.indices.iter().zip(&pulled) {
+                    let own = &self.motions[p][*index as usize * D..];
                     self.out[p * n + q] += (0..D).map(|d| own[d] * pulled[d]).sum::<f64>();
                 }
             }
         }
         // Of a matrix without negative eigenvalues the largest entry stands on the diagonal.
-        for number in 0..part.places.len() {
+        for number in 0..part.indices.len() {
             let sizes = part.block(number, number).into_iter().flatten().map(|x: f64| x.abs());
             self.largest = sizes.fold(self.largest, |most, x| if x > most { x } else { most });
         }

@@ -66,6 +66,6 @@ impl<const D: usize> Sink<D> for Ties {
         u.windows(2).for_each(|pair| self.tie(pair[0].0, pair[1].0));
     }
     fn dense(&mut self, part: &DensePart<'_, D>) {
-        part.places.windows(2).for_each(|pair| self.tie(pair[0] as usize, pair[1] as usize));
+        part.indices.windows(2).for_each(|pair| self.tie(pair[0] as usize, pair[1] as usize));
     }
 }

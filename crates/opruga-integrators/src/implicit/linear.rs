@@ -120,10 +120,10 @@ impl<const D: usize> Sink<D> for ProductSink<'_, D> {
     }
     fn dense(&mut self, part: &DensePart<'_, D>) {
         let x = self.x;
-        let product = part.product(|place| x[place]);
-        for (place, value) in part.places.iter().zip(product) {
+        let product = part.product(|index| x[index]);
+        for (index, value) in part.indices.iter().zip(product) {
             for d in 0..D {
-                self.y[*place as usize][d] += self.factor * value[d];
+                self.y[*index as usize][d] += self.factor * value[d];
             }
         }
     }
@@ -155,7 +155,7 @@ impl<const D: usize> Sink<D> for DiagonalSink<'_, D> {
         }
     }
     fn dense(&mut self, part: &DensePart<'_, D>) {
-        for (number, place) in part.places.iter().enumerate() {
+        for (number, place) in part.indices.iter().enumerate() {
             Sink::<D>::block(self, *place as usize, *place as usize, part.block(number, number));
         }
     }

@@ -22,7 +22,7 @@ pub struct BoundaryElement<const D: usize> {
     exterior: bool,
     bodies: Vec<Body>,
     /// Places of the vertices of each body.
-    places: Vec<Vec<u32>>,
+    indices: Vec<Vec<u32>>,
     /// Numbers of a column.
     column: usize,
     turned: usize,
@@ -56,7 +56,7 @@ impl<const D: usize> BoundaryElement<D> {
         }
         let positions: Vec<[f64; D]> = surface.points.iter().map(|x| x.map(|x| surface.size * x)).collect();
         let layout = ingredients.layout;
-        let place = |body: usize| (0..nodes).map(|node| layout.place(node, body) as u32).collect();
+        let index = |body: usize| (0..nodes).map(|node| layout.place(node, body) as u32).collect();
         let rest = if exterior {
             Rest { positions: mesh.positions.clone(), weights: vec![0.0; nodes], inertia: 0.0 }
         } else {
@@ -68,7 +68,7 @@ impl<const D: usize> BoundaryElement<D> {
             exterior,
             column: bodies[0].stiffness.matrix.padded(),
             bodies,
-            places: (0..layout.stride()).map(place).collect(),
+            indices: (0..layout.stride()).map(index).collect(),
             turned: surface.turned,
         })
     }
@@ -143,23 +143,23 @@ impl<const D: usize> BoundaryElement<D> {
         let (y, own) = own.split_at_mut(self.column);
         let (u, own) = own.split_at_mut(self.column);
         let (g, numbers) = own.split_at_mut(self.column);
-        let place = |node: usize| view.layout.place(node, body);
+        let index = |node: usize| view.layout.place(node, body);
         let frame = if self.exterior {
             for (node, rest) in self.rest.positions.iter().enumerate() {
-                let x = view.position(place(node));
+                let x = view.position(index(node));
                 (0..D).for_each(|d| u[node * D + d] = x[d] - rest[d]);
             }
             let rotation = opruga_math::matrix::identity();
             Frame { rotation, stretch: [[0.0; 3]; 3], follows: [[0.0; 3]; 3] }
         } else {
-            self.rest.frame(|node| view.position(place(node)), y, u)
+            self.rest.frame(|node| view.position(index(node)), y, u)
         };
         self.body(body).product(simd, u, g);
         let multiplier = if self.exterior { [0.0; 3] } else { self.rest.multiplier(&frame, y, g) };
-        let places = self.forces_len() / D;
+        let indices = self.forces_len() / D;
         for node in 0..self.rest.weights.len() {
             let force = self.rest.force(&frame, &multiplier, node, g);
-            (0..D).for_each(|d| forces[d * places + place(node)] = force[d]);
+            (0..D).for_each(|d| forces[d * indices + index(node)] = force[d]);
         }
         let energy = 0.5 * opruga_solve::dot(u, g);
         let all = frame.rotation.iter().flatten().chain(frame.stretch.iter().flatten());
@@ -184,10 +184,10 @@ impl<const D: usize> Potential<D> for BoundaryElement<D> {
         Ok(())
     }
     fn add_force(&self, _simd: Simd, _view: &View<D>, scratch: &[f64], tile: &mut Tile<D>) {
-        let places = self.forces_len() / D;
+        let indices = self.forces_len() / D;
         for d in 0..D {
-            let from = &scratch[d * places..(d + 1) * places];
-            for (force, own) in tile.force[d].iter_mut().zip(&from[tile.range.start.min(places)..]) {
+            let from = &scratch[d * indices..(d + 1) * indices];
+            for (force, own) in tile.force[d].iter_mut().zip(&from[tile.range.start.min(indices)..]) {
                 *force += own;
             }
         }
@@ -200,12 +200,12 @@ impl<const D: usize> Potential<D> for BoundaryElement<D> {
         out
     }
     fn hessian(&self, _view: &View<D>, scratch: &[f64], keep: Definiteness, sink: &mut dyn Sink<D>) {
-        for (number, places) in self.places.iter().enumerate() {
+        for (number, indices) in self.indices.iter().enumerate() {
             let (body, known) = (self.body(number), self.known(scratch, number));
             sink.dense(&DensePart {
                 factor: body.strength,
                 frame: &known.frame.rotation,
-                places,
+                indices,
                 matrix: &body.stiffness.matrix,
             });
             if self.exterior {
@@ -214,14 +214,14 @@ impl<const D: usize> Potential<D> for BoundaryElement<D> {
             let product = |x: &[f64], y: &mut [f64]| body.product(Simd::best(), x, y);
             let parts = self.rest.parts(&known.frame, &known.multiplier, [known.y, known.g], keep, product);
             for [follows, along] in &parts {
-                add_pair(places, follows, along, sink);
+                add_pair(indices, follows, along, sink);
             }
         }
     }
 }
 
 /// Adds j zᵀ + z jᵀ as ½ (a j + z/a)(…)ᵀ − ½ (a j − z/a)(…)ᵀ with vectors of one size.
-fn add_pair<const D: usize>(places: &[u32], j: &[[f64; D]], z: &[[f64; D]], sink: &mut dyn Sink<D>) {
+fn add_pair<const D: usize>(indices: &[u32], j: &[[f64; D]], z: &[[f64; D]], sink: &mut dyn Sink<D>) {
     let size = |v: &[[f64; D]]| v.iter().flatten().map(|x| x * x).sum::<f64>().sqrt();
     let ratio = size(z) / size(j);
     if !(ratio > 0.0 && ratio.is_finite()) {
@@ -229,10 +229,10 @@ fn add_pair<const D: usize>(places: &[u32], j: &[[f64; D]], z: &[[f64; D]], sink
     }
     let a = ratio.sqrt();
     for sign in [1.0, -1.0] {
-        let entries: Vec<(usize, [f64; D])> = places
+        let entries: Vec<(usize, [f64; D])> = indices
             .iter()
             .zip(j.iter().zip(z))
-            .map(|(place, (j, z))| (*place as usize, core::array::from_fn(|d| a * j[d] + sign * z[d] / a)))
+            .map(|(index, (j, z))| (*index as usize, core::array::from_fn(|d| a * j[d] + sign * z[d] / a)))
             .collect();
         sink.low_rank(0.5 * sign, &entries);
     }
@@ -269,6 +269,6 @@ impl<const D: usize> Observe<D> for BoundaryElement<D> {
     }
     fn heap_bytes(&self) -> usize {
         let matrices = self.bodies.iter().map(|body| body.stiffness.matrix.heap_bytes()).sum::<usize>();
-        matrices + self.places.len() * self.rest.weights.len() * 4
+        matrices + self.indices.len() * self.rest.weights.len() * 4
     }
 }
