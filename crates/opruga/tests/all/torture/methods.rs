@@ -17,8 +17,9 @@ fn random(node: usize, axis: usize) -> f64 {
 }
 
 /// Half a turn from one end of the body to the other, about x.
+#[allow(clippy::disallowed_methods, reason = "the start of a test, compared with nothing")]
 fn twisted(x: [f64; 3]) -> [f64; 3] {
-    let (sine, cosine) = (3.14 * x[0]).sin_cos();
+    let (sine, cosine) = (core::f64::consts::PI * x[0]).sin_cos();
     [x[0], cosine * x[1] - sine * x[2], sine * x[1] + cosine * x[2]]
 }
 
