@@ -146,7 +146,7 @@ fn bodies_of_the_other_methods_come_back_or_opruga_says_why_not() {
                     }
                     let now = energy(&*world);
                     assert!(
-                        now.is_finite() && now <= 1.05 * start + 1e-6,
+                        now.is_finite() && now <= 1.01 * start + 1e-6,
                         "{name} {dimension}D under {rule}, {what}: {start} J became {now} J"
                     );
                     if off(&*world, &rest, &edges) < 5e-3 {
