@@ -7,3 +7,4 @@ mod impact;
 mod same_bits;
 mod seams;
 mod shapes;
+mod surfaces;
