@@ -37,7 +37,7 @@ impl<const D: usize> Candidates<D> {
     /// Looks for all pairs whose boxes, swept from `start` to `end` [m], are closer than `margin` [m] along every axis.
     ///
     /// `meet` says of two bodies whether they may touch, of a body with itself whether it may touch itself. Features that share a point
-    /// or are joined by an edge are no pair. False where there are more than `most` pairs: then the search ends.
+    /// are no pair. False where there are more than `most` pairs: then the search ends.
     pub fn find(
         &mut self,
         surface: &Surface<D>,
@@ -53,7 +53,7 @@ impl<const D: usize> Candidates<D> {
         self.grid.fill(surface.facets.iter().map(|facet| swept(facet, ends, margin)));
         for p in 0..surface.points() as u32 {
             self.grid.touching(&swept(&[p], ends, 0.0), &mut self.found);
-            let apart = |facet: &[u32; D]| !facet.iter().any(|q| surface.are_joined(p, *q));
+            let apart = |facet: &[u32; D]| !facet.contains(&p);
             for number in &self.found {
                 let facet = &surface.facets[*number as usize];
                 let (own, other) = (surface.body[p as usize], surface.body[facet[0] as usize]);
@@ -71,7 +71,7 @@ impl<const D: usize> Candidates<D> {
         self.grid.fill(surface.edges.iter().map(|edge| swept(edge, ends, margin)));
         for (number, edge) in surface.edges.iter().enumerate() {
             self.grid.touching(&swept(edge, ends, 0.0), &mut self.found);
-            let apart = |other: &[u32; 2]| !edge.iter().any(|p| other.iter().any(|q| surface.are_joined(*p, *q)));
+            let apart = |other: &[u32; 2]| !edge.iter().any(|p| other.contains(p));
             let number = number as u32;
             for other in self.found.iter().filter(|other| **other > number) {
                 let second = &surface.edges[*other as usize];

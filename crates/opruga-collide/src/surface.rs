@@ -20,9 +20,6 @@ pub struct Surface<const D: usize> {
     pub sides: Vec<[u32; 2]>,
     /// Where the points of a body begin, and behind the last one.
     starts: Vec<u32>,
-    /// The points that an edge joins to a point: `joined[first[p]..first[p + 1]]`, ascending.
-    first: Vec<u32>,
-    joined: Vec<u32>,
     /// The facets around a point: `around[ring[p]..ring[p + 1]]`, ascending.
     ring: Vec<u32>,
     around: Vec<u32>,
@@ -77,7 +74,7 @@ impl<const D: usize> Surface<D> {
         nodes
     }
 
-    /// Finds the edges of the facets from one on, and which points they join.
+    /// Finds the edges of the facets from one on, and the facets around every point.
     fn join(&mut self, first_facet: usize, wires: Vec<[u32; 2]>, points: usize) {
         let mut edges: Vec<([u32; 2], u32)> = Vec::new();
         for (number, facet) in self.facets.iter().enumerate().skip(first_facet) {
@@ -89,28 +86,10 @@ impl<const D: usize> Surface<D> {
         }
         edges.extend(wires.into_iter().map(|[a, b]| (if a < b { [a, b] } else { [b, a] }, u32::MAX)));
         edges.sort_unstable();
-        let mut pairs = Vec::new();
-        for same in edges.chunk_by(|a, b| a.0 == b.0) {
-            let edge = same[0].0;
-            pairs.extend([(edge[0], edge[1]), (edge[1], edge[0])]);
-            if D == 3 {
-                let side = |k: usize| same.get(k).map_or(u32::MAX, |(_, side)| *side);
-                self.edges.push(edge);
-                self.sides.push([side(0), side(1)]);
-            }
-        }
-        pairs.sort_unstable();
-        if self.first.is_empty() {
-            self.first.push(0);
-        }
-        let start = (self.first.len() - 1) as u32;
-        let mut k = 0;
-        for p in start..start + points as u32 {
-            while let Some((_, other)) = pairs.get(k).filter(|(a, _)| *a == p) {
-                self.joined.push(*other);
-                k += 1;
-            }
-            self.first.push(self.joined.len() as u32);
+        for same in edges.chunk_by(|a, b| a.0 == b.0).filter(|_| D == 3) {
+            let side = |k: usize| same.get(k).map_or(u32::MAX, |(_, side)| *side);
+            self.edges.push(same[0].0);
+            self.sides.push([side(0), side(1)]);
         }
         let facets = self.facets.iter().enumerate().skip(first_facet);
         let mut corners: Vec<(u32, u32)> = facets.flat_map(|(k, f)| f.map(|p| (p, k as u32))).collect();
@@ -119,6 +98,7 @@ impl<const D: usize> Surface<D> {
             self.ring.push(0);
         }
         let mut k = 0;
+        let start = (self.ring.len() - 1) as u32;
         for p in start..start + points as u32 {
             while let Some((_, facet)) = corners.get(k).filter(|(a, _)| *a == p) {
                 self.around.push(*facet);
@@ -133,21 +113,16 @@ impl<const D: usize> Surface<D> {
         &self.around[self.ring[point as usize] as usize..self.ring[point as usize + 1] as usize]
     }
 
-    /// The points that an edge joins to a point, ascending.
-    pub fn neighbours(&self, point: u32) -> &[u32] {
-        &self.joined[self.first[point as usize] as usize..self.first[point as usize + 1] as usize]
-    }
-
-    /// Whether two points are the same or ends of one edge: what is joined at rest is no contact.
-    pub fn are_joined(&self, a: u32, b: u32) -> bool {
-        a == b || self.neighbours(a).binary_search(&b).is_ok()
+    /// Whether a point lies on a closed boundary, and on nothing else.
+    pub fn is_closed(&self, point: u32) -> bool {
+        let around = self.facets_around(point);
+        !around.is_empty() && around.iter().all(|facet| self.closed[*facet as usize])
     }
 
     /// Bytes on the heap.
     pub fn heap_bytes(&self) -> usize {
         4 * (self.body.capacity() + D * self.facets.capacity() + 4 * self.edges.capacity())
             + self.closed.capacity()
-            + 4 * (self.starts.capacity() + self.first.capacity() + self.joined.capacity())
-            + 4 * (self.ring.capacity() + self.around.capacity())
+            + 4 * (self.starts.capacity() + self.ring.capacity() + self.around.capacity())
     }
 }

@@ -8,3 +8,4 @@ mod same_bits;
 mod seams;
 mod shapes;
 mod surfaces;
+mod touching;
