@@ -130,7 +130,10 @@ fn path_of(error: &WorldError) -> String {
             format!("body.{}", body.split('[').next().unwrap_or(body))
         }
         WorldError::Path { path, .. } => body(path).unwrap_or_default(),
-        WorldError::Snapshot(_) | WorldError::Overflow { .. } | WorldError::BrokenOff => String::new(),
+        WorldError::Snapshot(_)
+        | WorldError::Overflow { .. }
+        | WorldError::TooManyContacts { .. }
+        | WorldError::BrokenOff => String::new(),
     }
 }
 
