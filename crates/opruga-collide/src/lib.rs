@@ -46,6 +46,9 @@
 //! **Order.** Colliders act in the order of the scene, up to four times, so that a node in a corner obeys all of its walls.
 //! What a node does depends on nothing but the node: not on the tile, the layout or the vector instructions.
 //!
+//! **Deformable bodies.** [`Surface`] holds what touches of bodies that meet one another, [`Candidates`] the pairs that may,
+//! [`Gap`] how far a pair is apart, and [`vertex_meets_facet`] and [`edge_meets_edge`] whether and when it meets within a step.
+//!
 //! **Limits.** Nodes meet colliders; edges and facets between nodes do not: an obstacle finer than the mesh can poke
 //! through between two nodes. The tilted or curved surface is taken at the end of the step: first order in h.
 
@@ -53,24 +56,41 @@
 #![allow(rustdoc::broken_intra_doc_links)]
 
 mod bounds;
+mod candidates;
+mod ccd;
+mod closest;
 mod collider;
 mod contacts;
 mod entries;
 mod facet_contacts;
 mod facets;
+mod gap;
+mod grid;
 mod held;
 mod hull;
+mod impulses;
 mod inside;
+mod law;
 mod motion;
 mod pass;
 mod picture;
 mod response;
+mod rows;
 mod shape;
 pub mod spec;
+mod surface;
 mod touch;
+mod touching;
 mod vector;
 
+pub use candidates::Candidates;
+pub use ccd::{edge_meets_edge, vertex_meets_facet};
+pub use closest::{closest_of_segments, closest_on_facet, closest_on_segment};
 pub use contacts::Colliders;
+pub use gap::Gap;
 pub use inside::Buried;
+pub use law::{Laws, PairLaw};
 pub use picture::Picture;
 pub use spec::all;
+pub use surface::Surface;
+pub use touching::{Counts, Obstacles, TooMany, Touching};

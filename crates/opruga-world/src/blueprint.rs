@@ -62,6 +62,8 @@ pub struct Blueprint<const D: usize> {
     pub bodies: Vec<BodyBlueprint<D>>,
     /// Rigid obstacles.
     pub colliders: Vec<ColliderBlueprint>,
+    /// How bodies touch one another; none: they do not.
+    pub contact: Option<ContactBlueprint>,
     /// Forces from outside.
     pub loads: Vec<LoadBlueprint<D>>,
     /// What is done to the bodies while they move.
@@ -90,6 +92,8 @@ impl<const D: usize> Blueprint<D> {
             integrator: self.integrator.clone(),
             bodies,
             colliders,
+            // Of a part its groups may be missing.
+            contact: self.contact.as_ref().map(|c| ContactBlueprint { values: c.values.clone(), pairs: Vec::new() }),
             loads,
             commands: Vec::new(),
             probes: Vec::new(),
@@ -174,6 +178,8 @@ pub struct BodyBlueprint<const D: usize> {
     pub models: Vec<Values>,
     /// Its pins.
     pub pins: Vec<PinBlueprint<D>>,
+    /// How it touches other bodies (`schema::BODY_CONTACT`); none: as the scene says.
+    pub contact: Option<Values>,
 }
 
 /// How much a body weighs.
@@ -242,6 +248,15 @@ pub struct PinBlueprint<const D: usize> {
 pub struct ColliderBlueprint {
     /// `kind` and the fields of its specification, among them `restitution` and `friction`.
     pub values: Values,
+}
+
+/// How bodies touch one another.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ContactBlueprint {
+    /// The fields of `schema::CONTACT`.
+    pub values: Values,
+    /// What pairs of groups do (`schema::CONTACT_PAIR`).
+    pub pairs: Vec<Values>,
 }
 
 /// A force from outside.

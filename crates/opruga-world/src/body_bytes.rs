@@ -5,6 +5,7 @@ use crate::bytes::{Reader, Writer};
 use crate::error::WorldError;
 use crate::inputs::{read_action, read_selector, write_action, write_selector};
 use crate::registry::Registry;
+use crate::schema;
 use opruga_core::spec::{Spec, Value, Values};
 use opruga_mesh::{Area, Mesh, Skin};
 use std::collections::BTreeMap;
@@ -67,7 +68,9 @@ impl Writer<'_> {
         self.numbers(numbers);
         self.number(body.thickness);
         self.own_integrator(body.integrator.as_ref());
-        self.models(&body.models);
+        // What a body says of its contact stands behind its models, so that bodies which say nothing have the bytes they always had.
+        self.count((body.models.len() + usize::from(body.contact.is_some())) as u64);
+        body.models.iter().chain(&body.contact).for_each(|values| self.values(values));
         self.count(body.pins.len() as u64);
         for pin in &body.pins {
             write_selector(self, &pin.select);
@@ -207,7 +210,16 @@ impl Reader<'_> {
         };
         let thickness = self.number()?;
         let integrator = self.own_integrator(registry)?;
-        let models = self.models(registry)?;
+        let own = schema::BODY_CONTACT.spec;
+        let known = |kind: &str| registry.model(kind).map(|model| model.spec());
+        let n = self.length()?;
+        let mut models = (0..n)
+            .map(|_| self.values(D, |kind| known(kind).or((kind == own.kind).then_some(own))))
+            .collect::<Result<Vec<_>, _>>()?;
+        let contact = models.pop_if(|last| last.kind() == own.kind);
+        if models.iter().any(|model| model.kind() == own.kind) {
+            return Err(damaged("a body"));
+        }
         let mut pins = Vec::new();
         for _ in 0..self.length()? {
             let select = read_selector(self, 0)?;
@@ -232,6 +244,7 @@ impl Reader<'_> {
             integrator,
             models,
             pins,
+            contact,
         })
     }
 

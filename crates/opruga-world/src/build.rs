@@ -2,6 +2,7 @@
 
 use crate::blueprint::{Blueprint, BodyBlueprint, LoadKind, Mass};
 use crate::carried::{BodyHistory, BodyState};
+use crate::contact_laws;
 use crate::error::WorldError;
 use crate::island::Island;
 use crate::loads::{FollowerPressure, NodeForces};
@@ -247,6 +248,9 @@ impl<const D: usize> Builder<'_, D> {
             None => Arc::clone(self.integrator),
         };
         let refuse = |source| WorldError::Build { place: format!("body `{}`", first.name), source };
+        for body in &blueprints {
+            contact_laws::check(self.blueprint, body, &*integrator).map_err(refuse)?;
+        }
         self.check_cells(first).map_err(refuse)?;
         // Loads know their derivatives; a model may lack them.
         for member in &system.members[..first.models.len()] {

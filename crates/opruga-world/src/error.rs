@@ -94,6 +94,20 @@ pub enum WorldError {
         /// The time of the last good frame [s].
         last: f64,
     },
+    /// More pairs may touch in a step than the scene allows.
+    #[error(
+        "more than {most} pairs of vertices, edges and facets may touch in a step ({found} were found) in the frame from t = {} s; \
+         allowed: {most}; the world is at its last good frame; hint: a larger `most_pairs` in `[contact]`, or coarser surfaces",
+        number(*last)
+    )]
+    TooManyContacts {
+        /// How many were found.
+        found: usize,
+        /// The most that the scene allows.
+        most: usize,
+        /// The time of the last good frame [s].
+        last: f64,
+    },
     /// The frame was broken off from outside ([`crate::Options::break_off`]).
     #[error("the frame was broken off; the world is at its last good frame")]
     BrokenOff,
@@ -120,6 +134,7 @@ impl WorldError {
             WorldError::Step { .. } => "run.model",
             WorldError::NotConverged { .. } => "run.not_converged",
             WorldError::Overflow { .. } => "run.overflow",
+            WorldError::TooManyContacts { .. } => "limit.contacts",
             WorldError::BrokenOff => "run.broken_off",
             WorldError::Path { .. } => "path.unknown",
             WorldError::Snapshot(_) => "snapshot.damaged",

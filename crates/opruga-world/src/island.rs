@@ -273,6 +273,11 @@ impl<const D: usize> Island<D> {
                 self.keep_look((done / plan.look_every - 1) as usize);
             }
         }
+        self.surveyed(plan.start)
+    }
+
+    /// Looks at all nodes; refuses what is not finite or out of range.
+    fn surveyed(&self, start: f64) -> Result<Survey<D>, StepError> {
         let survey = survey(&self.system);
         let [low, high] = &survey.position;
         let far = (0..D).any(|d| low[d] < -self.range || high[d] > self.range);
@@ -280,7 +285,7 @@ impl<const D: usize> Island<D> {
             return Ok(survey);
         }
         let range = survey.finite.then_some(self.range);
-        Err(self.culprit(plan.start).unwrap_or(StepError::Diverged { body: 0, node: 0, time: plan.start, range }))
+        Err(self.culprit(start).unwrap_or(StepError::Diverged { body: 0, node: 0, time: start, range }))
     }
 
     /// The system at the beginning of a substep.
@@ -329,6 +334,55 @@ impl<const D: usize> Island<D> {
         match &mut self.last {
             Some(saved) => saved.take(&mut self.system, time),
             None => self.last = Some(Saved::of(&self.system, time)),
+        }
+    }
+
+    /// Begins a frame through which others step together with it.
+    pub(crate) fn begin_together(&mut self, plan: &FramePlan<D>) {
+        self.save(plan.start);
+        self.potential_before = self.potential();
+        self.system.work = Work8::default();
+        // Whom it meets on the way nobody knows: obstacles are always looked at.
+        self.system.contacts = plan.colliders.map(|colliders| Arc::clone(colliders).into_contacts());
+        self.outcome = Ok(());
+    }
+
+    /// Makes one substep in a workspace that is lent.
+    pub(crate) fn step_together(&mut self, plan: &FramePlan<D>, substep: u32, workspace: &mut Workspace<D>) {
+        self.system.exchange(workspace);
+        self.outcome = self.system.go_on().and_then(|()| {
+            self.set_out(plan, substep);
+            self.integrator.step(&mut self.system, plan.h)
+        });
+        self.system.exchange(workspace);
+        if self.outcome.is_err() {
+            self.restore();
+            self.system.work = Work8::default();
+        }
+    }
+
+    /// Keeps the state after a substep where that is one to look at.
+    pub(crate) fn look_together(&mut self, plan: &FramePlan<D>, substep: u32) {
+        let done = substep + 1;
+        if plan.look_every > 0 && done.is_multiple_of(plan.look_every) && done < plan.substeps {
+            self.keep_look((done / plan.look_every - 1) as usize);
+        }
+    }
+
+    /// Ends such a frame.
+    pub(crate) fn end_together(&mut self, plan: &FramePlan<D>) {
+        match self.surveyed(plan.start) {
+            Ok(survey) => {
+                self.survey = survey;
+                self.system.time = plan.start + f64::from(plan.substeps) * plan.h;
+                self.work = std::mem::take(&mut self.system.work);
+                self.stock = take_stock(&mut self.system);
+            }
+            Err(error) => {
+                self.outcome = Err(error);
+                self.restore();
+                self.system.work = Work8::default();
+            }
         }
     }
 

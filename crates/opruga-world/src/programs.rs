@@ -79,6 +79,7 @@ impl<const D: usize> Blueprint<D> {
             integrator,
             bodies: Vec::new(),
             colliders: Vec::new(),
+            contact: None,
             loads: Vec::new(),
             commands: Vec::new(),
             probes: Vec::new(),
@@ -102,6 +103,7 @@ impl<const D: usize> BodyBlueprint<D> {
             integrator: None,
             models,
             pins: Vec::new(),
+            contact: None,
         }
     }
 }

@@ -5,8 +5,10 @@
 //! tables, selectors, references to bodies).
 
 mod actions;
+mod contact;
 
 pub use actions::{COMMANDS, LOADS, PROBE};
+pub use contact::{BODY_CONTACT, CONTACT, CONTACT_PAIR};
 
 use opruga_core::spec::{Allowed, Bound, Condition, Default, Field, Spec};
 
@@ -142,6 +144,7 @@ pub const SCENE: Section = Section {
         child("integrator", Holds::Integrator, true, "How the equations of motion are stepped."),
         child("body", Holds::List(&BODY), false, "The deformable bodies."),
         child("collider", Holds::Colliders, false, "The rigid obstacles."),
+        child("contact", Holds::Table(&CONTACT), false, "How deformable bodies touch one another."),
         child("load", Holds::Tagged { tag: "kind", sections: LOADS }, false, "Forces from outside."),
         child(
             "command",
@@ -341,6 +344,7 @@ A body with a `fem` model whose cells are all triangles or tetrahedra has 2 wher
         ),
         child("integrator", Holds::Integrator, false, "How it is stepped, where not as the scene says."),
         child("models", Holds::Models, false, "What its material does."),
+        contact::OF_BODY,
         child("pin", Holds::List(&PIN), false, "Nodes held at their place, or moved in a prescribed way."),
         child(
             "copies",

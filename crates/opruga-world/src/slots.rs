@@ -151,6 +151,7 @@ impl<const D: usize> BodyBlueprint<D> {
             integrator: None,
             models: Vec::new(),
             pins: Vec::new(),
+            contact: None,
         }
     }
 }

@@ -68,6 +68,7 @@ impl<const D: usize> World<D> {
             integrator,
             colliders,
             islands: Vec::new(),
+            meeting: None,
             islands_built: 0,
             place: Vec::new(),
             slots: Slots::of_scene(bodies),

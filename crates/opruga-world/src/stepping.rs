@@ -2,9 +2,12 @@
 
 use crate::error::WorldError;
 use crate::island::{FramePlan, Island};
+use crate::meeting::Meeting;
+use crate::together;
 use crate::world::{World, lock};
+use opruga_collide::TooMany;
 use opruga_core::error::StepError;
-use opruga_core::threads::together;
+use opruga_core::threads;
 use rayon::prelude::*;
 use std::sync::atomic::Ordering;
 
@@ -24,26 +27,49 @@ impl<const D: usize> World<D> {
             unfold: self.blueprint.surroundings.unfold.then_some(&self.blueprint.bodies[..]),
         };
         (self.looks.flows, self.looks.fresh) = (self.flows, false);
+        let made_for = (self.islands_built, self.islands.len());
+        if self.blueprint.contact.is_some() && self.meeting.as_ref().is_none_or(|meeting| !meeting.is_for(made_for)) {
+            self.meeting = Meeting::of(&self.blueprint, &self.islands, made_for).map(Box::new);
+        }
         let islands = &mut self.islands;
         let workspaces = &mut self.workspaces;
         // One small body has nothing to share: waking threads for it would cost more than its frame.
         let alone = |island: &[Island<D>]| matches!(island, [one] if !one.is_shared_by(self.options.threads, 1));
+        let mut too_many = Ok(());
         match self.pool.as_ref().filter(|_| !alone(islands)) {
+            pool if self.meeting.is_some() => {
+                if let Some(meeting) = &mut self.meeting {
+                    let mut go = |threaded| together::frame(islands, meeting, &plan, workspaces, threaded);
+                    too_many = match pool {
+                        None => go(false),
+                        Some(pool) => pool.install(|| go(true)),
+                    };
+                }
+            }
             None => islands.iter_mut().for_each(|island| island.frame(&plan, &mut lock(&workspaces[0]))),
             Some(pool) => pool.install(|| {
                 // Large bodies one after the other, each on all threads; then the others, one a thread. A body that waits for
                 // its threads must not be handed another one, whose workspace would be its own.
-                let (threads, count) = (pool.current_num_threads(), islands.len());
-                for island in islands.iter_mut().filter(|island| island.is_shared_by(threads, count)) {
-                    island.system.threads = threads;
-                    together(threads, || island.frame(&plan, &mut lock(&workspaces[0])));
+                let (number, count) = (pool.current_num_threads(), islands.len());
+                for island in islands.iter_mut().filter(|island| island.is_shared_by(number, count)) {
+                    island.system.threads = number;
+                    threads::together(number, || island.frame(&plan, &mut lock(&workspaces[0])));
                     island.system.threads = 1;
                 }
-                islands.par_iter_mut().filter(|island| !island.is_shared_by(threads, count)).for_each(|island| {
+                islands.par_iter_mut().filter(|island| !island.is_shared_by(number, count)).for_each(|island| {
                     let thread = rayon::current_thread_index().unwrap_or(0);
                     island.frame(&plan, &mut lock(&workspaces[thread]));
                 });
             }),
+        }
+        if let Err(TooMany { found }) = too_many {
+            for island in &mut self.islands {
+                island.restore();
+                island.refresh();
+                island.work = Default::default();
+            }
+            let most = self.meeting.as_ref().map_or(0, |meeting| meeting.touching.most);
+            return Err(WorldError::TooManyContacts { found, most, last: self.time() });
         }
         if let Some(first) = self.islands.iter().position(|i| i.outcome.is_err()) {
             // All islands go back to the same frame.

@@ -187,6 +187,7 @@ pub(crate) fn blueprint<const D: usize>(scene: &Blueprint<D>) -> Result<(), Worl
             return Err(duplicate(message, &one.name).in_part(&format!("body `{}`", one.name)));
         }
     }
+    contact(scene, &bodies)?;
     for (k, one) in scene.loads.iter().enumerate() {
         load(one, &bodies).map_err(|fault| fault.in_part(&format!("load {k}")))?;
     }
@@ -211,6 +212,23 @@ pub(crate) fn blueprint<const D: usize>(scene: &Blueprint<D>) -> Result<(), Worl
 /// As [`blueprint`].
 pub(crate) fn body<const D: usize>(body: &BodyBlueprint<D>) -> Result<(), WorldError> {
     mesh(body).and_then(|()| numbers(body)).map_err(|fault| fault.in_part(&format!("body `{}`", body.name)))
+}
+
+/// Refuses pairs of groups that no body is in.
+fn contact<const D: usize>(scene: &Blueprint<D>, bodies: &[&BodyBlueprint<D>]) -> Result<(), WorldError> {
+    let groups: BTreeSet<&str> = bodies.iter().map(|body| body.contact_group()).collect();
+    for (k, pair) in scene.contact.iter().flat_map(|contact| contact.pairs.iter().enumerate()) {
+        for field in ["first", "second"] {
+            let group = pair.text(field).unwrap_or("");
+            if !groups.contains(group) {
+                let (message, value) = (format!("no body is in the group `{group}`"), group.to_string());
+                let allowed = groups.iter().copied().collect::<Vec<_>>().join(", ");
+                let fault = Fault { code: "scene.unknown_name", field, message, value, allowed };
+                return Err(fault.in_part(&format!("contact.pair {k}")));
+            }
+        }
+    }
+    Ok(())
 }
 
 fn duplicate(message: String, name: &str) -> Fault {

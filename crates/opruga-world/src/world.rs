@@ -7,6 +7,7 @@ use crate::island::Island;
 use crate::ledger::{Energy, Flows, Momentum};
 use crate::loads::ForceLaw;
 use crate::looks::Looks;
+use crate::meeting::Meeting;
 use crate::registry::Registry;
 use crate::running::Running;
 use crate::slots::{BodyHandle, Slots};
@@ -75,6 +76,8 @@ pub struct World<const D: usize> {
     pub(crate) integrator: Arc<dyn Integrator<D>>,
     pub(crate) colliders: Option<Arc<Colliders<D>>>,
     pub(crate) islands: Vec<Island<D>>,
+    /// The surfaces of bodies that may touch.
+    pub(crate) meeting: Option<Box<Meeting<D>>>,
     /// How many islands were built since the start.
     pub(crate) islands_built: u64,
     /// Island and lane of every body.
@@ -148,6 +151,10 @@ impl<const D: usize> World<D> {
     /// The obstacles.
     pub fn colliders(&self) -> Option<&Colliders<D>> {
         self.colliders.as_deref()
+    }
+    /// What contact between bodies has cost since the bodies were put together; none where there is none.
+    pub fn contact_counts(&self) -> Option<opruga_collide::Counts> {
+        self.meeting.as_ref().map(|meeting| meeting.touching.counts)
     }
     /// The vector instructions in force.
     pub fn simd(&self) -> Simd {

@@ -95,6 +95,7 @@ fn scene<const D: usize>(
         velocity: [0.2; D],
         angular_velocity: Vec::new(),
         velocity_gradient: [[0.0; D]; D],
+        contact: None,
         node_velocities: Arc::from([]),
         mass: Mass::Total(1.0),
         thickness: 1.0,
@@ -129,6 +130,7 @@ fn scene<const D: usize>(
         loads: Vec::new(),
         commands: drag.map(command).into_iter().collect(),
         probes: Vec::new(),
+        contact: None,
     }
 }
 

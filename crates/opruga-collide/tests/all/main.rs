@@ -7,3 +7,5 @@ mod impact;
 mod same_bits;
 mod seams;
 mod shapes;
+mod surfaces;
+mod touching;

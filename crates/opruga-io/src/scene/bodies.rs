@@ -34,6 +34,7 @@ struct Draft<'n, const D: usize> {
     integrator: Option<Values>,
     models: Vec<Values>,
     pins: Vec<pins::Placed<D>>,
+    contact: Option<Values>,
     copies: Option<Copies<D>>,
     /// Whether nothing is wrong with its nodes: what selects them can be checked.
     shaped: bool,
@@ -168,6 +169,7 @@ fn draft<'n, const D: usize>(
     for (item, here) in reader.list(node, &path, "pin") {
         pins.extend(pins::pin(reader, item, &here));
     }
+    let contact = node.get("contact").map(|at| reader.fields(at, &join(&path, "contact"), &schema::BODY_CONTACT, None));
     if values.flag("fixed") {
         let everything = PinBlueprint { select: Selector::All, axes: [true; D], motion: Vec::new() };
         pins.push((everything, node.place, join(&path, "fixed")));
@@ -200,6 +202,7 @@ fn draft<'n, const D: usize>(
         integrator,
         models,
         pins,
+        contact,
         copies,
         shaped,
         sound,
@@ -446,6 +449,7 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
         integrator: draft.integrator.clone(),
         models: draft.models.clone(),
         pins: draft.pins.iter().map(|(pin, _, _)| pin.clone()).collect(),
+        contact: draft.contact.clone(),
     };
     for (pin, place, path) in &draft.pins {
         selectors::check(reader, *place, path, &pin.select, &body);

@@ -30,17 +30,18 @@ use crate::document::{self, Node, Place};
 use crate::files::Files;
 pub use crate::limits::Limits;
 use crate::overrides;
-use crate::problem::{Notice, SceneError};
+use crate::problem::{Notice, SceneError, visible};
 use crate::regular_file::regular_file;
 use crate::source::Source;
+use body_list::Bodies;
 pub(crate) use cost::{Cost, shown};
 use moments::Frames;
-use opruga_core::spec::Values;
+use opruga_core::spec::{Values, nearest};
 use opruga_world::blueprint::{
-    AnyBlueprint, Blueprint, ColliderBlueprint, LoadBlueprint, Pictured, Surroundings, Time,
+    AnyBlueprint, Blueprint, ColliderBlueprint, ContactBlueprint, LoadBlueprint, Pictured, Surroundings, Time,
 };
 use opruga_world::{schema, validity};
-use reader::{Reader, join};
+use reader::{Reader, join, listed};
 pub use shape::of_fields as shape_of_fields;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -187,6 +188,7 @@ fn scene<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Option<Bluepri
     let mut bodies = bodies::all::<D>(reader, root, top.integer("seed").unwrap_or(1) as u64);
     let commands = reader.list(root, "", "command");
     bodies::later(reader, &commands, &mut bodies);
+    let contact = contact(reader, root, &bodies);
     let loads = actions::loads(reader, root, &bodies);
     let commands = actions::commands(reader, &commands, &bodies, integrator.as_ref(), &colliders, frames.as_ref());
     let probes = probes::probes(reader, root, &bodies);
@@ -203,6 +205,7 @@ fn scene<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Option<Bluepri
         integrator: integrator?,
         bodies: bodies.list,
         colliders,
+        contact,
         loads,
         commands,
         probes,
@@ -267,6 +270,31 @@ fn surroundings<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Surroun
         largest_distance: values.number("largest_distance"),
         unfold: values.flag("unfold"),
     }
+}
+
+/// `[contact]`.
+fn contact<const D: usize>(reader: &mut Reader<'_>, root: &Node, bodies: &Bodies<D>) -> Option<ContactBlueprint> {
+    let node = root.get("contact")?;
+    let values = reader.fields(node, "contact", &schema::CONTACT, None);
+    let mut pairs = Vec::new();
+    for (item, path) in reader.list(node, "contact", "pair") {
+        let pair = reader.fields(item, &path, &schema::CONTACT_PAIR, None);
+        // A body with an error may have been meant.
+        for field in ["first", "second"].into_iter().filter(|_| bodies.broken.is_empty()) {
+            let groups = || bodies.list.iter().map(|body| body.contact_group());
+            if let Some(group) = pair.text(field).filter(|group| groups().all(|known| known != *group)) {
+                let group = visible(group);
+                let error = SceneError::new("scene.unknown_name", format!("no body is in the group `{group}`"))
+                    .path(join(&path, field))
+                    .value(group)
+                    .allowed(listed(groups()))
+                    .nearest(nearest(pair.text(field).unwrap_or(""), groups()));
+                reader.report(place_of(item, field), error);
+            }
+        }
+        pairs.push(pair);
+    }
+    Some(ContactBlueprint { values, pairs })
 }
 
 /// `[picture]`.

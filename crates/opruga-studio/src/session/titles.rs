@@ -87,7 +87,10 @@ impl Titles {
             WorldError::Path { path, message } => {
                 (*path, *message) = (self.in_path(path), self.in_text(message));
             }
-            WorldError::Snapshot(_) | WorldError::Overflow { .. } | WorldError::BrokenOff => {}
+            WorldError::Snapshot(_)
+            | WorldError::Overflow { .. }
+            | WorldError::TooManyContacts { .. }
+            | WorldError::BrokenOff => {}
         }
         error
     }

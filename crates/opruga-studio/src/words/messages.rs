@@ -290,6 +290,11 @@ impl Language {
                  Svijet je na zadnjoj dobroj sličici; jesu li mase, krutosti i brzine u jedinicama koje idu zajedno (metri, kilogrami, sekunde)?",
                 number(*last)
             ),
+            WorldError::TooManyContacts { found, most, last } => format!(
+                "U jednom koraku moglo bi se dodirnuti više od {most} parova vrhova, bridova i ploha (nađeno ih je {found}), u sličici od \
+                 t = {} s\nSvijet je na zadnjoj dobroj sličici; pomaže veći `most_pairs` u `[contact]` ili grublje plohe",
+                number(*last)
+            ),
             WorldError::BrokenOff => "Sličica je prekinuta; svijet je na zadnjoj dobroj sličici".into(),
             WorldError::Path { path, message } => format!("`{path}` ne može: {}", self.detail(message)),
             WorldError::Snapshot(why) => format!("Snimljeno stanje ne može se vratiti\n{}", self.english(why)),

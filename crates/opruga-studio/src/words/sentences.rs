@@ -8,6 +8,17 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
         "the selected nodes hold no whole cell of the body; allowed: all nodes of one cell at least",
         "odabrani čvorovi ne drže nijednu cijelu ćeliju tijela; dopušteno: barem svi čvorovi jedne ćelije",
     ),
+    (
+        "`{}` solves for the end of a step, and contact between bodies is known for explicit integrators so far; allowed: an \
+         explicit one, such as `symplectic_euler` or `verlet`; hint: or `contact.touch = false` in this body, which then passes \
+         through the others",
+        "`{}` traži kraj koraka, a dodir među tijelima zasad je poznat eksplicitnim integratorima; dopušteno: eksplicitan, kao \
+         `symplectic_euler` ili `verlet`; savjet: ili `contact.touch = false` u tom tijelu, koje tada prolazi kroz druga",
+    ),
+    (
+        "`unfold` displaces bodies at random, into others too; allowed: `unfold = false` in a scene with `[contact]`",
+        "`unfold` pomiče tijela nasumce, i u druga; dopušteno: `unfold = false` u prizoru s `[contact]`",
+    ),
     ("the body has no {} edges to carry springs", "tijelo nema bridova ({}) koji bi nosili opruge"),
     ("edge {} has no length; `modulus` needs one", "brid {} nema duljinu, a `modulus` je treba"),
     ("exactly one of `{}` and `{}` must be given", "treba zadati točno jedno od `{}` i `{}`"),

@@ -31,6 +31,7 @@ fn ball(name: &str, x: f64) -> BodyBlueprint<2> {
         velocity: [0.3, 0.0],
         angular_velocity: Vec::new(),
         velocity_gradient: [[0.0; 2]; 2],
+        contact: None,
         node_velocities: Arc::from([]),
         mass: Mass::Total(1.0),
         thickness: 1.0,
@@ -66,6 +67,7 @@ fn scene(commands: Vec<CommandBlueprint<2>>) -> Blueprint<2> {
         loads: Vec::new(),
         commands,
         probes: Vec::new(),
+        contact: None,
     }
 }
 

@@ -54,6 +54,7 @@ fn body<const D: usize>(mesh: Mesh<D>, mass: &str, integrator: &str) -> Blueprin
             velocity: [0.0; D],
             angular_velocity: Vec::new(),
             velocity_gradient: [[0.0; D]; D],
+            contact: None,
             node_velocities: Arc::from([]),
             mass: Mass::Density(DENSITY),
             thickness: 0.1,
@@ -65,6 +66,7 @@ fn body<const D: usize>(mesh: Mesh<D>, mass: &str, integrator: &str) -> Blueprin
         loads: Vec::new(),
         commands: Vec::new(),
         probes: Vec::new(),
+        contact: None,
     }
 }
 

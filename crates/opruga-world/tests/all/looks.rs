@@ -31,6 +31,7 @@ fn rings(count: usize, substeps: u32) -> Blueprint<2> {
         velocity: [0.3, 0.0],
         angular_velocity: vec![1.0],
         velocity_gradient: [[0.0; 2]; 2],
+        contact: None,
         node_velocities: Arc::from([]),
         mass: Mass::Total(1.0),
         thickness: 1.0,
@@ -65,6 +66,7 @@ fn rings(count: usize, substeps: u32) -> Blueprint<2> {
         loads: Vec::new(),
         commands: Vec::new(),
         probes: Vec::new(),
+        contact: None,
     }
 }
 

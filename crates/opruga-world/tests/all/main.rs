@@ -6,6 +6,7 @@ mod ball;
 mod blueprints_of_programs;
 mod common;
 mod consistent_mass;
+mod contact;
 mod damped_bars;
 mod far_from_the_origin;
 mod flat_bodies;

@@ -36,6 +36,7 @@ fn body(name: &str, mesh: &Arc<Mesh<2>>, models: Vec<Values>) -> BodyBlueprint<2
         velocity: [0.0; 2],
         angular_velocity: vec![0.0],
         velocity_gradient: [[0.0; 2]; 2],
+        contact: None,
         node_velocities: Arc::from([]),
         mass: Mass::Total(1.0),
         thickness: 1.0,
@@ -69,6 +70,7 @@ fn scene(bodies: Vec<BodyBlueprint<2>>, colliders: Vec<ColliderBlueprint>) -> Bl
         loads: Vec::new(),
         commands: Vec::new(),
         probes: Vec::new(),
+        contact: None,
     }
 }
 

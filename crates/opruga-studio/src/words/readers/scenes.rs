@@ -297,6 +297,7 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     ("there is no parameter that changes in the run `{}`", "nema parametra koji se mijenja tijekom izvođenja `{}`"),
     ("there is no model of this body `{}`", "ovo tijelo nema model `{}`"),
     ("there is no parameter `{}` of `{}`", "nema parametra `{}` u `{}`"),
+    ("no body is in the group `{}`", "nijedno tijelo nije u grupi `{}`"),
     ("there is no collider `{}`", "nema prepreke `{}`"),
     ("body `{}` has no integrator of its own", "tijelo `{}` nema svoj integrator"),
     ("`{}` is no parameter", "`{}` nije parametar"),

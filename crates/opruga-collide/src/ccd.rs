@@ -1,0 +1,109 @@
+//! Continuous collision detection: whether, and when, moving features come closer than a distance.
+//!
+//! Additive steps: features at distance d that approach at most at the speed l (in units of the step) cannot meet before
+//! (d − ξ)/l. The time moves on by nine tenths of that, again and again, until the distance above ξ is a billionth of what it was at
+//! the start. No root of a polynomial is sought, so nothing is lost to rounding: what meets is found, always; what passes by at
+//! less than a billionth of the distance that it had counts as meeting too.
+
+use crate::closest::{closest_of_segments, closest_on_facet, mean};
+use crate::vector::{dot, subtract};
+use opruga_math::Lane;
+
+/// The part of every bound by which the time moves on: the value of the source.
+const PART: f64 = 0.9;
+
+/// What is left of the distance where features count as meeting, relative to that at the start. The source takes a tenth, so that
+/// the features stay apart; here the distance ξ does that, and a tenth would hold back what only passes by: of the queries in the tests, 79
+/// instead of 10 (a millionth 14).
+const LEFT: f64 = 1e-9;
+
+/// Steps after which features count as meeting. Features that approach straight take two or three, those that turn about one another
+/// at a constant distance the most: each moves on by at least d/l.
+const MOST_STEPS: usize = 1000;
+
+/// The part of a step after which a vertex comes closer to a facet than `distance` [m], at the latest a little before it does; none
+/// where it does not. All points move in straight lines from `[0]` to `[1]`.
+///
+/// There are no false negatives. Features that are as close at the start meet at 0.
+///
+/// # Source
+/// M. Li, D. M. Kaufman, C. Jiang, Codimensional Incremental Potential Contact, ACM Trans. Graph. 40, 170 (2021), algorithm 1.
+pub fn vertex_meets_facet<const D: usize>(
+    vertex: &[[f64; D]; 2],
+    facet: &[[[f64; D]; D]; 2],
+    distance: f64,
+) -> Option<f64> {
+    let moves = [subtract(&vertex[1], &vertex[0])];
+    let other = core::array::from_fn::<_, D, _>(|k| subtract(&facet[1][k], &facet[0][k]));
+    additive(&[vertex[0]], &facet[0], moves, other, distance, |[p], corners| {
+        let weights = closest_on_facet(p, corners);
+        let between = subtract(p, &mean(&weights, corners));
+        dot(&between, &between)
+    })
+}
+
+/// The part of a step after which two edges come closer than `distance` [m]: as [`vertex_meets_facet`].
+pub fn edge_meets_edge<const D: usize>(a: &[[[f64; D]; 2]; 2], b: &[[[f64; D]; 2]; 2], distance: f64) -> Option<f64> {
+    let moves = |e: &[[[f64; D]; 2]; 2]| core::array::from_fn::<_, 2, _>(|k| subtract(&e[1][k], &e[0][k]));
+    additive(&a[0], &b[0], moves(a), moves(b), distance, |a, b| {
+        let [s, t] = closest_of_segments(a, b);
+        let between = subtract(&mean(&[1.0 - s, s], a), &mean(&[1.0 - t, t], b));
+        dot(&between, &between)
+    })
+}
+
+fn additive<const D: usize, const M: usize, const N: usize>(
+    a: &[[f64; D]; M],
+    b: &[[f64; D]; N],
+    mut moves_a: [[f64; D]; M],
+    mut moves_b: [[f64; D]; N],
+    distance: f64,
+    square: impl Fn(&[[f64; D]; M], &[[f64; D]; N]) -> f64,
+) -> Option<f64> {
+    // What all points do together brings none closer.
+    let mut common = [0.0; D];
+    for motion in moves_a.iter().chain(&moves_b) {
+        for d in 0..D {
+            common[d] += motion[d] / (M + N) as f64;
+        }
+    }
+    let farthest = |moves: &mut [[f64; D]]| {
+        let mut most: f64 = 0.0;
+        for motion in moves {
+            *motion = subtract(motion, &common);
+            most = dot(motion, motion).larger(most);
+        }
+        most.sqrt()
+    };
+    let speed = farthest(&mut moves_a) + farthest(&mut moves_b);
+    // (d² − ξ²)/(d + ξ) = d − ξ, without the cancellation where d is close to ξ.
+    let above = |square: f64| {
+        let d = square.sqrt();
+        if d > 0.0 { (square - distance * distance) / (d + distance) } else { -distance }
+    };
+    let start = above(square(a, b));
+    // What is no number meets.
+    if start <= 0.0 || !(start + speed).is_finite() {
+        return Some(0.0);
+    }
+    if start > speed {
+        return None;
+    }
+    let (mut time, mut step) = (0.0, PART * start / speed);
+    for _ in 0..MOST_STEPS {
+        let next = time + step;
+        let at = |x: &[f64; D], motion: &[f64; D]| core::array::from_fn(|d| x[d] + next * motion[d]);
+        let now_a = core::array::from_fn(|k| at(&a[k], &moves_a[k]));
+        let now_b = core::array::from_fn(|k| at(&b[k], &moves_b[k]));
+        let gap = above(square(&now_a, &now_b));
+        if gap <= 0.0 || !gap.is_finite() || time > 0.0 && gap < LEFT * start {
+            return Some(time);
+        }
+        time = next;
+        if time > 1.0 {
+            return None;
+        }
+        step = PART * gap / speed;
+    }
+    Some(time)
+}

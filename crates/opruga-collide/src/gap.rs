@@ -1,0 +1,169 @@
+//! How far two features are apart, and which direction leads out.
+
+use crate::closest::{PARALLEL, closest_of_segments, closest_on_facet, facet_normal, mean};
+use crate::surface::Surface;
+use crate::vector::{dot, length, scaled, subtract};
+use opruga_math::Lane;
+
+/// Two features at their closest points.
+///
+/// The gap changes by Σ wᵢ n·Δxᵢ when the points move: the weights of the one feature add up to 1, those of the other to −1. So
+/// impulses wᵢ n λ on the points change no momentum.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gap<const D: usize> {
+    /// The points; those beyond the features have the weight 0 and repeat the first.
+    pub points: [u32; 4],
+    /// Their weights.
+    pub weights: [f64; 4],
+    /// The distance, negative where the first feature is on the inner side of the second [m].
+    pub gap: f64,
+    /// The unit normal, from the second feature to the first.
+    pub normal: [f64; D],
+}
+
+/// The distance, relative to the coordinates, below which the vector from one feature to the other is all rounding.
+const ROUNDING: f64 = 1e-13;
+
+impl<const D: usize> Gap<D> {
+    /// The gap of a vertex and a facet with the points at `x` [m].
+    ///
+    /// A facet of a closed boundary has an inner side, where the gap is negative: by its own normal where the closest point lies within
+    /// it, else by those of all facets around the edge or corner where it lies, each weighted by its angle there. Others hold on
+    /// both sides.
+    ///
+    /// # Source
+    /// J. A. Bærentzen, H. Aanæs, Signed distance computation using the angle weighted pseudonormal, IEEE TVCG 11 (2005) 243–253.
+    pub fn of_vertex_and_facet(surface: &Surface<D>, x: &[[f64; D]], vertex: u32, facet: u32) -> Gap<D> {
+        let corners = surface.facets[facet as usize];
+        let at = corners.map(|p| x[p as usize]);
+        let p = x[vertex as usize];
+        let weights = closest_on_facet(&p, &at);
+        let between = subtract(&p, &mean(&weights, &at));
+        let mut out = Gap { points: [vertex; 4], weights: [0.0; 4], gap: 0.0, normal: [0.0; D] };
+        out.weights[0] = 1.0;
+        for k in 0..D {
+            (out.points[k + 1], out.weights[k + 1]) = (corners[k], -weights[k]);
+        }
+        let within = weights.iter().all(|w| *w > 0.0);
+        let outward = || {
+            if within { unit(&facet_normal(&at)) } else { normal_around(surface, x, &corners, &weights) }
+        };
+        out.point_along(&between, surface.closed[facet as usize], &p, outward);
+        out
+    }
+
+    /// The gap of two edges with the points at `x` [m]; none where their closest points are not within both, or where they are parallel:
+    /// then pairs of a vertex and a facet say it all.
+    pub fn of_edges(surface: &Surface<D>, x: &[[f64; D]], a: u32, b: u32) -> Option<Gap<D>> {
+        let (ea, eb) = (surface.edges[a as usize], surface.edges[b as usize]);
+        let (xa, xb) = (ea.map(|p| x[p as usize]), eb.map(|p| x[p as usize]));
+        let [s, t] = closest_of_segments(&xa, &xb);
+        let inner = |s: f64| s > 0.0 && s < 1.0;
+        let (da, db) = (subtract(&xa[1], &xa[0]), subtract(&xb[1], &xb[0]));
+        let (aa, bb, ab) = (dot(&da, &da), dot(&db, &db), dot(&da, &db));
+        if !(inner(s) && inner(t) && aa * bb - ab * ab > PARALLEL * aa * bb) {
+            return None;
+        }
+        let mut out = Gap {
+            points: [ea[0], ea[1], eb[0], eb[1]],
+            weights: [1.0 - s, s, t - 1.0, -t],
+            gap: 0.0,
+            normal: [0.0; D],
+        };
+        let between = subtract(&mean(&[1.0 - s, s], &xa), &mean(&[1.0 - t, t], &xb));
+        let sides = |edge: u32| surface.sides[edge as usize];
+        let closed = [a, b].iter().all(|e| sides(*e) != [u32::MAX; 2]);
+        // Outward of the second body, and into the first.
+        let outward = || {
+            let mut sum = [0.0; D];
+            for (edge, sign) in [(a, -1.0), (b, 1.0)] {
+                for side in sides(edge).into_iter().filter(|side| *side != u32::MAX) {
+                    let n = unit(&facet_normal(&surface.facets[side as usize].map(|p| x[p as usize])));
+                    for d in 0..D {
+                        sum[d] += sign * n[d];
+                    }
+                }
+            }
+            // Perpendicular to both edges, where the vector between them has no direction.
+            let mut cross = [0.0; D];
+            for d in 0..D {
+                let (i, j) = ((d + 1) % D, (d + 2) % D);
+                cross[d] = da[i] * db[j] - da[j] * db[i];
+            }
+            let sign = if dot(&cross, &sum) < 0.0 { -1.0 } else { 1.0 };
+            scaled(&unit(&cross), sign)
+        };
+        out.point_along(&between, closed, &xa[0], outward);
+        Some(out)
+    }
+
+    /// Sets gap and normal from the vector between the closest points.
+    fn point_along(&mut self, between: &[f64; D], closed: bool, origin: &[f64; D], outward: impl Fn() -> [f64; D]) {
+        let distance = length(between);
+        let mut size = 0.0;
+        for c in origin {
+            size += c.abs();
+        }
+        if distance > ROUNDING * size {
+            let inside = closed && dot(between, &outward()) < 0.0;
+            let sign = if inside { -1.0 } else { 1.0 };
+            (self.gap, self.normal) = (sign * distance, scaled(between, sign / distance));
+        } else {
+            (self.gap, self.normal) = (0.0, outward());
+        }
+    }
+
+    /// Σ wᵢ n·aᵢ of vectors at the points, such as their velocities.
+    #[inline]
+    pub fn along(&self, vectors: &[[f64; D]]) -> f64 {
+        let mut sum = 0.0;
+        for (p, w) in self.points.iter().zip(&self.weights) {
+            sum += w * dot(&vectors[*p as usize], &self.normal);
+        }
+        sum
+    }
+}
+
+/// A vector of length 1; one that has none points upwards.
+fn unit<const D: usize>(a: &[f64; D]) -> [f64; D] {
+    let l = length(a);
+    if l > 0.0 && l.is_finite() {
+        return scaled(a, 1.0 / l);
+    }
+    let mut out = [0.0; D];
+    out[1] = 1.0;
+    out
+}
+
+/// The normals of all facets around the corner or edge where the weights are not zero, each by its angle there.
+fn normal_around<const D: usize>(
+    surface: &Surface<D>,
+    x: &[[f64; D]],
+    corners: &[u32; D],
+    weights: &[f64; D],
+) -> [f64; D] {
+    let on = |k: &usize| weights[*k] > 0.0;
+    let first = (0..D).find(on).unwrap_or(0);
+    let shared = |facet: &[u32; D]| (0..D).filter(on).all(|k| facet.contains(&corners[k]));
+    let corner = (0..D).filter(on).count() == 1;
+    let mut sum = [0.0; D];
+    for number in surface.facets_around(corners[first]) {
+        let facet = &surface.facets[*number as usize];
+        if !shared(facet) {
+            continue;
+        }
+        let at = facet.map(|p| x[p as usize]);
+        let mut angle = 1.0;
+        if corner && D == 3 {
+            let k = facet.iter().position(|p| *p == corners[first]).unwrap_or(0);
+            let (u, v) = (subtract(&at[(k + 1) % D], &at[k]), subtract(&at[(k + 2) % D], &at[k]));
+            let cos = dot(&unit(&u), &unit(&v));
+            angle = libm::acos(cos.larger(-1.0).smaller(1.0));
+        }
+        let n = unit(&facet_normal(&at));
+        for d in 0..D {
+            sum[d] += angle * n[d];
+        }
+    }
+    unit(&sum)
+}

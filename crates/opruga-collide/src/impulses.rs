@@ -1,0 +1,241 @@
+//! Impulses on pairs in contact: projected Gauss–Seidel.
+
+use crate::gap::Gap;
+use crate::vector::{dot, length, scaled, subtract};
+use opruga_math::Lane;
+
+/// One contact: a lower bound of its normal velocity, and Coulomb friction.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Row<const D: usize> {
+    /// Its features: rows ascend by it, and impulses of the last substep are found by it.
+    pub(crate) id: u64,
+    pub(crate) points: [u32; 4],
+    pub(crate) weights: [f64; 4],
+    pub(crate) normal: [f64; D],
+    /// The gap at the beginning of the step, less the thickness [m].
+    pub(crate) gap: f64,
+    /// The normal velocity that it must have at least at the end [m/s].
+    pub(crate) target: f64,
+    /// The velocity of an obstacle [m/s]; zero between bodies.
+    pub(crate) carry: [f64; D],
+    pub(crate) friction: f64,
+    /// Inverse of the inverse mass along the normal, and the least across it [kg]; 0 where nothing can move.
+    pub(crate) mass: [f64; 2],
+    /// Multipliers: the impulse along the normal and that across it [N s].
+    pub(crate) normal_impulse: f64,
+    pub(crate) friction_impulse: [f64; D],
+    /// Whether it is solved for, or only watched.
+    pub(crate) in_play: bool,
+    /// Whether the second feature is an obstacle.
+    pub(crate) of_obstacle: bool,
+}
+
+impl<const D: usize> Row<D> {
+    pub(crate) fn new(id: u64, gap: &Gap<D>, thickness: f64, friction: f64, inverse_mass: &[[f64; D]]) -> Row<D> {
+        let mut row = Row {
+            id,
+            points: gap.points,
+            weights: gap.weights,
+            normal: gap.normal,
+            gap: gap.gap - thickness,
+            target: 0.0,
+            carry: [0.0; D],
+            friction,
+            mass: [0.0; 2],
+            normal_impulse: 0.0,
+            friction_impulse: [0.0; D],
+            in_play: false,
+            of_obstacle: false,
+        };
+        row.weigh(inverse_mass);
+        row
+    }
+
+    /// Works out what it weighs.
+    pub(crate) fn weigh(&mut self, inverse_mass: &[[f64; D]]) {
+        let (mut along, mut across) = (0.0, 0.0);
+        for k in 0..4 {
+            let (w, m) = (self.weights[k] * self.weights[k], &inverse_mass[self.points[k] as usize]);
+            let mut most: f64 = 0.0;
+            for d in 0..D {
+                along += w * self.normal[d] * self.normal[d] * m[d];
+                most = m[d].larger(most);
+            }
+            across += w * most;
+        }
+        let inverse = |k: f64| if k > 0.0 { 1.0 / k } else { 0.0 };
+        self.mass = [inverse(along), inverse(across)];
+    }
+
+    /// Σ wᵢ aᵢ.
+    #[inline]
+    pub(crate) fn mean(&self, of: &[[f64; D]]) -> [f64; D] {
+        let mut sum = [0.0; D];
+        for k in 0..4 {
+            let a = &of[self.points[k] as usize];
+            for d in 0..D {
+                sum[d] += self.weights[k] * a[d];
+            }
+        }
+        sum
+    }
+
+    /// Gives its points an impulse [N s].
+    #[inline]
+    pub(crate) fn give(&self, impulse: &[f64; D], inverse_mass: &[[f64; D]], v: &mut [[f64; D]]) {
+        for k in 0..4 {
+            let p = self.points[k] as usize;
+            for d in 0..D {
+                v[p][d] += self.weights[k] * impulse[d] * inverse_mass[p][d];
+            }
+        }
+    }
+
+    /// The whole impulse [N s].
+    pub(crate) fn impulse(&self) -> [f64; D] {
+        let mut out = self.friction_impulse;
+        for d in 0..D {
+            out[d] += self.normal_impulse * self.normal[d];
+        }
+        out
+    }
+
+    /// One turn: the normal impulse that its bound needs, then the friction that this allows. Gives by how much its velocity changed [m/s].
+    #[inline]
+    fn solve(&mut self, inverse_mass: &[[f64; D]], v: &mut [[f64; D]]) -> f64 {
+        let mut u = subtract(&self.mean(v), &self.carry);
+        let old = self.normal_impulse;
+        let new = (old + (self.target - dot(&u, &self.normal)) * self.mass[0]).larger(0.0);
+        let mut changed = 0.0;
+        if new != old {
+            self.normal_impulse = new;
+            self.give(&scaled(&self.normal, new - old), inverse_mass, v);
+            changed = ((new - old) / self.mass[0]).abs();
+        }
+        if self.friction > 0.0 && (new > 0.0 || old > 0.0) {
+            u = subtract(&self.mean(v), &self.carry);
+            let un = dot(&u, &self.normal);
+            let before = self.friction_impulse;
+            let mut after = before;
+            for d in 0..D {
+                after[d] -= (u[d] - un * self.normal[d]) * self.mass[1];
+            }
+            // Impulses of the last substep may have been along another normal.
+            let along = dot(&after, &self.normal);
+            for d in 0..D {
+                after[d] -= along * self.normal[d];
+            }
+            let (size, most) = (length(&after), self.friction * new);
+            if size > most {
+                after = scaled(&after, most / size);
+            }
+            let change = subtract(&after, &before);
+            let largest = dot(&change, &change);
+            if largest > 0.0 {
+                self.friction_impulse = after;
+                self.give(&change, inverse_mass, v);
+                changed = (largest.sqrt() / self.mass[1]).larger(changed);
+            }
+        }
+        changed
+    }
+}
+
+/// What is left of the velocities of contacts, relative to the mean approach of the step, where the sweeps end: at rest, where that is
+/// h g, a contact then creeps by less than a thousandth of what one step of free fall would make, and impulses of the next step start from there.
+const TOLERANCE: f64 = 1e-3;
+
+/// The most sweeps of a step. A sweep carries an impulse through all contacts in its direction, so a column of bodies converges with the
+/// number of its contacts that hang together within one step of the elastic wave: a few.
+const MOST_SWEEPS: usize = 60;
+
+/// When rows were solved for, and when what they hold has changed, counted in turns of rows: beside the rows, which are large.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Turns {
+    /// When the velocity of a point changed last.
+    stamps: Vec<u64>,
+    /// The points of the rows in play, and their last turns.
+    rows: Vec<([u32; 4], u64)>,
+    now: u64,
+}
+
+impl Turns {
+    /// Begins a step: everything has changed.
+    pub(crate) fn begin(&mut self, points: usize) {
+        self.stamps.clear();
+        self.stamps.resize(points, 1);
+        self.now = 1;
+    }
+}
+
+/// Sweeps over the rows in play, to and fro, until the velocities stay. Gives the number of sweeps.
+///
+/// A row is passed over while nothing that it holds has changed since its last turn by more than the tolerance: so sweeps cost what is still
+/// on the move.
+pub(crate) fn solve<const D: usize>(
+    rows: &mut [Row<D>],
+    play: &[u32],
+    inverse_mass: &[[f64; D]],
+    v: &mut [[f64; D]],
+    turns: &mut Turns,
+    approach: f64,
+) -> usize {
+    let Turns { stamps, rows: heads, now } = turns;
+    heads.clear();
+    heads.extend(play.iter().map(|k| (rows[*k as usize].points, 0)));
+    for sweep in 0..MOST_SWEEPS {
+        let mut changed = false;
+        let mut turn = |(number, (points, last)): (&u32, &mut ([u32; 4], u64))| {
+            if points.iter().all(|p| stamps[*p as usize] <= *last) {
+                return;
+            }
+            *now += 1;
+            if rows[*number as usize].solve(inverse_mass, v) > TOLERANCE * approach {
+                changed = true;
+                points.iter().for_each(|p| stamps[*p as usize] = *now);
+            }
+            *last = *now;
+        };
+        let both = play.iter().zip(heads.iter_mut());
+        if sweep % 2 == 0 {
+            both.for_each(&mut turn)
+        } else {
+            both.rev().for_each(&mut turn)
+        }
+        if !changed {
+            return sweep + 1;
+        }
+    }
+    MOST_SWEEPS
+}
+
+/// Displacements that take overlapping pairs apart by at most `most` [m], without bringing others into overlap: the same sweeps, on positions.
+pub(crate) fn part<const D: usize>(
+    rows: &[Row<D>],
+    play: &[u32],
+    inverse_mass: &[[f64; D]],
+    wanted: &[f64],
+    multipliers: &mut Vec<f64>,
+    moved: &mut [[f64; D]],
+    most: f64,
+) {
+    multipliers.clear();
+    multipliers.resize(play.len(), 0.0);
+    for _ in 0..MOST_SWEEPS {
+        let mut largest: f64 = 0.0;
+        for (k, number) in play.iter().enumerate() {
+            let row = &rows[*number as usize];
+            let now = dot(&row.mean(moved), &row.normal);
+            let old = multipliers[k];
+            let new = (old + (wanted[k] - now) * row.mass[0]).larger(0.0);
+            if new != old {
+                multipliers[k] = new;
+                row.give(&scaled(&row.normal, new - old), inverse_mass, moved);
+                largest = ((new - old) / row.mass[0]).abs().larger(largest);
+            }
+        }
+        if largest <= TOLERANCE * most {
+            return;
+        }
+    }
+}

@@ -1,0 +1,211 @@
+//! From candidates to contacts: the gaps that count.
+
+use crate::ccd::{edge_meets_edge, vertex_meets_facet};
+use crate::gap::Gap;
+use crate::impulses::Row;
+use crate::law::PairLaw;
+use crate::touching::Touching;
+use crate::vector::{dot, subtract};
+use core::ops::Range;
+use opruga_math::Lane;
+
+impl<const D: usize> Touching<D> {
+    /// Takes the gaps of all candidates that may come to touch; rows are in the order of their features.
+    pub(crate) fn take_gaps(&mut self, h: f64) {
+        let reach = self.window + 2.0 * self.drifted;
+        self.rows.clear();
+        let pairs = self.candidates.vertex_facet.len();
+        let mut k = 0;
+        while k < pairs {
+            let [vertex, _] = self.candidates.vertex_facet[k];
+            let (first, begin) = (k, self.rows.len());
+            while self.candidates.vertex_facet.get(k).is_some_and(|pair| pair[0] == vertex) {
+                k += 1;
+            }
+            self.take_gaps_of(first..k, reach, h);
+            // Who seems to be deep inside may be outside, before a facet that is nearer and beyond the reach.
+            let known = |row: &Row<D>, window: f64| row.gap + self.laws.largest_thickness() >= -window;
+            if !self.rows[begin..].iter().all(|row| known(row, self.window)) {
+                self.rows.truncate(begin);
+                let window = std::mem::replace(&mut self.window, f64::INFINITY);
+                self.take_gaps_of(first..k, f64::INFINITY, h);
+                self.window = window;
+            }
+            self.keep_the_nearest(begin);
+        }
+        for k in 0..self.candidates.edge_edge.len() {
+            let [a, b] = self.candidates.edge_edge[k];
+            let bodies = [a, b].map(|e| self.surface.body[self.surface.edges[e as usize][0] as usize]);
+            let law = *self.laws.of(bodies[0], bodies[1]);
+            if self.bounds[pairs + k] > law.thickness + reach {
+                continue;
+            }
+            let Some(mut gap) = Gap::of_edges(&self.surface, &self.before[0], a, b) else { continue };
+            if bodies[0] == bodies[1] && gap.gap < 0.0 {
+                (gap.gap, gap.normal) = (-gap.gap, gap.normal.map(|n| -n));
+            }
+            // Edges deep in one another are those of opposite sides as often as not: vertices and facets say where to go.
+            if gap.gap < -law.thickness {
+                continue;
+            }
+            self.push(gap, &law, h, [a, b], false);
+        }
+    }
+
+    /// Takes the gaps of some candidates of one vertex that may be within a reach [m].
+    fn take_gaps_of(&mut self, candidates: Range<usize>, reach: f64, h: f64) {
+        for k in candidates {
+            let [vertex, facet] = self.candidates.vertex_facet[k];
+            let [own, other] = [vertex, self.surface.facets[facet as usize][0]].map(|p| self.surface.body[p as usize]);
+            let law = *self.laws.of(own, other);
+            if self.bounds[k] > law.thickness + reach {
+                continue;
+            }
+            let mut gap = Gap::of_vertex_and_facet(&self.surface, &self.before[0], vertex, facet);
+            if own == other && gap.gap < 0.0 {
+                // A body holds itself on both sides.
+                (gap.gap, gap.normal) = (-gap.gap, gap.normal.map(|n| -n));
+            }
+            self.push(gap, &law, h, [vertex, facet], true);
+        }
+    }
+
+    /// Adds a row for the gap of a vertex and a facet, or of two edges.
+    fn push(&mut self, mut gap: Gap<D>, law: &PairLaw, h: f64, pair: [u32; 2], with_facet: bool) {
+        if gap.gap > law.thickness + self.window {
+            return;
+        }
+        let mut meets = true;
+        if gap.gap > law.thickness && self.goes_far(&gap, with_facet) {
+            // The closest points now are not those of the impact.
+            match self.impact(&gap, law.thickness, pair, with_facet) {
+                Some(then) => gap = then,
+                None => meets = false,
+            }
+        }
+        let ([x0, v0], [x1, v1]) = (&self.before, &self.after);
+        let id = u64::from(!with_facet) << 62 | u64::from(pair[0]) << 31 | u64::from(pair[1]);
+        let mut row = Row::new(id, &gap, law.thickness, law.friction, &self.inverse_mass);
+        let (came, comes) = (-gap.along(v0), -gap.along(v1));
+        row.target = if row.gap > 0.0 { -row.gap / h } else { 0.0 };
+        let end = row.gap + gap.along(x1) - gap.along(x0);
+        row.in_play = row.mass[0] > 0.0 && meets && (end < 0.0 || row.gap < 0.0 || h * comes > row.gap);
+        if law.restitution > 0.0 && row.in_play && row.gap > 0.0 {
+            // The surface is met within the step, whose force goes on to its end: s² = u² + 2 a g, between the speeds at both ends.
+            let square = came * came + 2.0 * (comes - came) / h * row.gap;
+            let speed = square.larger(0.0).sqrt().smaller(came.larger(comes)).larger(came.smaller(comes));
+            if speed > self.laws.rest_speed {
+                row.target = law.restitution * speed;
+            }
+        }
+        self.rows.push(row);
+    }
+
+    /// Whether a pair moves by more than a quarter of a feature within the step, relative to one another.
+    fn goes_far(&self, gap: &Gap<D>, with_facet: bool) -> bool {
+        let ([x0, _], [x1, _]) = (&self.before, &self.after);
+        let first = usize::from(with_facet);
+        let edge = subtract(&x0[gap.points[first + 1] as usize], &x0[gap.points[first] as usize]);
+        let mut travel = [0.0; D];
+        for (p, w) in gap.points.iter().zip(&gap.weights) {
+            for d in 0..D {
+                travel[d] += w * (x1[*p as usize][d] - x0[*p as usize][d]);
+            }
+        }
+        16.0 * dot(&travel, &travel) > dot(&edge, &edge)
+    }
+
+    /// The gap of a pair at the start of the step by the normal and the weights where it meets within the step; none where it does not.
+    fn impact(&mut self, gap: &Gap<D>, thickness: f64, [a, b]: [u32; 2], with_facet: bool) -> Option<Gap<D>> {
+        let ([x0, _], [x1, _]) = (&self.before, &self.after);
+        let ends = |p: u32| [x0[p as usize], x1[p as usize]];
+        let time = if with_facet {
+            let corners = self.surface.facets[b as usize].map(ends);
+            vertex_meets_facet(&ends(a), &[corners.map(|c| c[0]), corners.map(|c| c[1])], thickness)
+        } else {
+            let [a, b] = [a, b].map(|e| self.surface.edges[e as usize].map(ends));
+            let swept = |e: [[[f64; D]; 2]; 2]| [[e[0][0], e[1][0]], [e[0][1], e[1][1]]];
+            edge_meets_edge(&swept(a), &swept(b), thickness)
+        }?;
+        // Normals of corners and edges ask the facets around.
+        let moved = &mut self.impact;
+        let mut go = |p: u32| {
+            let (from, to) = (&x0[p as usize], &x1[p as usize]);
+            moved[p as usize] = core::array::from_fn(|d| from[d] + time * (to[d] - from[d]));
+        };
+        for p in gap.points {
+            go(p);
+            let around = self.surface.facets_around(p).iter();
+            around.flat_map(|facet| self.surface.facets[*facet as usize]).for_each(&mut go);
+        }
+        let mut then = if with_facet {
+            Gap::of_vertex_and_facet(&self.surface, &self.impact, a, b)
+        } else {
+            // Edges that meet at an end are met by a vertex too.
+            Gap::of_edges(&self.surface, &self.impact, a, b)?
+        };
+        // They are apart at the start: what is in front now stays in front.
+        if then.gap < 0.0 {
+            then.normal = then.normal.map(|n| -n);
+        }
+        then.gap = then.along(x0);
+        Some(then)
+    }
+
+    /// Of the rows of one vertex, from one on, keeps what counts: outside of a body all facets before it, each closest point once; inside
+    /// the nearest one, through which it leaves.
+    fn keep_the_nearest(&mut self, begin: usize) {
+        if self.rows.len() - begin < 2 {
+            return;
+        }
+        let body = |row: &Row<D>| self.surface.body[row.points[1] as usize];
+        let is_closed = |row: &Row<D>| row.points[1..=D].iter().all(|p| self.surface.is_closed(*p));
+        let depth = |row: &Row<D>| {
+            let own = self.surface.body[row.points[0] as usize];
+            row.gap + self.laws.of(own, body(row)).thickness
+        };
+        let rows = &self.rows[begin..];
+        self.keep.clear();
+        self.keep.resize(rows.len(), true);
+        for (j, row) in rows.iter().enumerate() {
+            let own = self.surface.body[row.points[0] as usize];
+            let key = features(row);
+            for (k, other) in rows.iter().enumerate() {
+                if j == k || body(row) != body(other) {
+                    continue;
+                }
+                let others = features(other);
+                let [a, b] = [row, other].map(depth);
+                // The same closest point, or one at the rim of a facet over which the vertex lies.
+                let within = key.iter().all(|p| *p == u32::MAX || others.contains(p));
+                if within && (key != others || k < j) {
+                    self.keep[j] = false;
+                }
+                if own != body(row) && is_closed(row) && is_closed(other) {
+                    let other_is_nearer = b.abs() < a.abs() || b.abs() == a.abs() && k < j;
+                    if other_is_nearer && (a < 0.0 || b < 0.0) {
+                        self.keep[j] = false;
+                    }
+                }
+            }
+        }
+        let mut write = begin;
+        for k in 0..self.keep.len() {
+            if self.keep[k] {
+                self.rows[write] = self.rows[begin + k];
+                write += 1;
+            }
+        }
+        self.rows.truncate(write);
+    }
+}
+
+/// The corners of a facet that carry the closest point; the others are `u32::MAX`.
+fn features<const D: usize>(row: &Row<D>) -> [u32; 3] {
+    let mut out = [u32::MAX; 3];
+    for k in (1..=D).filter(|k| row.weights[*k] != 0.0) {
+        out[k - 1] = row.points[k];
+    }
+    out.sort_unstable();
+    out
+}

@@ -1,0 +1,128 @@
+//! The surface of deformable bodies: what touches.
+
+use opruga_mesh::Mesh;
+
+/// Points, edges and facets of the surfaces of some bodies, all of one kind for those who look for contact.
+///
+/// Points are nodes of the bodies that belong to a boundary, an open surface or a wire. In 2D facets are edges, in 3D triangles.
+#[derive(Clone, Debug, Default)]
+pub struct Surface<const D: usize> {
+    /// The body of every point.
+    pub body: Vec<u32>,
+    /// The corners of every facet. Those of a closed boundary have the inside to their left (2D) or on the side from which they
+    /// appear clockwise (3D).
+    pub facets: Vec<[u32; D]>,
+    /// Whether a facet is part of a closed boundary and so has an inside; others hold on both sides.
+    pub closed: Vec<bool>,
+    /// Edges in 3D, each once; empty in 2D, where facets are the edges.
+    pub edges: Vec<[u32; 2]>,
+    /// The facets of each edge that have an inside, as numbers of facets; `u32::MAX` for none.
+    pub sides: Vec<[u32; 2]>,
+    /// Where the points of a body begin, and behind the last one.
+    starts: Vec<u32>,
+    /// The facets around a point: `around[ring[p]..ring[p + 1]]`, ascending.
+    ring: Vec<u32>,
+    around: Vec<u32>,
+}
+
+impl<const D: usize> Surface<D> {
+    /// The number of points.
+    pub fn points(&self) -> usize {
+        self.body.len()
+    }
+
+    /// The points of a body, by its place among those that were added.
+    pub fn points_of(&self, number: usize) -> core::ops::Range<usize> {
+        let at = |k: usize| self.starts.get(k).map_or(self.points(), |s| *s as usize);
+        at(number)..at(number + 1)
+    }
+
+    /// Adds the surface of a body: boundary, open surfaces, wires, and without any of these its nodes as points. Gives the nodes that
+    /// are the points which were added, in order.
+    pub fn add(&mut self, mesh: &Mesh<D>, body: u32) -> Vec<u32> {
+        let start = self.points() as u32;
+        self.starts.push(start);
+        let mut nodes: Vec<u32> = mesh.facets.iter().flatten().copied().collect();
+        nodes.extend(mesh.sheets.iter().flatten());
+        nodes.extend(mesh.wires.iter().flatten());
+        nodes.sort_unstable();
+        nodes.dedup();
+        if nodes.is_empty() && mesh.cells.is_empty() {
+            nodes = (0..mesh.positions.len() as u32).collect();
+        }
+        self.body.resize(start as usize + nodes.len(), body);
+        let point = |node: u32| start + nodes.binary_search(&node).unwrap_or(0) as u32;
+        let first_facet = self.facets.len();
+        for facet in &mesh.facets {
+            self.facets.push(facet.map(point));
+            self.closed.push(true);
+        }
+        let mut wires = Vec::new();
+        if D == 3 {
+            for sheet in &mesh.sheets {
+                self.facets.push(core::array::from_fn(|k| point(sheet[k])));
+                self.closed.push(false);
+            }
+            wires.extend(mesh.wires.iter().map(|wire| wire.map(point)));
+        } else {
+            for wire in &mesh.wires {
+                self.facets.push(core::array::from_fn(|k| point(wire[k])));
+                self.closed.push(false);
+            }
+        }
+        self.join(first_facet, wires, nodes.len());
+        nodes
+    }
+
+    /// Finds the edges of the facets from one on, and the facets around every point.
+    fn join(&mut self, first_facet: usize, wires: Vec<[u32; 2]>, points: usize) {
+        let mut edges: Vec<([u32; 2], u32)> = Vec::new();
+        for (number, facet) in self.facets.iter().enumerate().skip(first_facet) {
+            let side = if self.closed[number] { number as u32 } else { u32::MAX };
+            for k in 0..if D == 2 { 1 } else { D } {
+                let (a, b) = (facet[k], facet[(k + 1) % D]);
+                edges.push((if a < b { [a, b] } else { [b, a] }, side));
+            }
+        }
+        edges.extend(wires.into_iter().map(|[a, b]| (if a < b { [a, b] } else { [b, a] }, u32::MAX)));
+        edges.sort_unstable();
+        for same in edges.chunk_by(|a, b| a.0 == b.0).filter(|_| D == 3) {
+            let side = |k: usize| same.get(k).map_or(u32::MAX, |(_, side)| *side);
+            self.edges.push(same[0].0);
+            self.sides.push([side(0), side(1)]);
+        }
+        let facets = self.facets.iter().enumerate().skip(first_facet);
+        let mut corners: Vec<(u32, u32)> = facets.flat_map(|(k, f)| f.map(|p| (p, k as u32))).collect();
+        corners.sort_unstable();
+        if self.ring.is_empty() {
+            self.ring.push(0);
+        }
+        let mut k = 0;
+        let start = (self.ring.len() - 1) as u32;
+        for p in start..start + points as u32 {
+            while let Some((_, facet)) = corners.get(k).filter(|(a, _)| *a == p) {
+                self.around.push(*facet);
+                k += 1;
+            }
+            self.ring.push(self.around.len() as u32);
+        }
+    }
+
+    /// The facets that have a point as a corner, ascending.
+    pub fn facets_around(&self, point: u32) -> &[u32] {
+        &self.around[self.ring[point as usize] as usize..self.ring[point as usize + 1] as usize]
+    }
+
+    /// Whether a point lies on a closed boundary, and on nothing else.
+    pub fn is_closed(&self, point: u32) -> bool {
+        let around = self.facets_around(point);
+        !around.is_empty() && around.iter().all(|facet| self.closed[*facet as usize])
+    }
+
+    /// Bytes on the heap.
+    pub fn heap_bytes(&self) -> usize {
+        4 * (self.body.capacity() + D * self.facets.capacity() + 4 * self.edges.capacity())
+            + self.closed.capacity()
+            + 4 * (self.starts.capacity() + self.ring.capacity() + self.around.capacity())
+    }
+}

@@ -1,0 +1,402 @@
+//! Deformable bodies that touch: what a substep makes of their surfaces.
+
+use crate::candidates::Candidates;
+use crate::gap::Gap;
+use crate::impulses::{Row, Turns, part, solve};
+use crate::law::Laws;
+use crate::surface::Surface;
+use crate::vector::{dot, length, subtract};
+use opruga_core::contacts::Touch;
+use opruga_math::Lane;
+
+/// The surfaces of bodies that may touch, and what is known of their contacts.
+///
+/// ```text
+/// gap       g(x₀) − thickness, normal and weights at the start of the step, or where a fast pair meets
+/// bound     u_n ≥ −g/h where they are apart (so they come to touch and no further), u_n ≥ 0 where they overlap,
+///           u_n ≥ e s at an impact with speed s above `rest_speed`
+/// friction  |λ_t| ≤ µ λ_n, and λ_t stops the sliding where that is enough
+/// position  x = x₀ + h v of every point that got an impulse; overlap is taken apart at `recovery_speed`, by positions alone
+/// ```
+///
+/// Impulses start from those of the substep before, within a frame; a frame starts without. So no state is kept beside positions and
+/// velocities, and nothing depends on when candidates were looked for.
+#[derive(Debug, Default)]
+pub struct Touching<const D: usize> {
+    /// What touches.
+    pub surface: Surface<D>,
+    /// How.
+    pub laws: Laws,
+    /// One over the mass of every point along every axis [1/kg]; 0 where it is pinned.
+    pub inverse_mass: Vec<[f64; D]>,
+    /// Positions [m] and velocities [m/s] of the points at the start of the step.
+    pub before: [Vec<[f64; D]>; 2],
+    /// Those after the free motion; where points touch, what contact makes of them.
+    pub after: [Vec<[f64; D]>; 2],
+    /// The points that got an impulse or were moved, ascending.
+    pub changed: Vec<u32>,
+    /// What contact and friction took from every point that changed, what obstacles and pins gave by their motion, and what moving the
+    /// point gave [J].
+    pub losses: Vec<[f64; 4]>,
+    /// The margin of the search [m].
+    pub margin: f64,
+    /// The most candidates.
+    pub most: usize,
+    pub(crate) candidates: Candidates<D>,
+    /// Distances of the candidates where they were found [m]: bounds of what they are later.
+    pub(crate) bounds: Vec<f64>,
+    found_at: Vec<[f64; D]>,
+    pub(crate) rows: Vec<Row<D>>,
+    play: Vec<u32>,
+    /// Features and impulses of the last substep, ascending.
+    last: Vec<(u64, f64, [f64; D])>,
+    pub(crate) keep: Vec<bool>,
+    /// The gap above which a pair does not meet within the step, whatever contact adds [m].
+    pub(crate) window: f64,
+    /// How far apart candidates may be where they were found [m].
+    covered: f64,
+    /// How far points are from there [m].
+    pub(crate) drifted: f64,
+    /// Points whose obstacles are among the rows, ascending.
+    known: Vec<u32>,
+    v: Vec<[f64; D]>,
+    pub(crate) moved: Vec<[f64; D]>,
+    /// Positions at an impact within a step.
+    pub(crate) impact: Vec<[f64; D]>,
+    wanted: Vec<f64>,
+    multipliers: Vec<f64>,
+    touched: Vec<bool>,
+    /// Where a point stands among those that changed.
+    number: Vec<u32>,
+    turns: Turns,
+    /// What was done since the counts were last taken.
+    pub counts: Counts,
+}
+
+/// What contact has cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Substeps.
+    pub steps: u64,
+    /// Searches for candidates.
+    pub searches: u64,
+    /// Candidates, summed over the substeps.
+    pub candidates: u64,
+    /// Pairs whose gap was taken.
+    pub pairs: u64,
+    /// Pairs that were solved for.
+    pub contacts: u64,
+    /// Sweeps over these.
+    pub sweeps: u64,
+}
+
+/// There are more pairs than the limit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TooMany {
+    /// How many were found before the search ended.
+    pub found: usize,
+}
+
+/// What obstacles say of a point: callback with the number of the point, its position at the start and the end of the step, and how far to look [m].
+pub type Obstacles<'a, const D: usize> = &'a dyn Fn(u32, &[f64; D], &[f64; D], f64, &mut dyn FnMut(Touch<D>));
+
+impl<const D: usize> Touching<D> {
+    /// Forgets impulses and candidates, at the beginning of a frame.
+    pub fn begin(&mut self) {
+        self.last.clear();
+        self.found_at.clear();
+    }
+
+    /// Whether any two bodies, or one with itself, may touch.
+    pub fn may_touch(&self) -> bool {
+        let bodies = self.laws.class.len() as u32;
+        (0..bodies).any(|a| (a..bodies).any(|b| self.laws.meet(a, b)))
+    }
+
+    /// Lets the points touch after a free substep of h [s]: `after` becomes what contact makes of it.
+    ///
+    /// # Errors
+    /// [`TooMany`] where there are more candidates than [`Touching::most`].
+    pub fn step(&mut self, h: f64, obstacles: Option<Obstacles<'_, D>>) -> Result<(), TooMany> {
+        self.changed.clear();
+        let points = self.surface.points();
+        self.moved.resize(points, [0.0; D]);
+        self.impact.resize(points, [0.0; D]);
+        self.number.resize(points, 0);
+        self.counts.steps += 1;
+        let step = farthest(&self.before[0], &self.after[0]);
+        let recovery = h * self.laws.recovery_speed;
+        // Two points come closer by at most twice the farthest way of one: first without what contact adds to that, then with as much again.
+        let mut window = 2.0 * step + recovery;
+        loop {
+            self.window = 2.0 * window;
+            self.search()?;
+            self.take_gaps(h);
+            if !self.rows.iter().any(|row| row.in_play) {
+                self.last.clear();
+                break;
+            }
+            self.solve(h, obstacles);
+            let pushed = h * farthest(&self.after[1], &self.v);
+            if 2.0 * (step + pushed) + recovery <= self.window {
+                self.keep_impulses();
+                self.move_points(h);
+                break;
+            }
+            window = 2.0 * (step + pushed) + recovery;
+        }
+        self.counts.candidates += self.candidates.len() as u64;
+        self.counts.pairs += self.rows.len() as u64;
+        Ok(())
+    }
+
+    /// Looks for candidates where those at hand may not be all that meet in this step.
+    fn search(&mut self) -> Result<(), TooMany> {
+        let ([x0, _], [x1, _]) = (&self.before, &self.after);
+        if self.found_at.len() == x0.len() {
+            self.drifted = farthest(&self.found_at, x0);
+            if 2.0 * self.drifted + self.window <= self.covered {
+                return Ok(());
+            }
+        }
+        self.counts.searches += 1;
+        let laws = &self.laws;
+        (self.covered, self.drifted) = (self.margin + self.window, 0.0);
+        let reach = self.covered + laws.largest_thickness();
+        if !self.candidates.find(&self.surface, x0, x1, reach, self.most, |a, b| laws.meet(a, b)) {
+            return Err(TooMany { found: self.candidates.len() });
+        }
+        self.found_at.clone_from(x0);
+        self.bounds.clear();
+        for [p, facet] in &self.candidates.vertex_facet {
+            let corners = self.surface.facets[*facet as usize].map(|p| x0[p as usize]);
+            let weights = crate::closest::closest_on_facet(&x0[*p as usize], &corners);
+            let between = subtract(&x0[*p as usize], &crate::closest::mean(&weights, &corners));
+            self.bounds.push(length(&between));
+        }
+        for [a, b] in &self.candidates.edge_edge {
+            let [a, b] = [a, b].map(|e| self.surface.edges[*e as usize].map(|p| x0[p as usize]));
+            let [s, t] = crate::closest::closest_of_segments(&a, &b);
+            let between = subtract(&crate::closest::mean(&[1.0 - s, s], &a), &crate::closest::mean(&[1.0 - t, t], &b));
+            self.bounds.push(length(&between));
+        }
+        Ok(())
+    }
+
+    /// Solves for the velocities after contact.
+    fn solve(&mut self, h: f64, obstacles: Option<Obstacles<'_, D>>) {
+        self.v.clone_from(&self.after[1]);
+        self.known.clear();
+        self.put_in_play(h, obstacles);
+        // The mean approach: where one pair crashes, others may lie at rest.
+        let mut approach: f64 = 0.0;
+        for k in &self.play {
+            let row = &self.rows[*k as usize];
+            let u = subtract(&row.mean(&self.v), &row.carry);
+            let speed = (row.target - dot(&u, &row.normal)).larger(0.0);
+            approach += if row.friction > 0.0 { length(&u).larger(speed) } else { speed };
+        }
+        approach /= self.play.len() as f64;
+        self.start_warm();
+        self.turns.begin(self.surface.points());
+        loop {
+            let (rows, play, turns) = (&mut self.rows, &self.play, &mut self.turns);
+            self.counts.sweeps += solve(rows, play, &self.inverse_mass, &mut self.v, turns, approach) as u64;
+            // Whoever was pushed may meet what it would not have met by itself.
+            let mut more = false;
+            for row in self.rows.iter_mut().filter(|row| !row.in_play && row.mass[0] > 0.0) {
+                if row.points.iter().any(|p| self.v[*p as usize] != self.after[1][*p as usize])
+                    && dot(&subtract(&row.mean(&self.v), &row.carry), &row.normal) < row.target
+                {
+                    (row.in_play, more) = (true, true);
+                }
+            }
+            if !more {
+                break;
+            }
+            self.put_in_play(h, obstacles);
+        }
+        self.counts.contacts += self.play.len() as u64;
+    }
+
+    /// Keeps the impulses for the next substep.
+    fn keep_impulses(&mut self) {
+        self.last.clear();
+        for k in &self.play {
+            let row = &self.rows[*k as usize];
+            if row.normal_impulse > 0.0 {
+                self.last.push((row.id, row.normal_impulse, row.friction_impulse));
+            }
+        }
+        self.last.sort_unstable_by_key(|(id, ..)| *id);
+    }
+
+    /// Lists the rows to solve for; of their points, also what obstacles hold: what bodies push against them must not go through.
+    fn put_in_play(&mut self, h: f64, obstacles: Option<Obstacles<'_, D>>) {
+        self.play.clear();
+        self.play.extend((0..self.rows.len() as u32).filter(|k| self.rows[*k as usize].in_play));
+        let Some(obstacles) = obstacles else { return };
+        let mut points: Vec<u32> = Vec::new();
+        for k in &self.play {
+            let row = &self.rows[*k as usize];
+            points.extend((0..4).filter(|k| row.weights[*k] != 0.0).map(|k| row.points[k]));
+        }
+        points.sort_unstable();
+        points.dedup();
+        for p in points {
+            let Err(at) = self.known.binary_search(&p) else { continue };
+            self.known.insert(at, p);
+            let (x0, x1) = (self.before[0][p as usize], self.after[0][p as usize]);
+            let travel = length(&subtract(&x1, &x0));
+            let reach = travel + h * length(&self.v[p as usize]) + self.margin;
+            let (rows, inverse_mass) = (&mut self.rows, &self.inverse_mass);
+            obstacles(p, &x0, &x1, reach, &mut |touch: Touch<D>| {
+                let mut gap = Gap { points: [p; 4], weights: [0.0; 4], gap: touch.gap_before, normal: touch.normal };
+                gap.weights[0] = 1.0;
+                let id = 1 << 63 | u64::from(p) << 31 | touch.surface as u64;
+                let mut row = Row::new(id, &gap, 0.0, touch.friction, inverse_mass);
+                row.carry = touch.velocity;
+                row.target = if row.gap > 0.0 { -row.gap / h } else { 0.0 };
+                (row.in_play, row.of_obstacle) = (row.mass[0] > 0.0, true);
+                if row.in_play {
+                    self.play.push(rows.len() as u32);
+                }
+                rows.push(row);
+            });
+        }
+    }
+
+    /// Begins with the impulses of the last substep.
+    fn start_warm(&mut self) {
+        let mut k = 0;
+        for row in self.rows.iter_mut().filter(|row| row.in_play) {
+            while self.last.get(k).is_some_and(|(id, ..)| *id < row.id) {
+                k += 1;
+            }
+            if let Some((_, along, across)) = self.last.get(k).filter(|(id, ..)| *id == row.id) {
+                (row.normal_impulse, row.friction_impulse) = (*along, *across);
+                row.give(&row.impulse(), &self.inverse_mass, &mut self.v);
+            }
+        }
+    }
+
+    /// Takes the points along with their new velocities, and overlapping ones apart; books what that took and gave.
+    fn move_points(&mut self, h: f64) {
+        let points = self.surface.points();
+        self.touched.clear();
+        self.touched.resize(points, false);
+        for k in &self.play {
+            let row = &self.rows[*k as usize];
+            if row.normal_impulse > 0.0 && !row.of_obstacle {
+                for k in (0..4).filter(|k| row.weights[*k] != 0.0) {
+                    self.touched[row.points[k] as usize] = true;
+                }
+            }
+        }
+        self.recover(h);
+        let touched = &self.touched;
+        self.changed.extend((0..points as u32).filter(|p| touched[*p as usize]));
+        for (k, p) in self.changed.iter().enumerate() {
+            self.number[*p as usize] = k as u32;
+        }
+        self.losses.clear();
+        self.losses.resize(self.changed.len(), [0.0; 4]);
+        for k in &self.play {
+            let row = &self.rows[*k as usize];
+            if row.normal_impulse == 0.0 {
+                continue;
+            }
+            for k in (0..4).filter(|k| row.weights[*k] != 0.0) {
+                let p = row.points[k];
+                if !self.touched[p as usize] {
+                    continue;
+                }
+                let (v0, v1) = (&self.before[1][p as usize], &self.v[p as usize]);
+                let (mut along, mut across, mut carried) = (0.0, 0.0, 0.0);
+                for d in 0..D {
+                    let mean = 0.5 * (v0[d] + v1[d]) - row.carry[d];
+                    let [n, t] = [row.normal_impulse * row.normal[d], row.friction_impulse[d]];
+                    along -= row.weights[k] * n * mean;
+                    across -= row.weights[k] * t * mean;
+                    carried += row.weights[k] * (n + t) * row.carry[d];
+                    if self.inverse_mass[p as usize][d] == 0.0 {
+                        // A pin gives back what a contact takes of its motion.
+                        carried -= row.weights[k] * (n + t) * 0.5 * (v0[d] + v1[d]);
+                    }
+                }
+                let sum = &mut self.losses[self.number[p as usize] as usize];
+                for (sum, more) in sum.iter_mut().zip([along, across, carried]) {
+                    *sum += more;
+                }
+            }
+        }
+        for (p, losses) in self.changed.iter().zip(&mut self.losses) {
+            let p = *p as usize;
+            for d in 0..D {
+                let inverse = self.inverse_mass[p][d];
+                if inverse > 0.0 {
+                    let (v0, free, v1) = (self.before[1][p][d], self.after[1][p][d], self.v[p][d]);
+                    let travel = h * v1 + self.moved[p][d];
+                    losses[3] += (free - v0) / (inverse * h) * (0.5 * h * (v0 + v1) - travel);
+                    self.after[0][p][d] = self.before[0][p][d] + travel;
+                    self.after[1][p][d] = v1;
+                }
+                self.moved[p][d] = 0.0;
+            }
+        }
+    }
+
+    /// Displacements that take overlapping pairs apart.
+    fn recover(&mut self, h: f64) {
+        let most = self.laws.recovery_speed * h;
+        self.wanted.clear();
+        let mut overlap = false;
+        for k in &self.play {
+            let row = &self.rows[*k as usize];
+            row.points.iter().for_each(|p| self.moved[*p as usize] = [0.0; D]);
+            let u = subtract(&row.mean(&self.v), &row.carry);
+            let end = row.gap + h * dot(&u, &row.normal);
+            // Sweeps that end early leave less than this.
+            overlap |= end < -OVERLAP * self.laws.largest_thickness();
+            self.wanted.push(if row.of_obstacle { -end } else { (-end).smaller(most) });
+        }
+        if !overlap {
+            return;
+        }
+        part(&self.rows, &self.play, &self.inverse_mass, &self.wanted, &mut self.multipliers, &mut self.moved, most);
+        for (k, number) in self.play.iter().enumerate() {
+            let row = &self.rows[*number as usize];
+            if self.multipliers[k] > 0.0 {
+                for k in (0..4).filter(|k| row.weights[*k] != 0.0) {
+                    self.touched[row.points[k] as usize] = true;
+                }
+            }
+        }
+    }
+
+    /// Bytes on the heap.
+    pub fn heap_bytes(&self) -> usize {
+        let vectors =
+            [&self.inverse_mass, &self.found_at, &self.v, &self.moved].map(Vec::capacity).iter().sum::<usize>();
+        let states: usize = self.before.iter().chain(&self.after).map(Vec::capacity).sum();
+        8 * D * (vectors + states)
+            + self.surface.heap_bytes()
+            + self.candidates.heap_bytes()
+            + 8 * self.bounds.capacity()
+            + core::mem::size_of::<Row<D>>() * self.rows.capacity()
+    }
+}
+
+/// The part of the thickness that pairs may lack before they are taken apart: the surfaces themselves do not overlap then, and what sweeps
+/// leave of a step is no reason to move anything.
+const OVERLAP: f64 = 0.01;
+
+/// The farthest that a point is from where it was [m], or its velocity from what that was [m/s].
+fn farthest<const D: usize>(from: &[[f64; D]], to: &[[f64; D]]) -> f64 {
+    let mut most: f64 = 0.0;
+    for (a, b) in from.iter().zip(to) {
+        let u = subtract(b, a);
+        most = dot(&u, &u).larger(most);
+    }
+    most.sqrt()
+}

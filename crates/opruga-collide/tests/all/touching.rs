@@ -1,0 +1,318 @@
+//! Impulses between surfaces, on rings of springs that are stepped here: contact by itself, without a world around it.
+#![allow(missing_docs)]
+
+use opruga_collide::{Laws, PairLaw, Touching};
+use opruga_core::contacts::Touch;
+use opruga_mesh::Mesh;
+
+/// Bodies of springs with some gas, under symplectic Euler.
+struct Toy<const D: usize> {
+    touching: Touching<D>,
+    springs: Vec<([usize; 2], f64)>,
+    stiffness: f64,
+    damping: f64,
+    gas: f64,
+    gravity: f64,
+    drag: f64,
+    /// Planes: axis, position, sign of the normal.
+    floor: Vec<(usize, f64, f64)>,
+    mass: f64,
+}
+
+impl<const D: usize> Toy<D> {
+    fn new(meshes: &[(Mesh<D>, [f64; D], [f64; D])], law: PairLaw) -> Toy<D> {
+        let mut touching = Touching::<D>::default();
+        let (mut springs, mass) = (Vec::new(), 0.02);
+        for (number, (mesh, at, velocity)) in meshes.iter().enumerate() {
+            let first = touching.surface.points();
+            let nodes = touching.surface.add(mesh, number as u32);
+            for n in &nodes {
+                let x = mesh.positions[*n as usize];
+                touching.after[0].push(core::array::from_fn(|k| x[k] + at[k]));
+                touching.after[1].push(*velocity);
+                touching.before[0].push([0.0; D]);
+                touching.before[1].push([0.0; D]);
+                touching.inverse_mass.push([1.0 / mass; D]);
+            }
+            let mut pairs: Vec<[u32; 2]> = mesh.wires.clone();
+            pairs.extend(mesh.facets.iter().filter(|_| D == 2).map(|f| [f[0], f[1]]));
+            // Every two nodes of a cell.
+            for (_, _, cell) in mesh.cells.iter() {
+                pairs.extend(cell.iter().enumerate().flat_map(|(k, a)| cell[k + 1..].iter().map(move |b| [*a, *b])));
+            }
+            pairs.iter_mut().for_each(|pair| pair.sort_unstable());
+            pairs.sort_unstable();
+            pairs.dedup();
+            for [a, b] in &pairs {
+                let [p, q] = [a, b].map(|n| mesh.positions[*n as usize]);
+                let length = (0..D).map(|k| (p[k] - q[k]) * (p[k] - q[k])).sum::<f64>().sqrt();
+                if let [Ok(a), Ok(b)] = [a, b].map(|n| nodes.binary_search(n)) {
+                    springs.push(([first + a, first + b], length));
+                }
+            }
+        }
+        touching.laws = Laws {
+            class: vec![0; meshes.len()],
+            classes: 1,
+            table: vec![law],
+            itself: vec![true],
+            rest_speed: 0.05,
+            recovery_speed: 0.5,
+        };
+        touching.margin = 0.5 * springs[0].1;
+        touching.most = 10_000_000;
+        Toy {
+            touching,
+            springs,
+            stiffness: 1600.0,
+            damping: 0.6,
+            gas: 0.0,
+            gravity: 0.0,
+            drag: 0.0,
+            floor: Vec::new(),
+            mass,
+        }
+    }
+
+    /// The free step alone.
+    fn free(&mut self, h: f64) {
+        std::mem::swap(&mut self.touching.before, &mut self.touching.after);
+        let [x, v] = &self.touching.before;
+        let mut force = vec![[0.0; D]; x.len()];
+        force.iter_mut().for_each(|f| f[1] = -self.gravity * self.mass);
+        for ([a, b], rest) in &self.springs {
+            let d: [f64; D] = core::array::from_fn(|k| x[*b][k] - x[*a][k]);
+            let length = d.iter().map(|d| d * d).sum::<f64>().sqrt();
+            let rate: f64 = (0..D).map(|k| (v[*b][k] - v[*a][k]) * d[k] / length).sum();
+            let f = (self.stiffness * (length - rest) + self.damping * rate) / length;
+            for k in 0..D {
+                force[*a][k] += f * d[k];
+                force[*b][k] -= f * d[k];
+            }
+        }
+        if self.gas > 0.0 {
+            let bodies = self.touching.laws.class.len();
+            let mut area = vec![0.0; bodies];
+            for facet in &self.touching.surface.facets {
+                let [p, q] = [0, 1].map(|k| x[facet[k] as usize]);
+                area[self.touching.surface.body[facet[0] as usize] as usize] += 0.5 * (p[0] * q[1] - p[1] * q[0]);
+            }
+            for facet in &self.touching.surface.facets {
+                let [p, q] = [0, 1].map(|k| x[facet[k] as usize]);
+                let pressure = self.gas / area[self.touching.surface.body[facet[0] as usize] as usize];
+                for node in facet {
+                    force[*node as usize][0] += 0.5 * pressure * (q[1] - p[1]);
+                    force[*node as usize][1] -= 0.5 * pressure * (q[0] - p[0]);
+                }
+            }
+        }
+        let [x1, v1] = &mut self.touching.after;
+        for p in 0..force.len() {
+            for k in 0..D {
+                v1[p][k] = (1.0 - h * self.drag) * self.touching.before[1][p][k] + h * force[p][k] / self.mass;
+                x1[p][k] = self.touching.before[0][p][k] + h * v1[p][k];
+            }
+            for (k, bound, sign) in &self.floor {
+                if sign * (x1[p][*k] - bound) < 0.0 {
+                    x1[p][*k] = *bound;
+                    v1[p][*k] = 0.0;
+                }
+            }
+        }
+    }
+
+    fn step(&mut self, h: f64) {
+        self.free(h);
+        let floor = &self.floor;
+        let obstacles = |_: u32, from: &[f64; D], to: &[f64; D], reach: f64, visit: &mut dyn FnMut(Touch<D>)| {
+            for (surface, &(k, bound, sign)) in floor.iter().enumerate() {
+                let gap = sign * (to[k] - bound);
+                if gap <= reach {
+                    let mut normal = [0.0; D];
+                    normal[k] = sign;
+                    visit(Touch {
+                        surface,
+                        gap,
+                        gap_before: sign * (from[k] - bound),
+                        normal,
+                        carried: *from,
+                        velocity: [0.0; D],
+                        friction: 0.0,
+                        restitution: 0.0,
+                        rest_speed: 0.0,
+                        rounding: 0.0,
+                    });
+                }
+            }
+        };
+        self.touching.step(h, Some(&obstacles)).expect("few pairs");
+    }
+
+    fn momentum(&self) -> [f64; D] {
+        let mut sum = [0.0; D];
+        for v in &self.touching.after[1] {
+            (0..D).for_each(|k| sum[k] += self.mass * v[k]);
+        }
+        sum
+    }
+
+    fn kinetic(&self) -> f64 {
+        self.touching.after[1].iter().flatten().map(|v| 0.5 * self.mass * v * v).sum()
+    }
+}
+
+impl Toy<2> {
+    /// Pairs of edges of different bodies that cross.
+    fn crossings(&self) -> usize {
+        let (x, surface) = (&self.touching.after[0], &self.touching.surface);
+        let side =
+            |a: [f64; 2], b: [f64; 2], p: [f64; 2]| (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
+        let mut count = 0;
+        for (j, e) in surface.facets.iter().enumerate() {
+            for f in &surface.facets[j + 1..] {
+                if e.iter().any(|p| f.contains(p)) {
+                    continue;
+                }
+                let ([a, b], [c, d]) = (e.map(|p| x[p as usize]), f.map(|p| x[p as usize]));
+                count += usize::from(side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0);
+            }
+        }
+        count
+    }
+}
+
+fn law(friction: f64, restitution: f64) -> PairLaw {
+    PairLaw { touch: true, friction, restitution, thickness: 1e-3 }
+}
+
+fn ring(vertices: u32, radius: f64) -> Mesh<2> {
+    Mesh::ring(radius, vertices, [0.0; 2], 0.3).expect("a ring")
+}
+
+#[test]
+fn rings_meet_and_keep_momentum() {
+    for friction in [0.0, 0.5] {
+        let bodies = [(ring(36, 0.5), [-0.6, 0.1], [3.0, 0.0]), (ring(36, 0.5), [0.6, 0.0], [-1.0, 0.5])];
+        let mut toy = Toy::new(&bodies, law(friction, 0.0));
+        toy.gas = 20.0;
+        let before = toy.momentum();
+        let (h, mut losses) = (1.0 / 1920.0, [0.0; 4]);
+        for _ in 0..1200 {
+            toy.step(h);
+            for loss in &toy.touching.losses {
+                (0..4).for_each(|k| losses[k] += loss[k]);
+            }
+            assert_eq!(toy.crossings(), 0);
+        }
+        let after = toy.momentum();
+        assert!((0..2).all(|k| (after[k] - before[k]).abs() < 1e-13), "{before:?} {after:?}");
+        assert!(losses[0] > 1e-4 && (losses[1] > 1e-5) == (friction > 0.0), "{losses:?}");
+        assert!(toy.touching.counts.contacts > 500, "{:?}", toy.touching.counts);
+    }
+}
+
+/// A thin wire holds what comes at any speed.
+#[test]
+fn nothing_tunnels() {
+    for speed in [1.0, 10.0, 100.0, 1000.0] {
+        let wire = Mesh::<2>::line([0.0, -1.0], [0.0, 1.0], 40).expect("a wire");
+        let dot = Mesh::<2>::line([-0.02, 0.0], [0.02, 0.015], 1).expect("a wire");
+        let mut toy = Toy::new(&[(wire, [0.0; 2], [0.0; 2]), (dot, [-0.3, 0.013], [speed, 0.0])], law(0.0, 0.0));
+        let h = 1e-4;
+        let steps = if speed < 10.0 { 5000 } else { 600 };
+        for step in 0..steps {
+            toy.step(h);
+            assert_eq!(toy.crossings(), 0, "{speed} m/s, step {step}");
+        }
+        let x = &toy.touching.after[0];
+        assert!(toy.touching.counts.contacts > 0, "{speed} m/s: they met");
+        let behind = (41..43).filter(|p| x[*p][0] > x[20][0] + 0.5).count();
+        assert_eq!(behind, 0, "{speed} m/s");
+    }
+}
+
+/// A heap of gas balls in a box comes to rest and stays apart; one of bare springs is crushed and gains no energy.
+#[test]
+fn heaps_come_to_rest() {
+    for (gas, friction) in [(20.0, 0.3), (0.0, 0.3), (0.0, 0.0)] {
+        let mut bodies = Vec::new();
+        for k in 0..12 {
+            let (i, j) = (k % 3, k / 3);
+            let at = [0.55 * f64::from(i) + 0.01 * f64::from(j % 2), 0.3 + 0.56 * f64::from(j)];
+            bodies.push((ring(24, 0.25), at, [0.0; 2]));
+        }
+        let mut toy = Toy::new(&bodies, law(friction, 0.0));
+        (toy.gas, toy.gravity, toy.floor) = (gas, 9.81, vec![(1, 0.0, 1.0), (0, -0.3, 1.0), (0, 1.42, -1.0)]);
+        toy.drag = 4.0;
+        let top = toy.mass * 9.81 * 2.5 * toy.touching.surface.points() as f64;
+        // Bare springs lie down flat: many layers.
+        for step in 0..(if gas > 0.0 { 8000 } else { 4500 }) {
+            toy.step(1.0 / 3840.0);
+            assert!(toy.kinetic() < top, "{gas}, step {step}: {} J", toy.kinetic());
+            if step % 100 == 0 {
+                assert_eq!(toy.crossings(), 0, "{gas} {friction}, step {step}");
+            }
+        }
+        assert!(toy.kinetic() < if gas > 0.0 { 0.01 } else { 3.0 }, "{gas}: {} J", toy.kinetic());
+    }
+}
+
+/// Cubes of springs in space, dropped on one another.
+#[test]
+fn cubes_stack() {
+    let cube = || Mesh::<3>::grid([0.0; 3], [0.5; 3], [2, 2, 2]).expect("a cube");
+    let bodies = [
+        (cube(), [0.0, 0.0, 0.0], [0.0; 3]),
+        (cube(), [0.11, 0.52, 0.07], [0.0; 3]),
+        (cube(), [0.02, 1.1, 0.0], [0.0; 3]),
+    ];
+    let mut toy = Toy::new(&bodies, law(0.5, 0.0));
+    (toy.gravity, toy.drag, toy.floor) = (9.81, 2.0, vec![(1, 0.0, 1.0)]);
+    (toy.stiffness, toy.damping) = (400.0, 0.5);
+    for _ in 0..8000 {
+        toy.step(1.0 / 1920.0);
+    }
+    let low = |b: usize| {
+        let all = toy.touching.surface.points_of(b).map(|p| toy.touching.after[0][p][1]);
+        all.fold(9.0, |a, y| if y < a { y } else { a })
+    };
+    assert!(toy.kinetic() < 1e-4, "{} J", toy.kinetic());
+    assert!((low(1) - 0.5).abs() < 0.03 && (low(2) - 1.0).abs() < 0.06, "{} {}", low(1), low(2));
+}
+
+/// What contact adds to the steps of many balls: printed with `--nocapture`.
+#[test]
+#[ignore = "a measurement"]
+fn the_cost_of_many_balls() {
+    let mut bodies = Vec::new();
+    for k in 0..1000 {
+        let (i, j) = (k % 40, k / 40);
+        let at = [0.51 * f64::from(i) + 0.005 * f64::from(j % 3), 0.3 + 0.51 * f64::from(j)];
+        bodies.push((ring(36, 0.25), at, [0.0; 2]));
+    }
+    let mut toy = Toy::new(&bodies, law(0.3, 0.0));
+    (toy.gas, toy.gravity) = (5.0, 9.81);
+    toy.floor = vec![(1, 0.0, 1.0), (0, -0.26, 1.0), (0, 0.51 * 39.0 + 0.27, -1.0)];
+    for part in 0..4 {
+        let (mut free, mut whole) = (0.0, 0.0);
+        let before = toy.touching.counts;
+        for _ in 0..100 {
+            let start = std::time::Instant::now();
+            toy.free(1.0 / 1920.0);
+            free += start.elapsed().as_secs_f64();
+            toy.touching.step(1.0 / 1920.0, None).expect("few pairs");
+            whole += start.elapsed().as_secs_f64();
+        }
+        let c = toy.touching.counts;
+        println!(
+            "{part}: free {:.3} ms, contact {:.3} ms a step; searches {}, candidates {}, pairs {}, contacts {}, sweeps {} a step",
+            10.0 * free,
+            10.0 * (whole - free),
+            (c.searches - before.searches) as f64 / 100.0,
+            (c.candidates - before.candidates) / 100,
+            (c.pairs - before.pairs) / 100,
+            (c.contacts - before.contacts) / 100,
+            (c.sweeps - before.sweeps) as f64 / 100.0
+        );
+    }
+}

@@ -1,0 +1,143 @@
+//! What `[contact]` and the bodies say of contact, as the laws of pairs of bodies.
+
+use crate::blueprint::{Blueprint, BodyBlueprint, ContactBlueprint};
+use opruga_collide::{Laws, PairLaw};
+use opruga_core::error::BuildError;
+use opruga_core::integrator::Integrator;
+use opruga_core::spec::{Value, Values};
+use opruga_mesh::Mesh;
+
+/// The distance of surfaces in contact where the scene is silent, relative to the mean edge: small beside every facet, and many times what
+/// sweeps and rounding leave of a gap.
+const THICKNESS_OF_EDGE: f64 = 0.01;
+
+impl<const D: usize> BodyBlueprint<D> {
+    /// Whether the body touches anything where the scene has contact.
+    pub(crate) fn touches(&self) -> bool {
+        self.contact.as_ref().is_none_or(|own| own.flag("touch"))
+    }
+    /// The group that `[[contact.pair]]` knows it by.
+    pub fn contact_group(&self) -> &str {
+        self.contact.as_ref().and_then(|own| own.text("group")).unwrap_or_else(|| self.common_name())
+    }
+}
+
+/// The lengths of the edges of a surface at rest [m], added up, and their number.
+pub(crate) fn edges_of<const D: usize>(mesh: &Mesh<D>) -> (f64, usize) {
+    let (mut sum, mut count) = (0.0, 0);
+    let mut add = |a: u32, b: u32| {
+        let (a, b) = (&mesh.positions[a as usize], &mesh.positions[b as usize]);
+        let square: f64 = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum();
+        sum += square.sqrt();
+        count += 1;
+    };
+    for facet in &mesh.facets {
+        (0..if D == 2 { 1 } else { D }).for_each(|k| add(facet[k], facet[(k + 1) % D]));
+    }
+    for sheet in &mesh.sheets {
+        (0..3).for_each(|k| add(sheet[k], sheet[(k + 1) % 3]));
+    }
+    mesh.wires.iter().for_each(|[a, b]| add(*a, *b));
+    (sum, count)
+}
+
+/// What bodies of one class have in common.
+#[derive(Clone, Debug, PartialEq)]
+struct Class<'a> {
+    group: &'a str,
+    friction: f64,
+    restitution: f64,
+    thickness: f64,
+    itself: bool,
+}
+
+/// The laws of some bodies of a scene among one another. `mean_edge` is that of all their surfaces [m].
+pub(crate) fn laws<const D: usize>(
+    scene: &Blueprint<D>,
+    contact: &ContactBlueprint,
+    bodies: &[usize],
+    mean_edge: f64,
+) -> Laws {
+    let values = &contact.values;
+    let mut classes: Vec<Class<'_>> = Vec::new();
+    let mut class = Vec::with_capacity(bodies.len());
+    for number in bodies {
+        let body = &scene.bodies[*number];
+        let own = body.contact.as_ref();
+        let number_of = |name: &str| own.and_then(|own| own.number(name)).or_else(|| values.number(name));
+        let edge = || match edges_of(&body.mesh) {
+            (_, 0) => mean_edge,
+            (sum, count) => sum / count as f64,
+        };
+        let itself = match own.and_then(|own| own.get("self")) {
+            Some(Value::Boolean(own)) => *own,
+            _ => values.flag("self"),
+        };
+        let one = Class {
+            group: body.contact_group(),
+            friction: number_of("friction").unwrap_or(0.0),
+            restitution: number_of("restitution").unwrap_or(0.0),
+            thickness: number_of("thickness").unwrap_or_else(|| THICKNESS_OF_EDGE * edge()),
+            itself,
+        };
+        let found = classes.iter().rposition(|other| *other == one).unwrap_or_else(|| {
+            classes.push(one);
+            classes.len() - 1
+        });
+        class.push(found as u32);
+    }
+    let mut table = Vec::with_capacity(classes.len() * classes.len());
+    for a in &classes {
+        for b in &classes {
+            let mut law = PairLaw {
+                touch: true,
+                friction: 0.5 * (a.friction + b.friction),
+                restitution: 0.5 * (a.restitution + b.restitution),
+                thickness: 0.5 * (a.thickness + b.thickness),
+            };
+            let of_both = |pair: &Values| {
+                let names = [pair.text("first"), pair.text("second")];
+                names == [Some(a.group), Some(b.group)] || names == [Some(b.group), Some(a.group)]
+            };
+            for pair in contact.pairs.iter().filter(|pair| of_both(pair)) {
+                law.touch = pair.flag("touch");
+                law.friction = pair.number("friction").unwrap_or(law.friction);
+                law.restitution = pair.number("restitution").unwrap_or(law.restitution);
+            }
+            table.push(law);
+        }
+    }
+    Laws {
+        class,
+        classes: classes.len(),
+        table,
+        itself: classes.iter().map(|class| class.itself).collect(),
+        rest_speed: values.number("rest_speed").unwrap_or(0.0),
+        recovery_speed: values.number("recovery_speed").unwrap_or(0.0),
+    }
+}
+
+/// Refuses a body that contact cannot step.
+pub(crate) fn check<const D: usize>(
+    scene: &Blueprint<D>,
+    body: &BodyBlueprint<D>,
+    integrator: &dyn Integrator<D>,
+) -> Result<(), BuildError> {
+    if scene.contact.is_none() {
+        return Ok(());
+    }
+    if body.touches() && (integrator.needs().hessian || integrator.is_static()) {
+        let message = format!(
+            "`{}` solves for the end of a step, and contact between bodies is known for explicit integrators so far; allowed: an \
+             explicit one, such as `symplectic_euler` or `verlet`; hint: or `contact.touch = false` in this body, which then passes \
+             through the others",
+            integrator.name()
+        );
+        return Err(BuildError::new("contact", "contact.implicit", message));
+    }
+    if scene.surroundings.unfold {
+        let message = "`unfold` displaces bodies at random, into others too; allowed: `unfold = false` in a scene with `[contact]`";
+        return Err(BuildError::new("contact", "contact.unfold", message));
+    }
+    Ok(())
+}

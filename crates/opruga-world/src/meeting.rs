@@ -1,0 +1,129 @@
+//! The surfaces of all bodies that may touch, beside the islands that hold their nodes.
+
+use crate::blueprint::Blueprint;
+use crate::contact_laws::{edges_of, laws};
+use crate::island::Island;
+use opruga_collide::{TooMany, Touching};
+use opruga_core::contacts::Contacts;
+use opruga_math::WIDTH;
+
+/// The margin of the search for candidates, relative to the mean edge: half of that is what points go between two searches, a quarter of
+/// an edge, about as far as gaps are taken at all.
+const MARGIN_OF_EDGE: f64 = 0.5;
+
+/// Bodies that are stepped together because they may touch.
+#[derive(Debug)]
+pub(crate) struct Meeting<const D: usize> {
+    pub(crate) touching: Touching<D>,
+    /// The islands that it was made for: how many were built by then, and how many there were.
+    made_for: (u64, usize),
+    /// For every island the first of its points and where their nodes lie in its columns, body by body.
+    columns: Vec<Vec<(u32, Vec<u32>)>>,
+    /// The island of every point and the index in its columns.
+    points: Vec<(u32, u32)>,
+}
+
+impl<const D: usize> Meeting<D> {
+    /// The surfaces of the bodies of a scene as it is now; none where no two of them may touch.
+    pub(crate) fn of(scene: &Blueprint<D>, islands: &[Island<D>], made_for: (u64, usize)) -> Option<Meeting<D>> {
+        let contact = scene.contact.as_ref()?;
+        let mut touching = Touching::<D>::default();
+        let (mut columns, mut points, mut bodies) = (vec![Vec::new(); islands.len()], Vec::new(), Vec::new());
+        let (mut length, mut edges) = (0.0, 0);
+        // In the order of the bodies: results depend on no batches.
+        let mut seats: Vec<(usize, usize, usize)> = Vec::new();
+        for (number, island) in islands.iter().enumerate() {
+            seats.extend(island.bodies.iter().enumerate().map(|(lane, body)| (*body, number, lane)));
+        }
+        seats.sort_unstable();
+        for (body, number, lane) in seats {
+            let blueprint = &scene.bodies[body];
+            if !blueprint.touches() {
+                continue;
+            }
+            let (more, count) = edges_of(&blueprint.mesh);
+            (length, edges) = (length + more, edges + count);
+            let first = touching.surface.points() as u32;
+            let nodes = touching.surface.add(&blueprint.mesh, bodies.len() as u32);
+            bodies.push(body);
+            let system = &islands[number].system;
+            let indices: Vec<u32> = nodes.iter().map(|n| system.layout.place(*n as usize, lane) as u32).collect();
+            for index in &indices {
+                let mut inverse = [system.inverse_mass.at(*index as usize); D];
+                for pin in system.pins.iter().filter(|pin| pin.place == *index as usize) {
+                    (0..D).filter(|d| pin.axes[*d]).for_each(|d| inverse[d] = 0.0);
+                }
+                touching.inverse_mass.push(inverse);
+                points.push((number as u32, *index));
+            }
+            columns[number].push((first, indices));
+        }
+        let mean_edge = if edges > 0 { length / edges as f64 } else { 1.0 };
+        touching.laws = laws(scene, contact, &bodies, mean_edge);
+        touching.margin = MARGIN_OF_EDGE * mean_edge;
+        touching.most = contact.values.number("most_pairs").unwrap_or(0.0) as usize;
+        for columns in touching.before.iter_mut().chain(&mut touching.after) {
+            columns.resize(points.len(), [0.0; D]);
+        }
+        touching.may_touch().then_some(Meeting { touching, made_for, columns, points })
+    }
+
+    /// Whether it was made for these islands.
+    pub(crate) fn is_for(&self, made_for: (u64, usize)) -> bool {
+        self.made_for == made_for
+    }
+
+    /// Takes positions and velocities after the free motion, or at the beginning of a frame.
+    pub(crate) fn take(&mut self, islands: &[Island<D>]) {
+        let [x, v] = &mut self.touching.after;
+        for (island, bodies) in islands.iter().zip(&self.columns) {
+            let state = &island.system.state;
+            for (first, indices) in bodies {
+                for d in 0..D {
+                    let (from_x, from_v) = (&state.x.0[d], &state.v.0[d]);
+                    for (k, index) in indices.iter().enumerate() {
+                        x[*first as usize + k][d] = from_x[*index as usize];
+                        v[*first as usize + k][d] = from_v[*index as usize];
+                    }
+                }
+            }
+        }
+    }
+
+    /// Where the step that follows begins: where the last one ended.
+    pub(crate) fn set_out(&mut self) {
+        let Touching { before, after, .. } = &mut self.touching;
+        std::mem::swap(before, after);
+    }
+
+    /// Lets the bodies touch after a free substep of h that ends at `time` [s].
+    pub(crate) fn resolve(
+        &mut self,
+        islands: &mut [Island<D>],
+        obstacles: Option<&dyn Contacts<D>>,
+        time: f64,
+        h: f64,
+    ) -> Result<(), TooMany> {
+        let touch = obstacles.map(|obstacles| {
+            move |_: u32, from: &[f64; D], to: &[f64; D], reach: f64, visit: &mut dyn FnMut(_)| {
+                obstacles.touch(from, to, time, h, reach, visit);
+            }
+        });
+        self.touching.step(h, touch.as_ref().map(|touch| touch as _))?;
+        let Touching { changed, losses, after: [x, v], .. } = &self.touching;
+        for (p, [contact, friction, user, correction]) in changed.iter().zip(losses) {
+            let (island, index) = self.points[*p as usize];
+            let (system, index) = (&mut islands[island as usize].system, index as usize);
+            for d in 0..D {
+                system.state.x.0[d][index] = x[*p as usize][d];
+                system.state.v.0[d][index] = v[*p as usize][d];
+            }
+            let lane = index % WIDTH;
+            system.work.contact[lane] += contact;
+            system.work.friction[lane] += friction;
+            system.work.user[lane] += user;
+            system.work.correction[lane] += correction;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,114 @@
+//! `[contact]`, `[[contact.pair]]`, and what a body says of its own contact.
+
+use super::{Child, Holds, Section, child, section};
+use opruga_core::spec::{Allowed, Bound, Default, Field};
+
+const FRICTION: &str = "Coulomb's coefficient µ, for sticking and sliding alike; of two bodies the mean of theirs.";
+const RESTITUTION: &str =
+    "Ratio of the normal speeds after and before an impact of two points; of two bodies the mean of theirs.";
+const THICKNESS: &str = "The distance of the surfaces in contact; of two bodies the mean of theirs. Where the scene is silent it is a \
+hundredth of the mean edge of the surface.";
+
+/// `[contact]`.
+pub const CONTACT: Section = Section {
+    spec: &section(
+        "contact",
+        "How deformable bodies touch one another and themselves",
+        "Without this section bodies pass through one another. Boundaries, open surfaces and wires touch, points where a body has none \
+         of these; a body filled by a lattice touches with the boundary of its cells. A substep moves all bodies freely, and then gives impulses to pairs of a vertex and a facet, and in space of two edges.",
+        &[
+            Field::new(
+                "response",
+                Allowed::Choice(&["constraint"]),
+                "",
+                Default::Text("constraint"),
+                "How contact is kept: `constraint` by impulses that let pairs come to touch and no further.",
+            ),
+            Field::new("friction", Allowed::NOT_NEGATIVE, "", Default::Number(0.0), FRICTION),
+            Field::new("restitution", Allowed::FRACTION, "", Default::Number(0.0), RESTITUTION),
+            Field::new(
+                "rest_speed",
+                Allowed::NOT_NEGATIVE,
+                "m/s",
+                Default::Number(0.05),
+                "Approach up to which a pair does not bounce.",
+            ),
+            Field::new("thickness", Allowed::POSITIVE, "m", Default::Absent, THICKNESS),
+            Field::new(
+                "recovery_speed",
+                Allowed::POSITIVE,
+                "m/s",
+                Default::Number(0.5),
+                "The speed at which bodies that overlap are moved apart. Only positions are moved; what that does against forces is entered as \
+                 `work_correction`.",
+            ),
+            Field::new("self", Allowed::Boolean, "", Default::Boolean(true), "Whether bodies touch themselves."),
+            Field::new(
+                "most_pairs",
+                Allowed::Number { least: Bound::Closed(1.0), greatest: Bound::Closed(1e8) },
+                "",
+                Default::Number(4e6),
+                "The most pairs that are looked at in a step; a run that needs more ends with `limit.contacts`.",
+            ),
+        ],
+    ),
+    children: &[child("pair", Holds::List(&CONTACT_PAIR), false, "What two groups of bodies do.")],
+};
+
+/// An entry of `pair` in `[contact]`.
+pub const CONTACT_PAIR: Section = Section {
+    spec: &section(
+        "contact.pair",
+        "What two groups of bodies do where they touch",
+        "A body belongs to the group that its `contact` names, otherwise to that of its own name, which copies share. Of several entries \
+         for two groups the last one counts.",
+        &[
+            Field::new("first", Allowed::Text, "", Default::Required, "A group."),
+            Field::new(
+                "second",
+                Allowed::Text,
+                "",
+                Default::Required,
+                "Another group, or the same: then its bodies among one another.",
+            ),
+            Field::new("touch", Allowed::Boolean, "", Default::Boolean(true), "Whether they touch at all."),
+            Field::new("friction", Allowed::NOT_NEGATIVE, "", Default::Absent, "Coulomb's coefficient µ of these two."),
+            Field::new(
+                "restitution",
+                Allowed::FRACTION,
+                "",
+                Default::Absent,
+                "Ratio of the normal speeds of these two.",
+            ),
+        ],
+    ),
+    children: &[],
+};
+
+/// `contact` in a body.
+pub const BODY_CONTACT: Section = Section {
+    spec: &section(
+        "body.contact",
+        "How a body touches others, where not as `[contact]` says",
+        "It has an effect only where the scene has `[contact]`.",
+        &[
+            Field::new(
+                "group",
+                Allowed::Text,
+                "",
+                Default::Absent,
+                "Its group in `[[contact.pair]]`; its own name where the scene is silent.",
+            ),
+            Field::new("friction", Allowed::NOT_NEGATIVE, "", Default::Absent, FRICTION),
+            Field::new("restitution", Allowed::FRACTION, "", Default::Absent, RESTITUTION),
+            Field::new("thickness", Allowed::POSITIVE, "m", Default::Absent, THICKNESS),
+            Field::new("self", Allowed::Boolean, "", Default::Absent, "Whether it touches itself."),
+            Field::new("touch", Allowed::Boolean, "", Default::Boolean(true), "Whether it touches anything at all."),
+        ],
+    ),
+    children: &[],
+};
+
+/// What a body says of its contact, as a child of its section.
+pub(super) const OF_BODY: Child =
+    child("contact", Holds::Table(&BODY_CONTACT), false, "How it touches other bodies, where not as `[contact]` says.");

@@ -1,0 +1,68 @@
+//! A frame of bodies that touch: all islands go through it substep by substep.
+
+use crate::island::{FramePlan, Island};
+use crate::meeting::Meeting;
+use crate::world::lock;
+use opruga_collide::TooMany;
+use opruga_core::system::Workspace;
+use opruga_core::threads::together;
+use rayon::prelude::*;
+use std::sync::{Arc, Mutex};
+
+/// Steps islands through a frame. Where one fails, its outcome says so, and the others are wherever they were.
+///
+/// # Errors
+/// [`TooMany`] where more pairs may touch than the scene allows.
+pub(crate) fn frame<const D: usize>(
+    islands: &mut [Island<D>],
+    meeting: &mut Meeting<D>,
+    plan: &FramePlan<'_, D>,
+    workspaces: &[Mutex<Workspace<D>>],
+    threaded: bool,
+) -> Result<(), TooMany> {
+    islands.iter_mut().for_each(|island| island.begin_together(plan));
+    let contacts = plan.colliders.map(|colliders| Arc::clone(colliders).into_contacts());
+    meeting.touching.begin();
+    meeting.take(islands);
+    for substep in 0..plan.substeps {
+        meeting.set_out();
+        step_freely(islands, plan, substep, workspaces, threaded);
+        if islands.iter().any(|island| island.outcome.is_err()) {
+            return Ok(());
+        }
+        meeting.take(islands);
+        let time = plan.start + f64::from(substep + 1) * plan.h;
+        if !meeting.touching.after.iter().flatten().flatten().all(|c| c.is_finite()) {
+            islands.iter_mut().for_each(|island| island.end_together(plan));
+            return Ok(());
+        }
+        meeting.resolve(islands, contacts.as_deref(), time, plan.h)?;
+        islands.iter_mut().for_each(|island| island.look_together(plan, substep));
+    }
+    islands.iter_mut().for_each(|island| island.end_together(plan));
+    Ok(())
+}
+
+/// One substep without contact between bodies.
+fn step_freely<const D: usize>(
+    islands: &mut [Island<D>],
+    plan: &FramePlan<'_, D>,
+    substep: u32,
+    workspaces: &[Mutex<Workspace<D>>],
+    threaded: bool,
+) {
+    if !threaded {
+        islands.iter_mut().for_each(|island| island.step_together(plan, substep, &mut lock(&workspaces[0])));
+        return;
+    }
+    let (threads, count) = (rayon::current_num_threads(), islands.len());
+    for island in islands.iter_mut().filter(|island| island.is_shared_by(threads, count)) {
+        island.system.threads = threads;
+        together(threads, || island.step_together(plan, substep, &mut lock(&workspaces[0])));
+        island.system.threads = 1;
+    }
+    islands.par_iter_mut().filter(|island| !island.is_shared_by(threads, count)).for_each(|island| {
+        let thread = rayon::current_thread_index().unwrap_or(0);
+        island.step_together(plan, substep, &mut lock(&workspaces[thread]));
+    });
+}

@@ -1,0 +1,292 @@
+//! Bodies that touch one another.
+
+use opruga_core::spec::{Value, Values};
+use opruga_mesh::Mesh;
+use opruga_world::blueprint::*;
+use opruga_world::schema::{BODY_CONTACT, CONTACT, CONTACT_PAIR};
+use opruga_world::{Options, Registry, World};
+use std::sync::Arc;
+
+fn contact<const D: usize>(fields: &[(&str, Value)]) -> Option<ContactBlueprint> {
+    let mut values = Values::defaults(CONTACT.spec, D);
+    for (name, value) in fields {
+        values.set(CONTACT.spec, name, value.clone(), D).expect("a field");
+    }
+    Some(ContactBlueprint { values, pairs: Vec::new() })
+}
+
+fn model<const D: usize>(kind: &str, fields: &[(&str, f64)]) -> Values {
+    let fields: Vec<(&str, Value)> = fields.iter().map(|(name, x)| (*name, Value::Number(*x))).collect();
+    Registry::<D>::default().model_values(kind, &fields).expect("a model")
+}
+
+/// A scene without gravity, stepped by an explicit rule.
+fn scene<const D: usize>(rule: &str, bodies: Vec<BodyBlueprint<D>>) -> Blueprint<D> {
+    let registry = Registry::<D>::default();
+    let mut scene = Blueprint::new("contact", registry.integrator_values(rule, &[]).expect("a rule"));
+    scene.bodies = bodies;
+    scene.contact = contact::<D>(&[]);
+    scene
+}
+
+/// Gas balls of the plane.
+fn ball(name: &str, vertices: u32, x: [f64; 2], v: [f64; 2]) -> BodyBlueprint<2> {
+    let ring = Mesh::ring(0.5, vertices, [0.0; 2], 0.0).expect("a ring");
+    let models = vec![
+        model::<2>("mass_spring", &[("stiffness", 400.0), ("damping", 0.2)]),
+        model::<2>("pressure", &[("nRT", 20.0)]),
+    ];
+    BodyBlueprint { translation: x, velocity: v, ..BodyBlueprint::new(name, ring, Mass::Total(1.0), models) }
+}
+
+fn world<const D: usize>(scene: &Blueprint<D>) -> World<D> {
+    World::new(scene.clone(), Options::default()).expect("a world")
+}
+
+/// How deep the deepest node of each body lies in another: by the even-odd rule, to the nearest side.
+fn deepest(world: &World<2>) -> f64 {
+    let bodies: Vec<usize> = (0..world.blueprint().bodies.len()).collect();
+    let outline = |b: usize| -> Vec<[[f64; 2]; 2]> {
+        let facets = &world.blueprint().bodies[b].mesh.facets;
+        facets.iter().map(|f| f.map(|n| world.position(b, n))).collect()
+    };
+    let outlines: Vec<_> = bodies.iter().map(|b| outline(*b)).collect();
+    let mut deepest: f64 = 0.0;
+    for a in &bodies {
+        for n in 0..world.node_count(*a) as u32 {
+            let p = world.position(*a, n);
+            for b in bodies.iter().filter(|b| *b != a) {
+                let (mut inside, mut least) = (false, f64::INFINITY);
+                for [q, r] in &outlines[*b] {
+                    if (q[1] > p[1]) != (r[1] > p[1]) {
+                        let x = q[0] + (p[1] - q[1]) / (r[1] - q[1]) * (r[0] - q[0]);
+                        inside ^= x > p[0];
+                    }
+                    let t = opruga_collide::closest_on_segment(&p, q, r);
+                    let square: f64 =
+                        (0..2).map(|d| (p[d] - q[d] - t * (r[d] - q[d])) * (p[d] - q[d] - t * (r[d] - q[d]))).sum();
+                    if square < least {
+                        least = square;
+                    }
+                }
+                if inside && least.sqrt() > deepest {
+                    deepest = least.sqrt();
+                }
+            }
+        }
+    }
+    deepest
+}
+
+#[test]
+fn two_balls_meet_and_keep_momentum() {
+    for rule in ["symplectic_euler", "verlet", "runge_kutta"] {
+        let bodies = vec![ball("a", 36, [-1.0, 0.1], [2.0, 0.0]), ball("b", 36, [1.0, 0.0], [-1.0, 0.3])];
+        let mut scene = scene(rule, bodies);
+        scene.contact = contact::<2>(&[("friction", 0.4.into())]);
+        let mut world = world(&scene);
+        let before = world.momentum();
+        let mut met = 0.0;
+        for _ in 0..60 {
+            world.frame().expect("a frame");
+            let depth = deepest(&world);
+            assert!(depth < 1e-4, "{rule}: {depth} m deep at {} s", world.time());
+            let energy = world.energy();
+            met = energy.loss_contact + energy.loss_friction;
+            assert!(energy.closure < 0.02, "{rule}: {energy:?}");
+        }
+        let after = world.momentum();
+        for d in 0..2 {
+            assert!((after.linear.0[d] - before.linear.0[d]).abs() < 1e-12, "{rule}: {before:?} {after:?}");
+        }
+        assert!(met > 1e-3, "{rule}: they met: {met}");
+        let speed = world.velocity(0, 0)[0] - world.velocity(1, 0)[0];
+        assert!(speed < 0.0, "{rule}: they part: {speed}");
+    }
+}
+
+#[test]
+fn points_bounce_by_the_restitution() {
+    for (restitution, rule) in [(0.0, "symplectic_euler"), (0.5, "symplectic_euler"), (1.0, "verlet")] {
+        let point = |name: &str, x: f64, v: f64, mass: f64| {
+            let mesh = Mesh::<2>::line([0.0, -0.5], [0.0, 0.5], 1).expect("a wire");
+            let springs = vec![model::<2>("mass_spring", &[("stiffness", 100.0)])];
+            let body = BodyBlueprint::new(name, mesh, Mass::Total(mass), springs);
+            BodyBlueprint { translation: [x, 0.0], velocity: [v, 0.0], ..body }
+        };
+        let mut scene = scene(rule, vec![point("a", -1.0, 3.0, 1.0), point("b", 0.5, -1.0, 2.0)]);
+        scene.contact = contact::<2>(&[("restitution", restitution.into()), ("thickness", 0.01.into())]);
+        let mut world = world(&scene);
+        (0..60).for_each(|_| world.frame().expect("a frame"));
+        let [a, b] = [0, 1].map(|b| world.velocity(b, 0)[0]);
+        // Of masses 1 and 2 at 3 and −1 m/s: the centre goes at 1/3 m/s.
+        let exact = [1.0 / 3.0 - restitution * 8.0 / 3.0, 1.0 / 3.0 + restitution * 4.0 / 3.0];
+        assert!((a - exact[0]).abs() < 1e-9 && (b - exact[1]).abs() < 1e-9, "{rule} {restitution}: {a} {b} {exact:?}");
+        let lost = 0.5 * 2.0 / 3.0 * 16.0 * (1.0 - restitution * restitution);
+        let energy = world.energy();
+        assert!((energy.loss_contact - lost).abs() < 1e-9, "{energy:?} {lost}");
+        assert!(energy.loss_integrator.abs() < 1e-9, "{energy:?}");
+    }
+}
+
+/// Nothing passes through a thin wire, whatever its speed.
+#[test]
+fn fast_bodies_do_not_tunnel() {
+    for speed in [1.0, 30.0, 300.0, 3000.0] {
+        let wire = Mesh::<2>::line([0.0, -1.0], [0.0, 1.0], 40).expect("a wire");
+        let springs = vec![model::<2>("mass_spring", &[("stiffness", 2000.0)])];
+        let wall = BodyBlueprint::new("wall", wire, Mass::Total(5.0), springs.clone());
+        let dot = Mesh::<2>::line([-0.02, 0.0], [0.02, 0.015], 1).expect("a wire");
+        let dot = BodyBlueprint::new("dot", dot, Mass::Total(0.1), springs);
+        let dot = BodyBlueprint { translation: [-0.3, 0.013], velocity: [speed, 0.0], ..dot };
+        let mut scene = scene("symplectic_euler", vec![wall, dot]);
+        scene.time.substeps = 64;
+        let mut world = world(&scene);
+        for _ in 0..(if speed < 2.0 { 30 } else { 4 }) {
+            world.frame().expect("a frame");
+            // Seen from the wall: the nodes of the wall beside the dot.
+            let x = |b: usize, n: u32| world.position(b, n);
+            for n in 0..2 {
+                let p = x(1, n);
+                let beside = (0..40).find(|k| (x(0, *k)[1] - p[1]) * (x(0, *k + 1)[1] - p[1]) <= 0.0);
+                if let Some(k) = beside {
+                    let (q, r) = (x(0, k), x(0, k + 1));
+                    let wall = q[0] + (p[1] - q[1]) / (r[1] - q[1]) * (r[0] - q[0]);
+                    assert!(p[0] < wall + 1e-6, "{speed} m/s: {p:?} is behind {wall}");
+                }
+            }
+        }
+    }
+}
+
+/// The same bits on any number of threads, alone or side by side, and after going back.
+#[test]
+fn contact_has_the_same_bits() {
+    let mut bodies = Vec::new();
+    let first = ball("ball[0]", 24, [0.0, 0.0], [0.0; 2]);
+    for k in 0..9 {
+        let x = [1.02 * f64::from(k % 3), 1.05 * f64::from(k / 3)];
+        bodies.push(BodyBlueprint { name: format!("ball[{k}]"), translation: x, ..first.clone() });
+    }
+    let mut scene = scene("symplectic_euler", bodies);
+    scene.surroundings.gravity = [0.0, -9.81];
+    scene.contact = contact::<2>(&[("friction", 0.3.into()), ("restitution", 0.2.into())]);
+    let fields =
+        |x: [f64; 2], n: [f64; 2]| [("point", Value::Numbers(x.to_vec())), ("normal", Value::Numbers(n.to_vec()))];
+    for (x, n) in [([0.0, -0.6], [0.0, 1.0]), ([-0.6, 0.0], [1.0, 0.0]), ([2.7, 0.0], [-1.0, 0.0])] {
+        scene.colliders.push(ColliderBlueprint::new::<2>("half_space", &fields(x, n)).expect("a plane"));
+    }
+    let run = |threads: usize, batches: bool| {
+        let mut world = World::new(scene.clone(), Options { threads, batches, ..Options::default() }).expect("a world");
+        (0..20).for_each(|_| world.frame().expect("a frame"));
+        let kept = world.snapshot();
+        (0..20).for_each(|_| world.frame().expect("a frame"));
+        let end = world.frame_hash();
+        world.restore(&kept).expect("the same scene");
+        (0..20).for_each(|_| world.frame().expect("a frame"));
+        assert_eq!(world.frame_hash(), end, "{threads} {batches}: after going back");
+        let depth = deepest(&world);
+        assert!(depth < 1e-3, "{depth} m deep");
+        assert!(world.contact_counts().expect("contact").contacts > 1000);
+        assert!(world.energy().closure < 0.05, "{:?}", world.energy());
+        end
+    };
+    let one = run(1, true);
+    for (threads, batches) in [(2, true), (3, true), (8, true), (1, false), (3, false)] {
+        assert_eq!(run(threads, batches), one, "{threads} threads, batches: {batches}");
+    }
+}
+
+#[test]
+fn what_contact_cannot_do_is_refused() {
+    let bodies = || vec![ball("a", 12, [-1.0, 0.1], [2.0, 0.0]), ball("b", 12, [1.0, 0.0], [-1.0, 0.3])];
+    let mut implicit = scene("backward_euler", bodies());
+    let error = World::new(implicit.clone(), Options::default()).expect_err("refused");
+    assert_eq!(error.code(), "contact.implicit");
+    assert!(error.to_string().contains("body `a`") && error.to_string().contains("hint"), "{error}");
+    let mut apart = Values::defaults(BODY_CONTACT.spec, 2);
+    apart.set(BODY_CONTACT.spec, "touch", Value::Boolean(false), 2).expect("a field");
+    implicit.bodies.iter_mut().for_each(|body| body.contact = Some(apart.clone()));
+    assert!(World::new(implicit, Options::default()).is_ok());
+    let mut unfolding = scene("symplectic_euler", bodies());
+    unfolding.surroundings.unfold = true;
+    assert_eq!(World::new(unfolding, Options::default()).expect_err("refused").code(), "contact.unfold");
+    let mut many = scene("symplectic_euler", bodies());
+    many.contact = contact::<2>(&[("most_pairs", 2.0.into())]);
+    let mut world = world(&many);
+    let outcome = (0..60).try_for_each(|_| world.frame());
+    let error = outcome.expect_err("too many");
+    assert_eq!(error.code(), "limit.contacts");
+    let kept = world.frame_hash();
+    assert_eq!(world.frame().expect_err("again").code(), "limit.contacts");
+    assert_eq!(world.frame_hash(), kept, "the world is as it was");
+    // A group that does not exist.
+    let mut unknown = scene("symplectic_euler", bodies());
+    let mut pair = Values::defaults(CONTACT_PAIR.spec, 2);
+    pair.set(CONTACT_PAIR.spec, "first", "a".into(), 2).expect("a field");
+    pair.set(CONTACT_PAIR.spec, "second", "nobody".into(), 2).expect("a field");
+    unknown.contact.as_mut().expect("contact").pairs.push(pair.clone());
+    assert_eq!(World::new(unknown.clone(), Options::default()).expect_err("refused").code(), "scene.unknown_name");
+    // Two groups that pass through one another.
+    pair.set(CONTACT_PAIR.spec, "second", "b".into(), 2).expect("a field");
+    pair.set(CONTACT_PAIR.spec, "touch", Value::Boolean(false), 2).expect("a field");
+    unknown.contact.as_mut().expect("contact").pairs = vec![pair];
+    let mut through = World::new(unknown, Options::default()).expect("a world");
+    (0..30).for_each(|_| through.frame().expect("a frame"));
+    assert!(deepest(&through) > 0.1);
+}
+
+/// Without contact, and with contact of bodies that never meet, a scene has the same bits.
+#[test]
+fn contact_that_never_happens_changes_nothing() {
+    let bodies = vec![ball("a", 12, [-4.0, 0.1], [0.2, 0.0]), ball("b", 24, [4.0, 0.0], [-0.1, 0.3])];
+    let with = scene("verlet", bodies);
+    let without = Blueprint { contact: None, ..with.clone() };
+    let run = |scene: &Blueprint<2>| {
+        let mut world = world(scene);
+        (0..10).for_each(|_| world.frame().expect("a frame"));
+        (0..12).map(|n| world.position(0, n).map(f64::to_bits)).collect::<Vec<_>>()
+    };
+    assert_eq!(run(&with), run(&without));
+}
+
+/// Bodies that begin inside one another part at the speed of recovery, and the energy that this makes is entered.
+#[test]
+fn overlap_is_taken_apart() {
+    let bodies = vec![ball("a", 36, [-0.47, 0.0], [0.0; 2]), ball("b", 36, [0.47, 0.01], [0.0; 2])];
+    let mut scene = scene("symplectic_euler", bodies);
+    scene.contact = contact::<2>(&[("recovery_speed", 0.2.into())]);
+    let mut world = world(&scene);
+    assert!(deepest(&world) > 0.05);
+    for frame in 0..90 {
+        world.frame().expect("a frame");
+        let energy = world.energy();
+        assert!(energy.kinetic < 20.0 && energy.closure < 0.05, "{frame}: {energy:?}");
+    }
+    assert!(deepest(&world) < 1e-4, "{}", deepest(&world));
+}
+
+/// A tetrahedral cube falls onto another: 3D, with edges.
+#[test]
+fn cubes_stack() {
+    let mesh = Arc::new(Mesh::<3>::grid([0.0; 3], [1.0; 3], [2, 2, 2]).expect("a cube"));
+    let rubber = vec![model::<3>("fem", &[("youngs_modulus", 2e4), ("poissons_ratio", 0.3), ("damping", 0.02)])];
+    let cube = BodyBlueprint { mesh, ..BodyBlueprint::new("cube", Mesh::default(), Mass::Total(8.0), rubber) };
+    let place = |name: &str, x: [f64; 3]| BodyBlueprint { name: name.into(), translation: x, ..cube.clone() };
+    let bodies = vec![place("low", [0.0; 3]), place("high", [0.21, 1.05, 0.13]), place("top", [0.0, 2.1, 0.0])];
+    let mut scene = scene("symplectic_euler", bodies);
+    scene.surroundings.gravity = [0.0, -9.81, 0.0];
+    scene.contact = contact::<3>(&[("friction", 0.5.into())]);
+    let fields = [("normal", Value::Numbers(vec![0.0, 1.0, 0.0])), ("friction", 0.5.into())];
+    scene.colliders.push(ColliderBlueprint::new::<3>("half_space", &fields).expect("a floor"));
+    let mut world = world(&scene);
+    for _ in 0..180 {
+        world.frame().expect("a frame");
+    }
+    let low = |body: usize| {
+        let all = (0..27).map(|n| world.position(body, n)[1]);
+        all.fold(f64::INFINITY, |least, y| if y < least { y } else { least })
+    };
+    assert!((low(1) - 1.0).abs() < 0.05 && (low(2) - 2.0).abs() < 0.1, "{} {}", low(1), low(2));
+    assert!(world.energy().kinetic < 1e-3, "{:?}", world.energy());
+}
