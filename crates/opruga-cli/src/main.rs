@@ -14,6 +14,7 @@ mod modes;
 mod opened;
 mod outputs;
 mod plots;
+mod preparation;
 mod recorder;
 mod recordings;
 mod replay;

@@ -1,6 +1,7 @@
 //! Scenes by name: a file, or one that comes with the program; and everything that is wrong with one at once.
 
 use crate::failure::Failure;
+use crate::preparation;
 use opruga::blueprint::AnyBlueprint;
 use opruga::core::spec::all_near;
 use opruga::io::problem::{shown, visible};
@@ -105,7 +106,10 @@ impl Source {
         options: &scene::Options,
         world: &Options,
     ) -> Result<Box<dyn AnyWorld>, Failure> {
-        let built = blueprint.build(world.clone()).map_err(|first| {
+        let built = preparation::watched(&world.break_off, || blueprint.build(world.clone())).map_err(|first| {
+            if first == WorldError::BrokenOff {
+                return Failure::Interrupted;
+            }
             // The scene is read again rather than kept for the case that its world is refused.
             let reading = scene::survey(&self.bytes, &self.file, &opruga::catalogue(), options);
             match self.refused(reading, options, world) {

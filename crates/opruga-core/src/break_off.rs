@@ -1,15 +1,17 @@
-//! What ends a step that takes long.
+//! What ends a step, or the preparation of a model, that takes long.
 
 use core::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Whether a step that takes long shall end: because somebody asks for it, or because it is late by a clock. It is looked at within steps,
-/// and shared by who computes and who waits.
+/// Whether a step that takes long shall end: because somebody asks for it, or because it is late by a clock. It is looked at within steps
+/// and within preparations that take seconds, and shared by who computes and who waits.
 #[derive(Debug)]
 pub struct BreakOff {
     asked: AtomicBool,
     /// The bits of a moment of the clock [s].
     latest: AtomicU64,
     clock: fn() -> f64,
+    /// The bits of the share of a preparation that is done; NaN: there is none.
+    prepared: AtomicU64,
 }
 
 impl Default for BreakOff {
@@ -21,7 +23,13 @@ impl Default for BreakOff {
 impl BreakOff {
     /// One that can end steps by the time as well: `clock` says what it is [s].
     pub fn with_clock(clock: fn() -> f64) -> BreakOff {
-        BreakOff { asked: AtomicBool::new(false), latest: AtomicU64::new(f64::INFINITY.to_bits()), clock }
+        let (latest, prepared) = (f64::INFINITY.to_bits(), f64::NAN.to_bits());
+        BreakOff {
+            asked: AtomicBool::new(false),
+            latest: AtomicU64::new(latest),
+            clock,
+            prepared: AtomicU64::new(prepared),
+        }
     }
 
     /// Asks for the end of what is computed and of all that follows, or no longer.
@@ -37,6 +45,16 @@ impl BreakOff {
     /// Ends what is computed so many seconds from now; infinitely many: never.
     pub fn end_after(&self, seconds: f64) {
         self.latest.store(((self.clock)() + seconds).to_bits(), Ordering::Relaxed);
+    }
+
+    /// Reports that this share (0 to 1) of a preparation is done. None: there is no preparation.
+    pub fn set_prepared(&self, share: Option<f64>) {
+        self.prepared.store(share.unwrap_or(f64::NAN).to_bits(), Ordering::Relaxed);
+    }
+
+    /// The share of the present preparation that is done, 0 to 1.
+    pub fn prepared(&self) -> Option<f64> {
+        Some(f64::from_bits(self.prepared.load(Ordering::Relaxed))).filter(|share| !share.is_nan())
     }
 
     /// Whether what is computed shall end.
@@ -65,5 +83,15 @@ mod tests {
         assert!(end.is_wanted() && end.is_asked());
         end.ask(false);
         assert!(!end.is_wanted());
+    }
+
+    #[test]
+    fn a_preparation_shows_how_far_it_is_until_it_ends() {
+        let watched = BreakOff::default();
+        assert_eq!(watched.prepared(), None);
+        watched.set_prepared(Some(0.25));
+        assert_eq!(watched.prepared(), Some(0.25));
+        watched.set_prepared(None);
+        assert_eq!(watched.prepared(), None);
     }
 }

@@ -15,6 +15,13 @@ pub struct BuildError {
 }
 
 impl BuildError {
+    /// The code of a preparation that was broken off from outside.
+    pub const BROKEN_OFF: &'static str = "run.broken_off";
+
+    /// A preparation that was broken off from outside.
+    pub fn broken_off(kind: impl Into<String>) -> BuildError {
+        BuildError::new(kind, BuildError::BROKEN_OFF, "the preparation was broken off")
+    }
     /// An error of a kind of thing, with a stable code and a message.
     pub fn new(kind: impl Into<String>, code: &'static str, message: impl Into<String>) -> BuildError {
         BuildError { kind: kind.into(), code, message: message.into() }

@@ -426,6 +426,8 @@ pub struct Ingredients<'a, const D: usize> {
     pub gravity: [f64; D],
     /// Length of a substep as the scene declares it [s]: for published schemes whose stiffness depends on it, and for nothing else.
     pub step: f64,
+    /// What breaks off a preparation that takes seconds, and is told how far it is.
+    pub break_off: &'a crate::break_off::BreakOff,
 }
 
 impl<const D: usize> Ingredients<'_, D> {

@@ -224,7 +224,7 @@ impl Studio {
             self.choose(ui, chosen);
             let making = self.keeping.working();
             let rate = follows.then_some(self.rate);
-            let busy = self.link.busy().filter(|busy| *busy > STALE);
+            let busy = self.link.busy().filter(|busy| *busy > STALE).map(|busy| (busy, self.link.prepared()));
             status::status(ui, &shown, words, (rate, busy), narrow, self.drawn_by.as_ref(), making);
         });
         Panel::bottom("time").frame(bar).show(ui, |ui| bars::time(ui, &shown, words, narrow, &mut asks));

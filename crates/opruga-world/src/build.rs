@@ -12,6 +12,7 @@ use crate::registry::Registry;
 use crate::slots::{Origin, Slots};
 use crate::unfold;
 use opruga_collide::Colliders;
+use opruga_core::break_off::BreakOff;
 use opruga_core::error::BuildError;
 use opruga_core::integrator::Integrator;
 use opruga_core::potential::{Ingredients, Potential};
@@ -149,6 +150,8 @@ pub(crate) struct Builder<'a, const D: usize> {
     pub(crate) simd: Simd,
     /// That of the scene, for bodies without their own.
     pub(crate) integrator: &'a Arc<dyn Integrator<D>>,
+    /// What breaks off the preparation of a model.
+    pub(crate) break_off: &'a BreakOff,
 }
 
 impl<const D: usize> Builder<'_, D> {
@@ -197,7 +200,10 @@ impl<const D: usize> Builder<'_, D> {
             largest_velocity: self.blueprint.surroundings.largest_velocity,
         };
         for (number, values) in first.models.iter().enumerate() {
-            let refuse = |source| WorldError::Build { place: format!("body `{}`", first.name), source };
+            let refuse = |source: BuildError| match source.code {
+                BuildError::BROKEN_OFF => WorldError::BrokenOff,
+                _ => WorldError::Build { place: format!("body `{}`", first.name), source },
+            };
             let Some(model) = self.registry.model(values.kind()) else {
                 return Err(refuse(BuildError::new(values.kind(), "scene.unknown_name", "there is no such model")));
             };
@@ -212,6 +218,7 @@ impl<const D: usize> Builder<'_, D> {
                     thickness: first.thickness,
                     gravity: self.blueprint.surroundings.gravity,
                     step: self.blueprint.time.frame / f64::from(self.blueprint.time.substeps),
+                    break_off: self.break_off,
                 })
                 .map_err(refuse)?;
             system.add(potential);
@@ -362,6 +369,7 @@ impl<const D: usize> Builder<'_, D> {
             thickness: body.thickness,
             gravity: self.blueprint.surroundings.gravity,
             step: self.blueprint.time.frame / f64::from(self.blueprint.time.substeps),
+            break_off: self.break_off,
         };
         system.add(model.build(&ingredients).map_err(refuse)?);
         Ok(())

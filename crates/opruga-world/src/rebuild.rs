@@ -1,6 +1,6 @@
 //! Islands are built anew where the scene changed; all others stay as they are.
 
-use crate::blueprint::BodyBlueprint;
+use crate::blueprint::{Blueprint, BodyBlueprint};
 use crate::build::{Builder, build_integrator, group};
 use crate::carried::{BodyHistory, BodyState};
 use crate::error::WorldError;
@@ -127,8 +127,7 @@ impl<const D: usize> World<D> {
     ) -> Result<Island<D>, WorldError> {
         let states: Vec<BodyState<D>> =
             members.iter().map(|b| fresh.get(b).cloned().unwrap_or_else(|| self.state_of(*b))).collect();
-        let builder = Builder { blueprint: &self.blueprint, registry: &self.registry, simd: self.simd, integrator };
-        builder.island(members, &states.iter().collect::<Vec<_>>(), self.time())
+        self.builder(&self.blueprint, integrator).island(members, &states.iter().collect::<Vec<_>>(), self.time())
     }
 
     /// Puts an island that was just built in its place; what commands do at present is added to it.
@@ -173,11 +172,18 @@ impl<const D: usize> World<D> {
         Ok(island.system.members.iter().flat_map(|member| member.potential.bonds()).copied().collect())
     }
 
+    fn builder<'a>(
+        &'a self,
+        blueprint: &'a Blueprint<D>,
+        integrator: &'a Arc<dyn opruga_core::integrator::Integrator<D>>,
+    ) -> Builder<'a, D> {
+        let break_off = &*self.options.break_off;
+        Builder { blueprint, registry: &self.registry, simd: self.simd, integrator, break_off }
+    }
+
     /// A body by itself as it would start now.
     fn island_alone(&self, body: &BodyBlueprint<D>) -> Result<Island<D>, WorldError> {
         let blueprint = self.blueprint.part(vec![body.clone()], Vec::new(), Vec::new());
-        let builder =
-            Builder { blueprint: &blueprint, registry: &self.registry, simd: self.simd, integrator: &self.integrator };
-        builder.island(&[0], &[&crate::build::initial_state(body)], self.time())
+        self.builder(&blueprint, &self.integrator).island(&[0], &[&crate::build::initial_state(body)], self.time())
     }
 }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use wasm_bindgen_cli_support::Bindgen;
 
-/// The program and its JavaScript.
+/// A program and its JavaScript.
 pub(super) struct Made {
     pub(super) program: Vec<u8>,
     pub(super) script: Vec<u8>,
@@ -18,10 +18,10 @@ pub(super) fn make(compiled: &Path) -> Result<Made, String> {
     let mut bindgen = Bindgen::new();
     let bindgen = bindgen.web(true).map_err(|e| e.to_string())?;
     bindgen.input_path(compiled).typescript(false).remove_name_section(true).remove_producers_section(true);
-    bindgen.out_name("studio").generate(&folder).map_err(|e| format!("{}: {e:#}", compiled.display()))?;
+    bindgen.out_name("program").generate(&folder).map_err(|e| format!("{}: {e:#}", compiled.display()))?;
     let read = |name: &str| {
         let path = folder.join(name);
         std::fs::read(&path).map_err(|e| format!("{}: {e}", path.display()))
     };
-    Ok(Made { program: read("studio_bg.wasm")?, script: read("studio.js")? })
+    Ok(Made { program: read("program_bg.wasm")?, script: read("program.js")? })
 }

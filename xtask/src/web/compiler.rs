@@ -9,11 +9,11 @@ const DEBIAN: &str = "/usr/bin";
 const HINT: &str = "`rustup target add wasm32-unknown-unknown` installs one; on Debian `apt-get install rustc-web cargo-web \
                     rust-web-src rust-web-llvm lld-22` does too";
 
-/// Compiles the studio; the file of the program.
+/// Compiles the library of a package for browsers; the file of the program.
 ///
 /// # Errors
 /// No compiler, or what it refuses.
-pub(super) fn compile(root: &Path) -> Result<PathBuf, String> {
+pub(super) fn compile(root: &Path, package: &str) -> Result<PathBuf, String> {
     let target = super::target()?.join("web");
     let mut cargo = if rustup_has_target() {
         Command::new(env!("CARGO"))
@@ -22,23 +22,13 @@ pub(super) fn compile(root: &Path) -> Result<PathBuf, String> {
     } else {
         return Err(format!("there is no compiler for {TARGET}: {HINT}"));
     };
-    cargo.args([
-        "rustc",
-        "--locked",
-        "--package",
-        "opruga-studio",
-        "--lib",
-        "--crate-type",
-        "cdylib",
-        "--profile",
-        "web",
-    ]);
+    cargo.args(["rustc", "--locked", "--package", package, "--lib", "--crate-type", "cdylib", "--profile", "web"]);
     cargo.args(["--target", TARGET]).arg("--target-dir").arg(&target).current_dir(root);
     let status = cargo.status().map_err(|e| format!("cargo build: {e}"))?;
     if !status.success() {
-        return Err(format!("the studio was not compiled for {TARGET}"));
+        return Err(format!("{package} was not compiled for {TARGET}"));
     }
-    Ok(target.join(TARGET).join("web").join("opruga_studio.wasm"))
+    Ok(target.join(TARGET).join("web").join(format!("{}.wasm", package.replace('-', "_"))))
 }
 
 fn rustup_has_target() -> bool {

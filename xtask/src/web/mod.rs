@@ -68,10 +68,10 @@ fn page() -> Result<PathBuf, String> {
 /// Builds the page; its folder.
 #[cfg(feature = "web")]
 fn page() -> Result<PathBuf, String> {
-    let program = compiler::compile(&root()?)?;
-    let made = bindings::make(&program)?;
+    let root = root()?;
+    let made = |package| bindings::make(&compiler::compile(&root, package)?);
     let folder = folder()?;
-    pages::lay_out(&root()?, &made, &folder)?;
+    pages::lay_out(&root, &made("opruga-studio")?, &made("opruga-unpack")?, &folder)?;
     Ok(folder)
 }
 

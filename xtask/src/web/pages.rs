@@ -1,33 +1,39 @@
 //! The files of the page.
 
 use super::bindings::Made;
-use libdeflater::{CompressionLvl, Compressor};
+use flate2::{Compression, write::GzEncoder};
+use lzma_rust2::{LzmaOptions, LzmaWriter};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// The most that the page may take on its way [bytes].
 const MOST_BYTES: usize = 4_000_000;
+/// How far back repetitions are looked for [bytes]: the whole program. The browser needs as much memory to unpack it.
+const DICTIONARY: u32 = 16 << 20;
 
-/// Lays the page into a folder: the program packed, its JavaScript, and what is written by hand with the names filled in.
+/// Lays the page into a folder: the program packed, the module that unpacks it, their JavaScript, and what is written by hand
+/// with the names filled in.
 ///
 /// # Errors
 /// What cannot be written, and a page that is too large.
-pub(super) fn lay_out(root: &Path, made: &Made, folder: &Path) -> Result<(), String> {
+pub(super) fn lay_out(root: &Path, studio: &Made, unpacker: &Made, folder: &Path) -> Result<(), String> {
     let sources = root.join("crates/opruga-studio/web");
-    let packed = packed(&made.program)?;
+    let packed = packed(&studio.program).map_err(|e| format!("the program cannot be packed: {e}"))?;
     // Files of one version have one name, so that no browser mixes versions.
-    let version = format!("{:016x}", fingerprint(&[&packed, &made.script]));
-    // Some servers say of files that end in `gz` that they are packed on the way; then they would be unpacked twice.
-    let names = (format!("studio-{version}.wasm.gzip"), format!("studio-{version}.js"));
+    let version = format!("{:016x}", fingerprint(&[&packed, &studio.script, &unpacker.program, &unpacker.script]));
+    let [program, glue, unpack_program, unpack] = ["studio.wasm.lzma", "studio.js", "unpack.wasm", "unpack.js"]
+        .map(|name| name.replacen('.', &format!("-{version}."), 1));
     let source = |name: &str| {
         let path = sources.join(name);
         std::fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))
     };
     let page = source("index.html")?;
-    let page = page.replace("{{packed}}", &names.0).replace("{{glue}}", &names.1);
+    let page = page.replace("{{packed}}", &program).replace("{{glue}}", &glue);
+    let page = page.replace("{{unpack}}", &unpack).replace("{{unpack_program}}", &unpack_program);
     let page = page.replace("{{packed_bytes}}", &packed.len().to_string());
     let credits = credits(&[root.join("scenes/shapes"), root.join("crates/opruga-studio/font")])?;
     // Credits are not among them: some servers make pages of such texts, and a file that is missing would hinder the others.
-    let kept = ["./", "icon.svg", "manifest.webmanifest", &names.0, &names.1];
+    let kept = ["./", "icon.svg", "manifest.webmanifest", &program, &glue, &unpack_program, &unpack];
     let version = format!("{:016x}", fingerprint(&[version.as_bytes(), page.as_bytes()]));
     let worker = source("worker.js")?.replace("{{version}}", &version);
     let worker = worker.replace("{{files}}", &serde_json::json!(kept).to_string());
@@ -36,8 +42,10 @@ pub(super) fn lay_out(root: &Path, made: &Made, folder: &Path) -> Result<(), Str
         ("worker.js", worker.into_bytes()),
         ("icon.svg", source("icon.svg")?.into_bytes()),
         ("manifest.webmanifest", source("manifest.webmanifest")?.into_bytes()),
-        (&names.1, made.script.clone()),
-        (&names.0, packed),
+        (&glue, studio.script.clone()),
+        (&program, packed),
+        (&unpack, unpacker.script.clone()),
+        (&unpack_program, unpacker.program.clone()),
     ];
     files.extend(credits.iter().map(|(name, text)| (name.as_str(), text.clone())));
     if folder.exists() {
@@ -49,9 +57,9 @@ pub(super) fn lay_out(root: &Path, made: &Made, folder: &Path) -> Result<(), Str
     for (name, bytes) in &files {
         let path = folder.join(name);
         std::fs::write(&path, bytes).map_err(|e| format!("{}: {e}", path.display()))?;
-        let (size, small) = match name.ends_with(".gzip") {
-            true => (made.program.len(), bytes.len()),
-            false => (bytes.len(), packed_size(bytes)?),
+        let (size, small) = match *name == program {
+            true => (studio.program.len(), bytes.len()),
+            false => (bytes.len(), gzipped_size(bytes)),
         };
         all += small;
         println!("{size:>10}  {small:>10}  {name}");
@@ -84,16 +92,22 @@ fn credits(folders: &[PathBuf]) -> Result<Vec<(String, Vec<u8>)>, String> {
     Ok(found)
 }
 
-fn packed(bytes: &[u8]) -> Result<Vec<u8>, String> {
-    let mut compressor = Compressor::new(CompressionLvl::best());
-    let mut packed = vec![0; compressor.gzip_compress_bound(bytes.len())];
-    let length = compressor.gzip_compress(bytes, &mut packed).map_err(|e| e.to_string())?;
-    packed.truncate(length);
-    Ok(packed)
+fn packed(bytes: &[u8]) -> std::io::Result<Vec<u8>> {
+    let mut options = LzmaOptions::with_preset(9);
+    // Instructions of WebAssembly are not aligned, and one depends on more of what stands before it than letters do.
+    (options.lc, options.lp, options.pb) = (4, 0, 0);
+    options.dict_size = DICTIONARY;
+    options.nice_len = 273;
+    let mut writer = LzmaWriter::new_use_header(Vec::new(), &options, Some(bytes.len() as u64))?;
+    writer.write_all(bytes)?;
+    writer.finish()
 }
 
-fn packed_size(bytes: &[u8]) -> Result<usize, String> {
-    packed(bytes).map(|packed| packed.len())
+/// What a server that packs sends of a file.
+fn gzipped_size(bytes: &[u8]) -> usize {
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
+    let packed = encoder.write_all(bytes).and_then(|()| encoder.finish());
+    packed.map_or(bytes.len(), |packed| packed.len())
 }
 
 /// A 64-bit hash (Fowler, Noll, Vo 1a): a name for what lies in files.

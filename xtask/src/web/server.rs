@@ -73,6 +73,7 @@ fn answer(mut stream: TcpStream, folder: &Path) -> std::io::Result<()> {
         Some("html") => "text/html; charset=utf-8",
         Some("js") => "text/javascript",
         Some("svg") => "image/svg+xml",
+        Some("wasm") => "application/wasm",
         Some("webmanifest") => "application/manifest+json",
         // The credits, and licences without an ending.
         Some("md" | "txt") => "text/plain; charset=utf-8",

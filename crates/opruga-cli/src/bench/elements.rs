@@ -147,6 +147,12 @@ fn survey(boxes: &Mesh<3>, tetrahedra: &Mesh<3>, rows: &mut Vec<Row>) -> Result<
     };
     rows.push(clusters("one cluster", None)?);
     rows.push(clusters("overlapping clusters", Some(side))?);
+
+    // Every vertex pulls at every other one.
+    let ball = Mesh::<3>::icosphere(0.5, 3).map_err(refused)?;
+    let (model, element, material) = ("boundary_element", "vertex of a sphere", "isotropic");
+    let elements = ball.positions.len();
+    rows.push(Subject { model, element, elements, material, mesh: &ball, values: vec![modulus()] }.measure()?);
     Ok(())
 }
 
@@ -178,6 +184,7 @@ impl<const D: usize> Subject<'_, D> {
             thickness: 1.0,
             gravity: [0.0; D],
             step: 1e-3,
+            break_off: &Default::default(),
         });
         let potential = potential.map_err(|e| Failure::call(e.to_string()))?;
         let (forces, [hessian, clamped_hessian]) = times(&*potential, self.mesh, self.elements)?;

@@ -208,6 +208,7 @@ impl<const D: usize> Suite<'_, D> {
             thickness: self.options.thickness,
             gravity: [0.0; D],
             step: 1e-3,
+            break_off: &Default::default(),
         };
         self.model.build(&ingredients).map_err(|e| e.to_string())
     }

@@ -9,12 +9,17 @@
 
 use super::integrals::{Integrator, Sums};
 use super::kernels::{Block, Kelvin};
+use super::progress::{Part, Progress};
 use super::refusals::Refusal;
 use super::stresses;
 use super::surface::{Source, Surface};
+use opruga_core::break_off::BreakOff;
 use opruga_core::dense::Dense;
 use opruga_solve::dense_system::{DenseFactors, cholesky, clamp};
 use std::sync::Arc;
+
+/// Columns that are solved for together: between them the end can be asked for.
+const SIDES: usize = 256;
 
 /// What was done to a stiffness so that it is that of a body, as parts of itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -47,7 +52,12 @@ struct System {
 }
 
 impl System {
-    fn assemble<const D: usize>(surface: &Surface<D>, kelvin: Kelvin, exterior: bool) -> System {
+    fn assemble<const D: usize>(
+        surface: &Surface<D>,
+        kelvin: Kelvin,
+        exterior: bool,
+        progress: &mut Progress,
+    ) -> Result<System, Refusal> {
         let rows = surface.sources.len() * D;
         let columns = surface.nodes * D;
         let mut system = System { rows, g: vec![0.0; rows * rows], h: vec![0.0; rows * columns] };
@@ -55,6 +65,7 @@ impl System {
         // The rows of a source are made side by side, and go to their columns at once.
         let (mut own_g, mut own_h) = (vec![[[0.0; D]; D]; surface.sources.len()], vec![[[0.0; D]; D]; surface.nodes]);
         for (number, source) in surface.sources.iter().enumerate() {
+            progress.step(1.0 / surface.sources.len() as f64)?;
             own_g.fill([[0.0; D]; D]);
             own_h.fill([[0.0; D]; D]);
             equation(surface, &integrator, source, exterior, &mut own_g, &mut own_h);
@@ -68,7 +79,7 @@ impl System {
                 }
             }
         }
-        system
+        Ok(system)
     }
 }
 
@@ -175,9 +186,13 @@ impl Stiffness {
         poisson: f64,
         exterior: bool,
         asked: &[[f64; D]],
+        break_off: &BreakOff,
     ) -> Result<Stiffness, Refusal> {
         let kelvin = Kelvin { poisson };
-        let System { rows, g, mut h } = System::assemble(surface, kelvin, exterior);
+        let mut progress = Progress::new(break_off, surface.sources.len() * D);
+        progress.part(Part::Integrals)?;
+        let System { rows, g, mut h } = System::assemble(surface, kelvin, exterior, &mut progress)?;
+        progress.part(Part::Factors)?;
         let factors = DenseFactors::new(rows, g).map_err(|_| Refusal::Singular { reason: "G is singular".into() })?;
         // The medium around a boundary has no rigid motion.
         let motions = if exterior { Vec::new() } else { rigid_motions(&surface.points) };
@@ -191,16 +206,22 @@ impl Stiffness {
                 changes.rotation = larger(changes.rotation, rotation_traction(surface, &factors, motion, force));
             }
         }
-        factors.solve(&mut h);
+        progress.part(Part::Solutions)?;
+        let columns = surface.nodes * D;
+        for sides in h.chunks_mut(rows * SIDES) {
+            factors.solve(sides);
+            progress.step(sides.len() as f64 / (rows * columns) as f64)?;
+        }
         drop(factors);
+        progress.part(Part::Symmetry)?;
         if h.iter().any(|x| !x.is_finite()) {
             return Err(Refusal::Singular { reason: "G is singular".into() });
         }
         let stresses = stresses::rows(surface, kelvin, asked, rows, &h);
-        let columns = surface.nodes * D;
         let mut k = forces_of_tractions(surface, rows, &h);
         drop(h);
         free_and_symmetrise(columns, &motions, &mut k, &mut changes);
+        progress.part(Part::Signs)?;
         make_positive(columns, surface.nodes, &motions, &mut k, &mut changes)?;
         let matrix = Dense::of_lower(columns, |row, column| k[column * columns + row]);
         Ok(Stiffness { matrix: Arc::new(matrix), changes, stresses })

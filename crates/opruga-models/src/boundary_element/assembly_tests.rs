@@ -3,7 +3,7 @@ use opruga_mesh::Mesh;
 
 fn report<const D: usize>(name: &str, mesh: &Mesh<D>, exterior: bool) -> (Surface<D>, Stiffness) {
     let surface = Surface::of(mesh, exterior).unwrap();
-    let stiffness = Stiffness::new(&surface, 0.3, exterior, &[]).unwrap();
+    let stiffness = Stiffness::new(&surface, 0.3, exterior, &[], &BreakOff::default()).unwrap();
     let changes = &stiffness.changes;
     assert!(changes.rotation < 1e-8 && changes.rigid < 1e-2 && changes.negative < 0.05, "{name}: {changes:?}");
     (surface, stiffness)
@@ -24,7 +24,9 @@ fn identities_hold() {
     for exterior in [false, true] {
         let ring = Mesh::ring(0.5, 36, [0.2, 2.0], 0.1).unwrap();
         let surface = Surface::of(&ring, exterior).unwrap();
-        let system = System::assemble(&surface, Kelvin { poisson: 0.3 }, exterior);
+        let break_off = BreakOff::default();
+        let mut progress = Progress::new(&break_off, 72);
+        let system = System::assemble(&surface, Kelvin { poisson: 0.3 }, exterior, &mut progress).unwrap();
         for d in 0..2 {
             let unit: Vec<f64> = (0..72).map(|k| if k % 2 == d { 1.0 } else { 0.0 }).collect();
             let sum = times(&system.h, system.rows, &unit);
@@ -78,4 +80,14 @@ fn a_ball_shrinks_under_pressure() {
         errors[0] < 1e-10 && errors[1..].windows(2).all(|pair| pair[1] < pair[0]) && errors[3] < 0.01,
         "{errors:?}"
     );
+}
+
+#[test]
+fn a_preparation_ends_when_somebody_asks() {
+    let surface = Surface::of(&Mesh::<2>::ring(0.5, 36, [0.2, 2.0], 0.1).unwrap(), false).unwrap();
+    let break_off = BreakOff::default();
+    break_off.ask(true);
+    let ended = Stiffness::new(&surface, 0.3, false, &[], &break_off).map(|_| ());
+    assert_eq!(ended, Err(Refusal::BrokenOff {}));
+    assert_eq!(break_off.prepared(), None);
 }

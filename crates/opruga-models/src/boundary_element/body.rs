@@ -92,7 +92,7 @@ impl Body {
             .map(|row| core::array::from_fn(|d| (row[d] - surface.center[d]) / surface.size))
             .collect();
         let exterior = values.flag("exterior");
-        let stiffness = cache::stiffness(surface, poisson, exterior, &asked)?;
+        let stiffness = cache::stiffness(surface, poisson, exterior, &asked, ingredients.break_off)?;
         let depth = if D == 2 { ingredients.thickness } else { surface.size };
         Ok(Body { stiffness, strength: shear * depth, stress: shear / surface.size })
     }

@@ -3,6 +3,7 @@
 use super::assembly::Stiffness;
 use super::refusals::Refusal;
 use super::surface::Surface;
+use opruga_core::break_off::BreakOff;
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 /// The bits of all that a stiffness follows from.
@@ -39,13 +40,14 @@ pub(super) fn stiffness<const D: usize>(
     poisson: f64,
     exterior: bool,
     asked: &[[f64; D]],
+    break_off: &BreakOff,
 ) -> Result<Arc<Stiffness>, Refusal> {
     let key = key(surface, poisson, exterior, asked);
     if let Some(shared) = KNOWN.lock().unwrap_or_else(PoisonError::into_inner).find(&key) {
         return Ok(shared);
     }
     // Not under the lock: others build their own meanwhile, and the same numbers twice are the same bits.
-    let made = Arc::new(Stiffness::new(surface, poisson, exterior, asked)?);
+    let made = Arc::new(Stiffness::new(surface, poisson, exterior, asked, break_off)?);
     let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(shared) = known.find(&key) {
         return Ok(shared);

@@ -24,6 +24,8 @@ mod integrals;
 #[cfg(not(target_arch = "wasm32"))]
 mod kernels;
 #[cfg(not(target_arch = "wasm32"))]
+mod progress;
+#[cfg(not(target_arch = "wasm32"))]
 mod quadrature;
 mod refusals;
 mod spec;

@@ -55,6 +55,10 @@ messages! {
         "model.not_on_the_page"
         #[error("the page does not compute boundary elements; hint: the studio and the command line do")]
         Page {},
+        /// Somebody has asked for the end of the preparation.
+        "run.broken_off"
+        #[error("the preparation was broken off")]
+        BrokenOff {},
         /// A system without a solution.
         "model.singular"
         #[error("the equations of the boundary have no solution: {reason}; hint: facets of more even size")]

@@ -23,6 +23,7 @@
 //! straight, for then no direction is that of its curvature. St. Venant and Kirchhoff's law gives way below 1/√3 of the length. A
 //! degenerate tangent plane has no normal and no moment.
 
+mod along;
 mod curve;
 mod grid;
 mod plate;
@@ -34,6 +35,7 @@ pub use spec::SPEC;
 
 use crate::bending::hinge::{self, Hinge};
 use crate::vectors::{cross, dot, in_space, minus};
+use along::Along;
 use curve::{Bend, Stretch};
 use grid::{Grid, HEXAHEDRON, QUADRILATERAL, spacings};
 use opruga_core::error::BuildError;
@@ -42,7 +44,7 @@ use opruga_core::potential::{
     CellState, Definiteness, Ingredients, Model, Observe, Potential, Properties, Sink, Views,
 };
 use opruga_core::spec::{Spec, Values};
-use opruga_core::state::{Layout, View};
+use opruga_core::state::{Layout, Parameter, View};
 use opruga_core::stencil::Stencils;
 use opruga_core::tile::Tile;
 use opruga_math::words::number;
@@ -111,6 +113,8 @@ pub struct FiniteDifferenceModel;
 #[derive(Debug)]
 struct FiniteDifference<const D: usize> {
     parts: Vec<Box<dyn Potential<D>>>,
+    /// The forces of the first two parts of a curve, where its nodes follow each other.
+    along: Option<Along>,
     damped: bool,
     /// The cells of a solid, and the elastic numbers of each body.
     solid: Option<(Cells<D>, Vec<Elastic>)>,
@@ -181,6 +185,12 @@ impl<const D: usize> Model<D> for FiniteDifferenceModel {
         Need { bytes: 160.0 * counts.edges, couplings }
     }
     fn build(&self, ingredients: &Ingredients<D>) -> Result<Box<dyn Potential<D>>, BuildError> {
+        Ok(Box::new(FiniteDifference::new(ingredients)?))
+    }
+}
+
+impl<const D: usize> FiniteDifference<D> {
+    fn new(ingredients: &Ingredients<D>) -> Result<FiniteDifference<D>, BuildError> {
         let grid = Grid::of(ingredients.mesh)?;
         let solid = matches!(grid, Grid::Plane { .. } | Grid::Space { .. });
         for values in ingredients.values {
@@ -196,6 +206,10 @@ impl<const D: usize> Model<D> for FiniteDifferenceModel {
         let elastic: Vec<Elastic> = ingredients.values.iter().map(|values| Elastic::of(values)).collect();
         let damped = elastic.iter().any(|body| body.damping > 0.0);
         let plan = Plan { ingredients, elastic, damped };
+        let along = match &grid {
+            Grid::Curve { edges, .. } => plan.along(edges),
+            _ => None,
+        };
         let (parts, cells) = match grid {
             Grid::Curve { edges, nodes } => (plan.curve(&edges, &nodes)?, None),
             Grid::Surface { cells, inner, edge } => (plan.surface(&cells, &inner, &edge)?, None),
@@ -203,7 +217,7 @@ impl<const D: usize> Model<D> for FiniteDifferenceModel {
             Grid::Space { cells } => plan.space(&cells)?,
         };
         let solid = cells.map(|cells| (cells, plan.elastic));
-        Ok(Box::new(FiniteDifference { parts, damped, solid }))
+        Ok(FiniteDifference { parts, along, damped, solid })
     }
 }
 
@@ -261,6 +275,26 @@ impl<const D: usize> Plan<'_, D> {
             parts.push(self.torsion(nodes)?);
         }
         Ok(parts)
+    }
+    /// The same stretch and bending in one walk, where edges follow the numbers of the nodes.
+    fn along(&self, edges: &[[u32; 2]]) -> Option<Along> {
+        let depth = (D == 2).then_some(self.ingredients.thickness);
+        let (layout, count) = self.layout();
+        let by_body =
+            |number: &dyn Fn(&Elastic) -> f64| Parameter::by_body(core::array::from_fn(|body| number(self.of(body))));
+        let section =
+            [by_body(&|own| own.section(depth)[0]), by_body(&|own| own.section(depth)[1]), by_body(&|own| own.damping)];
+        Along::new(layout, count, edges, section, self.damped, |before, behind| {
+            let length = |edge: Option<[u32; 2]>| edge.map_or(0.0, |[a, b]| self.length(a, b));
+            let (low, high) = (length(before), length(behind));
+            let inverse = if high > 0.0 { 1.0 / high } else { 0.0 };
+            let (Some([first, at]), Some([_, after])) = (before, behind) else {
+                return [inverse, 0.0, 0.0, 0.0, high, 0.0];
+            };
+            let (share, mean) = (high / (low + high), 0.5 * (low + high));
+            let rest = self.rest_curvature([first, at, after], [low, high], share);
+            [inverse, share, 1.0 / mean, rest, high, mean]
+        })
     }
     /// The torsion of a curve in space, on its edges between two nodes with a curvature.
     fn torsion(&self, nodes: &[[u32; 3]]) -> Result<Box<dyn Potential<D>>, Refusal> {
@@ -406,7 +440,11 @@ impl<const D: usize> Potential<D> for FiniteDifference<D> {
         self.parts.iter().for_each(|part| part.stencils(visit));
     }
     fn add_force(&self, simd: Simd, view: &View<D>, scratch: &[f64], tile: &mut Tile<D>) {
-        self.parts.iter().for_each(|part| part.add_force(simd, view, scratch, tile));
+        if let Some(along) = &self.along {
+            along.add_force(simd, view, tile);
+        }
+        let rest = if self.along.is_some() { 2 } else { 0 };
+        self.parts[rest..].iter().for_each(|part| part.add_force(simd, view, scratch, tile));
     }
     fn energy(&self, simd: Simd, view: &View<D>, scratch: &[f64]) -> [f64; WIDTH] {
         let mut energy = [0.0; WIDTH];
@@ -431,6 +469,7 @@ impl<const D: usize> Observe<D> for FiniteDifference<D> {
     }
     fn heap_bytes(&self) -> usize {
         let cells = self.solid.as_ref().map_or(0, |(cells, _)| cells.heap_bytes());
-        self.parts.iter().map(|part| part.heap_bytes()).sum::<usize>() + cells
+        let along = self.along.as_ref().map_or(0, Along::heap_bytes);
+        self.parts.iter().map(|part| part.heap_bytes()).sum::<usize>() + cells + along
     }
 }

@@ -31,6 +31,8 @@
 mod hessian;
 mod kernels;
 mod layout;
+mod piece_kernels;
+mod pieces;
 mod refusals;
 mod regions;
 mod shape;
@@ -52,6 +54,8 @@ use opruga_core::tile::Tile;
 use opruga_math::matrix::determinant;
 use opruga_math::message::AnyMessage;
 use opruga_math::{Pack, Simd, WIDTH, Work};
+use piece_kernels::{PieceForces, PieceMaps, PieceMoments};
+use pieces::Pieces;
 
 /// The kind `shape_matching`.
 #[derive(Debug)]
@@ -61,6 +65,8 @@ pub struct ShapeMatchingModel;
 #[derive(Debug)]
 pub struct Matching<const D: usize> {
     clusters: Clusters<D>,
+    /// How they share nodes, where that saves work.
+    pieces: Option<Pieces<D>>,
     law: Law,
     stored: Stored,
     /// Whether the force is the published one, which is no gradient.
@@ -78,6 +84,12 @@ impl<const D: usize> Model<D> for ShapeMatchingModel {
         Need { bytes: 150.0 * counts.nodes, couplings: 0.0 }
     }
     fn build(&self, ingredients: &Ingredients<D>) -> Result<Box<dyn Potential<D>>, BuildError> {
+        Ok(Box::new(Matching::new(ingredients)?))
+    }
+}
+
+impl<const D: usize> Matching<D> {
+    fn new(ingredients: &Ingredients<D>) -> Result<Matching<D>, BuildError> {
         let first = ingredients.values[0];
         let is_published = first.text("scheme") == Some("as_published");
         for values in ingredients.values {
@@ -95,8 +107,9 @@ impl<const D: usize> Model<D> for ShapeMatchingModel {
             Some(share) => share / (ingredients.step * ingredients.step),
             None => values.number("stiffness").unwrap_or(0.0),
         });
-        Ok(Box::new(Matching {
+        Ok(Matching {
             stored: Stored::of(&clusters),
+            pieces: Pieces::new(ingredients, &clusters),
             clusters,
             law: Law {
                 stiffness: Parameter::by_body(stiffness),
@@ -109,7 +122,7 @@ impl<const D: usize> Model<D> for ShapeMatchingModel {
                 .iter()
                 .any(|values| values.number("goal_step").is_some())
                 .then_some(ingredients.step),
-        }))
+        })
     }
 }
 
@@ -134,7 +147,7 @@ impl<const D: usize> Potential<D> for Matching<D> {
         let views = Views { energy: is_gradient, hessian: is_gradient, symmetric: is_gradient, damping: false };
         Properties {
             account: if self.is_published { Account::User } else { Account::Elastic },
-            scratch_len: self.stored.len(&self.clusters),
+            scratch_len: self.scratch_len(),
             begins_tiles: true,
             forces_in_prepare: true,
             ..Properties::new(SPEC.kind, views)
@@ -164,6 +177,12 @@ impl<const D: usize> Potential<D> for Matching<D> {
             return Err(StepError::Model { model: SPEC.kind, message: refusal.to_string() });
         }
         let (clusters, stored, law) = (&self.clusters, self.stored, &self.law);
+        if let Some(pieces) = &self.pieces {
+            simd.run(PieceMoments { clusters, pieces, stored, view, scratch });
+            simd.run(Fit { clusters, stored, law, scratch });
+            simd.run(PieceMaps { clusters, pieces, stored, view, scratch });
+            return Ok(());
+        }
         by_columns!(
             clusters.columns,
             simd,
@@ -181,6 +200,11 @@ impl<const D: usize> Potential<D> for Matching<D> {
     }
     fn add_force(&self, simd: Simd, view: &View<D>, scratch: &[f64], tile: &mut Tile<D>) {
         let (clusters, stored, law, works) = (&self.clusters, self.stored, &self.law, self.is_published);
+        if let Some(pieces) = &self.pieces {
+            let rows = &scratch[stored.forces..];
+            simd.run(PieceForces { pieces, law, view, rows, tile, works });
+            return;
+        }
         if clusters.is_whole {
             by_columns!(
                 clusters.columns,
@@ -221,6 +245,15 @@ impl<const D: usize> Potential<D> for Matching<D> {
 }
 
 impl<const D: usize> Matching<D> {
+    /// Numbers of the clusters, and then forces of slots, or rows of pieces and clusters.
+    fn scratch_len(&self) -> usize {
+        match &self.pieces {
+            Some(pieces) => {
+                self.stored.forces + (pieces.len() + self.clusters.len()) * Pieces::<D>::row(self.clusters.layout)
+            }
+            None => self.stored.len(&self.clusters),
+        }
+    }
     /// Whether the fitted map of a cluster turns its rest shape inside out.
     fn is_mirrored(&self, scratch: &[f64], cluster: usize, body: usize) -> bool {
         let (clusters, stored) = (&self.clusters, self.stored);
@@ -252,7 +285,7 @@ impl<const D: usize> Observe<D> for Matching<D> {
         self.is_published.then(|| Refusal::NoPotential {}.into())
     }
     fn heap_bytes(&self) -> usize {
-        self.clusters.heap_bytes()
+        self.clusters.heap_bytes() + self.pieces.as_ref().map_or(0, Pieces::heap_bytes)
     }
 }
 

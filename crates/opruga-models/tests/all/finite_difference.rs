@@ -253,6 +253,7 @@ fn refused<const D: usize>(mesh: &Mesh<D>, values: &Values) -> Option<String> {
         thickness: 1.0,
         gravity: [0.0; D],
         step: 1e-3,
+        break_off: &Default::default(),
     };
     FiniteDifference.build(&ingredients).err().map(|error| error.code.to_string())
 }

@@ -29,12 +29,12 @@ struct Number {
 }
 
 /// The line on top: the numbers of the machine, and what draws. The rate of pictures where they follow one another, and for how long a
-/// frame has been computed that is not done. The room that it takes depends on the width of the window alone.
+/// frame has been computed that is not done, with the share of a preparation. The room that it takes depends on the width of the window alone.
 pub fn status(
     ui: &mut Ui,
     shown: &Shown,
     words: Language,
-    (rate, busy): (Option<f64>, Option<Duration>),
+    (rate, busy): (Option<f64>, Option<(Duration, Option<f64>)>),
     narrow: bool,
     drawn_by: Option<&[String; 2]>,
     mut making: impl Iterator<Item = (What, u32)>,
@@ -72,8 +72,11 @@ pub fn status(
             if place + 1 == rows.len() {
                 let mut said: Vec<(RichText, String)> = Vec::new();
                 let small = |text: String| RichText::new(text).size(SIZE);
-                if let Some(busy) = busy {
-                    let text = words.computing().replace("{}", &format!("{:.0}", busy.as_secs_f64()));
+                if let Some((busy, prepared)) = busy {
+                    let mut text = words.computing().replace("{}", &format!("{:.0}", busy.as_secs_f64()));
+                    if let Some(share) = prepared {
+                        text += &format!(" · {:.0} %", 100.0 * share);
+                    }
                     said.push((small(text).color(theme::attention(ui.visuals())), String::new()));
                 }
                 if let Some(goal) = shown.goal.filter(|_| busy.is_none()) {

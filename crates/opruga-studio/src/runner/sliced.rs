@@ -51,6 +51,11 @@ impl Link {
         None
     }
 
+    /// The share that is done of a preparation: none either.
+    pub fn prepared(&self) -> Option<f64> {
+        None
+    }
+
     /// Asks for something; it is done in the next turn.
     pub fn ask(&self, request: Request) {
         self.inner.borrow_mut().asks.push(Ask::Do(request));

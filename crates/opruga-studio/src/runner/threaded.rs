@@ -93,6 +93,11 @@ impl Link {
         self.since.lock().unwrap_or_else(PoisonError::into_inner).map(|since| since.elapsed())
     }
 
+    /// The share that is done of a preparation that takes long.
+    pub fn prepared(&self) -> Option<f64> {
+        self.break_off.prepared()
+    }
+
     /// The last picture.
     pub fn shown(&self) -> Arc<Shown> {
         Arc::clone(&self.last.lock().unwrap_or_else(PoisonError::into_inner))

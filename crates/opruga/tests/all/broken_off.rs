@@ -74,3 +74,29 @@ fn a_frame_that_is_broken_off_leaves_the_last_good_one_and_is_made_again_to_the_
         assert_eq!(broken.energy(), whole.energy(), "{rule}");
     }
 }
+
+#[test]
+fn a_body_whose_preparation_is_broken_off_does_not_come_and_the_world_stays_as_it_was() {
+    let ring = |name: &str, model: &str| {
+        format!(
+            "[[body]]\nname = \"{name}\"\nmass = 1.0\nshape = {{ kind = \"ring\", radius = 0.5, vertices = 41 }}\n\
+             models = [{{ kind = \"{model}\" }}]\n"
+        )
+    };
+    let head = "format = \"opruga-1\"\ndimension = 2\n[time]\nseconds = 1.0\nframe = 0.01\nsubsteps = 1\n\
+                [integrator]\nkind = \"backward_euler\"\n";
+    let break_off = Arc::new(BreakOff::default());
+    let options = Options { break_off: Arc::clone(&break_off), ..Options::default() };
+    let springs = common::plane(&format!("{head}{}", ring("springs", "mass_spring")));
+    let mut world = World::new(springs, options.clone()).expect("a world");
+    let dense = || common::plane(&format!("{head}{}", ring("solid", "boundary_element")));
+    let body = dense().bodies.remove(0);
+    let hash = world.state_hash();
+    break_off.ask(true);
+    assert_eq!(world.add_body(body.clone()), Err(WorldError::BrokenOff));
+    assert_eq!((world.state_hash(), break_off.prepared()), (hash, None));
+    assert!(matches!(World::new(dense(), options), Err(WorldError::BrokenOff)));
+    break_off.ask(false);
+    world.add_body(body).expect("a body");
+    world.frame().expect("a frame");
+}

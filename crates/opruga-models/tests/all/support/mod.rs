@@ -79,6 +79,7 @@ pub(crate) fn system_with_mass<const D: usize>(mesh: &Mesh<D>, parts: &[Part<D>]
             thickness: 1.0,
             gravity: [0.0; D],
             step: 1e-3,
+            break_off: &Default::default(),
         };
         system.add(model.build(&ingredients).unwrap());
     }
@@ -98,6 +99,7 @@ pub(crate) fn refusal<const D: usize>(mesh: &Mesh<D>, model: &dyn Model<D>, valu
         thickness: 1.0,
         gravity: [0.0; D],
         step: 1e-3,
+        break_off: &Default::default(),
     };
     match model.build(&ingredients) {
         Ok(_) => "built".into(),

@@ -1,0 +1,69 @@
+//! Bodies whose models take seconds to prepare: progress on the terminal, and an end by Ctrl-C.
+
+use crate::interrupt::asked_to_stop;
+use opruga::BreakOff;
+use std::io::IsTerminal;
+use std::sync::atomic::Ordering;
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::time::{Duration, Instant};
+
+/// How often the wish to stop is passed on, and the bar is drawn.
+const TURN: Duration = Duration::from_millis(50);
+/// What takes less than this shows no bar.
+const SHORT: Duration = Duration::from_secs(1);
+
+/// Does work that can be broken off. Another thread passes the wish to stop on, and shows how far a preparation is.
+pub(crate) fn watched<T>(break_off: &BreakOff, work: impl FnOnce() -> T) -> T {
+    let stop = asked_to_stop();
+    let done = std::thread::scope(|scope| {
+        let (ended, end) = channel::<()>();
+        scope.spawn(move || {
+            let (begin, mut bar) = (Instant::now(), None);
+            while end.recv_timeout(TURN) == Err(RecvTimeoutError::Timeout) {
+                break_off.ask(stop.load(Ordering::SeqCst));
+                if let Some(share) = break_off.prepared().filter(|_| begin.elapsed() > SHORT) {
+                    bar.get_or_insert_with(progress_bar).set_position((100.0 * share) as u64);
+                }
+            }
+            if let Some(bar) = bar {
+                bar.finish_and_clear();
+            }
+        });
+        let done = work();
+        drop(ended);
+        done
+    });
+    // What is asked for later is looked at by whoever does it.
+    break_off.ask(false);
+    done
+}
+
+fn progress_bar() -> indicatif::ProgressBar {
+    if !std::io::stderr().is_terminal() {
+        return indicatif::ProgressBar::hidden();
+    }
+    let style = indicatif::ProgressStyle::with_template("preparing the bodies {wide_bar} {pos} %, {eta} left");
+    indicatif::ProgressBar::new(100).with_style(style.unwrap_or_else(|_| indicatif::ProgressStyle::default_bar()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::interrupt::{begin_work, stop_work};
+
+    #[test]
+    fn the_wish_to_stop_reaches_work_that_can_be_broken_off() {
+        let break_off = BreakOff::default();
+        assert_eq!(watched(&break_off, || 7), 7);
+        stop_work();
+        let late = Instant::now() + Duration::from_secs(60);
+        watched(&break_off, || {
+            while !break_off.is_asked() {
+                assert!(Instant::now() < late, "nobody passed it on");
+                std::thread::sleep(Duration::from_millis(5));
+            }
+        });
+        begin_work();
+        assert!(!break_off.is_asked());
+    }
+}
