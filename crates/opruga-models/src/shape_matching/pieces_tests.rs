@@ -29,8 +29,8 @@ fn matching<const D: usize>(mesh: &Mesh<D>, region: f64, share: f64) -> Matching
 }
 fn forces<const D: usize>(matching: &Matching<D>, mesh: &Mesh<D>) -> Vec<f64> {
     let nodes = mesh.positions.len();
-    let places = Layout::Single.places(nodes);
-    let (mut x, v, mut force) = (Columns::<D>::zeros(places), Columns::zeros(places), Columns::zeros(places));
+    let padded = Layout::Single.places(nodes);
+    let (mut x, v, mut force) = (Columns::<D>::zeros(padded), Columns::zeros(padded), Columns::zeros(padded));
     for (node, at) in mesh.positions.iter().enumerate() {
         x.set(node, core::array::from_fn(|d| at[d] * (1.0 + 0.2 * at[(d + 1) % D]) + 0.01 * ((node + d) % 7) as f64));
     }
