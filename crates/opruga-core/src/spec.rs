@@ -34,6 +34,8 @@ pub struct Spec {
 pub enum Role {
     /// A model that owns cells of the mesh and knows their stress and volume ratio J. Two models that own one cell are refused.
     OwnsCells,
+    /// A model of the solid inside a closed boundary, by the nodes of the boundary alone.
+    InsideOfBoundary,
     /// A model of gas in closed chambers.
     Gas,
     /// A model whose forces act along the edges of the mesh; pictures draw them as lines.

@@ -7,6 +7,7 @@ use crate::masses::node_masses;
 use crate::selection::{extent, longest_side};
 use crate::world::{Warning, World};
 use opruga_core::error::BuildError;
+use opruga_core::spec::Role;
 use opruga_core::stability::Spectrum;
 use opruga_math::words::{counted, number, rounded};
 use opruga_mesh::{Measure, Mesh, Share};
@@ -21,14 +22,22 @@ pub(crate) const SAG: &str = "units.sag";
 /// springs of one node, whatever the models are. A body of N nodes carries its weight M g with as many springs side by
 /// side as one after the other if it is a surface, with N^⅓ times as many if it is a solid: sag ≈ M g / (k N^⅓) or M g / k.
 /// An outline sags more; what holds it up is usually gas, so it is taken for a surface.
+///
+/// The boundary of a solid is another matter: its stiffness grows with the wave number, μ per metre of it, and not with its square, so the
+/// fastest motion of a node is that of one spring to its surroundings, k ≈ m ω². A cube of n × n × n springs has N = 6 n² nodes on its
+/// boundary: sag ≈ M g / (k √(N/6)) in space.
 pub(crate) fn sag<const D: usize>(body: &BodyBlueprint<D>, gravity: &[f64; D], spectrum: &Spectrum) -> Option<Warning> {
     let masses = node_masses(body);
     let (nodes, mass) = (masses.len() as f64, masses.iter().sum::<f64>());
+    let is_boundary = body.models.iter().any(|model| model.spec().has_role(Role::InsideOfBoundary));
     let across = match body.mesh.measure() {
+        // The measure of what has no cells is that of its surface.
+        _ if is_boundary && D == 3 => (nodes / 6.0).sqrt(),
         Ok(Measure::Volume(_)) => libm::cbrt(nodes),
         _ => 1.0,
     };
-    let stiffness = 0.25 * spectrum.omega * spectrum.omega * mass / nodes * across;
+    let part = if is_boundary { 1.0 } else { 0.25 };
+    let stiffness = part * spectrum.omega * spectrum.omega * mass / nodes * across;
     let g = gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
     let size = longest_side(&body.mesh);
     let sag = mass * g / stiffness;

@@ -1,6 +1,6 @@
 //! Parameters of boundary elements.
 
-use opruga_core::spec::{Allowed, Bound, Condition, Default, Field, Spec};
+use opruga_core::spec::{Allowed, Bound, Condition, Default, Field, Role, Spec};
 
 /// The parameters of `boundary_element`.
 pub const SPEC: Spec = Spec {
@@ -47,5 +47,5 @@ Source: Brebbia, Telles, Wrobel 1984, Boundary element techniques; James, Pai 19
             "Points of the solid at rest whose stress is read: `stress0.xx`, `stress0.xy`, …, in the frame R.",
         ),
     ],
-    roles: &[],
+    roles: &[Role::InsideOfBoundary],
 };

@@ -11,16 +11,16 @@ use opruga_mesh::Mesh;
 /// Forces of a disturbed curve, and the power of its damping.
 fn forces<const D: usize>(curve: &FiniteDifference<D>, mesh: &Mesh<D>) -> (Vec<f64>, f64) {
     let nodes = mesh.positions.len();
-    let places = Layout::Single.places(nodes);
-    let (mut x, mut v, mut force) = (Columns::<D>::zeros(places), Columns::<D>::zeros(places), Columns::zeros(places));
+    let padded = Layout::Single.places(nodes);
+    let (mut x, mut v, mut force) = (Columns::<D>::zeros(padded), Columns::<D>::zeros(padded), Columns::zeros(padded));
     for (node, at) in mesh.positions.iter().enumerate() {
         x.set(node, core::array::from_fn(|d| at[d] + 0.01 * ((node * 3 + d * 5) % 7) as f64));
         v.set(node, core::array::from_fn(|d| 0.1 * ((node * 5 + d * 3) % 11) as f64));
     }
     let view = View { x: x.slices(), v: v.slices(), nodes, layout: Layout::Single, time: 0.0, threads: 1 };
     let (mut slots, mut power) = (Column::default(), [0.0; WIDTH]);
-    for start in (0..places).step_by(TILE) {
-        let range = start..(start + TILE).min(places);
+    for start in (0..padded).step_by(TILE) {
+        let range = start..(start + TILE).min(padded);
         let columns = force.0.each_mut().map(|column| &mut column[range.clone()]);
         let mut tile = Tile { range, force: columns, power: &mut power, weight: None, slots: &mut slots };
         curve.add_force(Simd::best(), &view, &[], &mut tile);
@@ -43,6 +43,7 @@ fn compare<const D: usize>(name: &str, mesh: &Mesh<D>, fields: &[(&str, f64)]) {
         thickness: 1.0,
         gravity: [0.0; D],
         step: 1e-3,
+        break_off: &Default::default(),
     };
     let mut curve = FiniteDifference::new(&ingredients).unwrap();
     assert!(curve.along.is_some(), "{name}");
@@ -96,6 +97,7 @@ fn curves_in_another_order_are_left_to_the_stencils() {
         thickness: 1.0,
         gravity: [0.0; 2],
         step: 1e-3,
+        break_off: &Default::default(),
     };
     assert!(FiniteDifference::new(&ingredients).unwrap().along.is_none());
 }

@@ -130,7 +130,7 @@ impl<const D: usize> Pieces<D> {
         let mut row_of: Vec<u32> = piece_of.iter().map(|piece| piece * rows as u32).collect();
         row_of.resize(count.next_multiple_of(WIDTH), 0);
 
-        let places = layout.places(count);
+        let padded = layout.places(count);
         let mut out = Pieces {
             origin,
             nodes: members.concat(),
@@ -142,7 +142,7 @@ impl<const D: usize> Pieces<D> {
             clusters_start,
             pieces: of_cluster.concat(),
             pieces_start: starts(&of_cluster),
-            mass: Column::zeros(places + WIDTH),
+            mass: Column::zeros(padded + WIDTH),
             offset: core::array::from_fn(|_| Column::zeros(count + WIDTH)),
             weights: Column::zeros(if layout == Layout::Single { count * WIDTH } else { 0 }),
             inverse: (0..D * D).map(|_| Column::zeros(layout.places(clusters.len()) + WIDTH)).collect(),

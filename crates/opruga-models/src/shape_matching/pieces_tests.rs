@@ -24,13 +24,14 @@ fn matching<const D: usize>(mesh: &Mesh<D>, region: f64, share: f64) -> Matching
         thickness: 1.0,
         gravity: [0.0; D],
         step: 1e-3,
+        break_off: &Default::default(),
     };
     Matching::new(&ingredients).unwrap()
 }
 fn forces<const D: usize>(matching: &Matching<D>, mesh: &Mesh<D>) -> Vec<f64> {
     let nodes = mesh.positions.len();
-    let places = Layout::Single.places(nodes);
-    let (mut x, v, mut force) = (Columns::<D>::zeros(places), Columns::zeros(places), Columns::zeros(places));
+    let padded = Layout::Single.places(nodes);
+    let (mut x, v, mut force) = (Columns::<D>::zeros(padded), Columns::zeros(padded), Columns::zeros(padded));
     for (node, at) in mesh.positions.iter().enumerate() {
         x.set(node, core::array::from_fn(|d| at[d] * (1.0 + 0.2 * at[(d + 1) % D]) + 0.01 * ((node + d) % 7) as f64));
     }
@@ -38,8 +39,8 @@ fn forces<const D: usize>(matching: &Matching<D>, mesh: &Mesh<D>) -> Vec<f64> {
     let (simd, mut slots, mut power) = (Simd::best(), Column::default(), [0.0; WIDTH]);
     let mut scratch = vec![0.0; matching.properties().scratch_len];
     matching.prepare(simd, &view, &[], &mut scratch).unwrap();
-    let columns = force.0.each_mut().map(|column| &mut column[..places]);
-    let mut tile = Tile { range: 0..places, force: columns, power: &mut power, weight: None, slots: &mut slots };
+    let columns = force.0.each_mut().map(|column| &mut column[..padded]);
+    let mut tile = Tile { range: 0..padded, force: columns, power: &mut power, weight: None, slots: &mut slots };
     matching.add_force(simd, &view, &scratch, &mut tile);
     (0..nodes).flat_map(|node| force.at(node)).collect()
 }

@@ -1,6 +1,8 @@
 //! Boundary elements: what is refused, the energy of uniform strains, and what a body is not to depend on.
 
 use crate::support::{energy, forces, refusal, system};
+use opruga_core::spec::{Value, Values};
+use opruga_core::system::Stage;
 use opruga_mesh::Mesh;
 use opruga_models::boundary_element::BoundaryElementModel as Boundary;
 
@@ -160,4 +162,78 @@ fn degenerate_states_have_finite_forces() {
     let ring = ring();
     let (found, _) = pulled(&ring, 900.0, |_, x| [x[0], 0.0]);
     assert!(found.iter().all(|f| f.is_finite()));
+}
+
+/// Stresses at points inside, component by component.
+fn stresses<const D: usize>(
+    mesh: &Mesh<D>,
+    fields: Vec<(&str, Value)>,
+    points: &[[f64; D]],
+    moved: impl Fn(&[f64; D]) -> [f64; D],
+) -> Vec<(String, f64)> {
+    let spec = &opruga_models::boundary_element::SPEC;
+    let mut values = Values::defaults(spec, D);
+    let rows = Value::Rows(points.iter().map(|point| point.to_vec()).collect());
+    for (name, value) in fields.into_iter().chain([("stress_points", rows)]) {
+        values.set(spec, name, value, D).unwrap();
+    }
+    let mut body = system(mesh, &[(&Boundary, values)]);
+    for (node, x) in mesh.positions.iter().enumerate() {
+        body.state.x.set(node, moved(x));
+    }
+    body.forces(false).unwrap();
+    let view = body.view(Stage::Current, 0.0);
+    let member = &body.members[0];
+    let all = member.potential.readings(&view, &member.scratch, &[], 0);
+    all.into_iter().filter(|(name, _)| name.starts_with("stress")).map(|(name, x)| (name.into_owned(), x)).collect()
+}
+
+/// Under a uniform small strain the stress is λ tr ε 1 + 2μ ε at every point, in the middle and close to a side; in the frame of the body
+/// where it is turned; and in the plane without stress across with 2λμ/(λ + 2μ) for λ.
+#[test]
+fn stresses_of_uniform_strains_are_those_of_hooke() {
+    let (young, nu) = (7e4, 0.28);
+    let (mu, lambda) = (young / (2.0 * (1.0 + nu)), young * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)));
+    let moduli = || vec![("youngs_modulus", Value::Number(young)), ("poissons_ratio", Value::Number(nu))];
+    let check = |found: &[(String, f64)], expected: &[f64], names: &[&str]| {
+        assert_eq!(found.len() % names.len(), 0);
+        for (number, (name, value)) in found.iter().enumerate() {
+            let (point, component) = (number / names.len(), number % names.len());
+            assert_eq!(name, &format!("stress{point}.{}", names[component]));
+            let wanted = expected[component];
+            assert!((value - wanted).abs() < 1e-5 * young * 1e-6, "{name}: {value} Pa, and not {wanted} Pa");
+        }
+    };
+    // So small that the square of a strain, which the frame and Hooke's law leave open, does not count.
+    let strain = [[1e-6, 4e-7, -2e-7], [4e-7, -6e-7, 3e-7], [-2e-7, 3e-7, 8e-7]];
+    let trace = strain[0][0] + strain[1][1] + strain[2][2];
+    let stress = |i: usize, j: usize| 2.0 * mu * strain[i][j] + if i == j { lambda * trace } else { 0.0 };
+    let stretched = |x: &[f64; 3]| -> [f64; 3] {
+        core::array::from_fn(|i| x[i] + (0..3).map(|j| strain[i][j] * x[j]).sum::<f64>())
+    };
+    let points = [[0.6, 0.6, 0.6], [0.3, 0.9, 0.4], [0.6, 0.6, 0.88]];
+    let expected = [stress(0, 0), stress(1, 1), stress(0, 1), stress(2, 2), stress(0, 2), stress(1, 2)];
+    let names = ["xx", "yy", "xy", "zz", "xz", "yz"];
+    check(&stresses(&block(), moduli(), &points, stretched), &expected, &names);
+    // Turned by the angle of a triangle of sides 3, 4 and 5, and moved: what a point feels turns along.
+    let turn = |x: [f64; 3]| [0.6 * x[0] - 0.8 * x[1] + 5.0, 0.8 * x[0] + 0.6 * x[1], x[2] - 2.0];
+    check(&stresses(&block(), moduli(), &points, |x| turn(stretched(x))), &expected, &names);
+
+    let trace = strain[0][0] + strain[1][1];
+    let flat = |x: &[f64; 2]| -> [f64; 2] {
+        core::array::from_fn(|i| x[i] + (0..2).map(|j| strain[i][j] * x[j]).sum::<f64>())
+    };
+    // A square: on a round outline of straight edges tractions are linear, and those of a stress jump from edge to edge.
+    let square = Mesh::ring(0.5, 4, [0.2, 2.0], 0.1).unwrap();
+    let points = [[0.2, 2.0], [0.3, 2.15]];
+    for (plane, lambda) in [("strain", lambda), ("stress", 2.0 * lambda * mu / (lambda + 2.0 * mu))] {
+        let mut fields = moduli();
+        fields.push(("plane", Value::Text(plane.into())));
+        let stress = |i: usize, j: usize| 2.0 * mu * strain[i][j] + if i == j { lambda * trace } else { 0.0 };
+        check(
+            &stresses(&square, fields, &points, flat),
+            &[stress(0, 0), stress(1, 1), stress(0, 1)],
+            &["xx", "yy", "xy"],
+        );
+    }
 }

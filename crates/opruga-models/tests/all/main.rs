@@ -4,6 +4,7 @@
 mod support;
 
 mod as_published;
+mod bad_bodies;
 mod bending;
 mod boundary_element;
 mod closed_forms;

@@ -113,17 +113,26 @@ pub(super) const MATERIALS: &[Case] = &[
     },
 ];
 
-pub(super) const PRESSURE: &[Case] = &[Case {
-    name: "finite-difference-ring-buckles",
-    family: Family::Pressure,
-    quantity: "outer pressure at which a ring of EI = 1 N m², R = 1 m, loses its roundness",
-    unit: "N/m",
-    source: "M. Lévy 1884: 3EI/R³ for the pressure of a fluid",
-    levels: &[16.0, 32.0, 64.0],
-    expected: &[3.0],
-    measure: ring_buckles,
-    ..ROD
-}];
+const RING: Case = Case { family: Family::Pressure, unit: "N/m", levels: &[16.0, 32.0, 64.0], ..ROD };
+
+pub(super) const PRESSURE: &[Case] = &[
+    Case {
+        name: "finite-difference-ring-buckles",
+        quantity: "outer pressure at which a ring of EI = 1 N m², R = 1 m, loses its roundness",
+        source: "M. Lévy 1884: 3EI/R³ for the pressure of a fluid",
+        expected: &[3.0],
+        measure: ring_buckles,
+        ..RING
+    },
+    Case {
+        name: "finite-difference-ring-buckles-dead-load",
+        quantity: "load of fixed direction along the circle at which a ring of EI = 1 N m², R = 1 m, loses its roundness; pins along the circle at four points of the axes, where its motion has none",
+        source: "J. Singer, C. D. Babcock 1970: 4EI/R³ for a load that keeps its direction, where the ring does not turn",
+        expected: &[4.0],
+        measure: ring_buckles_under_dead_load,
+        ..RING
+    },
+];
 
 pub(super) const DYNAMICS: &[Case] = &[
     Case {
@@ -246,6 +255,34 @@ fn ring_buckles(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     critical([1.0, 2.0], |pressure| {
         let load = format!("[[load]]\nkind = \"pressure\"\nbody = \"ring\"\nvalue = {pressure:?}");
         let text = ring(n, &super::pressure::ring_pins(n as u32)) + &load;
+        let mut world = lab.plane(Scene::statics(2, 1e-8).add(&text))?;
+        world.frame()?;
+        Ok(world.modes(0, 1)?.first().ok_or("no modes")?.square)
+    })
+}
+
+/// Forces on the nodes that keep their direction, those of a pressure of the round ring; without pins along the circle it would turn
+/// around under any.
+fn ring_buckles_under_dead_load(lab: &Lab, n: f64) -> Result<f64, Trouble> {
+    let count = n as u32;
+    let pins = format!(
+        "pin = [{{ select = {{ nodes = [0, {}] }}, axes = \"y\" }}, {{ select = {{ nodes = [{}, {}] }}, axes = \"x\" }}]",
+        count / 2,
+        count / 4,
+        3 * (count / 4)
+    );
+    critical([1.0, 2.0], |pressure| {
+        let mut text = ring(n, &pins);
+        // Half of each of two edges of 2 sin π/n along their normals.
+        let force = -pressure * (TAU / n).sin();
+        for node in 0..count {
+            let angle = TAU * f64::from(node) / n;
+            text += &format!(
+                "[[load]]\nkind = \"force\"\nbody = \"ring\"\nselect = {{ node = {node} }}\nvalue = [{:?}, {:?}]\n",
+                force * angle.cos(),
+                force * angle.sin()
+            );
+        }
         let mut world = lab.plane(Scene::statics(2, 1e-8).add(&text))?;
         world.frame()?;
         Ok(world.modes(0, 1)?.first().ok_or("no modes")?.square)

@@ -1,7 +1,7 @@
 //! Finite volumes: patches, bars, tubes, Cook's membrane, waves and rubber.
 
-use super::BASE;
 use super::patches::{displaced, irregular, worst};
+use super::{BASE, materials};
 use crate::bodies::{Cells, at_radius, boundary, displacement, mapped, nodes, octant, outward, symmetric};
 use crate::case::{Case, Check, Family, Over, Scale};
 use crate::lab::{Lab, Scene, Trouble, moved_pins};
@@ -76,14 +76,7 @@ const RUBBER: Case = Case {
     source: "roots of the law's own equations ∂ψ/∂λ₂ = 0, P = ∂ψ/∂λ₁, in 30 digits",
     over: Over::Parameter("stretch"),
     levels: &[0.5, 0.8, 1.2, 1.5, 2.0, 3.0],
-    expected: &[
-        -108_610.280_862_16,
-        -24_992.972_967_347,
-        17_023.918_306_269,
-        35_861.435_192_005,
-        59_879.627_027_422,
-        99_333.557_571_501,
-    ],
+    expected: materials::NEO_HOOKEAN,
     tolerance: 1e-6,
     check: Check::Everywhere,
     quick: true,
@@ -102,8 +95,58 @@ pub(super) const CASES: &[Case] = &[
     Case { name: "finite-volume-cook-quadrilaterals", measure: |lab, n| cook(lab, n, Cells::Boxes), ..COOK },
 ];
 
-pub(super) const MATERIALS: &[Case] =
-    &[Case { name: "finite-volume-uniaxial-stress-hexahedra", measure: |lab, x| pull(lab, x), ..RUBBER }];
+pub(super) const MATERIALS: &[Case] = &[
+    Case {
+        name: "finite-volume-uniaxial-stress-hexahedra",
+        measure: |lab, x| pull(lab, "neo_hookean", Cells::Boxes, x),
+        ..RUBBER
+    },
+    Case {
+        name: "finite-volume-uniaxial-stress-linear",
+        quantity: "force over the area at rest of a cube of hexahedra under uniaxial stress, linear, E = 100 kPa, ν = 0.45, finite volumes",
+        source: "exact: E (λ₁ − 1)",
+        expected: materials::PULLED_STRAIGHT,
+        measure: |lab, x| pull(lab, "linear", Cells::Boxes, x),
+        ..RUBBER
+    },
+    Case {
+        name: "finite-volume-uniaxial-stress-fixed-corotated",
+        quantity: "force over the area at rest of a cube of hexahedra under uniaxial stress, fixed corotated, E = 100 kPa, ν = 0.45, finite volumes",
+        expected: materials::FIXED_COROTATED,
+        measure: |lab, x| pull(lab, "fixed_corotated", Cells::Boxes, x),
+        ..RUBBER
+    },
+    Case {
+        name: "finite-volume-uniaxial-stress-st-venant-kirchhoff",
+        quantity: "force over the area at rest of a cube of hexahedra under uniaxial stress, St. Venant–Kirchhoff, E = 100 kPa, ν = 0.45, finite volumes",
+        source: "exact: E (λ₁³ − λ₁)/2, largest under pressure at 1/√3",
+        levels: materials::KIRCHHOFF,
+        expected: materials::PULLED_KIRCHHOFF,
+        measure: |lab, x| pull(lab, "st_venant_kirchhoff", Cells::Boxes, x),
+        ..RUBBER
+    },
+    Case {
+        name: "finite-volume-uniaxial-stress-stable-neo-hookean",
+        quantity: "force over the area at rest of a cube of hexahedra under uniaxial stress, stable neo-Hookean, E = 100 kPa, ν = 0.45, finite volumes",
+        expected: materials::STABLE_NEO_HOOKEAN,
+        measure: |lab, x| pull(lab, "stable_neo_hookean", Cells::Boxes, x),
+        ..RUBBER
+    },
+    Case {
+        name: "finite-volume-uniaxial-stress-mooney-rivlin",
+        quantity: "force over the area at rest of a cube of hexahedra under uniaxial stress, Mooney–Rivlin, E = 100 kPa, ν = 0.45, finite volumes",
+        expected: materials::MOONEY_RIVLIN,
+        measure: |lab, x| pull(lab, "mooney_rivlin", Cells::Boxes, x),
+        ..RUBBER
+    },
+    Case {
+        name: "finite-volume-uniaxial-stress-tetrahedra",
+        quantity: "force over the area at rest of a cube of tetrahedra under uniaxial stress, stable neo-Hookean, E = 100 kPa, ν = 0.45, finite volumes",
+        expected: materials::STABLE_NEO_HOOKEAN,
+        measure: |lab, x| pull(lab, "stable_neo_hookean", Cells::Linear, x),
+        ..RUBBER
+    },
+];
 
 pub(super) const DYNAMICS: &[Case] = &[Case { name: "finite-volume-first-wave-triangles", measure: wave, ..WAVE }];
 
@@ -186,14 +229,15 @@ fn wave(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     Ok(world.modes(0, 1)?.first().ok_or("too few modes")?.omega())
 }
 
-/// A hexahedron between slippery plates that are drawn apart in twenty steps.
-fn pull(lab: &Lab, stretch: f64) -> Result<f64, Trouble> {
+/// A cube of such cells, one to a side, between slippery plates that are drawn apart in twenty steps.
+fn pull(lab: &Lab, material: &str, cells: Cells, stretch: f64) -> Result<f64, Trouble> {
     let scene = Scene::new(3, 0.05, 1, "equilibrium\ntolerance = 1e-11").add(&format!(
-        "[[body]]\nname = \"cube\"\ndensity = 1.0\nshape = {{ kind = \"grid\", size = [1, 1, 1], cells = [1, 1, 1] }}\n{}\n\
+        "[[body]]\nname = \"cube\"\ndensity = 1.0\nshape = {{ kind = \"grid\", size = [1, 1, 1], cells = [1, 1, 1] }}\n{}\n{}\n\
          pin = [{{ select = {{ side = \"left\" }}, axes = \"x\" }}, {{ select = {{ side = \"bottom\" }}, axes = \"y\" }},\n\
          {{ select = {{ side = \"back\" }}, axes = \"z\" }},\n\
          {{ select = {{ side = \"right\" }}, axes = \"x\", motion = [[0, 0, 0, 0], [1, {:?}, 0, 0]] }}]",
-        solid("material = \"neo_hookean\", youngs_modulus = 1e5, poissons_ratio = 0.45"),
+        cells.fields(),
+        solid(&format!("material = \"{material}\", youngs_modulus = 1e5, poissons_ratio = 0.45")),
         stretch - 1.0
     ));
     let mut world = lab.space(scene)?;

@@ -78,6 +78,19 @@ const BODIES: &[(&str, usize, &str, &str)] = &[
         "shape = { kind = \"grid\", corner = [-0.5, -0.5, -0.5], size = [1, 1, 1], cells = [3, 3, 3] }",
         "kind = \"shape_matching\", stiffness = 800, region = 0.7",
     ),
+    (
+        "boundary elements",
+        2,
+        "shape = { kind = \"polygon\", points = [[-0.5, -0.5], [-0.25, -0.5], [0, -0.5], [0.25, -0.5], [0.5, -0.5], [0.5, -0.25], [0.5, 0], \
+         [0.5, 0.25], [0.5, 0.5], [0.25, 0.5], [0, 0.5], [-0.25, 0.5], [-0.5, 0.5], [-0.5, 0.25], [-0.5, 0], [-0.5, -0.25]] }",
+        "kind = \"boundary_element\", youngs_modulus = 2e3",
+    ),
+    (
+        "boundary elements",
+        3,
+        "shape = { kind = \"box\", corner = [-0.5, -0.5, -0.5], size = [1, 1, 1], cells = [3, 3, 3] }",
+        "kind = \"boundary_element\", youngs_modulus = 2e3",
+    ),
 ];
 
 /// Codes that say why a body is not in its shape.
@@ -89,7 +102,10 @@ fn off(world: &dyn AnyWorld, rest: &[[f64; 3]], edges: &[[usize; 2]]) -> f64 {
     let length = |a: [f64; 3], b: [f64; 3]| (0..3).map(|d| (a[d] - b[d]) * (a[d] - b[d])).sum::<f64>().sqrt();
     let off = edges.iter().map(|&[a, b]| (length(now.at(a), now.at(b)) - length(rest[a], rest[b])).abs());
     let is_plane = rest.iter().all(|x| x[2] == 0.0);
-    let corners = if is_plane { [0, 4, 20, 20] } else { [0, 3, 12, 48] };
+    let corner = |x: [f64; 3]| (0..rest.len()).find(|node| length(rest[*node], x) < 1e-9).expect("a corner");
+    let low = if is_plane { 0.0 } else { -0.5 };
+    let far = if is_plane { [-0.5, 0.5, 0.0] } else { [-0.5, -0.5, 0.5] };
+    let corners = [[-0.5, -0.5, low], [0.5, -0.5, low], [-0.5, 0.5, low], far].map(corner);
     let axes = [1, 2, 3].map(|k| [0, 1, 2].map(|d| now.at(corners[k])[d] - now.at(0)[d]));
     let spanned = match is_plane {
         true => axes[0][0] * axes[1][1] - axes[0][1] * axes[1][0],

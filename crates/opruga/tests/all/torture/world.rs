@@ -2,6 +2,7 @@
 
 use super::*;
 use opruga::WorldError;
+use opruga::math::Lane;
 
 /// Row 78: numbers of threads.
 #[test]
@@ -118,4 +119,48 @@ fn commands_act_unless_it_is_told_that_they_never_will() {
         if acts { moved += 1 } else { still += 1 }
     }
     assert_eq!((moved, still), (5, 5));
+}
+
+/// Row 57: the estimate of `units.sag` for solids by their boundary alone, beside how far they sag by statics, on coarse and fine
+/// boundaries: what warns of mixed units has the right power of ten, and does not depend on the mesh.
+#[test]
+fn the_sag_of_a_boundary_is_estimated_by_its_statics() {
+    let ball = |s: u32| format!("{{ kind = \"icosphere\", radius = 0.5, subdivisions = {s} }}");
+    let block = |n: u32| {
+        format!("{{ kind = \"box\", corner = [-0.5, -0.5, -0.5], size = [1, 1, 1], cells = [{n}, {n}, {n}] }}")
+    };
+    let outline = |n: u32| format!("{{ kind = \"ring\", radius = 0.5, vertices = {n} }}");
+    let bodies = [(3, ball(1)), (3, ball(2)), (3, block(2)), (3, block(5)), (2, outline(16)), (2, outline(64))];
+    let mut found = Vec::new();
+    for (dimension, shape) in bodies {
+        let down = |g: f64| if dimension == 3 { format!("[0, {g:?}, 0]") } else { format!("[0, {g:?}]") };
+        let below = if dimension == 3 { "[0, -1, 0]" } else { "[0, -1]" };
+        let point = if dimension == 3 { "[0, -0.35, 0]" } else { "[0, -0.35]" };
+        let scene = |g: f64, young: f64, rule: &str, pin: &str| {
+            format!(
+                "format = \"opruga-1\"\ndimension = {dimension}\n[time]\nseconds = 1\nframe = 0.1\nsubsteps = 1\n\
+                 [integrator]\nkind = \"{rule}\"\n[world]\ngravity = {}\n\
+                 [[body]]\nname = \"b\"\nmass = 500\nshape = {shape}\n\
+                 models = [{{ kind = \"boundary_element\", youngs_modulus = {young:?} }}]\n{pin}\n",
+                down(g)
+            )
+        };
+        let build =
+            |text: &str| read(text).unwrap_or_else(|e| panic!("{}", e[0])).build(Options::default()).expect("a world");
+        // Sag goes like 1/E: with little of it, and so much that it is warned of.
+        let pin = format!("pin = [{{ select = {{ half_space = {{ point = {point}, normal = {below} }} }} }}]");
+        let mut world = build(&scene(-9.81, 1e8, "equilibrium", &pin));
+        let top = |world: &dyn opruga::AnyWorld| {
+            (0..world.positions(0).len()).map(|node| world.positions(0).at(node)[1]).fold(-1.0, Lane::larger)
+        };
+        let before = top(&*world);
+        world.frame().expect("a frame");
+        let sag = (before - top(&*world)) * 1e8;
+        let soft = build(&scene(-9.81, 10.0, "backward_euler", ""));
+        let warnings = soft.warnings();
+        let warning = warnings.iter().find(|warning| warning.code == "units.sag").expect("a warning");
+        let said = warning.message.split("by about ").nth(1).and_then(|rest| rest.split(' ').next()).expect("a number");
+        found.push((shape, said.parse::<f64>().expect("a number") * 10.0 / sag));
+    }
+    assert!(found.iter().all(|(_, ratio)| (0.3..3.0).contains(ratio)), "{found:#?}");
 }
