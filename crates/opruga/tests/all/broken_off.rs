@@ -80,16 +80,17 @@ fn a_body_whose_preparation_is_broken_off_does_not_come_and_the_world_stays_as_i
     let ring = |name: &str, model: &str| {
         format!(
             "[[body]]\nname = \"{name}\"\nmass = 1.0\nshape = {{ kind = \"ring\", radius = 0.5, vertices = 41 }}\n\
-             models = [{{ kind = \"{model}\" }}]\n"
+             models = [{{ {model} }}]\n"
         )
     };
     let head = "format = \"opruga-1\"\ndimension = 2\n[time]\nseconds = 1.0\nframe = 0.01\nsubsteps = 1\n\
                 [integrator]\nkind = \"backward_euler\"\n";
     let break_off = Arc::new(BreakOff::default());
     let options = Options { break_off: Arc::clone(&break_off), ..Options::default() };
-    let springs = common::plane(&format!("{head}{}", ring("springs", "mass_spring")));
+    let springs = common::plane(&format!("{head}{}", ring("springs", "kind = \"mass_spring\", stiffness = 100.0")));
     let mut world = World::new(springs, options.clone()).expect("a world");
-    let dense = || common::plane(&format!("{head}{}", ring("solid", "boundary_element")));
+    let dense =
+        || common::plane(&format!("{head}{}", ring("solid", "kind = \"boundary_element\", youngs_modulus = 1e4")));
     let body = dense().bodies.remove(0);
     let hash = world.state_hash();
     break_off.ask(true);
