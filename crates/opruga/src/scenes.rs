@@ -47,8 +47,6 @@ scenes![
     "teran-cube",
     "shape-matched-letters",
     "five-methods",
-    "pile",
-    "newtons-bars",
     "drawings",
     "heart-solid",
     "spot-solid",
