@@ -42,12 +42,30 @@ impl Cholesky {
     /// # Errors
     /// [`Indefinite`] where it is not positive definite, or not without its parts of rank one.
     pub fn update<const D: usize>(&mut self, matrix: &BlockMatrix<D>) -> Result<(), Indefinite> {
+        self.take(matrix, None)
+    }
+
+    /// Factors a matrix and solves A x = b in place: one way through a large factor serves b and the parts of rank one.
+    ///
+    /// # Errors
+    /// As [`Cholesky::update`].
+    pub fn update_and_solve<const D: usize>(
+        &mut self,
+        matrix: &BlockMatrix<D>,
+        x: &mut [f64],
+    ) -> Result<(), Indefinite> {
+        self.take(matrix, Some(&mut *x))?;
+        self.parts.correct(x);
+        Ok(())
+    }
+
+    fn take<const D: usize>(&mut self, matrix: &BlockMatrix<D>, right: Option<&mut [f64]>) -> Result<(), Indefinite> {
         self.factored = false;
         self.is_turned = matrix.has_dense();
         if self.is_turned {
             self.turned.update(matrix, true)?;
             let turned = &self.turned;
-            self.parts.update(matrix, true, |sides| turned.solve_all(sides))?;
+            self.parts.update(matrix, true, right, |sides| turned.solve(&mut sides.collect::<Vec<_>>()))?;
             self.factored = true;
             return Ok(());
         }
@@ -55,8 +73,8 @@ impl Cholesky {
         self.factor(anew)?;
         let Some(symbolic) = &self.symbolic else { return Err(Indefinite) };
         let (values, stack) = (&self.values, &self.stack);
-        self.parts.update(matrix, true, |sides| {
-            sides.iter_mut().for_each(|x| solve(symbolic, values, stack, x));
+        self.parts.update(matrix, true, right, |sides| {
+            sides.for_each(|x| solve(symbolic, values, stack, x));
         })?;
         self.factored = true;
         Ok(())
@@ -101,7 +119,7 @@ impl Cholesky {
     /// Solves A x = b in place.
     pub fn solve(&self, x: &mut [f64]) {
         if self.is_turned && self.factored {
-            self.turned.solve(x);
+            self.turned.solve(&mut [&mut *x]);
             return self.parts.correct(x);
         }
         let Some(symbolic) = self.symbolic.as_ref().filter(|_| self.factored) else { return };

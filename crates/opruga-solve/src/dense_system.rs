@@ -63,20 +63,55 @@ impl DenseFactors {
     }
 }
 
-/// The lower factor L of a symmetric matrix L Lᵀ of `size` rows, whose lower half is given column by column.
-///
-/// # Errors
-/// [`Indefinite`] where it is not positive definite.
-pub fn cholesky(size: usize, mut numbers: Vec<f64>) -> Result<Dense, Indefinite> {
-    let mut memory = MemBuffer::new(llt::factor::cholesky_in_place_scratch::<f64>(size, Par::Seq, Default::default()));
-    let matrix = MatMut::from_column_major_slice_mut(&mut numbers, size, size);
-    let stack = MemStack::new(&mut memory);
-    llt::factor::cholesky_in_place(matrix, Default::default(), Par::Seq, stack, Default::default())
-        .map_err(|_| Indefinite)?;
-    if (0..size).any(|k| !numbers[k * size + k].is_finite()) {
-        return Err(Indefinite);
+/// The lower factor L of a symmetric positive definite matrix L Lᵀ.
+pub struct DenseCholesky {
+    size: usize,
+    numbers: Vec<f64>,
+}
+
+impl core::fmt::Debug for DenseCholesky {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("DenseCholesky").field("size", &self.size).finish_non_exhaustive()
     }
-    Ok(Dense::of_lower(size, |row, column| numbers[column * size + row]))
+}
+
+impl DenseCholesky {
+    /// Factors a matrix of `size` rows, whose lower half is given column by column.
+    ///
+    /// # Errors
+    /// [`Indefinite`] where it is not positive definite.
+    pub fn new(size: usize, mut numbers: Vec<f64>) -> Result<DenseCholesky, Indefinite> {
+        let scratch = llt::factor::cholesky_in_place_scratch::<f64>(size, Par::Seq, Default::default());
+        let mut memory = MemBuffer::new(scratch);
+        let matrix = MatMut::from_column_major_slice_mut(&mut numbers, size, size);
+        let stack = MemStack::new(&mut memory);
+        llt::factor::cholesky_in_place(matrix, Default::default(), Par::Seq, stack, Default::default())
+            .map_err(|_| Indefinite)?;
+        let regular = (0..size).all(|k| numbers[k * size + k].is_finite());
+        if regular { Ok(DenseCholesky { size, numbers }) } else { Err(Indefinite) }
+    }
+    /// Replaces right-hand sides, given one after the other, by the solutions.
+    pub fn solve(&self, sides: &mut [f64]) {
+        let size = self.size;
+        if size == 0 {
+            return;
+        }
+        let count = sides.len() / size;
+        let mut memory = MemBuffer::new(llt::solve::solve_in_place_scratch::<f64>(size, count, Par::Seq));
+        let factor = MatRef::from_column_major_slice(&self.numbers, size, size);
+        let sides = MatMut::from_column_major_slice_mut(sides, size, count);
+        llt::solve::solve_in_place_with_conj(factor, Conj::No, sides, Par::Seq, MemStack::new(&mut memory));
+    }
+    /// The inverse of the matrix. A product with it reads half as many numbers as a solution with the factor.
+    pub fn inverse(&self) -> Dense {
+        let size = self.size;
+        let mut memory = MemBuffer::new(llt::inverse::inverse_scratch::<f64>(size, Par::Seq));
+        let mut out = vec![0.0; size * size];
+        let factor = MatRef::from_column_major_slice(&self.numbers, size, size);
+        let inverse = MatMut::from_column_major_slice_mut(&mut out, size, size);
+        llt::inverse::inverse(inverse, factor, Par::Seq, MemStack::new(&mut memory));
+        Dense::of_lower(size, |row, column| out[column * size + row])
+    }
 }
 
 /// Takes the negative eigenvalues out of a symmetric matrix of `size` rows, given column by column; gives the norm of what was taken
@@ -123,14 +158,17 @@ mod tests {
 
         let symmetric = |i: usize, j: usize| entry(i, j) + entry(j, i) + if i == j { 300.0 } else { 0.0 };
         let numbers: Vec<f64> = (0..size * size).map(|k| symmetric(k % size, k / size)).collect();
-        let factor = cholesky(size, numbers).unwrap();
-        let mut b = vec![0.0; factor.padded()];
-        for i in 0..size {
-            b[i] = (0..size).map(|j| symmetric(i, j) * x[j]).sum();
-        }
-        factor.solve_as_factor(Simd::best(), &mut b);
-        assert!(x.iter().zip(&b).all(|(x, b)| (x - b).abs() < 1e-11));
-        assert!(cholesky(2, vec![1.0, 2.0, 2.0, 1.0]).is_err());
+        let factor = DenseCholesky::new(size, numbers).unwrap();
+        let b: Vec<f64> = (0..size).map(|i| (0..size).map(|j| symmetric(i, j) * x[j]).sum()).collect();
+        let mut solved = b.clone();
+        factor.solve(&mut solved);
+        assert!(x.iter().zip(&solved).all(|(x, b)| (x - b).abs() < 1e-11));
+        let inverse = factor.inverse();
+        let (mut padded, mut out) = (vec![0.0; inverse.padded()], vec![0.0; inverse.padded()]);
+        padded[..size].copy_from_slice(&b);
+        inverse.multiply(Simd::best(), &padded, &mut out);
+        assert!(x.iter().zip(&out).all(|(x, b)| (x - b).abs() < 1e-11));
+        assert!(DenseCholesky::new(2, vec![1.0, 2.0, 2.0, 1.0]).is_err());
         // Eigenvalues 3 and −1.
         let mut clamped = vec![1.0, 2.0, 2.0, 1.0];
         let taken = clamp(2, &mut clamped).unwrap();

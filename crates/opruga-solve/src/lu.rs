@@ -60,14 +60,14 @@ impl Factors {
         if matrix.has_dense() {
             let mut turned = TurnedFactor::default();
             turned.update(matrix, false)?;
-            self.parts.update(matrix, false, |sides| turned.solve_all(sides))?;
+            self.parts.update(matrix, false, None, |sides| turned.solve(&mut sides.collect::<Vec<_>>()))?;
             self.turned = Some(turned);
             return Ok(());
         }
         let anew = self.scalars.take(matrix, false);
         let factors = self.factored(anew)?;
-        self.parts.update(matrix, false, |sides| {
-            sides.iter_mut().for_each(|x| solve(&factors, is_symmetric, x));
+        self.parts.update(matrix, false, None, |sides| {
+            sides.for_each(|x| solve(&factors, is_symmetric, x));
         })?;
         self.factors = Some(factors);
         Ok(())
@@ -89,7 +89,7 @@ impl Factors {
     /// Solves A x = b in place; says whether every number that comes out is finite.
     pub fn solve(&self, x: &mut [f64]) -> bool {
         if let Some(turned) = &self.turned {
-            turned.solve(x);
+            turned.solve(&mut [&mut *x]);
             self.parts.correct(x);
             return x.iter().all(|x| x.is_finite());
         }

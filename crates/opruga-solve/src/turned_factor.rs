@@ -2,7 +2,7 @@
 
 use crate::Indefinite;
 use crate::blocks::{Block, nodes, nodes_mut, product};
-use crate::dense_system::{DenseFactors, cholesky};
+use crate::dense_system::{DenseCholesky, DenseFactors};
 use crate::matrix::BlockMatrix;
 use core::ops::Range;
 use opruga_core::dense::Dense;
@@ -26,7 +26,9 @@ pub(crate) struct TurnedFactor {
 }
 
 enum Solver {
-    Positive(Dense),
+    /// The inverse of a matrix that stays: a product with it reads half of what a solution with the factor does.
+    Inverse(Dense),
+    Positive(DenseCholesky),
     Any(DenseFactors),
 }
 
@@ -57,7 +59,8 @@ impl TurnedFactor {
         let numbers = in_frame(matrix, &frame);
         self.size = matrix.rows() * D;
         self.solver = Some(if positive {
-            Solver::Positive(cholesky(self.size, numbers)?)
+            let factor = DenseCholesky::new(self.size, numbers)?;
+            if made_of.is_some() { Solver::Inverse(factor.inverse()) } else { Solver::Positive(factor) }
         } else {
             Solver::Any(DenseFactors::new(self.size, numbers)?)
         });
@@ -65,36 +68,26 @@ impl TurnedFactor {
         self.made_of = made_of.unwrap_or_default();
         Ok(())
     }
-    /// Replaces b by the solution.
-    pub(crate) fn solve(&self, b: &mut [f64]) {
-        self.turn(b, false);
-        match &self.solver {
-            Some(Solver::Positive(factor)) => {
-                let mut padded = vec![0.0; factor.padded()];
-                padded[..b.len()].copy_from_slice(b);
-                factor.solve_as_factor(Simd::best(), &mut padded);
-                b.copy_from_slice(&padded[..b.len()]);
-            }
-            Some(Solver::Any(factors)) => factors.solve(b),
-            None => b.fill(f64::NAN),
-        }
-        self.turn(b, true);
-    }
-    /// The same for many, with one way through the factor.
-    pub(crate) fn solve_all(&self, sides: &mut [Vec<f64>]) {
-        let Some(Solver::Positive(factor)) = &self.solver else {
-            return sides.iter_mut().for_each(|side| self.solve(side));
-        };
-        let length = factor.padded();
-        let mut padded = vec![0.0; length * sides.len()];
-        for (side, to) in sides.iter_mut().zip(padded.chunks_exact_mut(length)) {
+    /// Replaces right-hand sides by the solutions.
+    pub(crate) fn solve(&self, sides: &mut [&mut [f64]]) {
+        let inverse = if let Some(Solver::Inverse(inverse)) = &self.solver { Some(inverse) } else { None };
+        let length = inverse.map_or(self.size, Dense::padded);
+        let mut all = vec![0.0; length * sides.len()];
+        for (side, own) in sides.iter_mut().zip(all.chunks_exact_mut(length)) {
             self.turn(side, false);
-            to[..side.len()].copy_from_slice(side);
+            own[..side.len()].copy_from_slice(side);
         }
-        factor.solve_as_factor(Simd::best(), &mut padded);
-        for (side, from) in sides.iter_mut().zip(padded.chunks_exact(length)) {
-            let count = side.len();
-            side.copy_from_slice(&from[..count]);
+        match &self.solver {
+            Some(Solver::Inverse(inverse)) => {
+                let right = all.clone();
+                inverse.multiply(Simd::best(), &right, &mut all);
+            }
+            Some(Solver::Positive(factor)) => factor.solve(&mut all),
+            Some(Solver::Any(factors)) => factors.solve(&mut all),
+            None => all.fill(f64::NAN),
+        }
+        for (side, own) in sides.iter_mut().zip(all.chunks_exact(length)) {
+            side.copy_from_slice(&own[..side.len()]);
             self.turn(side, true);
         }
     }

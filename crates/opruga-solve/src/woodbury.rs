@@ -14,12 +14,13 @@ pub(crate) struct Woodbury {
 }
 
 impl Woodbury {
-    /// Takes the parts of rank one of a matrix whose S is factored.
+    /// Takes the parts of rank one of a matrix whose S is factored. `right` is another right-hand side, which S⁻¹ is applied to as well.
     pub(crate) fn update<const D: usize>(
         &mut self,
         matrix: &BlockMatrix<D>,
         positive: bool,
-        solve: impl Fn(&mut [Vec<f64>]),
+        right: Option<&mut [f64]>,
+        solve: impl Fn(&mut dyn Iterator<Item = &mut [f64]>),
     ) -> Result<(), Indefinite> {
         let parts: Vec<_> = matrix.rank_one().iter().filter(|part| part.factor != 0.0).collect();
         let n = parts.len();
@@ -30,7 +31,7 @@ impl Woodbury {
             part.write(&mut self.directions[k]);
             self.solved[k].clone_from(&self.directions[k]);
         }
-        solve(&mut self.solved);
+        solve(&mut self.solved.iter_mut().map(Vec::as_mut_slice).chain(right));
         let mut core = vec![0.0; n * n];
         for i in 0..n {
             for j in 0..n {

@@ -47,6 +47,8 @@ scenes![
     "teran-cube",
     "shape-matched-letters",
     "five-methods",
+    "pile",
+    "newtons-bars",
     "drawings",
     "heart-solid",
     "spot-solid",

@@ -294,7 +294,9 @@ impl<const D: usize> Linear<D> {
             self.constrain(filter);
             self.is_filled = false;
             if self.is_direct(settings.solver) {
-                self.cholesky.update(&self.constrained)?;
+                out.copy_from_slice(b);
+                self.cholesky.update_and_solve(&self.constrained, out)?;
+                return if out.iter().all(|x| x.is_finite()) { Ok(1) } else { Err(Indefinite) };
             } else if self.constrained.has_dense() {
                 self.jacobi.update(self.constrained.diagonal_blocks().iter())?;
             } else {

@@ -15,7 +15,7 @@ use super::stresses;
 use super::surface::{Source, Surface};
 use opruga_core::break_off::BreakOff;
 use opruga_core::dense::Dense;
-use opruga_solve::dense_system::{DenseFactors, cholesky, clamp};
+use opruga_solve::dense_system::{DenseCholesky, DenseFactors, clamp};
 use std::sync::Arc;
 
 /// Columns that are solved for together: between them the end can be asked for.
@@ -354,7 +354,7 @@ fn is_positive(size: usize, motions: &[Vec<f64>], k: &[f64]) -> bool {
     for n in 0..size {
         shifted[n * size + n] += 1e-12 * mean;
     }
-    cholesky(size, shifted).is_ok()
+    DenseCholesky::new(size, shifted).is_ok()
 }
 
 #[cfg(test)]

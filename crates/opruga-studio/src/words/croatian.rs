@@ -588,6 +588,8 @@ pub(super) const SCENES: &[(&str, &str)] = &[
     ("jelly-crowd", "osamdeset želea kakve znaju igre: podudaranje oblika, opruge i plin"),
     ("leaking-tyre", "guma koja pušta"),
     ("million-vertices", "27.778 lopti, milijun vrhova"),
+    ("newtons-bars", "pet elastičnih štapova u nizu: jedan dođe, jedan ode"),
+    ("pile", "hrpa lopti, želea i zvijezda"),
     ("pressures", "lopte različitog tlaka"),
     ("published-beside-physics", "objavljena lopta pokraj iste lopte s popravljenom fizikom"),
     ("snap-through", "plitki luk preskače: svaka slika je ravnoteža, i ondje gdje je težina ne bi držala"),
