@@ -1,5 +1,5 @@
 //! Which crate may see which:
-//! unpack stands alone; math ← {mesh, video}, mesh ← core ← solve ← {models, integrators, collide} ← world ← io ← draw ← opruga ← {studio, verify} ← cli.
+//! unpack stands alone; math ← {mesh, video, words}, mesh ← core ← solve ← {models, integrators, collide} ← world ← io ← draw ← opruga ← {studio, verify} ← cli.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -10,6 +10,7 @@ fn layers() -> BTreeMap<&'static str, u32> {
     BTreeMap::from([
         ("opruga-math", 0),
         ("opruga-video", 1),
+        ("opruga-words", 1),
         ("opruga-unpack", 0),
         ("opruga-mesh", 1),
         ("opruga-core", 2),

@@ -24,6 +24,9 @@ pub(crate) use verify::Verify;
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Option<Command>,
+    /// The language of errors and warnings for people; JSON is English
+    #[arg(long, global = true, value_enum, default_value_t)]
+    pub(crate) language: crate::language::Language,
 }
 
 #[derive(Debug, Subcommand)]

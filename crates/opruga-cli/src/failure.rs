@@ -1,5 +1,6 @@
 //! Why a command failed, for people and for programs, and the exit code.
 
+use crate::language::translation;
 use opruga::io::problem::{SceneError, count_of, shown};
 use opruga::io::safe_write::WriteError;
 use serde_json::{Value, json};
@@ -108,11 +109,11 @@ impl Failure {
         let _ = match self {
             Failure::Scene(errors) => {
                 for error in shown(errors.clone()) {
-                    let _ = writeln!(err, "{error}");
+                    let _ = writeln!(err, "{}", error.text(translation()));
                 }
                 if count_of(errors) > 1 { writeln!(err, "{} errors", count_of(errors)) } else { Ok(()) }
             }
-            Failure::Run(error) => writeln!(err, "{error}"),
+            Failure::Run(error) => writeln!(err, "{}", error.text(translation())),
             Failure::Write(error) => writeln!(err, "{error}"),
             Failure::Draw(message) => writeln!(err, "error[draw.failed]: {message}"),
             Failure::Output(message) => writeln!(err, "error[write.failed]: {message}"),

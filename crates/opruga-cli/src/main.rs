@@ -8,6 +8,7 @@ mod exports;
 mod failure;
 mod forecast;
 mod interrupt;
+mod language;
 mod material;
 mod mesh;
 mod modes;
@@ -52,6 +53,7 @@ fn main() -> ExitCode {
             return ExitCode::from(if error.use_stderr() { 2 } else { 0 });
         }
     };
+    language::choose(arguments.language);
     let json = arguments.command.as_ref().is_some_and(Command::json);
     let outcome = match &arguments.command {
         None => studio::first(),

@@ -3,6 +3,7 @@
 
 use crate::arguments::Mesh as Call;
 use crate::failure::{Failure, print_data};
+use crate::language::translation;
 use crate::source::overrides;
 use crate::uses;
 use opruga::core::spec::Values;
@@ -235,6 +236,7 @@ fn options(text: &str) -> String {
 
 /// An error as the call has it; of one that quotes the file only the hint names options.
 fn in_words_of_the_call(call: &Call, name: &str, error: SceneError, quotes: bool) -> SceneError {
+    let error = if call.json { error } else { error.translated(translation()) };
     let replaced = |text: String| WORDS.iter().fold(text, |text, (scene, call)| text.replace(scene, call));
     let said = |text: String| options(&replaced(text));
     // What only scenes have is said of them.
@@ -341,7 +343,7 @@ fn print<const D: usize>(
         return print_data(&format!("{row}\n"));
     }
     for notice in notices {
-        eprintln!("{notice}");
+        eprintln!("{}", notice.text(translation()));
     }
     let cells: Vec<String> = kinds.iter().map(|(kind, count)| format!("{count} {}", plural(*kind, *count))).collect();
     let (of, unit) = if D == 2 { ("area", "m²") } else { ("volume", "m³") };

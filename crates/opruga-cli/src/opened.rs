@@ -1,6 +1,7 @@
 //! Scenes of calls that have no options of their own for reading them.
 
 use crate::failure::Failure;
+use crate::language::translation;
 use crate::run::simd_from_environment;
 use crate::source::{Source, Whole, overrides};
 use opruga::Options;
@@ -28,7 +29,7 @@ pub(crate) fn open(scene: &str, set: &[String], allow_outside: bool, quiet: bool
     let options = Options { simd: simd_from_environment()?, ..Options::default() };
     let Whole { blueprint, notices, files } = source.read(&reading, &options)?;
     if !quiet {
-        notices.iter().for_each(|notice| eprintln!("{notice}"));
+        notices.iter().for_each(|notice| eprintln!("{}", notice.text(translation())));
     }
     Ok(Opened { source, reading, options, blueprint, files: files.into_keys().collect() })
 }

@@ -328,6 +328,5 @@ pub(crate) fn cells(world: &dyn AnyWorld) -> Vec<CellSummary> {
 
 /// A warning for people.
 pub(crate) fn tell(warning: &Warning) {
-    let times = if warning.count > 1 { format!(" ({} times)", warning.count) } else { String::new() };
-    eprintln!("warning[{}]: {}{times}", warning.code, warning.message);
+    eprintln!("{}", opruga::io::problem::warning_text(warning, crate::language::translation()));
 }

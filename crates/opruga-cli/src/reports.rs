@@ -3,6 +3,7 @@
 use crate::arguments::{Bench, BenchVertices, Check};
 use crate::bench::vertices as bench;
 use crate::failure::{Failure, print_data};
+use crate::language::translation;
 use crate::outputs::cells;
 use crate::run::simd_from_environment;
 use crate::source::{Source, Whole, argument, overrides};
@@ -10,6 +11,7 @@ use opruga::core::spec::{Spec, nearest};
 use opruga::core::stability::Stability;
 use opruga::draw;
 use opruga::io::problem::visible;
+use opruga::io::problem::warning_text;
 use opruga::io::safe_write::{safe_write, try_write};
 use opruga::io::tables::CellSummary;
 use opruga::io::{Notice, scene};
@@ -37,7 +39,7 @@ pub(crate) fn check(call: &Check) -> Result<u8, Failure> {
     if call.json {
         print_data(&format!("{}\n", found.to_json(&source.file, &notices)))?;
     } else {
-        notices.iter().for_each(|notice| eprintln!("{notice}"));
+        notices.iter().for_each(|notice| eprintln!("{}", notice.text(translation())));
         print_data(&format!("{}: no errors\n{found}", source.file))?;
     }
     Ok(0)
@@ -123,8 +125,7 @@ impl core::fmt::Display for Found {
             writeln!(f, "  `{body}`: ω = {omega} rad/s, damping {damping} 1/s, {limit}")?;
         }
         for warning in &self.warnings {
-            let times = if warning.count > 1 { format!(" ({} times)", warning.count) } else { String::new() };
-            writeln!(f, "warning[{}]: {}{times}", warning.code, warning.message)?;
+            writeln!(f, "{}", warning_text(warning, translation()))?;
         }
         Ok(())
     }

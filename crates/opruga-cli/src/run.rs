@@ -5,6 +5,7 @@ use crate::checkpoints::{self, Calling, Keeper, SavedRun};
 use crate::failure::{Failure, print_data};
 use crate::forecast::{Forecast, duration};
 use crate::interrupt;
+use crate::language::translation;
 use crate::outputs::{self, Outputs};
 use crate::recorder::Recorder;
 use crate::recordings;
@@ -65,10 +66,10 @@ pub(crate) fn run(call: &Run) -> Result<u8, Failure> {
     outputs_apart(call, &source, &reading, &files.keys().collect::<Vec<_>>())?;
     let mut told: Vec<WarningSummary> = notices
         .iter()
-        .map(|n| WarningSummary { code: n.about.code.into(), message: n.about.message.clone(), count: n.count as u64 })
+        .map(|n| WarningSummary { code: n.about.code.into(), message: n.about.sentence(None), count: n.count as u64 })
         .collect();
     if !call.json {
-        notices.iter().for_each(|notice| eprintln!("{notice}"));
+        notices.iter().for_each(|notice| eprintln!("{}", notice.text(translation())));
     }
     if let Some(other) = other_simd() {
         if !call.json {

@@ -1,5 +1,6 @@
 //! What can go wrong while a world is built or stepped.
 
+use opruga_math::message::AnyMessage;
 use opruga_math::words::{counted, number};
 
 /// Why a model, integrator or collider could not be built from its parameters and the body.
@@ -12,6 +13,8 @@ pub struct BuildError {
     pub code: &'static str,
     /// What is wrong, with the offending value and what is allowed.
     pub message: String,
+    /// The same as a value; none where the text is all there is.
+    pub about: Option<AnyMessage>,
 }
 
 impl BuildError {
@@ -24,7 +27,12 @@ impl BuildError {
     }
     /// An error of a kind of thing, with a stable code and a message.
     pub fn new(kind: impl Into<String>, code: &'static str, message: impl Into<String>) -> BuildError {
-        BuildError { kind: kind.into(), code, message: message.into() }
+        BuildError { kind: kind.into(), code, message: message.into(), about: None }
+    }
+    /// An error of a kind of thing from a message.
+    pub fn of(kind: impl Into<String>, about: impl Into<AnyMessage>) -> BuildError {
+        let about = about.into();
+        BuildError { about: Some(about.clone()), ..BuildError::new(kind, about.code(), about.in_full()) }
     }
 }
 

@@ -61,12 +61,10 @@ pub enum Definiteness {
 pub type Reading = (Cow<'static, str>, f64);
 
 /// How often something happened in a model, per substep and body.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Count {
-    /// The code of the warning.
-    pub code: &'static str,
     /// What happened.
-    pub message: &'static str,
+    pub what: AnyMessage,
     /// How often.
     pub count: u64,
 }

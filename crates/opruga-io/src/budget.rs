@@ -6,6 +6,43 @@
 //! memory is taken for it.
 
 use crate::problem::SceneError;
+use opruga_math::{messages, terms};
+
+terms! {
+    /// What is counted.
+    pub(crate) enum Counted = "part.counted" {
+        Outlines = "closed outlines",
+        Points = "points of outlines",
+        Pixels = "pixels",
+        Elements = "elements of a drawing",
+        Text = "bytes of repeated text",
+        Rules = "comparisons of rules with elements",
+        Vertices = "repeated vertices",
+        Numbers = "numbers in arrays",
+        Values = "values or memberships in groups",
+    }
+}
+
+terms! {
+    /// What helps where a file asks for too much.
+    pub(crate) enum LimitHint = "part.limit_hint" {
+        Picture = "take a picture with fewer spots: one that is smoothed, or drawn with fewer colours",
+        Spacing = "take a larger `spacing`, or a drawing of fewer points",
+        Entities = "write the drawing without entities, or with `use`",
+        Letters = "the letters of this font are made of too many others",
+        Instances = "draw a mesh less often, or leave out what the body does not need",
+        Compression = "save the file without compression",
+    }
+}
+
+messages! {
+    /// What a file asks for beyond a limit; the code is that of the limit.
+    #[derive(Clone, Debug, PartialEq)]
+    pub(crate) enum LimitError {
+        "part.limit" #[error("the file asks for {count} {what} or more")] #[value("{count}")] #[allowed("at most {most} {what}")]
+        Above { count: u64, what: Counted, most: u64 },
+    }
+}
 
 /// The most of something that one file may ask for.
 #[derive(Debug)]
@@ -15,39 +52,38 @@ pub(crate) struct Limit {
     /// How many there may be.
     pub(crate) most: u64,
     /// What is counted.
-    what: &'static str,
+    what: Counted,
 }
 
 /// Closed curves of a drawing, a map, a text or a picture: a body has so many parts. A chessboard in pixels, or noise, has a million.
-pub(crate) const OUTLINES: Limit = Limit { code: "limit.outlines", most: 1 << 16, what: "closed outlines" };
+pub(crate) const OUTLINES: Limit = Limit { code: "limit.outlines", most: 1 << 16, what: Counted::Outlines };
 
 /// Points of these curves: as drawn, as often as `use`, arcs of a topology or letters repeat them, and as many as curves are cut into.
-pub(crate) const POINTS: Limit = Limit { code: "limit.points", most: 1 << 21, what: "points of outlines" };
+pub(crate) const POINTS: Limit = Limit { code: "limit.points", most: 1 << 21, what: Counted::Points };
 
 /// Pixels of a picture. They are read row by row; only contours are kept.
-pub(crate) const PIXELS: Limit = Limit { code: "limit.pixels", most: 1 << 26, what: "pixels" };
+pub(crate) const PIXELS: Limit = Limit { code: "limit.pixels", most: 1 << 26, what: Counted::Pixels };
 
 /// Elements of a drawing, counted as often as `use` draws them: two in two in two … draw nothing 2⁶⁰ times.
-pub(crate) const ELEMENTS: Limit = Limit { code: "limit.elements", most: 1 << 19, what: "elements of a drawing" };
+pub(crate) const ELEMENTS: Limit = Limit { code: "limit.elements", most: 1 << 19, what: Counted::Elements };
 
 /// Bytes that the entities of an XML file, or the parts of composite letters, stand for.
-pub(crate) const EXPANSION: Limit = Limit { code: "limit.expansion", most: 1 << 24, what: "bytes of repeated text" };
+pub(crate) const EXPANSION: Limit = Limit { code: "limit.expansion", most: 1 << 24, what: Counted::Text };
 
 /// How often rules of style sheets are compared with elements.
-pub(crate) const RULES: Limit =
-    Limit { code: "limit.rules", most: 1 << 26, what: "comparisons of rules with elements" };
+pub(crate) const RULES: Limit = Limit { code: "limit.rules", most: 1 << 26, what: Counted::Rules };
 
 /// Vertices, or corners of triangles, of a glTF file that are drawn more often than they stand there, and parts of its meshes.
-pub(crate) const INSTANCES: Limit = Limit { code: "limit.instances", most: 1 << 22, what: "repeated vertices" };
+pub(crate) const INSTANCES: Limit = Limit { code: "limit.instances", most: 1 << 22, what: Counted::Vertices };
 
 /// Numbers in the arrays of a compressed file, besides [`NUMBERS_PER_BYTE`] for each of its bytes.
-pub(crate) const NUMBERS: Limit = Limit { code: "limit.numbers", most: 1 << 20, what: "numbers in arrays" };
+pub(crate) const NUMBERS: Limit = Limit { code: "limit.numbers", most: 1 << 20, what: Counted::Numbers };
 
 /// Meshes are compressed to a byte for every one or two of their numbers; zeros to a byte for a thousand.
 pub(crate) const NUMBERS_PER_BYTE: u64 = 8;
 
 /// Values of cells and numbers of nodes, and cells in groups: names times cells, whether a file gives them all or leaves most of them out.
-pub(crate) const VALUES: Limit = Limit { code: "limit.values", most: 1 << 25, what: "values or memberships in groups" };
+pub(crate) const VALUES: Limit = Limit { code: "limit.values", most: 1 << 25, what: Counted::Values };
 
 /// What is left out of a file is listed up to so many; the rest is counted.
 pub(crate) const NOTICES: usize = 50;
@@ -65,8 +101,7 @@ impl Limit {
         if count <= most {
             return Ok(());
         }
-        let error = SceneError::new(code, format!("the file asks for {count} {what} or more"));
-        Err(error.value(count.to_string()).allowed(format!("at most {most} {what}")))
+        Err(SceneError { code, ..SceneError::of(LimitError::Above { count, what, most }) })
     }
 }
 

@@ -15,6 +15,8 @@ pub mod files;
 mod limits;
 mod machine;
 pub mod meshes;
+#[doc(hidden)]
+pub mod messages;
 pub mod output_folder;
 pub mod outputs_apart;
 pub mod overrides;

@@ -1,7 +1,30 @@
 //! What is wrong, where, and what would be right: for people and, as JSON, for programs.
 
 use core::fmt;
+use opruga_math::message::{AnyMessage, Message};
+use opruga_words::Translation;
+use opruga_world::Warning;
 pub(crate) use opruga_world::validity::unprintable;
+
+opruga_math::terms! {
+    /// Words around errors and warnings.
+    pub enum Label = "part.label" { Error = "error", Warning = "warning", Note = "note", Allowed = "allowed", Hint = "hint" }
+}
+
+opruga_math::messages! {
+    /// What stands around the text of an error or a warning.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum Around {
+        "part.label" #[error("{count} times")]
+        Times { count: usize },
+        "part.label" #[error("{text}, at byte {byte}")]
+        AtByte { text: String, byte: usize },
+        "part.label" #[error("did you mean `{word}`?")]
+        Nearest { word: String },
+        "part.label" #[error("without --strict this is a warning")]
+        NotStrict {},
+    }
+}
 
 /// An error in a scene, with its place.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,6 +49,12 @@ pub struct SceneError {
     pub hint: Option<String>,
     /// The offending line, for people.
     pub excerpt: Option<Excerpt>,
+    /// The offending byte of a file that has no lines.
+    pub byte: Option<usize>,
+    /// What is wrong, as a value: translations of other languages read it. None where the texts above are all there is.
+    pub about: Option<AnyMessage>,
+    /// What would help, as a value, where the message itself does not say it.
+    pub advice: Option<AnyMessage>,
 }
 
 /// A line of a file with a part of it marked.
@@ -62,6 +91,20 @@ impl SceneError {
             allowed: None,
             hint: None,
             excerpt: None,
+            byte: None,
+            about: None,
+            advice: None,
+        }
+    }
+    /// An error of a message, with its code, value, what is allowed and what helps; in no particular line.
+    pub fn of(message: impl Into<AnyMessage>) -> SceneError {
+        let about = message.into();
+        SceneError {
+            value: about.value(),
+            allowed: about.allowed(),
+            hint: about.hint(),
+            about: Some(about.clone()),
+            ..SceneError::new(about.code(), about.to_string())
         }
     }
     /// What stands behind the errors that are shown: so many were only counted.
@@ -99,13 +142,21 @@ impl SceneError {
         self.hint = Some(hint.into());
         self
     }
+    /// Adds what would help, as a value.
+    #[must_use]
+    pub fn advice(mut self, advice: impl Into<AnyMessage>) -> SceneError {
+        let advice = advice.into();
+        self.hint = Some(advice.to_string());
+        self.advice = Some(advice);
+        self
+    }
     /// Adds the nearest word as a hint, if one is near.
     #[must_use]
-    pub fn nearest(mut self, word: Option<String>) -> SceneError {
-        if let Some(word) = word {
-            self.hint = Some(format!("did you mean `{word}`?"));
+    pub fn nearest(self, word: Option<String>) -> SceneError {
+        match word {
+            Some(word) => self.advice(Around::Nearest { word }),
+            None => self,
         }
-        self
     }
     /// The error object of the command line: `{code, message, file, line, column, path, value, allowed, hint}`; what an
     /// error does not have is null.
@@ -113,7 +164,7 @@ impl SceneError {
         let there = |text: &String| Some(text.clone()).filter(|text| !text.is_empty());
         serde_json::json!({
             "code": self.code,
-            "message": self.message,
+            "message": self.sentence(None),
             "file": there(&self.file),
             "line": self.line,
             "column": self.column,
@@ -122,6 +173,39 @@ impl SceneError {
             "allowed": self.allowed,
             "hint": self.hint,
         })
+    }
+    /// What is wrong, in the language of a translation, in English without one.
+    pub fn sentence(&self, translation: Option<&Translation>) -> String {
+        let text = self.sentence_alone(translation);
+        self.byte.map_or(text.clone(), |byte| in_words(translation, &Around::AtByte { text, byte }))
+    }
+    /// The same as [`fmt::Display`] writes it, in the language of a translation.
+    pub fn text(&self, translation: Option<&Translation>) -> String {
+        describe(self, Label::Error, translation)
+    }
+    /// The same with its texts in the language of a translation, as far as it knows them, and without what it was made of.
+    #[must_use]
+    pub fn translated(mut self, translation: Option<&Translation>) -> SceneError {
+        let (message, (allowed, hint)) = (self.sentence_alone(translation), self.beside(translation));
+        (self.message, self.allowed, self.hint) = (message, allowed, hint);
+        (self.about, self.advice) = (None, None);
+        self
+    }
+    /// The sentence without a place.
+    fn sentence_alone(&self, translation: Option<&Translation>) -> String {
+        let known = translation.zip(self.about.as_ref()).and_then(|(translation, about)| translation.text(&**about));
+        known.unwrap_or_else(|| self.message.clone())
+    }
+    /// What is allowed and what helps.
+    fn beside(&self, translation: Option<&Translation>) -> (Option<String>, Option<String>) {
+        let known = translation.zip(self.about.as_ref());
+        let allowed = || known.and_then(|(own, about)| own.allowed(&**about));
+        let advice = translation.zip(self.advice.as_ref()).and_then(|(own, advice)| own.text(&**advice));
+        let hint = || advice.or_else(|| known.and_then(|(own, about)| own.hint(&**about)));
+        (
+            self.allowed.clone().map(|english| allowed().unwrap_or(english)),
+            self.hint.clone().map(|english| hint().unwrap_or(english)),
+        )
     }
     /// The exit code of a program that stops because of this error.
     pub fn exit_code(&self) -> i32 {
@@ -156,7 +240,7 @@ pub fn count_of(errors: &[SceneError]) -> usize {
 
 impl fmt::Display for SceneError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        describe(f, self, "error")
+        f.write_str(&self.text(None))
     }
 }
 
@@ -171,38 +255,63 @@ impl Notice {
     pub fn is_asked_for(code: &str) -> bool {
         ASKED_FOR.contains(&code)
     }
+    /// The same as [`fmt::Display`] writes it, in the language of a translation.
+    pub fn text(&self, translation: Option<&Translation>) -> String {
+        let severity = if Notice::is_asked_for(self.about.code) { Label::Note } else { Label::Warning };
+        let text = describe(&self.about, severity, translation);
+        match self.count {
+            0 | 1 => text,
+            count => format!("{text}\n  = {}", in_words(translation, &Around::Times { count })),
+        }
+    }
 }
 
 impl fmt::Display for Notice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        describe(f, &self.about, if Notice::is_asked_for(self.about.code) { "note" } else { "warning" })?;
-        if self.count > 1 { write!(f, "\n  = {} times", self.count) } else { Ok(()) }
+        f.write_str(&self.text(None))
+    }
+}
+
+/// A message in the language of a translation, in English without one.
+pub fn in_words(translation: Option<&Translation>, message: &dyn Message) -> String {
+    translation.map_or_else(|| message.to_string(), |translation| translation.text_or_english(message))
+}
+
+/// A warning of a world for people.
+pub fn warning_text(warning: &Warning, translation: Option<&Translation>) -> String {
+    let known = translation.zip(warning.about.as_ref()).and_then(|(own, about)| own.in_full(&**about));
+    let message = known.unwrap_or_else(|| warning.message.clone());
+    let text = format!("{}[{}]: {message}", in_words(translation, &Label::Warning), warning.code);
+    match warning.count {
+        0 | 1 => text,
+        count => format!("{text} ({})", in_words(translation, &Around::Times { count: count as usize })),
     }
 }
 
 /// `file:line:column: error[code]: message`, the line with its marked part, what is allowed, what would help.
-fn describe(f: &mut fmt::Formatter<'_>, error: &SceneError, severity: &str) -> fmt::Result {
+fn describe(error: &SceneError, severity: Label, translation: Option<&Translation>) -> String {
+    let mut out = String::new();
     if !error.file.is_empty() {
-        write!(f, "{}:", visible(&error.file))?;
+        out += &format!("{}:", visible(&error.file));
         if let (Some(line), Some(column)) = (error.line, error.column) {
-            write!(f, "{line}:{column}:")?;
+            out += &format!("{line}:{column}:");
         }
-        write!(f, " ")?;
+        out.push(' ');
     }
-    write!(f, "{severity}[{}]: {}", error.code, error.message)?;
+    out += &format!("{}[{}]: {}", in_words(translation, &severity), error.code, error.sentence(translation));
     if let (Some(excerpt), Some(line)) = (&error.excerpt, error.line) {
         let number = line.to_string();
         let margin = " ".repeat(number.len());
-        write!(f, "\n {number} | {}", excerpt.line)?;
-        write!(f, "\n {margin} | {}{}", " ".repeat(excerpt.start), "^".repeat(excerpt.length))?;
+        out += &format!("\n {number} | {}", excerpt.line);
+        out += &format!("\n {margin} | {}{}", " ".repeat(excerpt.start), "^".repeat(excerpt.length));
     }
-    if let Some(allowed) = &error.allowed {
-        write!(f, "\n  = allowed: {allowed}")?;
+    let (allowed, hint) = error.beside(translation);
+    for (label, text) in [(Label::Allowed, allowed), (Label::Hint, hint)] {
+        if let Some(text) = text {
+            out += &format!("\n  = {}: {text}", in_words(translation, &label));
+        }
     }
-    if let Some(hint) = &error.hint {
-        write!(f, "\n  = hint: {hint}")?;
-    }
-    Ok(())
+    out
 }
 
 /// A text from outside, fit to be printed: control characters, marks that turn the direction of writing and invisible

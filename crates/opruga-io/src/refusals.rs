@@ -2,7 +2,7 @@
 
 use crate::document::{self, Data, Entry, Node, Place};
 use crate::overrides;
-use crate::problem::SceneError;
+use crate::problem::{Around, SceneError};
 use crate::source::Source;
 use opruga_core::error::what_was_left;
 use opruga_math::words::number;
@@ -144,7 +144,8 @@ impl From<&Warning> for SceneError {
         let code = CODES.into_iter().find(|code| *code == warning.code).unwrap_or("world.warning");
         let body = warning.message.strip_prefix("body `").and_then(|rest| rest.split(['`', '[']).next());
         let path = body.map_or(String::new(), |body| format!("body.{body}"));
-        SceneError::new(code, warning.message.clone()).path(path).hint("without --strict this is a warning")
+        let error = SceneError { about: warning.about.clone(), ..SceneError::new(code, warning.message.clone()) };
+        error.path(path).advice(Around::NotStrict {})
     }
 }
 

@@ -6,6 +6,23 @@
 use crate::problem::SceneError;
 use opruga_math::words::rounded;
 
+opruga_math::messages! {
+    /// What the numbers of a file have lost.
+    #[derive(Clone, Debug, PartialEq)]
+    pub(crate) enum Rounded {
+        "mesh.rounded"
+        #[error("the file rounds coordinates by up to {rounding} m, {percent} % of the distance of neighbouring nodes: they lie up to {farthest} m from the origin in numbers of 4 bytes")]
+        #[value("{part}")] #[allowed("up to {warned} %; above {refused} % is an error")]
+        #[hint("move the shape to the origin before it is saved, or save it in a format with numbers of 8 bytes")]
+        Single { rounding: String, percent: String, farthest: String, part: String, warned: f64, refused: f64 },
+        "mesh.rounded"
+        #[error("the file rounds coordinates by up to {rounding} m, {percent} % of the distance of neighbouring nodes: they lie up to {farthest} m from the origin in numbers of 8 bytes")]
+        #[value("{part}")] #[allowed("up to {warned} %; above {refused} % is an error")]
+        #[hint("move the shape to the origin before it is saved")]
+        Double { rounding: String, percent: String, farthest: String, part: String, warned: f64, refused: f64 },
+    }
+}
+
 /// Rounding above this part of the distance of neighbouring nodes is told: strains and angles are off by as much.
 const TOLD: f64 = 1e-3;
 /// Above this part it is refused: the shape is another one.
@@ -67,20 +84,12 @@ impl Stored {
         if part <= TOLD {
             return Ok(None);
         }
-        let message = format!(
-            "the file rounds coordinates by up to {} m, {} % of the distance of neighbouring nodes: they lie up to {} m from the origin in numbers of \
-             {} bytes",
-            rounded(self.rounding, 2),
-            rounded(100.0 * part, 2),
-            rounded(self.farthest, 3),
-            if self.single { 4 } else { 8 },
-        );
-        let error = SceneError::new("mesh.rounded", message).value(rounded(part, 2));
-        let error = error.allowed(format!("up to {} %; above {} % is an error", 100.0 * TOLD, 100.0 * REFUSED));
-        let error = error.hint(if self.single {
-            "move the shape to the origin before it is saved, or save it in a format with numbers of 8 bytes"
-        } else {
-            "move the shape to the origin before it is saved"
+        let (rounding, percent) = (rounded(self.rounding, 2), rounded(100.0 * part, 2));
+        let (farthest, warned, refused) = (rounded(self.farthest, 3), 100.0 * TOLD, 100.0 * REFUSED);
+        let value = rounded(part, 2);
+        let error = SceneError::of(match self.single {
+            true => Rounded::Single { rounding, percent, farthest, part: value, warned, refused },
+            false => Rounded::Double { rounding, percent, farthest, part: value, warned, refused },
         });
         if part > REFUSED { Err(error) } else { Ok(Some(error)) }
     }

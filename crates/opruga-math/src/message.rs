@@ -28,6 +28,37 @@ pub trait Message: std::error::Error + Send + Sync + 'static {
     fn variant(&self) -> &'static str;
     /// The fields by name, in the order of declaration.
     fn fields(&self) -> Vec<(&'static str, Field)>;
+    /// The offending value, as it was written.
+    fn value(&self) -> Option<String> {
+        None
+    }
+    /// What is allowed, in English.
+    fn allowed(&self) -> Option<String> {
+        None
+    }
+    /// What helps, in English.
+    fn hint(&self) -> Option<String> {
+        None
+    }
+    /// The English text with what is allowed and what helps: `text; allowed: …; hint: …`.
+    fn in_full(&self) -> String {
+        let beside = [("allowed", self.allowed()), ("hint", self.hint())];
+        let beside = beside.into_iter().filter_map(|(label, text)| text.map(|text| format!("; {label}: {text}")));
+        self.to_string() + &beside.collect::<String>()
+    }
+}
+
+/// What a catalogue must know of a variant of a message.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Variant {
+    /// The stable code.
+    pub code: &'static str,
+    /// The name of the variant.
+    pub name: &'static str,
+    /// The names of its fields.
+    pub fields: &'static [&'static str],
+    /// The English text, what is allowed and what helps, as they stand in the source; empty where there are none.
+    pub english: [&'static str; 3],
 }
 
 /// A message of any type: cloned without copying, equal where code, variant and fields are.
@@ -37,6 +68,62 @@ pub struct AnyMessage(Arc<dyn Message>);
 impl<M: Message> From<M> for AnyMessage {
     fn from(message: M) -> AnyMessage {
         AnyMessage(Arc::new(message))
+    }
+}
+
+/// A message whose fields and texts were changed.
+#[derive(Debug)]
+struct Restated {
+    code: &'static str,
+    variant: &'static str,
+    fields: Vec<(&'static str, Field)>,
+    /// The English text, the value, what is allowed and what helps.
+    english: String,
+    beside: [Option<String>; 3],
+}
+
+impl fmt::Display for Restated {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.english)
+    }
+}
+
+impl std::error::Error for Restated {}
+
+impl Message for Restated {
+    fn code(&self) -> &'static str {
+        self.code
+    }
+    fn variant(&self) -> &'static str {
+        self.variant
+    }
+    fn fields(&self) -> Vec<(&'static str, Field)> {
+        self.fields.clone()
+    }
+    fn value(&self) -> Option<String> {
+        self.beside[0].clone()
+    }
+    fn allowed(&self) -> Option<String> {
+        self.beside[1].clone()
+    }
+    fn hint(&self) -> Option<String> {
+        self.beside[2].clone()
+    }
+}
+
+impl AnyMessage {
+    /// The same with other names: `name` changes a field that is one, `text` those within an English text.
+    #[must_use]
+    pub fn renamed(&self, name: &dyn Fn(&str) -> String, text: &dyn Fn(&str) -> String) -> AnyMessage {
+        let field = |field: Field| match field {
+            Field::Text(old) => Field::Text(name(&old)),
+            Field::Message(part) => Field::Message(part.renamed(name, text)),
+            other => other,
+        };
+        let fields = self.fields().into_iter().map(|(of, value)| (of, field(value))).collect();
+        let beside = [self.value(), self.allowed(), self.hint()].map(|old| old.map(|old| text(&old)));
+        let english = text(&self.to_string());
+        AnyMessage::from(Restated { code: self.code(), variant: self.variant(), fields, english, beside })
     }
 }
 
@@ -95,7 +182,7 @@ macro_rules! counts {
         }
     })* };
 }
-counts!(u8 u16 u32 u64 usize i32 i64);
+counts!(u8 u16 u32 u64 u128 usize i32 i64 i128);
 
 macro_rules! texts {
     ($($type:ty)*) => { $(impl IntoField for $type {
@@ -105,6 +192,23 @@ macro_rules! texts {
     })* };
 }
 texts!(String &'static str Box<str> char bool);
+
+macro_rules! lists {
+    ($($type:ty)*) => { $(impl IntoField for $type {
+        fn field(&self) -> Field {
+            Field::Text(format!("{self:?}"))
+        }
+    })* };
+}
+
+/// A place, rounded as numbers are.
+impl<const D: usize> IntoField for [f64; D] {
+    fn field(&self) -> Field {
+        Field::Text(format!("({})", self.map(number).join(", ")))
+    }
+}
+
+lists!(Vec<u32> Vec<[u32; 2]> [u32; 2]);
 
 impl IntoField for AnyMessage {
     fn field(&self) -> Field {
@@ -119,10 +223,16 @@ impl<T: IntoField> IntoField for Option<T> {
     }
 }
 
+/// What is there, as a part of a text; nothing otherwise.
+pub fn if_any<T: fmt::Display>(part: &Option<T>) -> String {
+    part.as_ref().map_or_else(String::new, T::to_string)
+}
+
 /// Declares errors or warnings: an enum by `thiserror` whose variants have a stable code, typed fields and an English
 /// text, as `thiserror` formats it. Variants without fields are written with empty braces.
 ///
-/// A message is itself a field: [`IntoField`] is written with it.
+/// `#[value(…)]`, `#[allowed(…)]` and `#[hint(…)]`, in this order, are texts beside it: the offending value, what is allowed and what
+/// helps. Where one of the last two is empty, there is none. A message is itself a field: [`IntoField`] is written with it.
 ///
 /// ```
 /// use opruga_math::words::number;
@@ -132,7 +242,9 @@ impl<T: IntoField> IntoField for Option<T> {
 ///     pub enum SpringsError {
 ///         /// An edge between two nodes at one point; its number.
 ///         "model.edge_length"
-///         #[error("edge {edge} is {} m long; allowed: > 0", number(*length))]
+///         #[error("edge {edge} is {} m long", number(*length))]
+///         #[value("{length}")]
+///         #[allowed("> 0")]
 ///         ShortEdge { edge: u32, length: f64 },
 ///         /// Nothing to hold springs.
 ///         "model.no_edges"
@@ -146,7 +258,11 @@ macro_rules! messages {
     ($(
         $(#[$about:meta])*
         $visible:vis enum $name:ident {
-            $($(#[doc = $doc:literal])* $code:literal #[error($($text:tt)*)] $variant:ident { $($field:ident: $type:ty),* $(,)? }),* $(,)?
+            $(
+                $(#[doc = $doc:literal])* $code:literal #[error($($text:tt)*)]
+                $(#[value($($value:tt)*)])? $(#[allowed($($allowed:tt)*)])? $(#[hint($($hint:tt)*)])?
+                $variant:ident { $($field:ident: $type:ty),* $(,)? }
+            ),* $(,)?
         }
     )*) => { $(
         $(#[$about])*
@@ -155,6 +271,7 @@ macro_rules! messages {
             $($(#[doc = $doc])* #[error($($text)*)] #[allow(missing_docs, reason = "the text of the variant says what its fields are")]
             $variant { $($field: $type),* },)*
         }
+        #[allow(unused_variables, reason = "not every text has every field")]
         impl $crate::message::Message for $name {
             fn code(&self) -> &'static str {
                 match self { $($name::$variant { .. } => $code,)* }
@@ -169,11 +286,25 @@ macro_rules! messages {
                     ],)*
                 }
             }
+            fn value(&self) -> Option<String> {
+                match self { $($name::$variant { $($field),* } => $crate::text_beside!(as written $($($value)*)?),)* }
+            }
+            fn allowed(&self) -> Option<String> {
+                match self { $($name::$variant { $($field),* } => $crate::text_beside!($($($allowed)*)?),)* }
+            }
+            fn hint(&self) -> Option<String> {
+                match self { $($name::$variant { $($field),* } => $crate::text_beside!($($($hint)*)?),)* }
+            }
         }
         impl $name {
-            /// The code of every variant beside its name, for tests and catalogues.
+            /// Every variant, for tests and catalogues.
             #[allow(dead_code, reason = "tests and catalogues read it where there are any")]
-            $visible const CODES: &'static [(&'static str, &'static str)] = &[$(($code, stringify!($variant))),*];
+            $visible const VARIANTS: &'static [$crate::message::Variant] = &[$($crate::message::Variant {
+                code: $code,
+                name: stringify!($variant),
+                fields: &[$(stringify!($field)),*],
+                english: [stringify!($($text)*), stringify!($($($allowed)*)?), stringify!($($($hint)*)?)],
+            }),*];
         }
         impl $crate::message::IntoField for $name {
             fn field(&self) -> $crate::message::Field {
@@ -181,6 +312,67 @@ macro_rules! messages {
             }
         }
     )* };
+}
+
+/// A text beside that of a message, if there is one.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! text_beside {
+    ($(as written)?) => {
+        None
+    };
+    (as written $($text:tt)*) => {
+        Some(format!($($text)*))
+    };
+    ($($text:tt)*) => {
+        Some(format!($($text)*)).filter(|text| !text.is_empty())
+    };
+}
+
+/// Declares names of things as parts of messages: an enum without fields, whose variants share a code and have a text each.
+///
+/// ```
+/// opruga_math::terms! {
+///     /// What a reader expects.
+///     pub enum Expected = "part.expected" { Number = "a number", Name = "a name" }
+/// }
+/// assert_eq!(Expected::Name.to_string(), "a name");
+/// ```
+#[macro_export]
+macro_rules! terms {
+    ($(#[$about:meta])* $visible:vis enum $name:ident = $code:literal { $($variant:ident = $text:literal),* $(,)? }) => {
+        $(#[$about])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, ::thiserror::Error)]
+        $visible enum $name {
+            $(#[doc = $text] #[error($text)] $variant),*
+        }
+        impl $crate::message::Message for $name {
+            fn code(&self) -> &'static str {
+                $code
+            }
+            fn variant(&self) -> &'static str {
+                match self { $($name::$variant => stringify!($variant),)* }
+            }
+            fn fields(&self) -> Vec<(&'static str, $crate::message::Field)> {
+                Vec::new()
+            }
+        }
+        impl $name {
+            /// Every variant, for tests and catalogues.
+            #[allow(dead_code, reason = "tests and catalogues read it where there are any")]
+            $visible const VARIANTS: &'static [$crate::message::Variant] = &[$($crate::message::Variant {
+                code: $code,
+                name: stringify!($variant),
+                fields: &[],
+                english: [$text, "", ""],
+            }),*];
+        }
+        impl $crate::message::IntoField for $name {
+            fn field(&self) -> $crate::message::Field {
+                $crate::message::Field::Message((*self).into())
+            }
+        }
+    };
 }
 
 #[cfg(test)]
@@ -202,7 +394,9 @@ mod tests {
             /// Too short.
             "test.short"
             #[error("edge {edge} of {place} is {} m long", number(*length))]
-            Short { edge: u32, length: f64, place: Place },
+            #[value("{}", number(*length))]
+            #[allowed("more than {least}")]
+            Short { edge: u32, length: f64, place: Place, least: u32 },
             /// None.
             "test.none"
             #[error("there are no edges")]
@@ -212,14 +406,22 @@ mod tests {
 
     #[test]
     fn a_message_is_code_fields_and_english() {
-        let short = Refusal::Short { edge: 3, length: 0.1 + 0.2, place: Place::Body { name: "ball".into() } };
+        let short = Refusal::Short { edge: 3, length: 0.1 + 0.2, place: Place::Body { name: "ball".into() }, least: 0 };
         let any = AnyMessage::from(short);
         assert_eq!(any.to_string(), "edge 3 of body `ball` is 0.3 m long");
         assert_eq!((any.code(), any.variant()), ("test.short", "Short"));
         let names: Vec<_> = any.fields().into_iter().map(|(name, value)| format!("{name}={value}")).collect();
-        assert_eq!(names, ["edge=3", "length=0.3", "place=body `ball`"]);
+        assert_eq!(names, ["edge=3", "length=0.3", "place=body `ball`", "least=0"]);
         assert_ne!(any, Refusal::None {}.into());
+        let other = any.renamed(&|name| name.replace("ball", "box"), &|text| text.replace("`ball`", "`box`"));
+        assert_eq!(other.to_string(), "edge 3 of body `box` is 0.3 m long");
+        let [_, _, (_, Field::Message(place)), _] = &other.fields()[..] else { panic!("{other:?}") };
+        assert_eq!((place.variant(), place.to_string()), ("Body", "body `box`".into()));
         assert_eq!(any, any.clone());
-        assert_eq!(Refusal::CODES, [("test.short", "Short"), ("test.none", "None")]);
+        assert_eq!((any.value(), any.allowed(), any.hint()), (Some("0.3".into()), Some("more than 0".into()), None));
+        assert_eq!(any.in_full(), "edge 3 of body `ball` is 0.3 m long; allowed: more than 0");
+        let [short, none] = Refusal::VARIANTS else { panic!("{:?}", Refusal::VARIANTS) };
+        assert_eq!((short.code, short.name, short.english[1]), ("test.short", "Short", "\"more than {least}\""));
+        assert_eq!((none.fields, none.english), (&[][..], ["\"there are no edges\"", "", ""]));
     }
 }

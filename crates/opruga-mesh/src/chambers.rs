@@ -147,7 +147,7 @@ impl Survey {
     pub(crate) fn closed_and_consistent(&self) -> Result<(), MeshError> {
         self.closed()?;
         if !self.minority.is_empty() {
-            return Err(MeshError::InconsistentOrientation { facets: self.minority.clone() });
+            return Err(MeshError::InconsistentOrientation { count: self.minority.len(), first: self.minority[0] });
         }
         Ok(())
     }

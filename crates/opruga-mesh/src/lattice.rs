@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::mesh::{count, finite, limit_nodes, positive};
-use crate::{Cells, MAXIMUM_NODES, Mesh, MeshError};
+use crate::{Cells, MAXIMUM_NODES, Mesh, MeshError, Must, Quantity};
 
 /// Names of the low and high side of each axis; `back` is the side of low z.
 pub(crate) const SIDES: [[&str; 2]; 3] = [["left", "right"], ["bottom", "top"], ["back", "front"]];
@@ -51,11 +51,11 @@ impl<const D: usize> Mesh<D> {
     /// # Errors
     /// [`MeshError::Count`] for no segment or too many; [`MeshError::Size`] where a point is not finite or both coincide.
     pub fn line(from: [f64; D], to: [f64; D], segments: u32) -> Result<Mesh<D>, MeshError> {
-        count("number of segments", segments, 1, MAXIMUM_NODES - 1)?;
-        finite("end of the line", &from)?;
-        finite("end of the line", &to)?;
+        count(Quantity::NumberSegments, segments, 1, MAXIMUM_NODES - 1)?;
+        finite(Quantity::EndLine, &from)?;
+        finite(Quantity::EndLine, &to)?;
         if from == to {
-            return Err(MeshError::Size { what: "length of the line", value: 0.0, must: "positive and finite" });
+            return Err(MeshError::Size { what: Quantity::LengthLine, value: 0.0, must: Must::Positive });
         }
         let at = |i: u32| {
             std::array::from_fn(|axis| {
@@ -93,11 +93,11 @@ impl<const D: usize> Mesh<D> {
     /// # Errors
     /// [`MeshError::Count`] for an axis without cells; [`MeshError::Size`] for sizes that are not positive and finite; [`MeshError::TooManyNodes`].
     pub fn grid(lower: [f64; D], size: [f64; D], cells: [u32; D]) -> Result<Mesh<D>, MeshError> {
-        finite("lower corner of the grid", &lower)?;
+        finite(Quantity::LowerCornerGrid, &lower)?;
         let mut nodes = 1_u64;
         for axis in 0..D {
-            count("number of cells per axis", cells[axis], 1, MAXIMUM_NODES)?;
-            positive("size of the grid", size[axis])?;
+            count(Quantity::NumberCellsPerAxis, cells[axis], 1, MAXIMUM_NODES)?;
+            positive(Quantity::SizeGrid, size[axis])?;
             nodes = nodes.saturating_mul(u64::from(cells[axis]) + 1);
         }
         limit_nodes(nodes)?;
@@ -138,13 +138,13 @@ impl Mesh<2> {
     /// Those of [`Mesh::grid`]; [`MeshError::Size`] with the area of a corner where the quadrilateral is not convex and counter-clockwise there.
     pub fn quadrilateral(corners: [[f64; 2]; 4], cells: [u32; 2]) -> Result<Mesh<2>, MeshError> {
         for k in 0..4 {
-            finite("corner of the quadrilateral", &corners[k])?;
+            finite(Quantity::CornerQuadrilateral, &corners[k])?;
             let (before, at, after) = (corners[(k + 3) % 4], corners[k], corners[(k + 1) % 4]);
             let (u, w) = ([at[0] - before[0], at[1] - before[1]], [after[0] - at[0], after[1] - at[1]]);
             let area = u[0] * w[1] - u[1] * w[0];
             if area.is_nan() || area <= 0.0 {
-                let must = "positive at every corner: four corners of a convex quadrilateral, counter-clockwise";
-                return Err(MeshError::Size { what: "area spanned by the sides at a corner", value: area, must });
+                let must = Must::Convex;
+                return Err(MeshError::Size { what: Quantity::AreaSpannedSidesCorner, value: area, must });
             }
         }
         let mut mesh = Mesh::grid([0.0; 2], [1.0; 2], cells)?;
@@ -169,9 +169,9 @@ pub(crate) fn without_repeated_end<const D: usize>(points: &[[f64; D]]) -> &[[f6
 pub(crate) fn check_points<const D: usize>(points: &[[f64; D]], least: u64, closed: bool) -> Result<(), MeshError> {
     let n = points.len();
     limit_nodes(n as u64)?;
-    count("number of points", n as u32, least, MAXIMUM_NODES)?;
+    count(Quantity::NumberPoints, n as u32, least, MAXIMUM_NODES)?;
     for (index, point) in points.iter().enumerate() {
-        finite("coordinate of a point", point)?;
+        finite(Quantity::CoordinatePoint, point)?;
         let next = (index + 1) % n;
         if points[next] == *point && (closed || next != 0) {
             return Err(MeshError::RepeatedPoint { first: index as u32, second: next as u32 });

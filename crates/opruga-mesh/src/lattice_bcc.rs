@@ -4,7 +4,7 @@
 //! √3/2·a between centres and corners.
 
 use crate::geometry::tetrahedron_volume;
-use crate::{MAXIMUM_NODES, Mesh, MeshError};
+use crate::{MAXIMUM_NODES, Mesh, MeshError, Quantity};
 
 /// Lattice points by twice their coordinates: corners of cubes are even in all of them, centres of cubes odd.
 pub(crate) type Key = [i32; 3];
@@ -25,7 +25,7 @@ impl Lattice {
     /// # Errors
     /// [`MeshError::Size`] for a spacing that is not positive; [`MeshError::TooManyNodes`] for a filling or a box of too many nodes.
     pub(crate) fn around(surface: &Mesh<3>, spacing: f64) -> Result<Lattice, MeshError> {
-        crate::mesh::positive("spacing", spacing)?;
+        crate::mesh::positive(Quantity::Spacing, spacing)?;
         let estimate = surface.lattice_estimate(spacing) as u64;
         if estimate > MAXIMUM_NODES {
             return Err(MeshError::TooManyNodes { nodes: estimate, most: MAXIMUM_NODES });

@@ -64,7 +64,19 @@ pub use chambers::{Component, winding_number};
 pub use check::{Problem, SHORT_EDGE, THIN_ELEMENT};
 pub use crossings::Crossings;
 pub use edges::{EdgeRun, EdgeSet, bandwidth, edge_runs};
-pub use error::{Element, MeshError};
+pub use error::{Element, MeshError, Must, Quantity};
+
+/// All messages of this crate, for tests of translations.
+#[doc(hidden)]
+pub const MESSAGES: &[&[opruga_math::message::Variant]] = &[
+    Element::VARIANTS,
+    Quantity::VARIANTS,
+    Must::VARIANTS,
+    MeshError::VARIANTS,
+    outline::MeetingOf::VARIANTS,
+    outline::OutlineError::VARIANTS,
+];
+
 pub use face::{CutFace, FaceError, cut_face};
 pub use geometry::signed_volume;
 pub use jacobian::{LeastJacobian, jacobian_at, least_jacobian};

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::{Element, MeshError, Skin};
+use crate::{Element, MeshError, Must, Quantity, Skin};
 
 /// Most nodes that a mesh may have: 2²⁵, so that every index and every doubled index fits `u32` and a mistyped count cannot exhaust the memory.
 pub const MAXIMUM_NODES: u64 = 1 << 25;
@@ -249,24 +249,20 @@ pub(crate) fn limit_nodes(nodes: u64) -> Result<(), MeshError> {
 }
 
 /// Refuses a count outside `least..=most`.
-pub(crate) fn count(what: &'static str, value: u32, least: u64, most: u64) -> Result<(), MeshError> {
+pub(crate) fn count(what: Quantity, value: u32, least: u64, most: u64) -> Result<(), MeshError> {
     let value = u64::from(value);
     if (least..=most).contains(&value) { Ok(()) } else { Err(MeshError::Count { what, value, least, most }) }
 }
 
 /// Refuses a length that is not positive and finite [m].
-pub(crate) fn positive(what: &'static str, value: f64) -> Result<(), MeshError> {
-    if value > 0.0 && value.is_finite() {
-        Ok(())
-    } else {
-        Err(MeshError::Size { what, value, must: "positive and finite" })
-    }
+pub(crate) fn positive(what: Quantity, value: f64) -> Result<(), MeshError> {
+    if value > 0.0 && value.is_finite() { Ok(()) } else { Err(MeshError::Size { what, value, must: Must::Positive }) }
 }
 
 /// Refuses coordinates that are not finite [m].
-pub(crate) fn finite(what: &'static str, values: &[f64]) -> Result<(), MeshError> {
+pub(crate) fn finite(what: Quantity, values: &[f64]) -> Result<(), MeshError> {
     match values.iter().find(|value| !value.is_finite()) {
-        Some(&value) => Err(MeshError::Size { what, value, must: "finite" }),
+        Some(&value) => Err(MeshError::Size { what, value, must: Must::Finite }),
         None => Ok(()),
     }
 }

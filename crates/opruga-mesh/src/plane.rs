@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use crate::mesh::{count, finite, limit_nodes, positive};
-use crate::{MAXIMUM_NODES, Mesh, MeshError};
+use crate::{MAXIMUM_NODES, Mesh, MeshError, Must, Quantity};
 
 /// The outline 0 → 1 → … → n−1 → 0.
 pub(crate) fn outline(positions: Vec<[f64; 2]>) -> Mesh<2> {
@@ -16,11 +16,11 @@ pub(crate) fn outline(positions: Vec<[f64; 2]>) -> Mesh<2> {
 pub const LARGEST_ANGLE: f64 = 1e6;
 
 /// Refuses an angle so far round that rounding would move nodes [rad].
-fn angle(what: &'static str, value: f64) -> Result<(), MeshError> {
+fn angle(what: Quantity, value: f64) -> Result<(), MeshError> {
     if (-LARGEST_ANGLE..=LARGEST_ANGLE).contains(&value) {
         Ok(())
     } else {
-        Err(MeshError::Size { what, value, must: "from -1e6 to 1e6 rad" })
+        Err(MeshError::Size { what, value, must: Must::Turns })
     }
 }
 
@@ -43,10 +43,10 @@ impl Mesh<2> {
     /// [`MeshError::Count`] for fewer than 3 vertices or too many; [`MeshError::Size`] for a radius that is not positive and finite, a centre that is
     /// not finite, or an angle beyond ±[`LARGEST_ANGLE`].
     pub fn ring(radius: f64, vertices: u32, center: [f64; 2], start_angle: f64) -> Result<Mesh<2>, MeshError> {
-        count("number of vertices", vertices, 3, MAXIMUM_NODES)?;
-        positive("radius", radius)?;
-        finite("centre", &center)?;
-        angle("start angle", start_angle)?;
+        count(Quantity::NumberVertices, vertices, 3, MAXIMUM_NODES)?;
+        positive(Quantity::Radius, radius)?;
+        finite(Quantity::Centre, &center)?;
+        angle(Quantity::StartAngle, start_angle)?;
         Ok(outline(circle(radius, vertices, center, start_angle)))
     }
 
@@ -62,12 +62,12 @@ impl Mesh<2> {
         center: [f64; 2],
         start_angle: f64,
     ) -> Result<Mesh<2>, MeshError> {
-        count("number of sides", sides, 3, MAXIMUM_NODES)?;
-        count("number of vertices per side", vertices_per_side, 1, MAXIMUM_NODES)?;
+        count(Quantity::NumberSides, sides, 3, MAXIMUM_NODES)?;
+        count(Quantity::NumberVerticesPerSide, vertices_per_side, 1, MAXIMUM_NODES)?;
         limit_nodes(u64::from(sides) * u64::from(vertices_per_side))?;
-        positive("radius", radius)?;
-        finite("centre", &center)?;
-        angle("start angle", start_angle)?;
+        positive(Quantity::Radius, radius)?;
+        finite(Quantity::Centre, &center)?;
+        angle(Quantity::StartAngle, start_angle)?;
         let corners = circle(radius, sides, center, start_angle);
         let mut positions = Vec::with_capacity(sides as usize * vertices_per_side as usize);
         for (side, a) in corners.iter().enumerate() {

@@ -3,7 +3,7 @@
 use crate::lattice::{check_points, without_repeated_end};
 use crate::outline::first_meeting;
 use crate::plane::outline;
-use crate::{Mesh, MeshError, signed_volume};
+use crate::{Mesh, MeshError, Must, Quantity, signed_volume};
 
 /// An outline through given points, and whether it had to be turned.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,7 +33,7 @@ impl Mesh<2> {
         let mut mesh = outline(points.to_vec());
         let area = signed_volume(&mesh.facets, &mesh.positions);
         if area == 0.0 || !area.is_finite() {
-            return Err(MeshError::Size { what: "area of the outline", value: area, must: "finite and not zero" });
+            return Err(MeshError::Size { what: Quantity::AreaOutline, value: area, must: Must::NotZero });
         }
         let flipped = area < 0.0;
         if flipped {

@@ -8,7 +8,7 @@
 use crate::geometry::{cross, dot, norm, subtract};
 use crate::mesh::{limit_nodes, positive};
 use crate::nearest::Nearest;
-use crate::{Mesh, MeshError};
+use crate::{Mesh, MeshError, Quantity};
 use std::collections::BTreeMap;
 
 /// Rounds of the four moves.
@@ -70,7 +70,7 @@ impl Mesh<3> {
     /// M. Botsch, L. Kobbelt, "A remeshing approach to multiresolution modeling", Symposium on Geometry Processing (2004),
     /// section 4.
     pub fn remeshed(&self, length: f64) -> Result<Mesh<3>, MeshError> {
-        positive("length of edges", length)?;
+        positive(Quantity::LengthEdges, length)?;
         self.components()?;
         limit_nodes(self.remesh_estimate(length) as u64)?;
         let surface = Nearest::to(self);

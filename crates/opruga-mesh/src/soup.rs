@@ -4,7 +4,7 @@ use crate::boxes::Tree;
 use crate::buckets::{nodes_of, sorted_by_node};
 use crate::chambers::Survey;
 use crate::geometry::{lift, norm, subtract, triangle_area};
-use crate::{Mesh, MeshError, signed_volume};
+use crate::{Mesh, MeshError, Must, Quantity, signed_volume};
 use std::collections::BTreeMap;
 
 /// Joins points that lie at most `distance` [m] apart (0: at the same place) and lets triangles name the first of each cluster; returns how many
@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 /// nothing is changed then.
 pub fn weld(positions: &mut Vec<[f64; 3]>, triangles: &mut [[u32; 3]], distance: f64) -> Result<usize, MeshError> {
     if !(distance >= 0.0 && distance.is_finite()) {
-        return Err(MeshError::Size { what: "distance of welding", value: distance, must: "0 or more, and finite" });
+        return Err(MeshError::Size { what: Quantity::DistanceWelding, value: distance, must: Must::NotNegative });
     }
     let target = if distance == 0.0 { same_place(positions) } else { near_place(positions, distance) };
 

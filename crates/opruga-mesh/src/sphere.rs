@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use crate::geometry::{Point, norm};
 use crate::mesh::{count, positive};
-use crate::{Mesh, MeshError};
+use crate::{Mesh, MeshError, Quantity};
 
 /// Most times that the icosahedron may be subdivided: 7 gives 163,842 nodes.
 pub const MAXIMUM_SUBDIVISIONS: u32 = 7;
@@ -91,8 +91,8 @@ impl Mesh<3> {
     /// # Errors
     /// [`MeshError::Size`] for a radius that is not positive and finite; [`MeshError::Count`] for more than [`MAXIMUM_SUBDIVISIONS`].
     pub fn icosphere(radius: f64, subdivisions: u32) -> Result<Mesh<3>, MeshError> {
-        positive("radius", radius)?;
-        count("number of subdivisions", subdivisions, 0, u64::from(MAXIMUM_SUBDIVISIONS))?;
+        positive(Quantity::Radius, radius)?;
+        count(Quantity::NumberSubdivisions, subdivisions, 0, u64::from(MAXIMUM_SUBDIVISIONS))?;
         let n = 1 << subdivisions;
         let rows = Rows { n };
         let mut unit: Vec<Point> = vec![[0.0; 3]; (10 * n * n + 2) as usize];

@@ -3,7 +3,7 @@
 use crate::geometry::{Point, dot, subtract, tetrahedron_volume};
 use crate::lattice_bcc::{Key, Lattice};
 use crate::skin::Inside;
-use crate::{Mesh, MeshError};
+use crate::{Mesh, MeshError, Must, Quantity};
 use std::collections::BTreeMap;
 
 /// The smallest angle between two faces of the tetrahedra of [`Mesh::tetrahedra_filling`] [°].
@@ -57,11 +57,7 @@ impl Mesh<3> {
         let mut tetrahedra = stuffing.tetrahedra();
         while stuffing.part_at_edges(&mut tetrahedra) {}
         if tetrahedra.is_empty() {
-            return Err(MeshError::Size {
-                what: "spacing",
-                value: spacing,
-                must: "smaller than the body: no tetrahedron fits into it",
-            });
+            return Err(MeshError::Size { what: Quantity::Spacing, value: spacing, must: Must::BelowBody });
         }
 
         // Nodes in the order of the lattice, z slowest.

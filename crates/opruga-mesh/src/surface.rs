@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use crate::geometry::{cross, norm};
 use crate::lattice::{lattice, side_groups, station};
 use crate::mesh::{count, finite, limit_nodes, positive};
-use crate::{MAXIMUM_NODES, Mesh, MeshError};
+use crate::{MAXIMUM_NODES, Mesh, MeshError, Must, Quantity};
 
 /// The two triangles of a quadrilateral, cut along a–c where `even`, else along b–d.
 fn halves([a, b, c, d]: [u32; 4], even: bool) -> [[u32; 3]; 2] {
@@ -50,10 +50,10 @@ impl Mesh<3> {
     /// [`MeshError::TooManyNodes`].
     pub fn sheet(corner: [f64; 3], sides: [[f64; 3]; 2], cells: [u32; 2]) -> Result<Mesh<3>, MeshError> {
         let [u, v] = sides;
-        finite("corner of the sheet", &corner)?;
-        positive("area of the sheet", norm(cross(u, v)))?;
-        count("number of cells per side", cells[0], 1, MAXIMUM_NODES)?;
-        count("number of cells per side", cells[1], 1, MAXIMUM_NODES)?;
+        finite(Quantity::CornerSheet, &corner)?;
+        positive(Quantity::AreaSheet, norm(cross(u, v)))?;
+        count(Quantity::NumberCellsPerSide, cells[0], 1, MAXIMUM_NODES)?;
+        count(Quantity::NumberCellsPerSide, cells[1], 1, MAXIMUM_NODES)?;
         limit_nodes((u64::from(cells[0]) + 1) * (u64::from(cells[1]) + 1))?;
 
         let at = |[x, y]: [u32; 2]| {
@@ -85,10 +85,10 @@ impl Mesh<3> {
     /// # Errors
     /// [`MeshError::Count`] for an axis without cells; [`MeshError::Size`] for sizes that are not positive and finite; [`MeshError::TooManyNodes`].
     pub fn box_surface(lower: [f64; 3], size: [f64; 3], cells: [u32; 3]) -> Result<Mesh<3>, MeshError> {
-        finite("lower corner of the box", &lower)?;
+        finite(Quantity::LowerCornerBox, &lower)?;
         for axis in 0..3 {
-            count("number of cells per axis", cells[axis], 1, MAXIMUM_NODES)?;
-            positive("size of the box", size[axis])?;
+            count(Quantity::NumberCellsPerAxis, cells[axis], 1, MAXIMUM_NODES)?;
+            positive(Quantity::SizeBox, size[axis])?;
         }
         let [nx, ny, nz] = cells.map(u64::from);
         limit_nodes(2 * (nx * ny + ny * nz + nz * nx) + 2)?;
@@ -139,13 +139,13 @@ impl Mesh<3> {
     /// hole (`minor` ≥ `major`); [`MeshError::TooManyNodes`].
     pub fn torus(major: f64, minor: f64, counts: [u32; 2]) -> Result<Mesh<3>, MeshError> {
         let [around, tube] = counts;
-        count("number of nodes around the axis", around, 3, MAXIMUM_NODES)?;
-        count("number of nodes around the tube", tube, 3, MAXIMUM_NODES)?;
+        count(Quantity::NumberNodesAroundAxis, around, 3, MAXIMUM_NODES)?;
+        count(Quantity::NumberNodesAroundTube, tube, 3, MAXIMUM_NODES)?;
         limit_nodes(u64::from(around) * u64::from(tube))?;
-        positive("major radius", major)?;
-        positive("minor radius", minor)?;
+        positive(Quantity::MajorRadius, major)?;
+        positive(Quantity::MinorRadius, minor)?;
         if minor >= major {
-            return Err(MeshError::Size { what: "minor radius", value: minor, must: "smaller than the major radius" });
+            return Err(MeshError::Size { what: Quantity::MinorRadius, value: minor, must: Must::BelowMajorRadius });
         }
         let turn = |index: u32, of: u32| {
             let angle = 2.0 * PI * f64::from(index) / f64::from(of);

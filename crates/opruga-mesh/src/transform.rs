@@ -2,7 +2,7 @@
 
 use crate::geometry::{cross, dot, lift, norm};
 use crate::mesh::finite;
-use crate::{Cells, Element, Mesh, MeshError};
+use crate::{Cells, Element, Mesh, MeshError, Must, Quantity};
 
 impl<const D: usize> Mesh<D> {
     /// Moves every node by the same vector [m].
@@ -21,19 +21,15 @@ impl<const D: usize> Mesh<D> {
     /// # Errors
     /// [`MeshError::Size`] where A or `about` is not finite, or det A = 0. The mesh is then unchanged.
     pub fn transform(&mut self, rows: &[[f64; D]; D], about: [f64; D]) -> Result<bool, MeshError> {
-        rows.iter().try_for_each(|row| finite("entry of the map", row))?;
-        finite("centre of the map", &about)?;
+        rows.iter().try_for_each(|row| finite(Quantity::EntryMap, row))?;
+        finite(Quantity::CentreMap, &about)?;
         let determinant = if D == 2 {
             rows[0][0] * rows[1][1] - rows[0][1] * rows[1][0]
         } else {
             dot(lift(&rows[0]), cross(lift(&rows[1]), lift(&rows[D - 1])))
         };
         if determinant == 0.0 || !determinant.is_finite() {
-            return Err(MeshError::Size {
-                what: "determinant of the map",
-                value: determinant,
-                must: "finite and not zero",
-            });
+            return Err(MeshError::Size { what: Quantity::DeterminantMap, value: determinant, must: Must::NotZero });
         }
         for position in &mut self.positions {
             let offset: [f64; D] = std::array::from_fn(|axis| position[axis] - about[axis]);
@@ -67,7 +63,7 @@ impl<const D: usize> Mesh<D> {
     /// # Errors
     /// [`MeshError::Size`] where the normal is zero or not finite.
     pub fn mirror(&mut self, normal: [f64; D], about: [f64; D]) -> Result<bool, MeshError> {
-        let length = direction_length("length of the normal", lift(&normal))?;
+        let length = direction_length(Quantity::LengthNormal, lift(&normal))?;
         let unit = normal.map(|component| component / length);
         let rows = std::array::from_fn(|axis| {
             std::array::from_fn(|column| f64::from(u8::from(axis == column)) - 2.0 * unit[axis] * unit[column])
@@ -118,7 +114,7 @@ impl Mesh<2> {
     /// # Errors
     /// [`MeshError::Size`] where the angle or the point is not finite.
     pub fn rotate(&mut self, angle: f64, about: [f64; 2]) -> Result<(), MeshError> {
-        finite("rotation angle", &[angle])?;
+        finite(Quantity::RotationAngle, &[angle])?;
         let (s, c) = (libm::sin(angle), libm::cos(angle));
         self.transform(&[[c, -s], [s, c]], about).map(|_| ())
     }
@@ -133,8 +129,8 @@ impl Mesh<3> {
     /// # Source
     /// Rodrigues' formula: R = cos θ I + sin θ [u]× + (1 − cos θ) u ⊗ u.
     pub fn rotate(&mut self, axis: [f64; 3], angle: f64, about: [f64; 3]) -> Result<(), MeshError> {
-        finite("rotation angle", &[angle])?;
-        let length = direction_length("length of the rotation axis", axis)?;
+        finite(Quantity::RotationAngle, &[angle])?;
+        let length = direction_length(Quantity::LengthRotationAxis, axis)?;
         let [x, y, z] = axis.map(|component| component / length);
         let (s, c) = (libm::sin(angle), libm::cos(angle));
         let t = 1.0 - c;
@@ -148,7 +144,7 @@ impl Mesh<3> {
 }
 
 /// Length of a direction, refused where it is zero or not finite.
-fn direction_length(what: &'static str, direction: [f64; 3]) -> Result<f64, MeshError> {
+fn direction_length(what: Quantity, direction: [f64; 3]) -> Result<f64, MeshError> {
     let length = norm(direction);
     crate::mesh::positive(what, length)?;
     Ok(length)

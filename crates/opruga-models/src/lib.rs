@@ -16,6 +16,18 @@ mod vectors;
 use core::any::Any;
 use opruga_core::potential::Model;
 
+/// All messages of this crate, for tests of translations.
+#[doc(hidden)]
+pub const MESSAGES: &[&[opruga_math::message::Variant]] = &[
+    boundary_element::Refusal::VARIANTS,
+    boundary_element::TurnedFacets::VARIANTS,
+    shape_matching::Refusal::VARIANTS,
+    shape_matching::MatchingWarning::VARIANTS,
+    finite_volume::Refusal::VARIANTS,
+    finite_difference::FiniteDifferenceError::VARIANTS,
+    pressure::PressureWarning::VARIANTS,
+];
+
 /// Every model of this crate, in two or three dimensions.
 pub fn all<const D: usize>() -> Vec<Box<dyn Model<D>>> {
     let every: Box<dyn Any> = match D {

@@ -4,6 +4,7 @@
 mod overrides;
 mod taken_over;
 
+use crate::said::Said;
 use opruga::Warning;
 use opruga::blueprint::AnyBlueprint;
 use opruga::core::spec::{Value, Values};
@@ -22,8 +23,8 @@ pub struct Document {
 /// Reads the text of a document; what is odd about it and its files is counted, but for what it asks for itself.
 ///
 /// # Errors
-/// Everything that is wrong with it, as one text.
-pub fn read(document: &Document, files: &Files) -> Result<(AnyBlueprint, Vec<Warning>), String> {
+/// Everything that is wrong with it.
+pub fn read(document: &Document, files: &Files) -> Result<(AnyBlueprint, Vec<Warning>), Vec<SceneError>> {
     let reading = scene::Options { files: files.clone(), ..scene::Options::default() };
     let file = format!("{}.toml", document.name);
     let read = scene::read(document.text().as_bytes(), &file, &opruga::catalogue(), &reading);
@@ -32,8 +33,12 @@ pub fn read(document: &Document, files: &Files) -> Result<(AnyBlueprint, Vec<War
     // Time goes on behind the end that the scene states for a run: every command comes about here.
     let told = |code: &str| !Notice::is_asked_for(code) && code != "command.never";
     let odd = notices.into_iter().filter(|notice| told(notice.about.code));
-    let warning =
-        |Notice { about, count }| Warning { code: about.code.into(), message: about.message, count: count as u64 };
+    let warning = |Notice { about, count }| Warning {
+        code: about.code.into(),
+        message: about.sentence(None),
+        count: count as u64,
+        about: about.about,
+    };
     Ok((blueprint, odd.map(warning).collect()))
 }
 
@@ -53,16 +58,16 @@ impl Document {
     /// name and has none that anybody knows.
     ///
     /// # Errors
-    /// Everything that is wrong with it, as one text.
-    pub fn unread(name: &str, text: &str, files: &Files, around: Option<&str>) -> Result<Document, String> {
+    /// Everything that is wrong with it.
+    pub fn unread(name: &str, text: &str, files: &Files, around: Option<&str>) -> Result<Document, Said> {
         // The reader of scenes knows more of what can be wrong than the parser of documents.
         let reading = scene::Options { files: files.clone(), ..scene::Options::default() };
         let read = scene::read(text.as_bytes(), &format!("{name}.toml"), &opruga::catalogue(), &reading);
         read.map_err(|errors| match around {
             Some(file) => without_lines(errors, name, file),
-            None => errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"),
+            None => errors,
         })?;
-        Document::new(name, text)
+        Ok(Document::new(name, text)?)
     }
 
     /// The text, fit for `opruga run`.
@@ -382,15 +387,15 @@ impl Document {
     }
 }
 
-/// What is wrong with the text of a scene that nobody sees, as one text: its lines say nothing to anybody. In their place stands
+/// What is wrong with the text of a scene that nobody sees: its lines say nothing to anybody. In their place stands
 /// what it is about, where there is a file; the lines of other files stay.
-pub(crate) fn without_lines(errors: Vec<SceneError>, scene: &str, file: &str) -> String {
+pub(crate) fn without_lines(errors: Vec<SceneError>, scene: &str, file: &str) -> Vec<SceneError> {
     let own = format!("{scene}.toml");
     let told = |error: SceneError| match error.file == own {
         true => SceneError { file: file.into(), line: None, column: None, excerpt: None, ..error },
         false => error,
     };
-    errors.into_iter().map(|error| told(error).to_string()).collect::<Vec<_>>().join("\n")
+    errors.into_iter().map(told).collect()
 }
 
 /// The tables of a list; `command = [{ … }]` becomes `[[command]]`, which can be added to.

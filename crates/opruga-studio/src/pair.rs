@@ -24,7 +24,7 @@ pub fn build(
     options: &Options,
 ) -> Result<Box<dyn Engine>, Said> {
     let one = |document: &Document| {
-        let (blueprint, odd) = read(document, files).map_err(Said::Because)?;
+        let (blueprint, odd) = read(document, files).map_err(Said::Scene)?;
         engine::build(blueprint, odd, options).map_err(Said::World)
     };
     let left = one(document)?;

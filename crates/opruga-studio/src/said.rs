@@ -2,7 +2,8 @@
 
 use crate::exploded::Exploded;
 use crate::words::Language;
-use opruga::WorldError;
+use opruga::io::SceneError;
+use opruga::{Warning, WorldError};
 
 /// A thing that was done and can be undone.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -48,8 +49,10 @@ pub enum Step {
 /// What a message says.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Said {
-    /// Why something could not be done, in the English words of what refused it: the reader of scenes, the system.
+    /// Why something could not be done, in the English words of what refused it, such as the system.
     Because(String),
+    /// What is wrong with a scene or its files.
+    Scene(Vec<SceneError>),
     /// What a world refuses.
     World(WorldError),
     /// A body has grown beyond every measure, and time stands.
@@ -68,8 +71,8 @@ pub enum Said {
     SetDown,
     /// A field, by its path, that is given or not from the start on.
     AtTheStartAlone(String),
-    /// The scene is at its end, at this time \[s\], and attracts attention by this, in the English words of the world.
-    AtTheEnd(f64, Vec<String>),
+    /// The scene is at its end, at this time \[s\], and attracts attention by this.
+    AtTheEnd(f64, Vec<Warning>),
     /// The recording that is viewed ends at this time \[s\].
     RecordingEnds(f64),
     /// What was done begins a new course at this time of the recording \[s\].
@@ -131,6 +134,12 @@ impl core::fmt::Display for Said {
 impl From<String> for Said {
     fn from(text: String) -> Said {
         Said::Because(text)
+    }
+}
+
+impl From<Vec<SceneError>> for Said {
+    fn from(errors: Vec<SceneError>) -> Said {
+        Said::Scene(errors)
     }
 }
 

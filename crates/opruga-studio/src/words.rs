@@ -2,7 +2,6 @@
 
 mod croatian;
 mod details;
-mod ends;
 mod messages;
 mod named;
 mod own;
@@ -14,6 +13,7 @@ mod scene_errors;
 mod sentences;
 
 pub use named::Part;
+use opruga::words::Translation;
 
 /// A language of the interface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -28,6 +28,14 @@ pub enum Language {
 impl Language {
     /// All of them.
     pub const EVERY: [Language; 2] = [Language::English, Language::Croatian];
+
+    /// What the engine says in it; none for English, which the engine speaks itself.
+    pub fn translation(self) -> Option<&'static Translation> {
+        match self {
+            Language::English => None,
+            Language::Croatian => Some(Translation::croatian()),
+        }
+    }
 
     /// Its two letters in ISO 639.
     pub fn code(self) -> &'static str {

@@ -1,9 +1,9 @@
 //! Bodies between moving obstacles that leave them no room.
 
 use crate::selection::longest_side;
-use crate::world::{Warning, World};
+use crate::warnings::{Lay, Warning, WorldWarning};
+use crate::world::World;
 use opruga_core::contacts::Contacts as _;
-use opruga_math::words::number;
 use opruga_mesh::Measure;
 
 /// The code of the warning.
@@ -82,21 +82,18 @@ impl<const D: usize> World<D> {
             match self.warnings.iter_mut().find(|w| w.code == NO_ROOM) {
                 Some(warning) => warning.count += 1,
                 None => {
-                    let kind = |collider: usize| self.blueprint.colliders[collider].values.kind();
-                    let where_it_lay = if depth > DEEP * size {
-                        format!("lay {} m inside the first", number(depth))
-                    } else {
-                        "lay where they meet".into()
+                    let kind = |collider: usize| self.blueprint.colliders[collider].values.kind().to_string();
+                    let warning = WorldWarning::NoRoom {
+                        time,
+                        first: inside,
+                        first_kind: kind(inside),
+                        second: touched,
+                        second_kind: kind(touched),
+                        body: self.blueprint.bodies[body].name.clone(),
+                        node,
+                        lay: if depth > DEEP * size { Lay::Inside { depth } } else { Lay::Between {} },
                     };
-                    let message = format!(
-                        "at t = {} s obstacles {inside} ({}) and {touched} ({}) left body `{}` no room: node {node} {where_it_lay}, \
-                         counted per frame and body; obstacles that are led must not meet",
-                        number(time),
-                        kind(inside),
-                        kind(touched),
-                        self.blueprint.bodies[body].name,
-                    );
-                    self.warnings.push(Warning { code: NO_ROOM.into(), message, count: 1 });
+                    self.warnings.push(Warning::new(warning, 1));
                 }
             }
         }

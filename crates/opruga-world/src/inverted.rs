@@ -5,13 +5,10 @@
 //! or one of its values refutes ([`opruga_mesh::least_jacobian`]). A cell may be folded at a corner while all of its integration points
 //! are right side out, and no force tells.
 
-use crate::world::{Warning, World};
+use crate::warnings::{CellHint, InvertedCells, UnfoldHint, Warning, WorldWarning};
+use crate::world::World;
 use opruga_core::spec::Role;
-use opruga_math::words::{counted, number};
 use opruga_mesh::{jacobian_at, least_jacobian};
-
-/// The code of the warning.
-const INVERTED: &str = "cells.inverted";
 
 /// What is known of a cell.
 enum Found {
@@ -55,24 +52,21 @@ impl<const D: usize> World<D> {
             }
         }
         let (body, cell, Found::Inverted(ratio) | Found::Nearly(ratio)) = first?;
-        let cells = |count: u64| match count {
-            1 => "1 cell is".into(),
-            _ => format!("{} are", counted(count, "cell", "cells")),
+        let cells = match (count, near) {
+            (count, 0) => InvertedCells::Certain { count },
+            (0, count) => InvertedCells::Perhaps { count },
+            (count, perhaps) => InvertedCells::Both { count, perhaps },
         };
-        let message = format!(
-            "at t = {} s {} inside out, the first of them cell {cell} of body `{}` with J = {}; hint: more substeps, {}{}",
-            number(self.time()),
-            match (count, near) {
-                (_, 0) => cells(count),
-                (0, _) => format!("perhaps {}", cells(near)),
-                _ => format!("{count} and perhaps {near} more cells are"),
-            },
-            self.blueprint.bodies[body].name,
-            number(ratio),
-            self.what_rights_cells(body),
-            self.or_unfold(),
-        );
-        Some(Warning { code: INVERTED.into(), message, count: count + near })
+        let warning = WorldWarning::Inverted {
+            time: self.time(),
+            cells,
+            cell,
+            body: self.blueprint.bodies[body].name.clone(),
+            ratio,
+            help: self.what_rights_cells(body),
+            unfold: self.or_unfold(),
+        };
+        Some(Warning::new(warning, count + near))
     }
 
     /// What the shapes of the cells of a body show, in the order of its cells. Cells that have no positive J at rest, such as those with
@@ -96,20 +90,18 @@ impl<const D: usize> World<D> {
     }
 
     /// What helps a body that rests in a degenerate shape, where the scene does not say it.
-    pub(crate) fn or_unfold(&self) -> &'static str {
-        if self.blueprint.surroundings.unfold { "" } else { ", or `unfold = true` in `[world]`" }
+    pub(crate) fn or_unfold(&self) -> Option<UnfoldHint> {
+        (!self.blueprint.surroundings.unfold).then_some(UnfoldHint::Unfold)
     }
 
     /// What else than more substeps turns cells of a body right side out: no law that it already has.
-    fn what_rights_cells(&self, body: usize) -> &'static str {
+    fn what_rights_cells(&self, body: usize) -> CellHint {
         let solids = self.blueprint.bodies[body].models.iter().filter(|model| model.spec().has_role(Role::OwnsCells));
         let laws: Vec<&str> = solids.filter_map(|model| model.text("material")).collect();
         match laws.as_slice() {
-            laws if laws.iter().all(|law| *law == "fixed_corotated") => "smaller cells, or less that crushes them",
-            laws if laws.iter().all(|law| ["fixed_corotated", "stable_neo_hookean"].contains(law)) => {
-                "smaller cells, or a material that pushes such cells back from farther (`fixed_corotated`)"
-            }
-            _ => "or a material that pushes such cells back (`stable_neo_hookean`, `fixed_corotated`)",
+            laws if laws.iter().all(|law| *law == "fixed_corotated") => CellHint::Smaller,
+            laws if laws.iter().all(|law| ["fixed_corotated", "stable_neo_hookean"].contains(law)) => CellHint::Farther,
+            _ => CellHint::Material,
         }
     }
 }

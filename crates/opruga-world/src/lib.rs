@@ -56,6 +56,8 @@ mod together;
 mod turned;
 mod unfold;
 pub mod validity;
+#[doc(hidden)]
+pub mod warnings;
 mod world;
 
 pub use any_scene::{AnyBody, AnyScene};
@@ -76,4 +78,5 @@ pub mod law {
 pub use refused::RefusedCommand;
 pub use registry::{Registries, Registry};
 pub use slots::BodyHandle;
-pub use world::{Options, Warning, World};
+pub use warnings::Warning;
+pub use world::{Options, World};

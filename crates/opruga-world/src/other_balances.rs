@@ -14,18 +14,15 @@
 //! way that it has gone, beyond one of all pins as a whole, where that is longer: U ≤ Σ |fᵢ| sᵢ where the forces grew on the way.
 
 use crate::pin_ways::ways;
-use crate::world::{Warning, World};
+use crate::warnings::{Warning, WorldWarning};
+use crate::world::World;
 use opruga_core::spec::Role;
 use opruga_core::state::{Columns, Layout, View};
 use opruga_core::system::{Stage, System};
 use opruga_core::tile::Tile;
-use opruga_math::words::{number, rounded};
 use opruga_math::{Column, Lane, WIDTH, sum_in_fixed_order};
 use opruga_solve::dense::symmetric_eigen;
 use std::collections::BTreeMap;
-
-/// The code of the warning.
-const OTHER_BALANCE: &str = "cells.other_balance";
 
 /// Kinetic energy beyond a motion as a whole that counts as rest, as a part of the stored energy.
 const REST: f64 = 1e-2;
@@ -110,24 +107,18 @@ impl<const D: usize> World<D> {
                 worst = (cell.cell, cell.smallest_volume_ratio);
             }
         }
-        let message = format!(
-            "at t = {} s {} account for, in another balance than that of the own shape: snapped through, folded, inside out or \
-             twisted round; the first of them is body `{}` with {} J, {} J of it accounted for, V/V₀ = {}, and cell {} at \
-             J = {}; hint: where this was not meant, begin in its own shape, with more damping or more substeps{}",
-            number(self.time()),
-            match count {
-                1 => "1 body holds more energy in its cells than the forces on it".into(),
-                _ => format!("{count} bodies hold more energy in their cells than the forces on them"),
-            },
-            self.blueprint.bodies[body].name,
-            rounded(energy, 4),
-            rounded(accounted, 4),
-            rounded(volume / rest, 4),
-            worst.0,
-            rounded(worst.1, 4),
-            self.or_unfold(),
-        );
-        Some(Warning { code: OTHER_BALANCE.into(), message, count })
+        let warning = WorldWarning::OtherBalance {
+            time: self.time(),
+            count,
+            body: self.blueprint.bodies[body].name.clone(),
+            energy,
+            accounted,
+            volume: volume / rest,
+            cell: worst.0,
+            ratio: worst.1,
+            unfold: self.or_unfold(),
+        };
+        Some(Warning::new(warning, count))
     }
 
     /// Whether a body is of finite elements all of which turn: small strain has one shape that holds nothing, and no other balance.

@@ -5,11 +5,12 @@ use crate::error::WorldError;
 use crate::island::Island;
 use crate::masses::node_masses;
 use crate::selection::{extent, longest_side};
-use crate::world::{Warning, World};
+use crate::warnings::{Remedy, Warning, WorldWarning};
+use crate::world::World;
 use opruga_core::error::BuildError;
 use opruga_core::spec::Role;
 use opruga_core::stability::Spectrum;
-use opruga_math::words::{counted, number, rounded};
+use opruga_math::words::{number, rounded};
 use opruga_mesh::{Measure, Mesh, Share};
 
 /// The code of the warning of [`sag`].
@@ -43,19 +44,7 @@ pub(crate) fn sag<const D: usize>(body: &BodyBlueprint<D>, gravity: &[f64; D], s
     let sag = mass * g / stiffness;
     // Without models there is nothing to sag; not a number where all is zero.
     let odd = stiffness > 0.0 && sag.is_finite() && sag > size && size > 0.0;
-    odd.then(|| Warning {
-        code: SAG.into(),
-        message: format!(
-            "body `{}` of {} kg would sag by about {} m under its weight, more than its size of {} m: \
-             are its units mixed (metres, kilograms, newtons per metre)?",
-            body.common_name(),
-            number(mass),
-            // An estimate has few digits that count.
-            rounded(sag, 2),
-            number(size),
-        ),
-        count: 1,
-    })
+    odd.then(|| Warning::new(WorldWarning::Sag { body: body.common_name().into(), mass, sag, size }, 1))
 }
 
 /// Positions are rounded by at most this part of the distance between neighbouring nodes.
@@ -193,9 +182,6 @@ impl<const D: usize> World<D> {
     }
 }
 
-/// The code of the warning of bodies that begin inside an obstacle.
-pub(crate) const BURIED: &str = "contact.starts_inside";
-
 /// Depths below this part of the size of a body are rounding of the scene's numbers.
 const SHALLOW: f64 = 1e-6;
 
@@ -220,20 +206,19 @@ impl<const D: usize> World<D> {
             let points: Vec<[f64; D]> = nodes.iter().map(|node| self.position(body, *node)).collect();
             let Some(buried) = colliders.buried(&points, SHALLOW * size) else { continue };
             let name = own.common_name().to_string();
-            let message = format!(
-                "body `{}` begins inside obstacle {} ({}): {}, node {} the deepest by {} m; {}",
-                own.name,
-                buried.collider,
-                self.blueprint.colliders[buried.collider].values.kind(),
-                counted(buried.count as u64, "node", "nodes"),
-                nodes[buried.point],
-                number(buried.depth),
-                match &buried.shift {
-                    Some(shift) => format!("moved by ({}) m it would be free", out_of(shift, SHALLOW * size)),
-                    None => "no shift along the surfaces around it would free it".into(),
-                }
-            );
-            let warning = Warning { code: BURIED.into(), message, count: 1 };
+            let warning = WorldWarning::StartsInside {
+                body: own.name.clone(),
+                collider: buried.collider,
+                kind: self.blueprint.colliders[buried.collider].values.kind().into(),
+                nodes: buried.count,
+                deepest: nodes[buried.point],
+                depth: buried.depth,
+                remedy: match &buried.shift {
+                    Some(shift) => Remedy::Moved { shift: out_of(shift, SHALLOW * size) },
+                    None => Remedy::Nowhere {},
+                },
+            };
+            let warning = Warning::new(warning, 1);
             match found.iter_mut().find(|(other, _, _, collider)| *other == name && *collider == buried.collider) {
                 None => found.push((name, buried.depth, warning, buried.collider)),
                 Some((_, depth, known, _)) => {

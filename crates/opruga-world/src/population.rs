@@ -8,7 +8,8 @@ use crate::inputs::Input;
 use crate::rebuild::Touched;
 use crate::running::Progress;
 use crate::slots::Origin;
-use crate::world::{Warning, World};
+use crate::warnings::{Warning, WorldWarning};
+use crate::world::World;
 use opruga_core::spec::Values;
 use opruga_math::Lane;
 use std::collections::BTreeMap;
@@ -183,18 +184,15 @@ impl<const D: usize> World<D> {
     }
 
     fn warn_of_ended_commands(&mut self, body: usize, dropped: u64) {
-        const CODE: &str = "command.no_body";
-        let told = self.warnings.iter().filter(|w| w.code == CODE).count();
-        let message = match told {
-            ..MOST_NAMED => {
-                let name = &self.blueprint.bodies[body].name;
-                format!("commands on body `{name}` ended when it was taken away")
-            }
-            _ => "commands on other bodies ended when these were taken away".into(),
+        let ended = |w: &&Warning| w.code == "command.no_body";
+        let warning = match self.warnings.iter().filter(ended).count() {
+            ..MOST_NAMED => WorldWarning::CommandsEnded { body: self.blueprint.bodies[body].name.clone() },
+            _ => WorldWarning::OtherCommandsEnded {},
         };
-        match self.warnings.iter_mut().find(|w| w.code == CODE && w.message == message) {
-            Some(warning) => warning.count += dropped,
-            None => self.warnings.push(Warning { code: CODE.into(), message, count: dropped }),
+        let warning = Warning::new(warning, dropped);
+        match self.warnings.iter_mut().find(|w| w.message == warning.message) {
+            Some(known) => known.count += dropped,
+            None => self.warnings.push(warning),
         }
     }
 

@@ -5,11 +5,11 @@ use crate::build::rest_volume;
 use crate::island::Island;
 use crate::ledger::{Energy, Momentum};
 use crate::slots::BodyHandle;
-use crate::world::{Warning, World, lock};
+use crate::warnings::{Difference, ErrorHint, Warning, WorldWarning, WorstCell};
+use crate::world::{World, lock};
 use opruga_core::potential::{CellState, Count, Reading};
 use opruga_core::stability::Stability;
 use opruga_core::system::{SolverWork, Stage, System};
-use opruga_math::words::number;
 
 impl<const D: usize> World<D> {
     /// The energy ledger of the last frame.
@@ -189,151 +189,65 @@ impl<const D: usize> World<D> {
     /// Warnings so far, with counts.
     pub fn warnings(&self) -> Vec<Warning> {
         let mut out = self.warnings.clone();
-        let mut count = |code: &str, message: &str, count: u64| {
+        let mut add = |warning: WorldWarning, count: u64| {
             if count > 0 {
-                out.push(Warning { code: code.into(), message: message.into(), count });
+                out.push(Warning::new(warning, count));
             }
         };
-        count("limit.force", "forces were shortened to `world.largest_force`", self.flows.limited_forces);
-        count("limit.velocity", "velocities were shortened to `world.largest_velocity`", self.flows.limited_velocities);
-        count(
-            "limit.drag",
-            "pulls were shortened to their `largest_force`, where the scene is silent that of a spring stretched by ten sizes of the body",
-            self.flows.limited_pulls,
-        );
-        count(
-            "limit.distance",
-            "bodies went farther than `world.largest_distance` and were taken away",
-            self.flows.lost_bodies,
-        );
-        let (lost, way) = match self.energy.loss_integrator {
-            lost if lost < 0.0 => (-lost, "gained"),
-            lost => (lost, "lost"),
+        add(WorldWarning::ForcesLimited {}, self.flows.limited_forces);
+        add(WorldWarning::VelocitiesLimited {}, self.flows.limited_velocities);
+        add(WorldWarning::PullsLimited {}, self.flows.limited_pulls);
+        add(WorldWarning::BodiesLost {}, self.flows.lost_bodies);
+        let by_rules = match self.energy.loss_numerical {
+            made if made < 0.0 => WorldWarning::MadeByRules { energy: -made },
+            energy => WorldWarning::TakenByRules { energy },
+        };
+        // A body that begins at rest has so little in motion in its first frames that any rule takes much of that.
+        add(by_rules, if self.energy.is_damped_by_rules() { self.flows.damped_frames } else { 0 });
+        let (energy, difference) = match self.energy.loss_integrator {
+            lost if lost < 0.0 => (-lost, Difference::Gained),
+            lost => (lost, Difference::Lost),
         };
         // Contact begins and ends within steps, whatever the order of a rule.
-        let help = if self.islands.iter().all(|island| island.integrator.measures_its_damping()) {
-            "implicit rules leave unexplained what their equations are left out of balance: a smaller `tolerance`, or `accuracy = \"exact\"`"
-        } else if self.energy.loss_contact + self.energy.loss_friction > 0.0 {
-            match self.islands.iter().all(|island| island.integrator.name() == "verlet") {
-                true => {
-                    "bodies met obstacles, and there it falls in proportion to the step by every rule: more substeps"
-                }
-                false => {
-                    "bodies met obstacles, and there it falls in proportion to the step by every rule; `verlet` makes least of it"
-                }
-            }
+        let every = |of: &dyn Fn(&Island<D>) -> bool| self.islands.iter().all(of);
+        let help = if every(&|island| island.integrator.measures_its_damping()) {
+            ErrorHint::Implicit
+        } else if self.energy.loss_contact + self.energy.loss_friction <= 0.0 {
+            ErrorHint::Explicit
+        } else if every(&|island| island.integrator.name() == "verlet") {
+            ErrorHint::Contact
         } else {
-            "more substeps make it smaller, and rules of higher order make less of it"
+            ErrorHint::ContactOfOthers
         };
-        let (by_rules, way_of_rules, help_with_rules) = match self.energy.loss_numerical {
-            made if made < 0.0 => {
-                (-made, "made", "more substeps make it smaller, and `backward_euler` damps what would grow")
-            }
-            taken => (
-                taken,
-                "taken",
-                "more substeps make it smaller, and `implicit_midpoint` or `newmark` take less by themselves",
-            ),
-        };
-        count(
-            "ledger.numerical_damping",
-            &format!(
-                "implicit rules have by themselves {way_of_rules} {} J, more than a twentieth of the energy in motion \
-                 (`loss_numerical`): what is fast for the step fades, or grows, by the rule and by no law of physics; {help_with_rules}",
-                number(by_rules)
-            ),
-            // A body that begins at rest has so little in motion in its first frames that any rule takes much of that.
-            if self.energy.is_damped_by_rules() { self.flows.damped_frames } else { 0 },
-        );
-        count(
-            "ledger.closure",
-            &format!(
-                "a frame ended with more than a tenth of the energy in motion unexplained (`closure`), {} J {way} by \
-                 the end: the error of the integrator; {help}",
-                number(lost)
-            ),
-            self.flows.open_frames,
-        );
+        add(WorldWarning::Unexplained { energy, difference, help }, self.flows.open_frames);
         let solver = &self.flows.solver;
-        count(
-            "step.not_converged",
-            "a step counted though Newton's method had not converged (`when_not_converged = \"accept\"`)",
-            solver.accepted,
-        );
+        add(WorldWarning::Accepted {}, solver.accepted);
         // No step is halved more often than an integrator may.
         let parts = 1u64 << solver.deepest.min(63);
-        count(
-            "step.halved",
-            &format!(
-                "a step of {} s, in statics what it adds of the load and of the ways of pins, was made in two halves, these again where \
-                 need be, down to {} s, a part of 1/{parts}: Newton's method had not converged over the whole, \
-                 or a model has no meaning there (`when_not_converged = \"halve\"`, or in real time); the result is that of steps so short there, no worse for it, and \
-                 took longer; hint: more substeps, in statics more `load_steps` or frames, spare the attempts in vain",
-                number(self.h()),
-                number(self.h() / parts as f64),
-            ),
-            solver.halved,
-        );
-        count(
-            "step.cut_off",
-            &format!(
-                "a step in real time spent its budget, or took so many products that much may be left in slow motions: forces \
-                 out of balance that would move single nodes by up to {} m; the body is too stiff or too slender for the \
-                 step: more substeps, `linear_solver = \"cholesky\"`, or `accuracy = \"exact\"`",
-                number(solver.left)
-            ),
-            solver.cut_off,
-        );
-        count(
-            "statics.blurred",
-            &format!(
-                "a balance was found where forces are as small as their rounding, though what is left of them would still move nodes by up to {} m: \
-                 positions have sixteen digits, and the body is so slender, its cells so thin or the origin so far that this is what \
-                 they leave open; what is smaller in the result is chance; hint: cells that are less long for their thickness, or a scene at the \
-                 origin",
-                number(solver.error_estimate)
-            ),
-            solver.estimated,
-        );
-        count(
-            "conditioning",
-            &format!(
-                "a step of a body so stiff for its mass that rounding of its positions, which have sixteen digits, makes forces of up to {} \
-                 times the load of a node: its motion as a whole is balanced apart and is right, its nodes are where they belong but for the last \
-                 digit of positions, and its stresses are chance; hint: a scene nearer to the origin, larger cells, or a body that is less stiff",
-                number(solver.conditioning)
-            ),
-            solver.conditioned,
-        );
-        count(
-            "step.disturbed",
-            "a body that stood still flat, inside out or folded was disturbed by chance, by 1e-4 of its size, then by a \
-             hundredth and by a tenth; hint: what has left such a shape swings on until something damps it, soonest under `backward_euler` \
-             or with `damping` of its material",
-            solver.disturbed,
-        );
-        count("step.odd_rest", &self.odd_rest(), solver.odd_rests);
-        count(
-            "restore.no_force",
-            "a snapshot holds no laws of force of the program, and a body had one: give it again (`World::add_force`)",
-            self.missing_laws(),
-        );
-        let (unloaded, left) = self.load_left();
-        count("statics.load_left", &left, unloaded);
+        add(WorldWarning::Halved { h: self.h(), shortest: self.h() / parts as f64, parts }, solver.halved);
+        add(WorldWarning::CutOff { left: solver.left }, solver.cut_off);
+        add(WorldWarning::Estimated { error_estimate: solver.error_estimate }, solver.estimated);
+        add(WorldWarning::Conditioning { times: solver.conditioning }, solver.conditioned);
+        add(WorldWarning::Disturbed {}, solver.disturbed);
+        if solver.odd_rests > 0 {
+            add(WorldWarning::DegenerateRest { worst: self.worst_cell() }, solver.odd_rests);
+        }
+        add(WorldWarning::NoForce {}, self.missing_laws());
+        if let Some((unloaded, part, body)) = self.load_left() {
+            add(WorldWarning::LoadLeft { body, part }, unloaded);
+        }
         let mut counts: Vec<Count> = Vec::new();
         for island in &self.islands {
             for member in &island.system.members {
                 for new in member.potential.counts(&member.memory) {
-                    match counts.iter_mut().find(|known| known.code == new.code) {
+                    match counts.iter_mut().find(|known| known.what == new.what) {
                         Some(known) => known.count += new.count,
                         None => counts.push(new),
                     }
                 }
             }
         }
-        for Count { code, message, count: n } in counts {
-            count(code, message, n);
-        }
+        out.extend(counts.into_iter().filter(|new| new.count > 0).map(|new| Warning::new(new.what, new.count)));
         out
     }
     /// How many laws of force of the program act on a body.
@@ -346,11 +260,11 @@ impl<const D: usize> World<D> {
         let there = self.laws_saved.iter().filter(|(body, _)| self.slots.is_there(**body));
         there.map(|(body, saved)| saved.saturating_sub(self.laws_on(*body))).sum()
     }
-    /// At the end: how many bodies stand in balance under a part of their load only, and which of them under the least.
-    fn load_left(&self) -> (u64, String) {
+    /// At the end: how many bodies stand in balance under a part of their load only, the least of these parts, and the body.
+    fn load_left(&self) -> Option<(u64, f64, String)> {
         let time = &self.blueprint.time;
         if self.frames == 0 || self.time() < time.seconds - 0.5 * time.frame {
-            return (0, String::new());
+            return None;
         }
         let (mut bodies, mut least): (u64, Option<(f64, usize)>) = (0, None);
         for island in &self.islands {
@@ -362,40 +276,21 @@ impl<const D: usize> World<D> {
                 least = Some((part, island.bodies[0]));
             }
         }
-        let told = least.map_or_else(String::new, |(part, body)| {
-            format!(
-                "the run ends before the whole load is on: body `{}` is in balance under {} of it (`load_factor`), and that is what \
-                 the last state shows; hint: more frames, or a longer `arc_length`",
-                self.blueprint.bodies[body].name,
-                number(part)
-            )
-        });
-        (bodies, told)
+        least.map(|(part, body)| (bodies, part, self.blueprint.bodies[body].name.clone()))
     }
-    /// Which body stands still in a shape that is not its own, by its worst cell.
-    fn odd_rest(&self) -> String {
-        if self.flows.solver.odd_rests == 0 {
-            return String::new();
-        }
-        let mut worst: Option<(f64, String)> = None;
+    /// The cell that is farthest from its volume.
+    fn worst_cell(&self) -> Option<WorstCell> {
+        let mut worst: Option<(f64, WorstCell)> = None;
         for body in self.bodies() {
             for cell in self.cell_states(body) {
-                let odd = (cell.smallest_volume_ratio - 1.0).abs();
-                if worst.as_ref().is_none_or(|(most, _)| odd > *most) {
-                    let name = &self.blueprint.bodies[body].name;
-                    let text = format!(
-                        "; now the cell farthest from its volume is {} of body `{name}`, J = {:.4}",
-                        cell.cell, cell.smallest_volume_ratio
-                    );
-                    worst = Some((odd, text));
+                let ratio = cell.smallest_volume_ratio;
+                if worst.as_ref().is_none_or(|(most, _)| (ratio - 1.0).abs() > *most) {
+                    let body = self.blueprint.bodies[body].name.clone();
+                    worst = Some(((ratio - 1.0).abs(), WorstCell::Cell { cell: cell.cell, body, ratio }));
                 }
             }
         }
-        format!(
-            "a body stood still flat, inside out or folded, in a balance that disturbing it by up to a tenth of its size did \
-             not end{}; hint: another start, or a material that pushes such cells back (`fixed_corotated`)",
-            worst.map_or_else(String::new, |(_, text)| text)
-        )
+        worst.map(|(_, cell)| cell)
     }
     /// A 64-bit hash (FNV-1a) over the little-endian bits of all positions, then velocities, body by body in node order.
     pub fn state_hash(&self) -> u64 {

@@ -9,7 +9,7 @@ pub use from_files::is_from_file;
 use from_files::{FILLING_OF_SURFACES, SPACING_OF_FILLINGS};
 
 use opruga_core::spec::{Allowed, Bound, Default, Field, Spec, Values};
-use opruga_mesh::{LARGEST_ANGLE, MAXIMUM_NODES, MAXIMUM_SUBDIVISIONS, Mesh, MeshError};
+use opruga_mesh::{LARGEST_ANGLE, MAXIMUM_NODES, MAXIMUM_SUBDIVISIONS, Mesh, MeshError, Must, Quantity};
 
 const fn count(least: i64) -> Allowed {
     Allowed::Integer { least, greatest: MAXIMUM_NODES as i64 }
@@ -318,7 +318,7 @@ pub fn mesh<const D: usize>(shape: &Values, transform: &Transform<'_>) -> Result
 /// The same mesh under the name that its type has where the dimension is a parameter, or the other way round.
 fn renamed<const A: usize, const B: usize>(mesh: Mesh<A>) -> Result<Mesh<B>, MeshError> {
     if A != B {
-        return Err(MeshError::Size { what: "dimension", value: B as f64, must: "2 or 3" });
+        return Err(MeshError::Size { what: Quantity::Dimension, value: B as f64, must: Must::TwoOrThree });
     }
     let Mesh {
         positions,
@@ -357,7 +357,7 @@ fn number(shape: &Values, name: &str) -> u32 {
 fn cells<const N: usize>(shape: &Values) -> Result<[u32; N], MeshError> {
     let given = shape.integers("cells");
     <[u32; N]>::try_from(given).map_err(|_| MeshError::Count {
-        what: "length of `cells`",
+        what: Quantity::LengthCells,
         value: given.len() as u64,
         least: N as u64,
         most: N as u64,
@@ -385,7 +385,7 @@ fn plane(shape: &Values, transform: &Transform<'_>) -> Result<Made<2>, MeshError
         "quadrilateral" => {
             let given = points(shape.rows("corners"));
             let corners = <[[f64; 2]; 4]>::try_from(given).map_err(|given| MeshError::Count {
-                what: "number of corners",
+                what: Quantity::NumberCorners,
                 value: given.len() as u64,
                 least: 4,
                 most: 4,

@@ -6,14 +6,11 @@
 //! is T; quadratic tetrahedra, which lack a part of twisting alone, 10 % where it is 8.5 T. Quadratic triangles and boxes have no limit.
 
 use crate::blueprint::BodyBlueprint;
-use crate::world::{Warning, World};
+use crate::warnings::{BendingHint, Warning, WorldWarning};
+use crate::world::World;
 use opruga_core::spec::Role;
-use opruga_math::words::rounded;
 use opruga_mesh::{Element, Mesh};
 use opruga_solve::dense::symmetric_eigen;
-
-/// The code of the warning.
-const SLENDER: &str = "cells.slender";
 
 /// What was measured of a kind of cells.
 struct Limit {
@@ -22,12 +19,11 @@ struct Limit {
     /// By how much the first frequencies are too high there [%].
     error: f64,
     /// What bends better.
-    hint: &'static str,
+    hint: BendingHint,
 }
 
-const LINEAR: Limit =
-    Limit { length: 1.0, error: 45.0, hint: "quadratic cells (`order = 2`), quadrilaterals or hexahedra" };
-const QUADRATIC_TETRAHEDRON: Limit = Limit { length: 8.5, error: 10.0, hint: "hexahedra, or shorter cells" };
+const LINEAR: Limit = Limit { length: 1.0, error: 45.0, hint: BendingHint::Quadratic };
+const QUADRATIC_TETRAHEDRON: Limit = Limit { length: 8.5, error: 10.0, hint: BendingHint::Hexahedra };
 
 /// The limit of a kind of cells, if it has one.
 fn limit(element: Element) -> Option<&'static Limit> {
@@ -60,18 +56,11 @@ impl<const D: usize> World<D> {
             }
         }
         let Some((body, found)) = worst else { return };
-        let message = format!(
-            "body `{}` bends or twists too stiffly: the longest edges of its cells are {} m on average, {} times its thickness of {} m; at \
-             {} times the first frequencies of plates were measured {} % too high, and they rise farther; hint: {}",
-            self.blueprint.bodies[body].name,
-            rounded(found.length, 3),
-            rounded(found.times(), 3),
-            rounded(found.thickness, 3),
-            found.limit.length,
-            found.limit.error,
-            found.limit.hint,
-        );
-        self.warnings.push(Warning { code: SLENDER.into(), message, count });
+        let Limit { length: limit, error, hint: help } = *found.limit;
+        let (length, times, thickness) = (found.length, found.times(), found.thickness);
+        let body = self.blueprint.bodies[body].name.clone();
+        let warning = WorldWarning::Slender { body, length, times, thickness, limit, error, help };
+        self.warnings.push(Warning::new(warning, count));
     }
 }
 

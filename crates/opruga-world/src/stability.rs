@@ -5,7 +5,8 @@ use crate::error::WorldError;
 use crate::island::Island;
 use crate::masses::node_masses;
 use crate::plausible;
-use crate::world::{Warning, World};
+use crate::warnings::{Warning, WorldWarning};
+use crate::world::World;
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::stability::{Stability, estimate};
 use opruga_math::words;
@@ -77,21 +78,26 @@ impl<const D: usize> World<D> {
                     if !self.options.allow_unstable {
                         return Err(error);
                     }
-                    warnings.push(Warning { code: "step.unstable".into(), message: error.to_string(), count: 1 });
+                    warnings.push(Warning {
+                        code: "step.unstable".into(),
+                        message: error.to_string(),
+                        count: 1,
+                        about: None,
+                    });
                 }
                 None => {
                     let growth = stability.spectrum.growth_per_second(integrator, h);
-                    let message = format!(
-                        "`{}` has no stable step for body `{name}` (ω = {} rad/s): a motion grows as exp({} t)",
-                        integrator.name(),
-                        words::number(stability.spectrum.omega),
-                        words::number(growth),
-                    );
+                    let warning = WorldWarning::NoStableStep {
+                        integrator: integrator.name(),
+                        body: name.clone(),
+                        omega: stability.spectrum.omega,
+                        growth,
+                    };
                     let same = format!("`{}` has", integrator.name());
                     let known = |w: &&mut Warning| w.code == "step.no_stable_step" && w.message.starts_with(&same);
                     match warnings.iter_mut().find(known) {
                         Some(warning) => warning.count += 1,
-                        None => warnings.push(Warning { code: "step.no_stable_step".into(), message, count: 1 }),
+                        None => warnings.push(Warning::new(warning, 1)),
                     }
                 }
                 _ => {}
@@ -133,16 +139,9 @@ impl<const D: usize> World<D> {
                 continue;
             };
             if h > limit {
-                let name = &self.blueprint.bodies[island.bodies[0]].name;
+                let body = self.blueprint.bodies[island.bodies[0]].name.clone();
                 let substeps = (self.blueprint.time.frame / limit).ceil();
-                let message = format!(
-                    "at t = {} s the largest stable step of body `{name}` had fallen to {} s, below h = {} s: \
-                     what is squeezed or stretched is stiffer than at rest; substeps >= {substeps} hold there",
-                    words::number(time),
-                    words::number(limit),
-                    words::number(h),
-                );
-                self.warnings.push(Warning { code: "step.outgrown".into(), message, count: 1 });
+                self.warnings.push(Warning::new(WorldWarning::Outgrown { time, body, limit, h, substeps }, 1));
                 break;
             }
         }

@@ -5,9 +5,9 @@
 //! a bar that is bent far turns its tip, though as a whole it hardly turns.
 
 use crate::other_balances::{in_space, turn_in_plane, turn_in_space};
-use crate::world::{Warning, World};
+use crate::warnings::{Warning, WorldWarning};
+use crate::world::World;
 use opruga_core::spec::Role;
-use opruga_math::words::rounded;
 
 /// The code of the warning.
 const TURNED: &str = "law.turned";
@@ -51,20 +51,16 @@ impl<const D: usize> World<D> {
             return;
         }
         self.farthest_turn = cosine;
-        let message = format!(
-            "at t = {} s cell {cell} of body `{}` is turned by {}°, which its law `linear` takes for a strain of {} %; counted per \
-             frame and body; hint: `corotated`, the same law in axes that turn with every cell",
-            opruga_math::words::number(self.time()),
-            self.blueprint.bodies[body].name,
-            rounded(libm::acos(cosine).to_degrees(), 3),
-            rounded(100.0 * (cosine - 1.0), 3),
-        );
+        let warning = WorldWarning::Turned {
+            time: self.time(),
+            cell,
+            body: self.blueprint.bodies[body].name.clone(),
+            angle: libm::acos(cosine).to_degrees(),
+            strain: 100.0 * (cosine - 1.0),
+        };
         match before {
-            Some(known) => {
-                self.warnings[known].message = message;
-                self.warnings[known].count += count;
-            }
-            None => self.warnings.push(Warning { code: TURNED.into(), message, count }),
+            Some(known) => self.warnings[known] = Warning::new(warning, self.warnings[known].count + count),
+            None => self.warnings.push(Warning::new(warning, count)),
         }
     }
 

@@ -11,6 +11,7 @@ use crate::meeting::Meeting;
 use crate::registry::Registry;
 use crate::running::Running;
 use crate::slots::{BodyHandle, Slots};
+use crate::warnings::Warning;
 use opruga_collide::Colliders;
 use opruga_core::break_off::BreakOff;
 use opruga_core::integrator::Integrator;
@@ -53,17 +54,6 @@ impl Default for Options {
             most_bytes: None,
         }
     }
-}
-
-/// Something that deserves attention, and how often it happened.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Warning {
-    /// A stable code.
-    pub code: String,
-    /// What happened.
-    pub message: String,
-    /// How often.
-    pub count: u64,
 }
 
 /// Bodies, obstacles and time in `D` dimensions.

@@ -36,6 +36,7 @@ pub use opruga_io as io;
 pub use opruga_math as math;
 pub use opruga_math::Simd;
 pub use opruga_mesh as mesh;
+pub use opruga_words as words;
 pub use opruga_world as world;
 pub use opruga_world::shapes;
 pub use opruga_world::{

@@ -6,6 +6,7 @@ mod common;
 mod faults;
 mod first_mistakes;
 mod gallery;
+mod language;
 mod lost_files;
 mod material;
 mod mesh;

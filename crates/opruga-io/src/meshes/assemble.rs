@@ -1,10 +1,11 @@
 //! From the nodes and elements of a file to a body, or to what is wrong with them.
 
+use super::errors::{CornerOrder, MeshFileError, MeshFileNotice};
 use super::found::{Found, Item, Kind};
 use super::scanner::Scanner;
 use crate::problem::{SceneError, visible};
 use crate::rounding::Stored;
-use opruga_math::words::counted;
+use opruga_math::message::AnyMessage;
 use opruga_mesh::{Mesh, THIN_ELEMENT};
 use std::collections::BTreeMap;
 
@@ -41,11 +42,7 @@ pub(super) fn assemble<const D: usize>(
     work.distinct(&order)?;
     work.fill(&mut mesh, &order);
     work.lower(dimension, &order, mesh.nodes())?;
-    let named = |error: opruga_mesh::MeshError| {
-        let error = SceneError::new("mesh.topology", visible(&error.to_string()));
-        SceneError { file: items.file.to_string(), ..error }
-    };
-    mesh.validate().map_err(named)?;
+    mesh.validate().map_err(|error| work.topology(&error))?;
     if dimension > 1 {
         work.upright(&mut mesh, &order, mending, &mut notices)?;
         mesh.facets = mesh.facets_from_cells().map_err(|error| work.crowded(&mesh, &error))?;
@@ -63,8 +60,20 @@ struct Assembly<'a> {
 }
 
 impl Assembly<'_> {
-    fn at(&self, item: &Item, code: &'static str, message: String) -> SceneError {
-        self.items.error(code, message, item.place)
+    fn at(&self, item: &Item, message: impl Into<AnyMessage>) -> SceneError {
+        self.items.error(message, item.place)
+    }
+
+    fn topology(&self, error: &opruga_mesh::MeshError) -> SceneError {
+        let error = SceneError::of(MeshFileError::Topology { problem: error.clone() });
+        self.file(SceneError { message: visible(&error.message), ..error })
+    }
+
+    fn at_node(&self, node: usize, message: MeshFileError) -> SceneError {
+        match self.found.node_places.get(node) {
+            Some(place) => self.nodes.error(message, *place),
+            None => self.file(SceneError::of(message)),
+        }
     }
 
     fn file(&self, error: SceneError) -> SceneError {
@@ -75,52 +84,36 @@ impl Assembly<'_> {
     fn dimension<const D: usize>(&self) -> Result<usize, SceneError> {
         // The first of them in the file.
         let Some(highest) = self.found.items.iter().rev().max_by_key(|item| item.kind.dimension()) else {
-            let error = SceneError::new("mesh.empty", "the file holds no elements").value("0");
-            return Err(self.file(error.allowed("at least one element")));
+            return Err(self.file(SceneError::of(MeshFileError::NoElements {})));
         };
-        let dimension = highest.kind.dimension();
-        let message = |what: String| (what, highest.kind.name().to_string());
-        let (text, value) = match dimension {
-            0 => message("the file holds points only".into()),
+        let element = highest.kind.name();
+        let error = match highest.kind.dimension() {
+            0 => MeshFileError::PointsOnly { element },
             1 => return Ok(1),
-            _ if dimension == D => return Ok(D),
-            2 => message("the file holds a surface in space, and nothing that fills it".into()),
-            _ => message("the file holds elements of space, but the scene lies in the plane".into()),
+            dimension if dimension == D => return Ok(D),
+            2 => MeshFileError::SurfaceInSpace { element },
+            _ => MeshFileError::SpaceInPlane { element },
         };
-        let error = self.at(highest, "mesh.dimension", text).value(value);
-        Err(match (dimension, D) {
-            (2, _) => error
-                .allowed("tetrahedra or hexahedra")
-                .hint("`kind = \"surface\"` reads surfaces; with `filling = \"tetrahedra\"` it fills them"),
-            (3, _) => error.allowed("triangles or quadrilaterals").hint("`dimension = 3` at the head of the scene"),
-            _ => error.allowed("lines, triangles, quadrilaterals, tetrahedra or hexahedra"),
-        })
+        Err(self.at(highest, error))
     }
 
     /// Positions in as many dimensions as the scene has.
     fn positions<const D: usize>(&self, notices: &mut Vec<SceneError>) -> Result<Vec<[f64; D]>, SceneError> {
         let points = &self.found.positions;
         if points.len() as u64 > opruga_mesh::MAXIMUM_NODES {
-            let error = SceneError::new("shape.too_large", format!("the mesh has {} nodes", points.len()));
-            let allowed = format!("at most {}", opruga_mesh::MAXIMUM_NODES);
-            return Err(self.file(error.value(points.len().to_string()).allowed(allowed)));
+            let error = MeshFileError::TooManyNodes { nodes: points.len(), most: opruga_mesh::MAXIMUM_NODES };
+            return Err(self.file(SceneError::of(error)));
         }
         if D == 2
             && let Some(first) = points.first()
         {
             if let Some(node) = points.iter().position(|p| p[2] != first[2]) {
                 let number = self.found.node_numbers.get(node).copied().unwrap_or(node as u64);
-                let message = format!("node {number} lies outside of the plane of the first node");
-                let error = match self.found.node_places.get(node) {
-                    Some(place) => self.nodes.error("mesh.dimension", message, *place),
-                    None => self.file(SceneError::new("mesh.dimension", message)),
-                };
-                let error = error.value(points[node][2].to_string()).allowed(format!("z = {}", first[2]));
-                return Err(error.hint("`dimension = 3` at the head of the scene"));
+                let (z, plane) = (points[node][2].to_string(), first[2].to_string());
+                return Err(self.at_node(node, MeshFileError::OutOfPlane { node: number, z, plane }));
             }
             if first[2] != 0.0 {
-                let message = format!("z = {} of all nodes is left out", first[2]);
-                notices.push(SceneError::new("mesh.left_out", message).value(first[2].to_string()));
+                notices.push(SceneError::of(MeshFileNotice::PlaneOffset { z: first[2].to_string() }));
             }
         }
         Ok(points.iter().map(|p| core::array::from_fn(|d| p[d])).collect())
@@ -148,19 +141,15 @@ impl Assembly<'_> {
             key[..item.nodes().len()].copy_from_slice(item.nodes());
             key.sort_unstable();
             if let Some(pair) = key.windows(2).find(|pair| pair[0] == pair[1] && pair[0] != u32::MAX) {
-                let number = self.number(pair[0]);
-                let message = format!("{} {} names node {number} twice", item.kind.name(), item.number);
-                let error = self.at(item, "mesh.degenerate_element", message);
-                return Err(error.value(number.to_string()).allowed("every node once"));
+                let (element, index, node) = (item.kind.name(), item.number, self.number(pair[0]));
+                return Err(self.at(item, MeshFileError::RepeatedNode { element, index, node }));
             }
             keys.push((key, k));
         }
         keys.sort_unstable();
         if let Some(pair) = keys.windows(2).filter(|pair| pair[0].0 == pair[1].0).min_by_key(|pair| pair[1].1) {
             let (first, second) = (&self.found.items[pair[0].1 as usize], &self.found.items[pair[1].1 as usize]);
-            let message = format!("elements {} and {} have the same nodes", first.number, second.number);
-            let error = self.at(second, "mesh.duplicate_element", message).value(second.number.to_string());
-            return Err(error.hint("leave one of them out"));
+            return Err(self.at(second, MeshFileError::SameNodes { first: first.number, second: second.number }));
         }
         Ok(())
     }
@@ -215,9 +204,8 @@ impl Assembly<'_> {
             let around = &cells[starts[first] as usize..starts[first + 1] as usize];
             let within = |cell: &u32| item.nodes().iter().all(|node| items[*cell as usize].nodes().contains(node));
             if !around.iter().any(within) {
-                let message = format!("{} {} is no part of a cell", item.kind.name(), item.number);
-                let error = self.at(item, "mesh.mixed_dimension", message).value(item.number.to_string());
-                return Err(error.allowed("faces, edges and corners of the cells, or a body of one dimension"));
+                let (element, index) = (item.kind.name(), item.number);
+                return Err(self.at(item, MeshFileError::NoPartOfCell { element, index }));
             }
         }
         Ok(())
@@ -240,76 +228,58 @@ impl Assembly<'_> {
                 measures.longest * measures.longest * measures.longest
             };
             if measures.whole.abs() <= THIN_ELEMENT * power {
-                let message = format!(
-                    "{} {} has no {} for its size",
-                    item.kind.name(),
-                    item.number,
-                    if D == 2 { "area" } else { "volume" }
-                );
-                let error = self.at(item, "mesh.degenerate_element", message).value(format!("{:e}", measures.whole));
-                let unit = if D == 2 { "squared" } else { "cubed" };
-                return Err(error.allowed(format!("more than {THIN_ELEMENT:e} of its longest edge {unit}")));
+                let (element, index) = (item.kind.name(), item.number);
+                let (whole, least) = (format!("{:e}", measures.whole), format!("{THIN_ELEMENT:e}"));
+                return Err(self.at(
+                    item,
+                    match D {
+                        2 => MeshFileError::NoArea { element, index, area: whole, least },
+                        _ => MeshFileError::NoVolume { element, index, volume: whole, least },
+                    },
+                ));
             }
             if measures.least < 0.0 {
                 inverted.push((cell as u32, measures));
             }
         }
         let turned = |measures: &opruga_mesh::CellMeasure| measures.greatest < 0.0;
-        let all = inverted.len() == order.len();
         // What is negative at one node only is folded, and turning does not help.
         let hopeless = inverted.iter().find(|(_, measures)| !turned(measures));
         if let Some((cell, measures)) = hopeless.or(inverted.first().filter(|_| !mending.turn_inverted)) {
             let item = &self.found.items[order[*cell as usize] as usize];
-            let folded = !turned(measures);
-            let many = if inverted.len() == 1 {
-                String::new()
-            } else {
-                format!(" ({} of {} are)", inverted.len(), order.len())
-            };
-            let what = if folded { "folds over itself" } else { "is inverted" };
-            let message = format!("{} {} {what}{many}", item.kind.name(), item.number);
-            let error = self.at(item, "mesh.inverted", message).value(format!("{:e}", measures.least));
-            let error = error.allowed(if D == 2 {
-                "a positive area: corners counter-clockwise"
-            } else {
-                "a positive volume: the last corner on the side where the others run counter-clockwise"
-            });
-            return Err(match (folded, all) {
-                (true, _) => error,
-                (_, true) => error.hint(
-                    "the whole file runs the other way: `inverted = \"turn\"` turns its cells round, and counts them",
-                ),
-                _ => error.hint("`inverted = \"turn\"` turns such cells round, and counts them"),
-            });
+            let (element, index, measure) = (item.kind.name(), item.number, format!("{:e}", measures.least));
+            let (count, cells) = (inverted.len(), order.len());
+            let order = if D == 2 { CornerOrder::Plane } else { CornerOrder::Space };
+            return Err(self.at(
+                item,
+                match turned(measures) {
+                    false => MeshFileError::Folded { element, index, count, cells, measure, order },
+                    true if count == cells => MeshFileError::AllInverted { element, index, cells, measure, order },
+                    true => MeshFileError::Inverted { element, index, count, cells, measure, order },
+                },
+            ));
         }
         if !inverted.is_empty() {
             let cells: Vec<u32> = inverted.iter().map(|entry| entry.0).collect();
             mesh.turn_cells(&cells);
-            let message = format!(
-                "{} of {} turned round",
-                counted(cells.len() as u64, "inverted cell", "inverted cells"),
-                order.len()
-            );
-            notices.push(SceneError::new("mesh.flipped", message).value(cells.len().to_string()));
+            notices.push(SceneError::of(MeshFileNotice::Turned { count: cells.len(), cells: order.len() }));
         }
         Ok(())
     }
 
     fn crowded<const D: usize>(&self, mesh: &Mesh<D>, error: &opruga_mesh::MeshError) -> SceneError {
         let opruga_mesh::MeshError::NonManifoldEdges { edges } = error else {
-            return self.file(SceneError::new("mesh.topology", visible(&error.to_string())));
+            return self.topology(error);
         };
         let [a, b] = edges[0];
         // The last cell at this face is one too many.
         let cell =
             mesh.cells.iter().enumerate().filter(|(_, (_, _, nodes))| nodes.contains(&a) && nodes.contains(&b)).last();
-        let message =
-            format!("more than two cells share a face, through nodes {} and {}", self.number(a), self.number(b));
-        let error = match cell.and_then(|(cell, _)| self.found.items.get(cell)) {
-            Some(item) => self.at(item, "mesh.non_manifold", message),
-            None => self.file(SceneError::new("mesh.non_manifold", message)),
-        };
-        error.value(edges.len().to_string()).allowed("at most two cells at a face")
+        let error = MeshFileError::Crowded { first: self.number(a), second: self.number(b), edges: edges.len() };
+        match cell.and_then(|(cell, _)| self.found.items.get(cell)) {
+            Some(item) => self.at(item, error),
+            None => self.file(SceneError::of(error)),
+        }
     }
 
     /// Groups of nodes and of cells, values of cells.
@@ -351,22 +321,16 @@ impl Assembly<'_> {
         let count = loose.len();
         if mending.leave_out_unreferenced {
             mesh.drop_unreferenced();
-            let message = format!(
-                "{} left out",
-                counted(count as u64, "node that no cell names is", "nodes that no cell names are")
-            );
-            notices.push(SceneError::new("mesh.unreferenced", message).value(count.to_string()));
+            notices.push(SceneError::of(MeshFileNotice::Unreferenced { count }));
             return Ok(());
         }
-        let message = match count {
-            1 => format!("node {} belongs to no cell", self.number(first)),
-            _ => format!("{count} nodes belong to no cell, the first is node {}", self.number(first)),
-        };
-        let error = match self.found.node_places.get(first as usize) {
-            Some(place) => self.nodes.error("mesh.unreferenced", message, *place),
-            None => self.file(SceneError::new("mesh.unreferenced", message)),
-        };
-        let error = error.value(self.number(first).to_string()).allowed("nodes of cells");
-        Err(error.hint("`unreferenced = \"leave_out\"` leaves such nodes out, and counts them"))
+        let (node, first) = (first as usize, self.number(first));
+        Err(self.at_node(
+            node,
+            match count {
+                1 => MeshFileError::LooseNode { first },
+                _ => MeshFileError::LooseNodes { count, first },
+            },
+        ))
     }
 }

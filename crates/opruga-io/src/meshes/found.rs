@@ -1,6 +1,8 @@
 //! Nodes and elements as a mesh file gives them, before a body is made of them.
 
+use super::errors::{Listed, MeshFileError, MeshFileNotice};
 use super::scanner::Scanner;
+use super::terms::ElementName;
 use crate::budget::{NOTICES, VALUES};
 use crate::problem::{SceneError, visible};
 use opruga_mesh::NodeValues;
@@ -21,10 +23,6 @@ pub(crate) enum Kind {
     Hexahedron,
     QuadraticTetrahedron,
 }
-
-/// What an error says about elements that can be read.
-pub(super) const SUPPORTED: &str =
-    "points, lines of 2 or 3 nodes, triangles of 3 or 6, quadrilaterals of 4, tetrahedra of 4 or 10, hexahedra of 8";
 
 impl Kind {
     /// Number of dimensions that it spans.
@@ -50,24 +48,19 @@ impl Kind {
         }
     }
 
-    pub(crate) fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> ElementName {
         match self {
-            Kind::Point => "point",
-            Kind::Line => "line",
-            Kind::QuadraticLine => "quadratic line",
-            Kind::Triangle => "triangle",
-            Kind::Quadrilateral => "quadrilateral",
-            Kind::QuadraticTriangle => "quadratic triangle",
-            Kind::Tetrahedron => "tetrahedron",
-            Kind::Hexahedron => "hexahedron",
-            Kind::QuadraticTetrahedron => "quadratic tetrahedron",
+            Kind::Point => ElementName::Point,
+            Kind::Line => ElementName::Line,
+            Kind::QuadraticLine => ElementName::QuadraticLine,
+            Kind::Triangle => ElementName::Triangle,
+            Kind::Quadrilateral => ElementName::Quadrilateral,
+            Kind::QuadraticTriangle => ElementName::QuadraticTriangle,
+            Kind::Tetrahedron => ElementName::Tetrahedron,
+            Kind::Hexahedron => ElementName::Hexahedron,
+            Kind::QuadraticTetrahedron => ElementName::QuadraticTetrahedron,
         }
     }
-}
-
-/// A kind of element with its article.
-pub(super) fn one(name: &str) -> String {
-    format!("{} {name}", if name.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" })
 }
 
 /// An element of a file.
@@ -148,8 +141,7 @@ impl Found {
         order.sort_unstable();
         let pairs = order.windows(2).filter(|pair| pair[0].0 == pair[1].0);
         let Some(&(number, place)) = pairs.map(|pair| &pair[1]).min_by_key(|second| second.1) else { return Ok(()) };
-        let error = scanner.error("mesh.duplicate_element", format!("two elements have the number {number}"), place);
-        Err(error.value(number.to_string()).allowed("a number of its own for every element"))
+        Err(scanner.error(MeshFileError::ElementTwice { number }, place))
     }
 
     /// Adds the last items, from one on, to groups, each of them to all.
@@ -184,9 +176,8 @@ impl Found {
             Entry::Occupied(taken) if taken.get().components == components => taken.into_mut(),
             Entry::Occupied(taken) => {
                 let before = taken.get().components;
-                let message = format!("nodes have {before} numbers `{}`, and others {components}", visible(name));
-                let error = SceneError::new("mesh.components", message).value(components.to_string());
-                return Err(error.allowed(before.to_string()));
+                let name = visible(name);
+                return Err(SceneError::of(MeshFileError::Components { before, name, components }));
             }
         };
         field.values.resize(first * components, f64::NAN);
@@ -204,9 +195,9 @@ impl Found {
     }
 
     /// Says what of the file has no place in a body at rest.
-    pub(super) fn left_out(&mut self, what: String, value: String) {
+    pub(super) fn left_out(&mut self, what: MeshFileNotice) {
         if self.notices.len() < NOTICES {
-            self.notices.push(SceneError::new("mesh.left_out", what).value(value));
+            self.notices.push(SceneError::of(what));
         } else {
             self.more += 1;
         }
@@ -218,9 +209,8 @@ impl Found {
         if self.more > 0 {
             // The count is one of those that are listed.
             all.truncate(NOTICES - 1);
-            let more = self.more + self.notices.len() - all.len();
-            let message = format!("{more} more things are left out");
-            all.push(SceneError::new("mesh.left_out", message).value(more.to_string()));
+            let count = self.more + self.notices.len() - all.len();
+            all.push(SceneError::of(MeshFileNotice::More { count }));
         }
         all
     }
@@ -243,17 +233,12 @@ impl Numbers {
         pairs.sort_unstable();
         if let Some(pair) = pairs.windows(2).filter(|pair| pair[0].0 == pair[1].0).min_by_key(|pair| pair[1].1) {
             let (number, second) = pair[1];
-            let error = scanner.error(
-                "mesh.duplicate_node",
-                format!("two nodes have the number {number}"),
-                found.node_places[second as usize],
-            );
-            return Err(error.value(number.to_string()).allowed("a number of its own for every node"));
+            return Err(scanner.error(MeshFileError::NodeTwice { number }, found.node_places[second as usize]));
         }
         Ok(Numbers(pairs))
     }
 
-    /// The node of a number that stands at a byte of the file.
+    /// The node of a number that an element, or else a value, names at a byte of the file.
     ///
     /// # Errors
     /// `mesh.index`.
@@ -261,22 +246,20 @@ impl Numbers {
         &self,
         number: u64,
         scanner: &Scanner<'_>,
-        element: &str,
+        element: Option<u64>,
         place: usize,
     ) -> Result<u32, SceneError> {
-        match self.0.binary_search_by_key(&number, |pair| pair.0) {
-            Ok(at) => Ok(self.0[at].1),
-            Err(_) => {
-                let error =
-                    scanner.error("mesh.index", format!("{element} names node {number}, which is not there"), place);
-                let allowed = match (self.0.first(), self.0.last()) {
-                    (Some(low), Some(high)) => {
-                        format!("one of the {} nodes from {} to {}", self.0.len(), low.0, high.0)
-                    }
-                    _ => "the file has no nodes".to_string(),
-                };
-                Err(error.value(number.to_string()).allowed(allowed))
-            }
+        if let Ok(at) = self.0.binary_search_by_key(&number, |pair| pair.0) {
+            return Ok(self.0[at].1);
         }
+        let listed = match (self.0.first(), self.0.last()) {
+            (Some(low), Some(high)) => Listed::Nodes { count: self.0.len(), first: low.0, last: high.0 },
+            _ => Listed::NoNodes {},
+        };
+        let error = match element {
+            Some(element) => MeshFileError::NoNode { element, node: number, listed },
+            None => MeshFileError::NoNodeOfValue { node: number, listed },
+        };
+        Err(scanner.error(error, place))
     }
 }

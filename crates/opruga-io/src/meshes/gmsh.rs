@@ -6,11 +6,13 @@
 //! # Source
 //! C. Geuzaine, J.-F. Remacle, Gmsh reference manual, "MSH file format" and "Legacy formats".
 
-use super::found::{Found, Kind, Numbers, SUPPORTED, is_kept, one};
+use super::errors::{Keyword, MeshFileError, MeshFileNotice};
+use super::format_errors::GmshError;
+use super::found::{Found, Kind, Numbers, is_kept};
 use super::scanner::Scanner;
+use super::terms::{ElementName, Expected};
 use super::{gmsh_2, gmsh_4};
 use crate::problem::{SceneError, visible};
-use opruga_math::words::counted;
 use opruga_mesh::NodeValues;
 use std::collections::BTreeMap;
 
@@ -57,15 +59,13 @@ pub(super) fn read(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
     let mut elements = false;
     while let Some((word, from)) = scanner.peek() {
         let Some(section) = word.strip_prefix('$') else {
-            let error = scanner.error(SYNTAX, format!("`{}` stands between sections", visible(word)), from);
-            return Err(error.value(visible(word)).allowed("a section such as $Nodes"));
+            return Err(scanner.error(GmshError::BetweenSections { word: visible(word) }, from));
         };
         let (section, _) = (section.to_string(), scanner.line());
         match section.as_str() {
             // What comes behind the elements would no longer be theirs.
             "PhysicalNames" | "Entities" if elements && (modern || section == "PhysicalNames") => {
-                let error = scanner.error(SYNTAX, format!("the section ${section} comes behind the elements"), from);
-                return Err(error.value(format!("${section}")).allowed("before $Elements"));
+                return Err(scanner.error(GmshError::BehindElements { section }, from));
             }
             "PhysicalNames" => physical_names(scanner, &mut context.names)?,
             "Entities" if modern && !context.listed => {
@@ -82,8 +82,7 @@ pub(super) fn read(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
             }
             "Elements" if !elements => {
                 let Some(numbers) = &numbers else {
-                    let error = scanner.error(SYNTAX, "the elements come before the nodes", from);
-                    return Err(error.value("$Elements").allowed("$Nodes"));
+                    return Err(scanner.error(GmshError::ElementsFirst {}, from));
                 };
                 if modern {
                     gmsh_4::elements(scanner, &mut context, numbers)?;
@@ -96,8 +95,7 @@ pub(super) fn read(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
             "ElementData" if elements => data(scanner, &mut context, None)?,
             "NodeData" if numbers.is_some() => data(scanner, &mut context, numbers.as_ref())?,
             "Nodes" | "Elements" | "Entities" if modern || section != "Entities" => {
-                let error = scanner.error(SYNTAX, format!("there is a second section ${section}"), from);
-                return Err(error.value(format!("${section}")).allowed("one"));
+                return Err(scanner.error(GmshError::SecondSection { section }, from));
             }
             other => {
                 context.divided |= other == "PartitionedEntities";
@@ -107,11 +105,11 @@ pub(super) fn read(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
         scanner.expect(SYNTAX, &format!("$End{section}"))?;
     }
     if !elements {
-        return Err(scanner.ends(SYNTAX, if numbers.is_some() { "`$Elements`" } else { "`$Nodes`" }));
+        let word = if numbers.is_some() { "$Elements" } else { "$Nodes" };
+        return Err(scanner.ends(SYNTAX, Keyword::One { word: word.into() }));
     }
     for (name, count) in &context.later {
-        let what = counted(*count, "later step is", "later steps are");
-        context.found.left_out(format!("{what} left out of the values `{}`", visible(name)), count.to_string());
+        context.found.left_out(MeshFileNotice::LaterSteps { count: *count, name: visible(name) });
     }
     Ok(context.found)
 }
@@ -119,37 +117,28 @@ pub(super) fn read(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
 /// `$MeshFormat`: whether it is version 4.1; the scanner knows afterwards whether numbers are binary, and their order.
 fn format(scanner: &mut Scanner<'_>) -> Result<bool, SceneError> {
     scanner.expect(SYNTAX, "$MeshFormat")?;
-    let (version, from) = scanner.word(SYNTAX, "the version")?;
+    let (version, from) = scanner.word(SYNTAX, Expected::Version)?;
     let modern = match version {
         "2" | "2.0" | "2.1" | "2.2" => false,
         "4.1" => true,
-        _ => {
-            let error = scanner.error("msh.version", format!("version `{}` cannot be read", visible(version)), from);
-            let error = error.value(visible(version)).allowed("2.2 or 4.1");
-            return Err(error.hint("Gmsh writes another version with `-format msh41` or `-format msh22`"));
-        }
+        _ => return Err(scanner.error(GmshError::Version { version: visible(version) }, from)),
     };
-    let (kind, from) = scanner.whole::<u32>(SYNTAX, "the kind of file, 0 or 1")?;
+    let (kind, from) = scanner.whole::<u32>(SYNTAX, Expected::FileKind)?;
     if kind > 1 {
-        let error = scanner.error(SYNTAX, format!("{kind} is no kind of file"), from);
-        return Err(error.value(kind.to_string()).allowed("0 (text) or 1 (binary)"));
+        return Err(scanner.error(GmshError::FileKind { kind }, from));
     }
-    let (size, from) = scanner.whole::<u32>(SYNTAX, "the size of numbers")?;
+    let (size, from) = scanner.whole::<u32>(SYNTAX, Expected::SizeOfNumbers)?;
     if size != 8 {
-        let error = scanner.error("msh.version", format!("numbers have {size} bytes"), from);
-        return Err(error.value(size.to_string()).allowed("8"));
+        return Err(scanner.error(GmshError::NumberSize { size }, from));
     }
-    scanner.line_end(SYNTAX, "the format")?;
+    scanner.line_end(SYNTAX, Expected::Format)?;
     if kind == 1 {
         scanner.binary = true;
         let from = scanner.at;
-        match scanner.binary_i32(SYNTAX, "the number 1")? {
+        match scanner.binary_i32(SYNTAX, Expected::One)? {
             1 => {}
             0x0100_0000 => scanner.big_endian = true,
-            other => {
-                let error = scanner.error("msh.endianness", format!("{other} stands where 1 should"), from);
-                return Err(error.value(other.to_string()).allowed("1, in the order of the file's bytes"));
-            }
+            number => return Err(scanner.error(GmshError::Endianness { number }, from)),
         }
     }
     scanner.expect(SYNTAX, "$EndMeshFormat")?;
@@ -158,26 +147,21 @@ fn format(scanner: &mut Scanner<'_>) -> Result<bool, SceneError> {
 
 /// `$PhysicalNames`: a text in all files. Names may hold blanks.
 fn physical_names(scanner: &mut Scanner<'_>, names: &mut Names) -> Result<(), SceneError> {
-    let (count, from) = scanner.whole::<u64>(SYNTAX, "the number of names")?;
-    let count = scanner.fits(SIZE, count, 6, "names", from)?;
+    let (count, from) = scanner.whole::<u64>(SYNTAX, Expected::NumberOfNames)?;
+    let count = scanner.fits(SIZE, count, 6, Expected::Names, from)?;
     for _ in 0..count {
-        let (dimension, from) = scanner.whole::<usize>(SYNTAX, "a dimension")?;
+        let (dimension, from) = scanner.whole::<usize>(SYNTAX, Expected::Dimension)?;
         if dimension > 3 {
-            let error = scanner.error(SYNTAX, format!("a group has {dimension} dimensions"), from);
-            return Err(error.value(dimension.to_string()).allowed("0 to 3"));
+            return Err(scanner.error(GmshError::GroupDimension { dimension }, from));
         }
-        let (number, at) = scanner.whole::<i64>(SYNTAX, "the number of a group")?;
+        let (number, at) = scanner.whole::<i64>(SYNTAX, Expected::NumberOfGroup)?;
         let (text, from) = scanner.line();
         let Some(name) = text.strip_prefix('"').and_then(|t| t.strip_suffix('"')).filter(|name| !name.is_empty())
         else {
-            let error = scanner.error(SYNTAX, "the name of a group does not stand in quotes", from);
-            return Err(error.value(visible(&text)).allowed("\"name\""));
+            return Err(scanner.error(GmshError::GroupQuotes { text: visible(&text) }, from));
         };
         if let Some(first) = names.0.insert((dimension, number), name.to_string()) {
-            let message =
-                format!("group {number} of {dimension} dimensions has the name `{}` already", visible(&first));
-            let error = scanner.error(SYNTAX, message, at).value(number.to_string());
-            return Err(error.allowed("one name for every group of a dimension"));
+            return Err(scanner.error(GmshError::GroupTwice { group: number, dimension, name: visible(&first) }, at));
         }
     }
     Ok(())
@@ -188,12 +172,11 @@ fn skip(scanner: &mut Scanner<'_>, section: &str, from: usize, found: &mut Found
     let end = format!("$End{section}");
     let place = scanner.bytes[scanner.at..].windows(end.len()).position(|window| window == end.as_bytes());
     let Some(place) = place else {
-        let error = scanner.error(SYNTAX, format!("the section ${} has no end", visible(section)), from);
-        return Err(error.value(visible(&format!("${section}"))).allowed(visible(&end)).hint("the file is cut off"));
+        return Err(scanner.error(GmshError::NoEnd { section: visible(section) }, from));
     };
     scanner.at += place;
     if section != "Comments" {
-        found.left_out(format!("the section ${} is left out", visible(section)), visible(section));
+        found.left_out(MeshFileNotice::Section { section: visible(section) });
     }
     Ok(())
 }
@@ -202,13 +185,13 @@ fn skip(scanner: &mut Scanner<'_>, section: &str, from: usize, found: &mut Found
 fn data(scanner: &mut Scanner<'_>, context: &mut Context, nodes: Option<&Numbers>) -> Result<(), SceneError> {
     let found = &mut context.found;
     let (section, number_of, there) = match nodes {
-        Some(_) => ("NodeData", "the number of a node", found.positions.len()),
-        None => ("ElementData", "the number of an element", found.items.len()),
+        Some(_) => ("NodeData", Expected::NumberOfNode, found.positions.len()),
+        None => ("ElementData", Expected::NumberOfElement, found.items.len()),
     };
     let start = scanner.at;
-    let (texts, from) = scanner.whole::<u64>(SYNTAX, "the number of texts")?;
-    let texts = scanner.fits(SIZE, texts, 2, "texts", from)?;
-    scanner.line_end(SYNTAX, "the number of texts")?;
+    let (texts, from) = scanner.whole::<u64>(SYNTAX, Expected::NumberOfTexts)?;
+    let texts = scanner.fits(SIZE, texts, 2, Expected::Texts, from)?;
+    scanner.line_end(SYNTAX, Expected::NumberOfTexts)?;
     let mut name = String::new();
     for k in 0..texts {
         let text = scanner.line().0;
@@ -216,24 +199,20 @@ fn data(scanner: &mut Scanner<'_>, context: &mut Context, nodes: Option<&Numbers
             name = text.trim_matches('"').to_string();
         }
     }
-    let (reals, from) = scanner.whole::<u64>(SYNTAX, "the number of real tags")?;
-    for _ in 0..scanner.fits(SIZE, reals, 2, "real tags", from)? {
-        scanner.number(SYNTAX, "a real tag")?;
+    let (reals, from) = scanner.whole::<u64>(SYNTAX, Expected::NumberOfRealTags)?;
+    for _ in 0..scanner.fits(SIZE, reals, 2, Expected::RealTags, from)? {
+        scanner.number(SYNTAX, Expected::RealTag)?;
     }
-    let (wholes, from) = scanner.whole::<u64>(SYNTAX, "the number of whole tags")?;
+    let (wholes, from) = scanner.whole::<u64>(SYNTAX, Expected::NumberOfWholeTags)?;
     let mut tags = Vec::new();
-    for _ in 0..scanner.fits(SIZE, wholes, 2, "whole tags", from)? {
-        tags.push(scanner.whole::<u64>(SYNTAX, "a whole tag")?);
+    for _ in 0..scanner.fits(SIZE, wholes, 2, Expected::WholeTags, from)? {
+        tags.push(scanner.whole::<u64>(SYNTAX, Expected::WholeTag)?);
     }
     let (Some(&(components, _)), Some(&(count, from))) = (tags.get(1), tags.get(2)) else {
-        let error = scanner.error(SYNTAX, "step, components and count of values are missing", from);
-        return Err(error.value(tags.len().to_string()).allowed("3 whole tags or more"));
+        return Err(scanner.error(GmshError::FewTags { tags: tags.len() }, from));
     };
     if components != 1 && !(nodes.is_some() && is_kept(components)) {
-        found.left_out(
-            format!("values of {components} components are left out: `{}`", visible(&name)),
-            components.to_string(),
-        );
+        found.left_out(MeshFileNotice::Components { components, name: visible(&name) });
         scanner.at = start;
         let end = format!("$End{section}");
         let place = scanner.bytes[start..].windows(end.len()).position(|window| window == end.as_bytes());
@@ -242,11 +221,11 @@ fn data(scanner: &mut Scanner<'_>, context: &mut Context, nodes: Option<&Numbers
                 scanner.at += place;
                 Ok(())
             }
-            None => Err(scanner.ends(SYNTAX, &format!("`{end}`"))),
+            None => Err(scanner.ends(SYNTAX, Keyword::One { word: end })),
         };
     }
     let width = components as usize;
-    scanner.line_end(SYNTAX, "the count of values")?;
+    scanner.line_end(SYNTAX, Expected::CountOfValues)?;
     if nodes.is_none() && context.order.len() != there {
         context.order = found.items.iter().zip(0..).map(|(item, k)| (item.number, k)).collect();
         context.order.sort_unstable();
@@ -255,7 +234,7 @@ fn data(scanner: &mut Scanner<'_>, context: &mut Context, nodes: Option<&Numbers
     // What has no value takes room too.
     found.gives(there * width).map_err(|e| scanner.at(e, from))?;
     let mut values = vec![f64::NAN; there * width];
-    for _ in 0..scanner.fits(SIZE, count, 2 + 2 * components, "values", from)? {
+    for _ in 0..scanner.fits(SIZE, count, 2 + 2 * components, Expected::Values, from)? {
         if !scanner.binary {
             scanner.peek();
         }
@@ -266,31 +245,25 @@ fn data(scanner: &mut Scanner<'_>, context: &mut Context, nodes: Option<&Numbers
             scanner.whole::<u64>(SYNTAX, number_of)?.0
         };
         let at = match nodes {
-            Some(nodes) => nodes.node(number, scanner, "a value", place)? as usize,
+            Some(nodes) => nodes.node(number, scanner, None, place)? as usize,
             None => match order.binary_search_by_key(&number, |entry| entry.0) {
                 Ok(at) => order[at].1,
-                Err(_) => {
-                    let message = format!("a value names element {number}, which is not there");
-                    let error = scanner.error("mesh.index", message, place);
-                    return Err(error.value(number.to_string()).allowed("the number of an element"));
-                }
+                Err(_) => return Err(scanner.error(GmshError::NoElement { element: number }, place)),
             },
         };
         let row = &mut values[at * width..(at + 1) * width];
         if !row[0].is_nan() {
-            let (code, message, allowed) = match nodes {
-                Some(_) => ("mesh.duplicate_node", format!("a value names node {number} twice"), "every node once"),
-                None => {
-                    ("mesh.duplicate_element", format!("a value names element {number} twice"), "every element once")
-                }
+            let twice = match nodes {
+                Some(_) => GmshError::NodeValueTwice { node: number },
+                None => GmshError::ElementValueTwice { element: number },
             };
-            return Err(scanner.error(code, message, place).value(number.to_string()).allowed(allowed));
+            return Err(scanner.error(twice, place));
         }
         for slot in row {
             *slot = if scanner.binary {
-                scanner.binary_f64(SIZE, "a value")?
+                scanner.binary_f64(SIZE, Expected::Value)?
             } else {
-                scanner.number(SYNTAX, "a value")?
+                scanner.number(SYNTAX, Expected::Value)?
             };
         }
     }
@@ -314,50 +287,41 @@ fn data(scanner: &mut Scanner<'_>, context: &mut Context, nodes: Option<&Numbers
 /// # Errors
 /// `mesh.unsupported_element` with name and number.
 pub(super) fn element_type(scanner: &Scanner<'_>, number: i64, place: usize) -> Result<Kind, SceneError> {
-    let (name, found) = match number {
-        1 => ("line", Some(Kind::Line)),
-        2 => ("triangle", Some(Kind::Triangle)),
-        3 => ("quadrilateral", Some(Kind::Quadrilateral)),
-        4 => ("tetrahedron", Some(Kind::Tetrahedron)),
-        5 => ("hexahedron", Some(Kind::Hexahedron)),
-        6 => ("prism", None),
-        7 => ("pyramid", None),
-        8 => ("quadratic line", Some(Kind::QuadraticLine)),
-        9 => ("quadratic triangle", Some(Kind::QuadraticTriangle)),
-        10 => ("quadratic quadrilateral", None),
-        11 => ("quadratic tetrahedron", Some(Kind::QuadraticTetrahedron)),
-        12 => ("quadratic hexahedron", None),
-        13 => ("quadratic prism", None),
-        14 => ("quadratic pyramid", None),
-        15 => ("point", Some(Kind::Point)),
-        16 => ("serendipity quadrilateral", None),
-        17 => ("serendipity hexahedron", None),
-        18 => ("serendipity prism", None),
-        19 => ("serendipity pyramid", None),
-        20 | 22 | 24 => ("incomplete triangle of higher order", None),
-        21 => ("cubic triangle", None),
-        23 => ("triangle of order 4", None),
-        25 => ("triangle of order 5", None),
-        26 => ("cubic line", None),
-        27 => ("line of order 4", None),
-        28 => ("line of order 5", None),
-        29 => ("cubic tetrahedron", None),
-        30 => ("tetrahedron of order 4", None),
-        31 => ("tetrahedron of order 5", None),
-        92 => ("cubic hexahedron", None),
-        _ => ("element of an unknown type", None),
+    use ElementName as Name;
+    let element = match number {
+        1 => return Ok(Kind::Line),
+        2 => return Ok(Kind::Triangle),
+        3 => return Ok(Kind::Quadrilateral),
+        4 => return Ok(Kind::Tetrahedron),
+        5 => return Ok(Kind::Hexahedron),
+        8 => return Ok(Kind::QuadraticLine),
+        9 => return Ok(Kind::QuadraticTriangle),
+        11 => return Ok(Kind::QuadraticTetrahedron),
+        15 => return Ok(Kind::Point),
+        6 => Name::Prism,
+        7 => Name::Pyramid,
+        10 => Name::QuadraticQuadrilateral,
+        12 => Name::QuadraticHexahedron,
+        13 => Name::QuadraticPrism,
+        14 => Name::QuadraticPyramid,
+        16 => Name::SerendipityQuadrilateral,
+        17 => Name::SerendipityHexahedron,
+        18 => Name::SerendipityPrism,
+        19 => Name::SerendipityPyramid,
+        20 | 22 | 24 => Name::IncompleteTriangle,
+        21 => Name::CubicTriangle,
+        23 => Name::Triangle4,
+        25 => Name::Triangle5,
+        26 => Name::CubicLine,
+        27 => Name::Line4,
+        28 => Name::Line5,
+        29 => Name::CubicTetrahedron,
+        30 => Name::Tetrahedron4,
+        31 => Name::Tetrahedron5,
+        92 => Name::CubicHexahedron,
+        _ => Name::UnknownType,
     };
-    match found {
-        Some(kind) => Ok(kind),
-        None => {
-            let error = scanner.error(
-                "mesh.unsupported_element",
-                format!("{} (type {number}) cannot be read", one(name)),
-                place,
-            );
-            Err(error.value(number.to_string()).allowed(SUPPORTED))
-        }
-    }
+    Err(scanner.error(MeshFileError::UnsupportedType { element, number }, place))
 }
 
 /// Brings the nodes of an element into the order of Opruga: Gmsh lists the middles of edges 2–3 and 1–3 the other way round.

@@ -5,14 +5,15 @@
 //! # Source
 //! P. Frey, "Medit: an interactive mesh visualization software", INRIA RT-0253 (2001), section "File formats"; L. Maréchal, libMeshb.
 
+use super::errors::{MeshFileError, MeshFileNotice, ScanError};
+use super::format_errors::MeditError;
 use super::found::{Found, Kind};
 use super::scanner::Scanner;
+use super::terms::{ElementName, Expected};
 use crate::problem::{SceneError, visible};
 
 const SYNTAX: &str = "medit.syntax";
 const SIZE: &str = "medit.size";
-
-const SECOND_ORDER: &str = "triangles of 6 nodes and tetrahedra of 10 are read from Gmsh and VTK files";
 
 /// Reads a file.
 ///
@@ -20,28 +21,25 @@ const SECOND_ORDER: &str = "triangles of 6 nodes and tetrahedra of 10 are read f
 /// `medit.syntax`, `medit.size`, `medit.version`, `mesh.index`, `mesh.unsupported_element` with the line.
 pub(super) fn read(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
     scanner.expect(SYNTAX, "MeshVersionFormatted")?;
-    let (version, from) = scanner.whole::<u32>(SYNTAX, "the version")?;
+    let (version, from) = scanner.whole::<u32>(SYNTAX, Expected::Version)?;
     // 1 and 2 are single and double precision, 3 and 4 larger files: as text they look the same.
     if !(1..=4).contains(&version) {
-        let error = scanner.error("medit.version", format!("version `{version}` cannot be read"), from);
-        return Err(error.value(version.to_string()).allowed("1 to 4"));
+        return Err(scanner.error(MeditError::Version { version }, from));
     }
     let (mut found, mut dimension, mut seen) = (Found::default(), 0, false);
     let mut kinds = Vec::new();
     loop {
         // The keyword End is asked for: without it a file that is cut off would look whole.
-        let (word, from) = scanner.word(SYNTAX, "`End`")?;
+        let (word, from) = scanner.word(SYNTAX, Expected::End)?;
         let kind = match word {
             "End" => break,
             "Dimension" if dimension > 0 => {
-                let error = scanner.error(SYNTAX, format!("there is a second section `{word}`"), from);
-                return Err(error.value(visible(word)).allowed("one"));
+                return Err(scanner.error_of(SYNTAX, ScanError::SecondSection { section: word.into() }, from));
             }
             "Dimension" => {
-                let (number, at) = scanner.whole::<usize>(SYNTAX, "the dimension")?;
+                let (number, at) = scanner.whole::<usize>(SYNTAX, Expected::TheDimension)?;
                 if number != 2 && number != 3 {
-                    let error = scanner.error(SYNTAX, format!("the dimension is {number}"), at);
-                    return Err(error.value(number.to_string()).allowed("2 or 3"));
+                    return Err(scanner.error(MeditError::Dimension { dimension: number }, at));
                 }
                 dimension = number;
                 continue;
@@ -52,11 +50,8 @@ pub(super) fn read(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
                 continue;
             }
             "Vertices" => {
-                let what = if seen { "there are vertices twice" } else { "the vertices come before the dimension" };
-                return Err(scanner
-                    .error(SYNTAX, what, from)
-                    .value("Vertices")
-                    .allowed("Dimension, then Vertices once"));
+                let error = if seen { MeditError::VerticesTwice {} } else { MeditError::VerticesFirst {} };
+                return Err(scanner.error(error, from));
             }
             "Edges" => Kind::Line,
             "Triangles" => Kind::Triangle,
@@ -74,56 +69,51 @@ pub(super) fn read(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
             | "NormalAtVertices"
             | "Tangents"
             | "TangentAtVertices" => {
-                let (count, from) = scanner.whole::<u64>(SYNTAX, "a count")?;
-                scanner.line_end(SYNTAX, "a count")?;
-                for _ in 0..scanner.fits(SIZE, count, 2, "lines", from)? {
-                    scanner.word(SYNTAX, "a number")?;
+                let (count, from) = scanner.whole::<u64>(SYNTAX, Expected::Count)?;
+                scanner.line_end(SYNTAX, Expected::Count)?;
+                for _ in 0..scanner.fits(SIZE, count, 2, Expected::Lines, from)? {
+                    scanner.word(SYNTAX, Expected::Number)?;
                     scanner.line();
                 }
-                found.left_out(format!("{count} {} are left out", visible(word)), count.to_string());
+                found.left_out(MeshFileNotice::Lines { count, section: word.into() });
                 continue;
             }
             "Pyramids" | "Prisms" | "Pentahedra" | "EdgesP2" | "TrianglesP2" | "QuadrilateralsQ2" | "TetrahedraP2"
             | "HexahedraQ2" => {
-                let error = scanner.error("mesh.unsupported_element", format!("{word} cannot be read"), from);
-                let error = error.value(word).allowed("Edges, Triangles, Quadrilaterals, Tetrahedra, Hexahedra");
-                let is_quadratic = word.ends_with("P2") || word.ends_with("Q2");
-                return Err(if is_quadratic { error.hint(SECOND_ORDER) } else { error });
+                let keyword = word.to_string();
+                return Err(match word.ends_with("P2") || word.ends_with("Q2") {
+                    true => scanner.error(MeditError::Quadratic { keyword }, from),
+                    false => scanner.error(MeditError::Unsupported { keyword }, from),
+                });
             }
-            other => {
-                let error = scanner.error(SYNTAX, format!("`{}` is no keyword that can be read", visible(other)), from);
-                return Err(error.value(visible(other)).allowed("Dimension, Vertices, Triangles, Tetrahedra … or End"));
-            }
+            other => return Err(scanner.error(MeditError::Keyword { word: visible(other) }, from)),
         };
         if !seen {
-            let error = scanner.error(SYNTAX, format!("{word} come before the vertices"), from);
-            return Err(error.value(visible(word)).allowed("Vertices"));
+            return Err(scanner.error(MeditError::BeforeVertices { section: word.into() }, from));
         }
         if kinds.contains(&kind) {
-            let error = scanner.error(SYNTAX, format!("there is a second section `{word}`"), from);
-            return Err(error.value(visible(word)).allowed("one"));
+            return Err(scanner.error_of(SYNTAX, ScanError::SecondSection { section: word.into() }, from));
         }
         kinds.push(kind);
         elements(scanner, &mut found, kind)?;
     }
     if let Some((word, from)) = scanner.peek() {
-        let error = scanner.error(SYNTAX, "something follows `End`", from);
-        return Err(error.value(visible(word)).allowed("the end of the file"));
+        return Err(scanner.error(MeditError::BehindEnd { word: visible(word) }, from));
     }
     Ok(found)
 }
 
 fn vertices(scanner: &mut Scanner<'_>, found: &mut Found, dimension: usize) -> Result<(), SceneError> {
-    let (count, from) = scanner.whole::<u64>(SYNTAX, "the number of vertices")?;
-    for node in 0..scanner.fits(SIZE, count, 2 * (dimension as u64 + 1), "vertices", from)? {
+    let (count, from) = scanner.whole::<u64>(SYNTAX, Expected::NumberOfVertices)?;
+    for node in 0..scanner.fits(SIZE, count, 2 * (dimension as u64 + 1), Expected::Vertices, from)? {
         scanner.peek();
         let place = scanner.at;
         let mut position = [0.0; 3];
         for x in &mut position[..dimension] {
-            *x = scanner.number(SYNTAX, "a coordinate")?;
+            *x = scanner.number(SYNTAX, Expected::Coordinate)?;
         }
-        let (reference, _) = scanner.whole::<i64>(SYNTAX, "the reference of a vertex")?;
-        scanner.line_end(SYNTAX, "a vertex")?;
+        let (reference, _) = scanner.whole::<i64>(SYNTAX, Expected::ReferenceOfVertex)?;
+        scanner.line_end(SYNTAX, Expected::Vertex)?;
         found.node(node as u64 + 1, position, place);
         if reference != 0 {
             found.node_groups.entry(format!("vertex {reference}")).or_default().push(node as u32);
@@ -133,26 +123,26 @@ fn vertices(scanner: &mut Scanner<'_>, found: &mut Found, dimension: usize) -> R
 }
 
 fn elements(scanner: &mut Scanner<'_>, found: &mut Found, kind: Kind) -> Result<(), SceneError> {
-    let (count, from) = scanner.whole::<u64>(SYNTAX, "the number of elements")?;
+    let (count, from) = scanner.whole::<u64>(SYNTAX, Expected::NumberOfElements)?;
     let nodes = found.positions.len() as u64;
-    let name = if kind == Kind::Line { "edge" } else { kind.name() };
-    for number in 0..scanner.fits(SIZE, count, 2 * (kind.nodes() as u64 + 1), "elements", from)? {
+    let element = if kind == Kind::Line { ElementName::Edge } else { kind.name() };
+    for number in 0..scanner.fits(SIZE, count, 2 * (kind.nodes() as u64 + 1), Expected::Elements, from)? {
         scanner.peek();
         let place = scanner.at;
         let mut own = [0; 8];
         for slot in &mut own[..kind.nodes()] {
-            let (node, at) = scanner.whole::<u64>(SYNTAX, "the number of a vertex")?;
+            let (node, at) = scanner.whole::<u64>(SYNTAX, Expected::NumberOfVertex)?;
             if !(1..=nodes).contains(&node) {
-                let error = scanner.error("mesh.index", format!("{name} {} names vertex {node}", number + 1), at);
-                return Err(error.value(node.to_string()).allowed(format!("1 to {nodes}")));
+                let (index, least, most) = (number + 1, 1, nodes);
+                return Err(scanner.error(MeshFileError::NoVertex { element, index, vertex: node, least, most }, at));
             }
             *slot = (node - 1) as u32;
         }
-        let (reference, _) = scanner.whole::<i64>(SYNTAX, "the reference of an element")?;
-        scanner.line_end(SYNTAX, "an element")?;
+        let (reference, _) = scanner.whole::<i64>(SYNTAX, Expected::ReferenceOfElement)?;
+        scanner.line_end(SYNTAX, Expected::Element)?;
         found.item(kind, &own[..kind.nodes()], number as u64 + 1, place);
         if reference != 0 {
-            found.join(format!("{name} {reference}"));
+            found.join(format!("{element} {reference}"));
         }
     }
     Ok(())

@@ -10,6 +10,8 @@
 //! dropped, joined or turned unless it is asked for, and then it is counted.
 
 mod assemble;
+mod errors;
+mod format_errors;
 mod found;
 mod gmsh;
 mod gmsh_2;
@@ -17,15 +19,18 @@ mod gmsh_4;
 mod medit;
 mod mfem;
 mod scanner;
+mod terms;
 mod tetgen;
 mod vtk;
+mod vtk_errors;
 mod vtk_numbers;
 mod vtu;
 mod write;
 
 pub use assemble::Mending;
+pub(crate) use errors::MeshFileError;
 pub(crate) use found::{Found, Kind};
-pub(crate) use scanner::{MIDDLE_OF_LINE, middle_of_line};
+pub(crate) use scanner::cut_line;
 pub use write::{WRITTEN, Written, endings, write};
 
 use crate::problem::{SceneError, visible};
@@ -33,6 +38,30 @@ use found::Numbers;
 use opruga_mesh::Mesh;
 use scanner::Scanner;
 use std::sync::Arc;
+
+/// All messages about mesh files.
+pub(crate) const MESSAGES: &[&[opruga_math::message::Variant]] = &[
+    terms::ElementName::VARIANTS,
+    terms::Expected::VARIANTS,
+    errors::NumberHint::VARIANTS,
+    errors::CornerOrder::VARIANTS,
+    errors::NumberRange::VARIANTS,
+    errors::Listed::VARIANTS,
+    errors::Keyword::VARIANTS,
+    errors::ScanError::VARIANTS,
+    errors::MeshFileError::VARIANTS,
+    errors::MeshFileNotice::VARIANTS,
+    format_errors::GmshError::VARIANTS,
+    format_errors::MeditError::VARIANTS,
+    format_errors::MfemError::VARIANTS,
+    format_errors::Geometry::VARIANTS,
+    format_errors::Counts::VARIANTS,
+    format_errors::TetgenError::VARIANTS,
+    vtk_errors::ArrayName::VARIANTS,
+    vtk_errors::Doubled::VARIANTS,
+    vtk_errors::VtkError::VARIANTS,
+    vtk_errors::VtuError::VARIANTS,
+];
 
 /// Gives the bytes of a file by its name.
 pub type Open<'o> = dyn FnMut(&str) -> Result<Arc<[u8]>, SceneError> + 'o;
@@ -73,8 +102,7 @@ fn ending(name: &str) -> String {
 pub fn read<'a>(name: &'a str, bytes: &'a [u8], open: &mut Open<'_>) -> Result<MeshFile<'a>, SceneError> {
     let mut scanner = Scanner::new(name, bytes, None);
     if scanner.clone().is_done() {
-        let error = scanner.error("mesh.empty", "the file is empty", 0);
-        return Err(error.value("0 bytes").allowed("a mesh"));
+        return Err(scanner.error(MeshFileError::Empty {}, 0));
     }
     let mut beside = None;
     let found = match ending(name).as_str() {
@@ -93,10 +121,7 @@ pub fn read<'a>(name: &'a str, bytes: &'a [u8], open: &mut Open<'_>) -> Result<M
                 Some(("MeshVersionFormatted", _)) => medit::read(&mut scanner)?,
                 other => {
                     let (word, from) = other.unwrap_or(("", 0));
-                    let error = scanner.error("mesh.format", "the file is no mesh of MFEM or Medit", from);
-                    return Err(error
-                        .value(visible(word))
-                        .allowed("`MFEM mesh v1.0` or `MeshVersionFormatted 2` at its head"));
+                    return Err(scanner.error(MeshFileError::NeitherMfemNorMedit { word: visible(word) }, from));
                 }
             }
         }

@@ -1,15 +1,14 @@
 //! Words and binary numbers of a mesh file, one after the other, each with its place.
 
+use super::errors::{Keyword, NumberHint, NumberRange, ScanError};
+use super::terms::Expected;
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
+use opruga_math::message::AnyMessage;
 
-/// What is said where the last line of a text may be cut off.
-pub(crate) const MIDDLE_OF_LINE: &str = "the file ends in the middle of its last line, maybe of a number";
-
-/// Adds the word that the file ends with, and what helps.
-pub(crate) fn middle_of_line(error: SceneError, word: &[u8]) -> SceneError {
-    let error = error.value(visible(&String::from_utf8_lossy(word))).allowed("a line break behind the last word");
-    error.hint("end the last line with a line break if the file is whole; if not, it is cut off")
+/// A file that ends with a word and not with the end of a line.
+pub(crate) fn cut_line(code: &'static str, word: &[u8]) -> SceneError {
+    SceneError { code, ..SceneError::of(ScanError::CutLine { word: visible(&String::from_utf8_lossy(word)) }) }
 }
 
 /// Bytes that are read from front to back. What follows may be text or binary, in one file.
@@ -37,8 +36,7 @@ impl<'a> Scanner<'a> {
     /// Adds the place from one byte to another: line and column of a text, the byte of a binary file.
     pub(super) fn mark(&self, error: SceneError, from: usize, to: usize) -> SceneError {
         if self.binary {
-            let message = format!("{}, at byte {from}", error.message);
-            return SceneError { message, file: self.file.to_string(), ..error };
+            return SceneError { byte: Some(from), file: self.file.to_string(), ..error };
         }
         let good = match core::str::from_utf8(self.bytes) {
             Ok(text) => text,
@@ -48,8 +46,13 @@ impl<'a> Scanner<'a> {
     }
 
     /// An error at the word or number that begins at a byte.
-    pub(super) fn error(&self, code: &'static str, message: impl Into<String>, from: usize) -> SceneError {
-        self.at(SceneError::new(code, message), from)
+    pub(super) fn error(&self, message: impl Into<AnyMessage>, from: usize) -> SceneError {
+        self.at(SceneError::of(message), from)
+    }
+
+    /// The same under the code of a format.
+    pub(super) fn error_of(&self, code: &'static str, error: ScanError, from: usize) -> SceneError {
+        self.at(SceneError { code, ..SceneError::of(error) }, from)
     }
 
     /// The same for an error that has no place yet.
@@ -60,10 +63,10 @@ impl<'a> Scanner<'a> {
     }
 
     /// An error at the end of the file.
-    pub(super) fn ends(&self, code: &'static str, wanted: &str) -> SceneError {
+    pub(super) fn ends(&self, code: &'static str, wanted: impl Into<AnyMessage>) -> SceneError {
         let end = if self.binary { self.bytes.len() } else { self.bytes.trim_ascii_end().len() };
-        let error = SceneError::new(code, format!("the file ends where {wanted} should follow"));
-        self.mark(error, end, end).value("end of file").hint("the file is cut off")
+        let error = SceneError::of(ScanError::Ends { wanted: wanted.into() });
+        self.mark(SceneError { code, ..error }, end, end)
     }
 
     /// Skips blanks, and with `lines` also ends of lines and comments.
@@ -95,7 +98,7 @@ impl<'a> Scanner<'a> {
             return Ok(());
         }
         let from = last.iter().rposition(|b| b.is_ascii_whitespace()).map_or(from, |at| from + at + 1);
-        Err(middle_of_line(self.error(code, MIDDLE_OF_LINE, from), &self.bytes[from..]))
+        Err(self.at(cut_line(code, &self.bytes[from..]), from))
     }
 
     /// The next word and where it begins, without taking it; none at the end of the file.
@@ -109,7 +112,7 @@ impl<'a> Scanner<'a> {
     }
 
     /// The next word and where it begins.
-    pub(super) fn word(&mut self, code: &'static str, wanted: &str) -> Result<(&'a str, usize), SceneError> {
+    pub(super) fn word(&mut self, code: &'static str, wanted: Expected) -> Result<(&'a str, usize), SceneError> {
         let Some((word, from)) = self.peek() else { return Err(self.ends(code, wanted)) };
         self.at = from
             + self.bytes[from..].iter().take_while(|b| !b.is_ascii_whitespace() && Some(**b) != self.comment).count();
@@ -122,7 +125,7 @@ impl<'a> Scanner<'a> {
         if matches!(self.bytes.get(self.at), None | Some(b'\n')) {
             return None;
         }
-        self.word("", "").ok()
+        self.word("", Expected::Nothing).ok()
     }
 
     /// The rest of the line without blanks around it, and where it begins; the end of the line is taken.
@@ -135,7 +138,7 @@ impl<'a> Scanner<'a> {
     }
 
     /// Refuses anything else on the line; takes its end.
-    pub(super) fn line_end(&mut self, code: &'static str, of: &str) -> Result<(), SceneError> {
+    pub(super) fn line_end(&mut self, code: &'static str, of: Expected) -> Result<(), SceneError> {
         self.skip(false);
         match self.bytes.get(self.at) {
             None => Ok(()),
@@ -145,59 +148,60 @@ impl<'a> Scanner<'a> {
             }
             Some(_) => {
                 let from = self.at;
-                let (word, _) = self.word(code, "")?;
-                let error = self.error(code, format!("{of} has something behind it"), from);
-                Err(error.value(visible(word)).allowed("the end of the line"))
+                let (word, _) = self.word(code, Expected::Nothing)?;
+                Err(self.error_of(code, ScanError::Behind { of, word: visible(word) }, from))
             }
         }
     }
 
     /// A word that must be a certain one; upper and lower case are the same.
     pub(super) fn expect(&mut self, code: &'static str, wanted: &str) -> Result<(), SceneError> {
-        let (word, from) = self.word(code, &format!("`{wanted}`"))?;
-        if word.eq_ignore_ascii_case(wanted) {
-            return Ok(());
+        let Some((word, from)) = self.peek() else { return Err(self.ends(code, Keyword::One { word: wanted.into() })) };
+        if !word.eq_ignore_ascii_case(wanted) {
+            return Err(self.error_of(code, ScanError::Other { word: visible(word), wanted: wanted.into() }, from));
         }
-        let error = self.error(code, format!("`{}` stands where `{wanted}` should", visible(word)), from);
-        Err(error.value(visible(word)).allowed(wanted))
+        self.at = from + word.len();
+        Ok(())
     }
 
     /// The next word as a whole number.
     pub(super) fn whole<T: core::str::FromStr>(
         &mut self,
         code: &'static str,
-        what: &str,
+        what: Expected,
     ) -> Result<(T, usize), SceneError> {
         let (word, from) = self.word(code, what)?;
         match word.parse() {
             Ok(number) => Ok((number, from)),
-            Err(_) => {
-                let error = self.error(code, format!("`{}` stands where {what} should", visible(word)), from);
-                Err(error.value(visible(word)).allowed("a whole number"))
-            }
+            Err(_) => Err(self.error_of(code, ScanError::NotWhole { word: visible(word), what }, from)),
         }
     }
 
     /// The next word as a finite number.
-    pub(super) fn number(&mut self, code: &'static str, what: &str) -> Result<f64, SceneError> {
+    pub(super) fn number(&mut self, code: &'static str, what: Expected) -> Result<f64, SceneError> {
         let (word, from) = self.word(code, what)?;
         match word.parse::<f64>() {
             Ok(x) => self.finite(x, what, from),
-            Err(_) => {
-                let error = self.error(code, format!("`{}` stands where {what} should", visible(word)), from);
-                let error = error.value(visible(word)).allowed("a number such as 1.5 or -2e-3");
-                Err(if word.contains(',') { error.hint("write a point, not a comma") } else { error })
-            }
+            Err(_) => Err(self.no_number(code, word, what, NumberRange::Real {}, from)),
         }
     }
 
+    /// Refuses a word that is no number of a range.
+    pub(super) fn no_number(
+        &self,
+        code: &'static str,
+        word: &str,
+        what: Expected,
+        allowed: NumberRange,
+        from: usize,
+    ) -> SceneError {
+        let hint = word.contains(',').then_some(NumberHint::Comma);
+        self.error_of(code, ScanError::NotNumber { word: visible(word), what, allowed, hint }, from)
+    }
+
     /// Refuses a number that is not finite.
-    pub(super) fn finite(&self, x: f64, what: &str, from: usize) -> Result<f64, SceneError> {
-        if x.is_finite() {
-            return Ok(x);
-        }
-        let error = self.error("scene.not_finite", format!("{what} is not finite"), from);
-        Err(error.value(x.to_string()).allowed("a finite number"))
+    pub(super) fn finite(&self, x: f64, what: Expected, from: usize) -> Result<f64, SceneError> {
+        if x.is_finite() { Ok(x) } else { Err(self.error(ScanError::NotFiniteNumber { what, number: x }, from)) }
     }
 
     /// A count that the rest of the file can hold, where each thing takes `least` bytes or more.
@@ -206,19 +210,18 @@ impl<'a> Scanner<'a> {
         code: &'static str,
         count: u64,
         least: u64,
-        what: &str,
+        what: Expected,
         from: usize,
     ) -> Result<usize, SceneError> {
         let rest = (self.bytes.len() - self.at) as u64;
         if count.checked_mul(least).is_some_and(|bytes| bytes <= rest + least) {
             return Ok(count as usize);
         }
-        let error = self.error(code, format!("{count} {what} are promised, but only {rest} bytes follow"), from);
-        Err(error.value(count.to_string()).allowed(format!("at most {}", rest / least)).hint("the file is cut off"))
+        Err(self.error_of(code, ScanError::Promised { count, what, rest, most: rest / least }, from))
     }
 
     /// The next bytes.
-    pub(super) fn take(&mut self, count: usize, code: &'static str, what: &str) -> Result<&'a [u8], SceneError> {
+    pub(super) fn take(&mut self, count: usize, code: &'static str, what: Expected) -> Result<&'a [u8], SceneError> {
         match self.bytes.get(self.at..).and_then(|rest| rest.get(..count)) {
             Some(found) => {
                 self.at += count;
@@ -228,7 +231,7 @@ impl<'a> Scanner<'a> {
         }
     }
 
-    fn fixed<const N: usize>(&mut self, code: &'static str, what: &str) -> Result<[u8; N], SceneError> {
+    fn fixed<const N: usize>(&mut self, code: &'static str, what: Expected) -> Result<[u8; N], SceneError> {
         let bytes = self.take(N, code, what)?;
         let mut word = [0; N];
         word.copy_from_slice(bytes);
@@ -239,17 +242,17 @@ impl<'a> Scanner<'a> {
     }
 
     /// A binary whole number of 4 bytes.
-    pub(super) fn binary_i32(&mut self, code: &'static str, what: &str) -> Result<i32, SceneError> {
+    pub(super) fn binary_i32(&mut self, code: &'static str, what: Expected) -> Result<i32, SceneError> {
         self.fixed(code, what).map(i32::from_le_bytes)
     }
 
     /// A binary whole number of 8 bytes.
-    pub(super) fn binary_u64(&mut self, code: &'static str, what: &str) -> Result<u64, SceneError> {
+    pub(super) fn binary_u64(&mut self, code: &'static str, what: Expected) -> Result<u64, SceneError> {
         self.fixed(code, what).map(u64::from_le_bytes)
     }
 
     /// A binary number of 8 bytes, finite.
-    pub(super) fn binary_f64(&mut self, code: &'static str, what: &str) -> Result<f64, SceneError> {
+    pub(super) fn binary_f64(&mut self, code: &'static str, what: Expected) -> Result<f64, SceneError> {
         let from = self.at;
         let x = f64::from_le_bytes(self.fixed(code, what)?);
         self.finite(x, what, from)

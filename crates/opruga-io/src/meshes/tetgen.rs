@@ -5,10 +5,12 @@
 //! # Source
 //! Hang Si, TetGen manual 1.5, "File formats".
 
+use super::errors::MeshFileNotice;
+use super::format_errors::TetgenError;
 use super::found::{Found, Kind, Numbers};
 use super::scanner::Scanner;
+use super::terms::Expected;
 use crate::problem::SceneError;
-use opruga_math::words::counted;
 
 const SYNTAX: &str = "tetgen.syntax";
 const SIZE: &str = "tetgen.size";
@@ -19,41 +21,38 @@ const SIZE: &str = "tetgen.size";
 /// `tetgen.syntax`, `tetgen.size` with the line.
 pub(super) fn nodes(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
     let mut found = Found::default();
-    let (count, from) = scanner.whole::<u64>(SYNTAX, "the number of nodes")?;
-    let (dimension, at) = scanner.whole::<usize>(SYNTAX, "the dimension")?;
+    let (count, from) = scanner.whole::<u64>(SYNTAX, Expected::NumberOfNodes)?;
+    let (dimension, at) = scanner.whole::<usize>(SYNTAX, Expected::TheDimension)?;
     if dimension != 2 && dimension != 3 {
-        let error = scanner.error(SYNTAX, format!("nodes have {dimension} coordinates"), at);
-        return Err(error.value(dimension.to_string()).allowed("2 or 3"));
+        return Err(scanner.error(TetgenError::Coordinates { coordinates: dimension }, at));
     }
-    let (attributes, _) = scanner.whole::<usize>(SYNTAX, "the number of attributes")?;
-    let (markers, at) = scanner.whole::<usize>(SYNTAX, "the number of markers")?;
+    let (attributes, _) = scanner.whole::<usize>(SYNTAX, Expected::NumberOfAttributes)?;
+    let (markers, at) = scanner.whole::<usize>(SYNTAX, Expected::NumberOfMarkers)?;
     if markers > 1 {
-        let error = scanner.error(SYNTAX, format!("nodes have {markers} markers"), at);
-        return Err(error.value(markers.to_string()).allowed("0 or 1"));
+        return Err(scanner.error(TetgenError::Markers { markers }, at));
     }
-    scanner.line_end(SYNTAX, "the head")?;
-    for _ in 0..scanner.fits(SIZE, count, 2 * (1 + dimension as u64), "nodes", from)? {
-        let (number, place) = scanner.whole::<u64>(SYNTAX, "the number of a node")?;
+    scanner.line_end(SYNTAX, Expected::Head)?;
+    for _ in 0..scanner.fits(SIZE, count, 2 * (1 + dimension as u64), Expected::Nodes, from)? {
+        let (number, place) = scanner.whole::<u64>(SYNTAX, Expected::NumberOfNode)?;
         let mut position = [0.0; 3];
         for x in &mut position[..dimension] {
-            *x = scanner.number(SYNTAX, "a coordinate")?;
+            *x = scanner.number(SYNTAX, Expected::Coordinate)?;
         }
         for _ in 0..attributes {
-            scanner.number(SYNTAX, "an attribute")?;
+            scanner.number(SYNTAX, Expected::Attribute)?;
         }
         if markers == 1 {
-            let (marker, _) = scanner.whole::<i64>(SYNTAX, "a marker")?;
+            let (marker, _) = scanner.whole::<i64>(SYNTAX, Expected::Marker)?;
             if marker != 0 {
                 let node = found.positions.len() as u32;
                 found.node_groups.entry(format!("marker {marker}")).or_default().push(node);
             }
         }
-        scanner.line_end(SYNTAX, "a node")?;
+        scanner.line_end(SYNTAX, Expected::Node)?;
         found.node(number, position, place);
     }
     if attributes > 0 {
-        let what = counted(attributes as u64, "attribute of every node is", "attributes of every node are");
-        found.left_out(format!("{what} left out"), attributes.to_string());
+        found.left_out(MeshFileNotice::Attributes { count: attributes });
     }
     nothing_behind(scanner)?;
     Ok(found)
@@ -64,44 +63,39 @@ pub(super) fn nodes(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
 /// # Errors
 /// `tetgen.syntax`, `tetgen.size`, `mesh.index`, `mesh.unsupported_element` with the line.
 pub(super) fn elements(scanner: &mut Scanner<'_>, found: &mut Found, numbers: &Numbers) -> Result<(), SceneError> {
-    let (count, from) = scanner.whole::<u64>(SYNTAX, "the number of elements")?;
-    let (corners, at) = scanner.whole::<usize>(SYNTAX, "the number of nodes of an element")?;
+    let (count, from) = scanner.whole::<u64>(SYNTAX, Expected::NumberOfElements)?;
+    let (corners, at) = scanner.whole::<usize>(SYNTAX, Expected::NumberOfNodesOfElement)?;
     let kind = match corners {
         3 => Kind::Triangle,
         4 => Kind::Tetrahedron,
-        _ => {
-            let error = scanner.error("mesh.unsupported_element", format!("elements have {corners} nodes"), at);
-            let error = error.value(corners.to_string()).allowed("4 (tetrahedra) or 3 (triangles)");
-            return Err(error.hint("TetGen writes linear tetrahedra without the option -o2"));
-        }
+        _ => return Err(scanner.error(TetgenError::Corners { nodes: corners }, at)),
     };
-    let (attributes, _) = scanner.whole::<usize>(SYNTAX, "the number of attributes")?;
-    scanner.line_end(SYNTAX, "the head")?;
-    let count = scanner.fits(SIZE, count, 2 * (1 + corners as u64), "elements", from)?;
+    let (attributes, _) = scanner.whole::<usize>(SYNTAX, Expected::NumberOfAttributes)?;
+    scanner.line_end(SYNTAX, Expected::Head)?;
+    let count = scanner.fits(SIZE, count, 2 * (1 + corners as u64), Expected::Elements, from)?;
     let mut values: Vec<Vec<f64>> = Vec::new();
     let mut next: Option<u64> = None;
     for k in 0..count {
-        let (number, place) = scanner.whole::<u64>(SYNTAX, "the number of an element")?;
+        let (number, place) = scanner.whole::<u64>(SYNTAX, Expected::NumberOfElement)?;
         // Elements are counted: another number says that lines are missing, twice there or out of order.
-        if let Some(next) = next.filter(|next| number != *next) {
-            let error = scanner.error(SYNTAX, format!("element {number} stands where element {next} should"), place);
-            return Err(error.value(number.to_string()).allowed(next.to_string()));
+        if let Some(wanted) = next.filter(|next| number != *next) {
+            return Err(scanner.error(TetgenError::Order { element: number, wanted }, place));
         }
         next = Some(number.saturating_add(1));
         let mut nodes = [0; 4];
         for node in &mut nodes[..corners] {
-            let (named, at) = scanner.whole::<u64>(SYNTAX, "the number of a node")?;
-            *node = numbers.node(named, scanner, &format!("element {number}"), at)?;
+            let (named, at) = scanner.whole::<u64>(SYNTAX, Expected::NumberOfNode)?;
+            *node = numbers.node(named, scanner, Some(number), at)?;
         }
         for attribute in 0..attributes {
-            let value = scanner.number(SYNTAX, "an attribute")?;
+            let value = scanner.number(SYNTAX, Expected::Attribute)?;
             if values.len() == attribute {
                 values.push(Vec::new());
             }
             values[attribute].resize(k, f64::NAN);
             values[attribute].push(value);
         }
-        scanner.line_end(SYNTAX, "an element")?;
+        scanner.line_end(SYNTAX, Expected::Element)?;
         found.item(kind, &nodes[..corners], number, place);
     }
     for (attribute, values) in values.into_iter().enumerate() {
@@ -115,7 +109,5 @@ fn nothing_behind(scanner: &mut Scanner<'_>) -> Result<(), SceneError> {
     if scanner.is_done() {
         return scanner.last_line_ends(SYNTAX);
     }
-    let at = scanner.at;
-    let error = scanner.error(SIZE, "the file goes on behind what its head promises", at);
-    Err(error.value("more lines").allowed("as many lines as promised"))
+    Err(scanner.error(TetgenError::Behind {}, scanner.at))
 }

@@ -3,8 +3,11 @@
 //! # Source
 //! Kitware, "VTK File Formats", <https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html>.
 
-use super::found::{Found, Kind, SUPPORTED, is_kept};
+use super::errors::{Keyword, MeshFileError, MeshFileNotice, ScanError};
+use super::found::{Found, Kind, is_kept};
 use super::scanner::Scanner;
+use super::terms::{ElementName, Expected};
+use super::vtk_errors::VtkError;
 use super::vtk_numbers::{Number, Value};
 use crate::problem::{SceneError, visible};
 
@@ -33,39 +36,33 @@ pub(super) fn kind(number: u64) -> Option<(Kind, &'static [usize])> {
 pub(super) fn add(found: &mut Found, number: i128, nodes: &[i128], first: u32, place: usize) -> Result<(), SceneError> {
     let cell = found.items.len() as u64;
     let Some((kind, order)) = u64::try_from(number).ok().and_then(kind) else {
-        let name = match number {
-            2 => "set of points",
-            4 => "chain of lines",
-            6 => "strip of triangles",
-            7 => "polygon",
-            13 => "wedge",
-            14 => "pyramid",
-            23 | 28 => "quadratic quadrilateral",
-            25 | 29 => "quadratic hexahedron",
-            26 => "quadratic wedge",
-            27 => "quadratic pyramid",
-            42 => "polyhedron",
-            68..=81 => "cell of higher order",
-            _ => "cell of an unknown type",
+        let element = match number {
+            2 => ElementName::Points,
+            4 => ElementName::Lines,
+            6 => ElementName::Strip,
+            7 => ElementName::Polygon,
+            13 => ElementName::Wedge,
+            14 => ElementName::Pyramid,
+            23 | 28 => ElementName::QuadraticQuadrilateral,
+            25 | 29 => ElementName::QuadraticHexahedron,
+            26 => ElementName::QuadraticWedge,
+            27 => ElementName::QuadraticPyramid,
+            42 => ElementName::Polyhedron,
+            68..=81 => ElementName::HigherCell,
+            _ => ElementName::UnknownCell,
         };
-        let error = SceneError::new(
-            "mesh.unsupported_element",
-            format!("cell {cell}, a {name} (type {number}), cannot be read"),
-        );
-        return Err(error.value(number.to_string()).allowed(SUPPORTED));
+        return Err(SceneError::of(MeshFileError::UnsupportedCell { cell, element, number }));
     };
     if nodes.len() != order.len() {
-        let message = format!("cell {cell}, a {}, has {} nodes", kind.name(), nodes.len());
-        return Err(SceneError::new(SIZE, message).value(nodes.len().to_string()).allowed(order.len().to_string()));
+        let (element, nodes, wanted) = (kind.name(), nodes.len(), order.len());
+        return Err(SceneError::of(VtkError::CellNodes { cell, element, nodes, wanted }));
     }
     let mut own = [0; 10];
     let there = found.positions.len() as i128 - i128::from(first);
     for (slot, &from) in own.iter_mut().zip(order) {
         let node = nodes[from];
         if !(0..there).contains(&node) {
-            let message = format!("cell {cell} names node {node}");
-            let allowed = format!("0 to {}", (there - 1).max(0));
-            return Err(SceneError::new("mesh.index", message).value(node.to_string()).allowed(allowed));
+            return Err(SceneError::of(VtkError::NoNodeOfCell { cell, node, most: (there - 1).max(0) }));
         }
         *slot = first + node as u32;
     }
@@ -89,26 +86,21 @@ struct Reader<'s, 'a> {
 pub(super) fn read(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
     let (head, from) = scanner.line();
     if !head.starts_with("# vtk DataFile Version") {
-        let error = scanner.error(SYNTAX, "the file does not begin as VTK does", from);
-        return Err(error.value(visible(&head)).allowed("# vtk DataFile Version 3.0"));
+        return Err(scanner.error(VtkError::Head { head: visible(&head) }, from));
     }
     scanner.line();
-    let (kind, from) = scanner.word(SYNTAX, "ASCII or BINARY")?;
+    let (kind, from) = scanner.word(SYNTAX, Expected::AsciiOrBinary)?;
     let binary = match kind.to_ascii_uppercase().as_str() {
         "ASCII" => false,
         "BINARY" => true,
-        _ => {
-            let error = scanner.error(SYNTAX, format!("`{}` is no kind of file", visible(kind)), from);
-            return Err(error.value(visible(kind)).allowed("ASCII or BINARY"));
-        }
+        _ => return Err(scanner.error(VtkError::FileKind { word: visible(kind) }, from)),
     };
     scanner.binary = binary;
     scanner.big_endian = true;
     scanner.expect(SYNTAX, "DATASET")?;
-    let (set, from) = scanner.word(SYNTAX, "the kind of data set")?;
+    let (set, from) = scanner.word(SYNTAX, Expected::DataSet)?;
     if !set.eq_ignore_ascii_case("UNSTRUCTURED_GRID") {
-        let error = scanner.error(SYNTAX, format!("the data set is `{}`", visible(set)), from);
-        return Err(error.value(visible(set)).allowed("UNSTRUCTURED_GRID"));
+        return Err(scanner.error(VtkError::DataSet { word: visible(set) }, from));
     }
     let mut reader = Reader { scanner, binary, found: Found::default(), cells: Vec::new() };
     reader.sections()?;
@@ -123,11 +115,11 @@ impl Reader<'_, '_> {
         let mut of: Option<(bool, usize)> = None;
         while let Some((word, from)) = self.scanner.peek() {
             let word = word.to_ascii_uppercase();
-            self.scanner.word(SYNTAX, "")?;
+            self.scanner.word(SYNTAX, Expected::Nothing)?;
             if let Some(single) = ["POINTS", "CELLS", "CELL_TYPES"].into_iter().find(|single| word == *single) {
                 if seen.contains(&single) {
-                    let error = self.scanner.error(SYNTAX, format!("there is a second section `{single}`"), from);
-                    return Err(error.value(single).allowed("one"));
+                    let twice = ScanError::SecondSection { section: single.into() };
+                    return Err(self.scanner.error_of(SYNTAX, twice, from));
                 }
                 seen.push(single);
             }
@@ -136,13 +128,14 @@ impl Reader<'_, '_> {
                 "CELLS" => self.connectivity()?,
                 "CELL_TYPES" => self.types(from)?,
                 "CELL_DATA" | "POINT_DATA" => {
-                    let (count, at) = self.scanner.whole::<u64>(SYNTAX, "a count")?;
+                    let (count, at) = self.scanner.whole::<u64>(SYNTAX, Expected::Count)?;
                     let cells = word == "CELL_DATA";
                     let there = if cells { self.cells.len() } else { self.found.positions.len() };
                     if count != there as u64 {
-                        let what = if cells { "cells" } else { "points" };
-                        let error = self.scanner.error(SIZE, format!("there are {there} {what}, not {count}"), at);
-                        return Err(error.value(count.to_string()).allowed(there.to_string()));
+                        return Err(match cells {
+                            true => self.scanner.error(VtkError::Cells { there: there as u64, count }, at),
+                            false => self.scanner.error(VtkError::Points { there, count }, at),
+                        });
                     }
                     of = Some((cells, there));
                 }
@@ -158,15 +151,14 @@ impl Reader<'_, '_> {
                 | "LOOKUP_TABLE" => {
                     self.attribute(&word, of, from)?;
                 }
-                _ => {
-                    let error = self.scanner.error(SYNTAX, format!("`{}` is no keyword", visible(&word)), from);
-                    let allowed = "POINTS, CELLS, CELL_TYPES, CELL_DATA, POINT_DATA, FIELD, SCALARS …";
-                    return Err(error.value(visible(&word)).allowed(allowed));
-                }
+                _ => return Err(self.scanner.error(VtkError::Keyword { word: visible(&word) }, from)),
             }
         }
         if !seen.contains(&"CELL_TYPES") {
-            let wanted = if self.found.positions.is_empty() { "`POINTS`" } else { "`CELLS` and `CELL_TYPES`" };
+            let wanted = match self.found.positions.is_empty() {
+                true => Keyword::One { word: "POINTS".into() },
+                false => Keyword::Two { first: "CELLS", second: "CELL_TYPES" },
+            };
             return Err(self.scanner.ends(SYNTAX, wanted));
         }
         // Binary numbers have their length.
@@ -174,11 +166,13 @@ impl Reader<'_, '_> {
     }
 
     fn number_type(&mut self) -> Result<Number, SceneError> {
-        let (word, from) = self.scanner.word(SYNTAX, "a type of numbers")?;
-        Number::named(word).ok_or_else(|| {
-            let error = self.scanner.error(SYNTAX, format!("`{}` is no type of numbers", visible(word)), from);
-            error.value(visible(word)).allowed("int, long, float, double …")
-        })
+        let (word, from) = self.scanner.word(SYNTAX, Expected::NumberType)?;
+        Number::named(word).ok_or_else(|| self.no_type(word, from))
+    }
+
+    fn no_type(&self, word: &str, from: usize) -> SceneError {
+        let error = ScanError::NumberType { word: visible(word), allowed: "int, long, float, double …" };
+        self.scanner.error_of(SYNTAX, error, from)
     }
 
     /// What is made of the numbers of an array. In binary they begin behind the end of the line.
@@ -186,11 +180,11 @@ impl Reader<'_, '_> {
         &mut self,
         (count, from): (u64, usize),
         kind: Number,
-        what: &str,
+        what: Expected,
         made: impl Fn(&Scanner<'_>, Value, usize) -> Result<T, SceneError>,
     ) -> Result<Vec<(T, usize)>, SceneError> {
         if self.binary {
-            self.scanner.line_end(SYNTAX, "the head of an array")?;
+            self.scanner.line_end(SYNTAX, Expected::HeadOfArray)?;
         }
         let least = if self.binary { kind.size() as u64 } else { 2 };
         let count = self.scanner.fits(SIZE, count, least, what, from)?;
@@ -205,43 +199,48 @@ impl Reader<'_, '_> {
     }
 
     /// Numbers of an array, which may be real ones.
-    fn values(&mut self, count: u64, kind: Number, what: &str, from: usize) -> Result<Vec<(f64, usize)>, SceneError> {
+    fn values(
+        &mut self,
+        count: u64,
+        kind: Number,
+        what: Expected,
+        from: usize,
+    ) -> Result<Vec<(f64, usize)>, SceneError> {
         self.array((count, from), kind, what, |_, value, _| Ok(value.real()))
     }
 
     /// Whole numbers of an array, whatever its type.
-    fn wholes(&mut self, count: u64, kind: Number, what: &str, from: usize) -> Result<Vec<(i128, usize)>, SceneError> {
+    fn wholes(
+        &mut self,
+        count: u64,
+        kind: Number,
+        what: Expected,
+        from: usize,
+    ) -> Result<Vec<(i128, usize)>, SceneError> {
         self.array((count, from), kind, what, |scanner, value, place| {
-            value.whole().map_err(|x| {
-                let error = scanner.error(SYNTAX, format!("`{x}` stands where {what} should"), place);
-                error.value(x.to_string()).allowed("a whole number")
-            })
+            let refused = |x: f64| scanner.error_of(SYNTAX, ScanError::NotWhole { word: x.to_string(), what }, place);
+            value.whole().map_err(refused)
         })
     }
 
-    fn value(&mut self, kind: Number, what: &str) -> Result<Value, SceneError> {
+    fn value(&mut self, kind: Number, what: Expected) -> Result<Value, SceneError> {
         let scanner = &mut *self.scanner;
         let (value, from) = if self.binary {
             let from = scanner.at;
             (kind.of_bytes(scanner.take(kind.size(), SIZE, what)?, true), from)
         } else {
             let (word, from) = scanner.word(SYNTAX, what)?;
-            let value = kind.of_word(word).map_err(|allowed| {
-                let error = scanner.error(SYNTAX, format!("`{}` stands where {what} should", visible(word)), from);
-                let error = error.value(visible(word)).allowed(allowed);
-                if word.contains(',') { error.hint("write a point, not a comma") } else { error }
-            })?;
-            (value, from)
+            (kind.of_word(word).map_err(|allowed| scanner.no_number(SYNTAX, word, what, allowed, from))?, from)
         };
         scanner.finite(value.real(), what, from)?;
         Ok(value)
     }
 
     fn points(&mut self) -> Result<(), SceneError> {
-        let (count, from) = self.scanner.whole::<u64>(SYNTAX, "the number of points")?;
+        let (count, from) = self.scanner.whole::<u64>(SYNTAX, Expected::NumberOfPoints)?;
         let kind = self.number_type()?;
         self.found.single |= kind == Number::Real(4);
-        let numbers = self.values(count.saturating_mul(3), kind, "coordinates", from)?;
+        let numbers = self.values(count.saturating_mul(3), kind, Expected::Coordinates, from)?;
         for (number, x) in numbers.chunks_exact(3).enumerate() {
             self.found.node(number as u64, [x[0].0, x[1].0, x[2].0], x[0].1);
         }
@@ -250,77 +249,68 @@ impl Reader<'_, '_> {
 
     /// `CELLS n size`, each with the count of its nodes; since version 5.1 `CELLS n+1 size` with `OFFSETS` and `CONNECTIVITY`.
     fn connectivity(&mut self) -> Result<(), SceneError> {
-        let (count, from) = self.scanner.whole::<u64>(SYNTAX, "the number of cells")?;
-        let (size, size_from) = self.scanner.whole::<u64>(SYNTAX, "the size of the list of cells")?;
+        let (count, from) = self.scanner.whole::<u64>(SYNTAX, Expected::NumberOfCells)?;
+        let (size, size_from) = self.scanner.whole::<u64>(SYNTAX, Expected::SizeOfCells)?;
         let ahead = (self.scanner.at, self.scanner.peek().map(|(word, _)| word.to_ascii_uppercase()));
         if ahead.1.as_deref() == Some("OFFSETS") {
             self.scanner.expect(SYNTAX, "OFFSETS")?;
             let kind = self.number_type()?;
-            let offsets = self.wholes(count, kind, "offsets", from)?;
+            let offsets = self.wholes(count, kind, Expected::Offsets, from)?;
             self.scanner.expect(SYNTAX, "CONNECTIVITY")?;
             let kind = self.number_type()?;
-            let nodes = self.wholes(size, kind, "nodes of cells", size_from)?;
+            let nodes = self.wholes(size, kind, Expected::NodesOfCells, size_from)?;
             // What no cell names would be lost.
             let there = nodes.len() as i128;
-            let ends = [(offsets.first(), 0, "first cell begins"), (offsets.last(), there, "last cell ends")];
-            for (end, wanted, which) in ends {
-                if let Some((number, place)) = end.filter(|(number, _)| *number != wanted) {
-                    let error = self.scanner.error(SIZE, format!("the {which} at {number}"), *place);
-                    return Err(error.value(number.to_string()).allowed(wanted.to_string()));
-                }
+            if let Some(&(offset, place)) = offsets.first().filter(|(offset, _)| *offset != 0) {
+                return Err(self.scanner.error(VtkError::FirstOffset { offset, wanted: 0 }, place));
+            }
+            if let Some(&(offset, place)) = offsets.last().filter(|(offset, _)| *offset != there) {
+                return Err(self.scanner.error(VtkError::LastOffset { offset, wanted: there }, place));
             }
             for pair in offsets.windows(2) {
                 let (start, end) = (pair[0].0, pair[1].0);
                 if !(start <= end && end <= there) {
-                    let error = self.scanner.error(SIZE, format!("a cell reaches from {start} to {end}"), pair[1].1);
-                    return Err(error.value(end.to_string()).allowed(format!("{start} to {there}")));
+                    return Err(self.scanner.error(VtkError::Reach { start, end, most: there }, pair[1].1));
                 }
                 let own = &nodes[start as usize..end as usize];
-                let place = own.first().map_or(pair[0].1, |x| x.1);
-                self.cells.push((place, own.iter().map(|x| x.0).collect()));
+                let begin = own.first().map_or(pair[0].1, |x| x.1);
+                self.cells.push((begin, own.iter().map(|x| x.0).collect()));
             }
             return Ok(());
         }
         self.scanner.at = ahead.0;
-        let numbers = self.wholes(size, Number::Whole(4, true), "nodes of cells", size_from)?;
+        let numbers = self.wholes(size, Number::Whole(4, true), Expected::NodesOfCells, size_from)?;
         let mut rest = &numbers[..];
         for cell in 0..count {
             let there = rest.len().saturating_sub(1);
             let Some(&(length, place)) = rest.first() else {
-                let error = self.scanner.error(SIZE, format!("there are {cell} cells, not {count}"), from);
-                return Err(error.value(count.to_string()).allowed(cell.to_string()));
+                return Err(self.scanner.error(VtkError::Cells { there: cell, count }, from));
             };
             if !(0..=there as i128).contains(&length) {
-                let error = self.scanner.error(SIZE, format!("a cell has {length} nodes, but {there} follow"), place);
-                return Err(error.value(length.to_string()).allowed(format!("at most {there}")));
+                return Err(self.scanner.error(VtkError::Follow { nodes: length, there }, place));
             }
             let (own, behind) = rest[1..].split_at(length as usize);
             self.cells.push((place, own.iter().map(|x| x.0).collect()));
             rest = behind;
         }
         if !rest.is_empty() {
-            let error = self.scanner.error(SIZE, format!("numbers follow the last cell: {}", rest.len()), rest[0].1);
-            return Err(error.value(size.to_string()).allowed((size - rest.len() as u64).to_string()));
+            let (numbers, wanted) = (rest.len(), size - rest.len() as u64);
+            return Err(self.scanner.error(VtkError::BehindCells { numbers, size, wanted }, rest[0].1));
         }
         Ok(())
     }
 
     fn types(&mut self, at: usize) -> Result<(), SceneError> {
-        let (count, from) = self.scanner.whole::<u64>(SYNTAX, "the number of cells")?;
+        let (count, from) = self.scanner.whole::<u64>(SYNTAX, Expected::NumberOfCells)?;
         if count != self.cells.len() as u64 || self.found.positions.is_empty() {
-            let error = self.scanner.error(
-                SIZE,
-                format!("there are types for {count} cells"),
-                if count == 0 { at } else { from },
-            );
-            return Err(error.value(count.to_string()).allowed(self.cells.len().to_string()));
+            let begin = if count == 0 { at } else { from };
+            return Err(self.scanner.error(VtkError::Types { count, cells: self.cells.len() }, begin));
         }
-        let types = self.wholes(count, Number::Whole(4, true), "types of cells", from)?;
+        let types = self.wholes(count, Number::Whole(4, true), Expected::TypesOfCells, from)?;
         for ((place, nodes), (number, at)) in self.cells.iter().zip(types) {
             add(&mut self.found, number, nodes, 0, *place).map_err(|error| {
                 let at = if error.code == "mesh.unsupported_element" { at } else { *place };
-                let marked = self.scanner.error(error.code, error.message.clone(), at);
-                SceneError { value: error.value, allowed: error.allowed, ..marked }
+                self.scanner.at(error, at)
             })?;
         }
         Ok(())
@@ -337,13 +327,13 @@ impl Reader<'_, '_> {
         match of {
             Some((true, _)) if components == 1 => {
                 if self.found.item_values.contains_key(name) {
-                    return Err(twice(self.scanner.error(SYNTAX, values_twice(false, name), at), name));
+                    return Err(self.scanner.error_of(SYNTAX, values_twice(false, name), at));
                 }
                 self.found.item_values.insert(name.to_string(), values.into_iter().map(|x| x.0).collect());
             }
             Some((false, _)) if is_kept(components) => {
                 if self.found.node_values.contains_key(name) {
-                    return Err(twice(self.scanner.error(SYNTAX, values_twice(true, name), at), name));
+                    return Err(self.scanner.error_of(SYNTAX, values_twice(true, name), at));
                 }
                 let numbers = values.into_iter().map(|x| x.0);
                 let kept = self.found.values_of_nodes(name, 0, components as usize, numbers);
@@ -351,42 +341,37 @@ impl Reader<'_, '_> {
             }
             // Data of the whole file is no part of the body: time, cycle and the like.
             None => {}
-            Some(_) => {
-                let what = format!("the values `{}` are left out", visible(name));
-                self.found.left_out(what, visible(name));
-            }
+            Some(_) => self.found.left_out(MeshFileNotice::Values { name: visible(name) }),
         }
         Ok(())
     }
 
     fn field(&mut self, of: Option<(bool, usize)>) -> Result<(), SceneError> {
-        self.scanner.word(SYNTAX, "the name of a field")?;
-        let (count, from) = self.scanner.whole::<u64>(SYNTAX, "the number of arrays")?;
-        for _ in 0..self.scanner.fits(SIZE, count, 6, "arrays", from)? {
-            let (mut name, mut at_name) = self.scanner.word(SYNTAX, "the name of an array")?;
+        self.scanner.word(SYNTAX, Expected::NameOfField)?;
+        let (count, from) = self.scanner.whole::<u64>(SYNTAX, Expected::NumberOfArrays)?;
+        for _ in 0..self.scanner.fits(SIZE, count, 6, Expected::Arrays, from)? {
+            let (mut name, mut at_name) = self.scanner.word(SYNTAX, Expected::NameOfArray)?;
             if name.eq_ignore_ascii_case("METADATA") {
                 self.metadata();
-                (name, at_name) = self.scanner.word(SYNTAX, "the name of an array")?;
+                (name, at_name) = self.scanner.word(SYNTAX, Expected::NameOfArray)?;
             }
-            let (components, _) = self.scanner.whole::<u64>(SYNTAX, "the number of components")?;
-            let (tuples, from) = self.scanner.whole::<u64>(SYNTAX, "the number of values")?;
+            let (components, _) = self.scanner.whole::<u64>(SYNTAX, Expected::NumberOfComponents)?;
+            let (tuples, from) = self.scanner.whole::<u64>(SYNTAX, Expected::NumberOfValues)?;
             if let Some((cells, there)) = of
                 && tuples != there as u64
             {
-                let what = if cells { "cells" } else { "points" };
-                let error = self.scanner.error(SIZE, format!("{tuples} values for {there} {what}"), from);
-                return Err(error.value(tuples.to_string()).allowed(there.to_string()));
+                let error = match cells {
+                    true => VtkError::ValuesOfCells { values: tuples, cells: there },
+                    false => VtkError::ValuesOfPoints { values: tuples, points: there },
+                };
+                return Err(self.scanner.error(error, from));
             }
-            let (word, at) = self.scanner.word(SYNTAX, "a type of numbers")?;
+            let (word, at) = self.scanner.word(SYNTAX, Expected::NumberType)?;
             if word.eq_ignore_ascii_case("string") {
-                let error = self.scanner.error(SYNTAX, "a field of texts cannot be read", at);
-                return Err(error.value("string").allowed("numbers"));
+                return Err(self.scanner.error(VtkError::Texts {}, at));
             }
-            let Some(kind) = Number::named(word) else {
-                let error = self.scanner.error(SYNTAX, format!("`{}` is no type of numbers", visible(word)), at);
-                return Err(error.value(visible(word)).allowed("int, long, float, double …"));
-            };
-            let values = self.values(tuples.saturating_mul(components), kind, "values", from)?;
+            let Some(kind) = Number::named(word) else { return Err(self.no_type(word, at)) };
+            let values = self.values(tuples.saturating_mul(components), kind, Expected::Values, from)?;
             let name = name.replace("%20", " ");
             self.keep((&name, at_name), components, values, of)?;
         }
@@ -401,47 +386,44 @@ impl Reader<'_, '_> {
 
     fn attribute(&mut self, word: &str, of: Option<(bool, usize)>, at: usize) -> Result<(), SceneError> {
         let Some((_, there)) = of else {
-            let error = self.scanner.error(SYNTAX, format!("`{word}` stands before CELL_DATA and POINT_DATA"), at);
-            return Err(error.value(word).allowed("CELL_DATA or POINT_DATA before it"));
+            return Err(self.scanner.error(VtkError::BeforeData { word: word.into() }, at));
         };
-        let (name, at_name) = self.scanner.word(SYNTAX, "the name of values")?;
+        let (name, at_name) = self.scanner.word(SYNTAX, Expected::NameOfValues)?;
         let name = name.replace("%20", " ");
         let (components, kind, count) = match word {
             "SCALARS" => {
                 let kind = self.number_type()?;
                 let components = match self.scanner.word_of_line() {
-                    Some((text, from)) => text.parse().map_err(|_| {
-                        let error =
-                            self.scanner.error(SYNTAX, format!("`{}` is no number of components", visible(text)), from);
-                        error.value(visible(text)).allowed("1 to 4")
-                    })?,
+                    Some((text, from)) => text
+                        .parse()
+                        .map_err(|_| self.scanner.error(VtkError::Components { word: visible(text) }, from))?,
                     None => 1,
                 };
                 if self.scanner.peek().is_some_and(|(word, _)| word.eq_ignore_ascii_case("LOOKUP_TABLE")) {
                     self.scanner.expect(SYNTAX, "LOOKUP_TABLE")?;
-                    self.scanner.word(SYNTAX, "the name of a table")?;
+                    self.scanner.word(SYNTAX, Expected::NameOfTable)?;
                 }
                 (components, kind, there as u64)
             }
             "COLOR_SCALARS" => {
-                let (components, _) = self.scanner.whole::<u64>(SYNTAX, "the number of components")?;
+                let (components, _) = self.scanner.whole::<u64>(SYNTAX, Expected::NumberOfComponents)?;
                 (components, if self.binary { Number::Whole(1, false) } else { Number::Real(4) }, there as u64)
             }
             "LOOKUP_TABLE" => {
-                let (rows, _) = self.scanner.whole::<u64>(SYNTAX, "the number of colours")?;
+                let (rows, _) = self.scanner.whole::<u64>(SYNTAX, Expected::NumberOfColours)?;
                 (4, if self.binary { Number::Whole(1, false) } else { Number::Real(4) }, rows)
             }
             "TEXTURE_COORDINATES" => {
-                let (components, _) = self.scanner.whole::<u64>(SYNTAX, "the number of components")?;
+                let (components, _) = self.scanner.whole::<u64>(SYNTAX, Expected::NumberOfComponents)?;
                 (components, self.number_type()?, there as u64)
             }
             "TENSORS" => (9, self.number_type()?, there as u64),
             "TENSORS6" => (6, self.number_type()?, there as u64),
             _ => (3, self.number_type()?, there as u64),
         };
-        let values = self.values(count.saturating_mul(components), kind, "values", at)?;
+        let values = self.values(count.saturating_mul(components), kind, Expected::Values, at)?;
         if word == "LOOKUP_TABLE" {
-            self.found.left_out(format!("the colours `{}` are left out", visible(&name)), visible(&name));
+            self.found.left_out(MeshFileNotice::Colours { name: visible(&name) });
         } else {
             self.keep((&name, at_name), components, values, of)?;
         }
@@ -449,17 +431,8 @@ impl Reader<'_, '_> {
     }
 }
 
-/// What is said where cells or points have values of one name twice.
-pub(super) fn values_twice(of_points: bool, name: &str) -> String {
+/// What is wrong where cells or points have values of one name twice.
+pub(super) fn values_twice(of_points: bool, name: &str) -> ScanError {
     let name = visible(name);
-    if of_points {
-        format!("the points have values `{name}` twice")
-    } else {
-        format!("the cells have values `{name}` twice")
-    }
-}
-
-/// An error at the second of them.
-pub(super) fn twice(error: SceneError, name: &str) -> SceneError {
-    error.value(visible(name)).allowed("a name of its own for every array")
+    if of_points { ScanError::PointValuesTwice { name } } else { ScanError::CellValuesTwice { name } }
 }

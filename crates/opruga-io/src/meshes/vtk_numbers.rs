@@ -1,5 +1,7 @@
 //! Numbers of arrays in files of VTK: each is of a type, which says what it may be.
 
+use super::errors::NumberRange;
+
 /// The type of the numbers of an array.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Number {
@@ -92,21 +94,22 @@ impl Number {
     }
 
     /// A number from its word, or what the word should be instead.
-    pub(super) fn of_word(self, word: &str) -> Result<Value, String> {
+    pub(super) fn of_word(self, word: &str) -> Result<Value, NumberRange> {
         match self {
             Number::Real(size) => match word.parse::<f64>() {
                 Ok(x) if size == 4 && x.is_finite() && !(x as f32).is_finite() => {
-                    Err(format!("a number >= {:e} and <= {:e}", f32::MIN, f32::MAX))
+                    let (least, most) = (format!("{:e}", f32::MIN), format!("{:e}", f32::MAX));
+                    Err(NumberRange::Between { least, most })
                 }
                 Ok(x) => Ok(Value::Real(x)),
-                Err(_) => Err("a number such as 1.5 or -2e-3".into()),
+                Err(_) => Err(NumberRange::Real {}),
             },
             Number::Whole(size, signed) => {
                 let count = 1i128 << (8 * size);
-                let [low, high] = if signed { [-count / 2, count / 2 - 1] } else { [0, count - 1] };
+                let [least, most] = if signed { [-count / 2, count / 2 - 1] } else { [0, count - 1] };
                 match word.parse::<i128>() {
-                    Ok(x) if (low..=high).contains(&x) => Ok(Value::Whole(x)),
-                    _ => Err(format!("a whole number from {low} to {high}")),
+                    Ok(x) if (least..=most).contains(&x) => Ok(Value::Whole(x)),
+                    _ => Err(NumberRange::Whole { least, most }),
                 }
             }
         }

@@ -3,12 +3,14 @@
 //! # Source
 //! Kitware, "VTK XML Formats", <https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html>.
 
+use super::errors::{MeshFileNotice, ScanError};
 use super::found::{Found, is_kept};
 use super::scanner::Scanner;
 use super::vtk;
+use super::vtk_errors::{ArrayName, Doubled, VtuError};
 use super::vtk_numbers::{Number, Value};
 use crate::base64;
-use crate::budget::{NUMBERS, NUMBERS_PER_BYTE};
+use crate::budget::{LimitHint, NUMBERS, NUMBERS_PER_BYTE};
 use crate::problem::{SceneError, visible};
 use roxmltree::{Document, Node, ParsingOptions};
 use std::cell::Cell;
@@ -16,7 +18,6 @@ use std::collections::BTreeSet;
 use std::io::Read;
 
 const SYNTAX: &str = "vtu.syntax";
-const SIZE: &str = "vtu.size";
 
 /// No compression of zlib makes data more than about so many times smaller.
 const MOST_COMPRESSED: u64 = 1100;
@@ -35,8 +36,13 @@ struct Reader<'a> {
 }
 
 /// An error at an element of the file.
-fn at(scanner: &Scanner<'_>, node: Node<'_, '_>, code: &'static str, message: impl Into<String>) -> SceneError {
-    marked(scanner, node, SceneError::new(code, message))
+fn at(scanner: &Scanner<'_>, node: Node<'_, '_>, message: VtuError) -> SceneError {
+    marked(scanner, node, SceneError::of(message))
+}
+
+/// The same for what files of other formats say too.
+fn common(scanner: &Scanner<'_>, node: Node<'_, '_>, message: ScanError) -> SceneError {
+    marked(scanner, node, SceneError { code: SYNTAX, ..SceneError::of(message) })
 }
 
 /// The same for an error that has no place yet.
@@ -70,50 +76,33 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Found, SceneError> {
     let scanner = Scanner::new(file, &head, None);
     let text = match core::str::from_utf8(&head) {
         Ok(text) => text,
-        Err(e) => {
-            let error = scanner.error(SYNTAX, "the file is no text in UTF-8", e.valid_up_to());
-            return Err(error.value(format!("byte {}", e.valid_up_to())).hint("it is cut off, or no VTU"));
-        }
+        Err(e) => return Err(scanner.error(VtuError::Encoding { byte: e.valid_up_to() }, e.valid_up_to())),
     };
     let options = ParsingOptions { nodes_limit: 1_000_000, ..ParsingOptions::default() };
     let document = Document::parse_with_options(text, options).map_err(|e| {
         let place = e.pos();
         let from = crate::source::Source { file, text }.offset(place.row as usize, place.col as usize);
-        scanner
-            .error(SYNTAX, format!("this is no well-formed XML: {}", visible(&e.to_string())), from)
-            .value("XML")
-            .hint("the file is cut off, or no VTU")
+        scanner.error(VtuError::Xml { reason: visible(&e.to_string()) }, from)
     })?;
     let root = document.root_element();
     if root.tag_name().name() != "VTKFile" || root.attribute("type") != Some("UnstructuredGrid") {
         let kind = root.attribute("type").unwrap_or(root.tag_name().name());
-        let error = at(&scanner, root, SYNTAX, format!("the file holds `{}`", visible(kind)));
-        return Err(error.value(visible(kind)).allowed("<VTKFile type=\"UnstructuredGrid\">"));
+        return Err(at(&scanner, root, VtuError::Kind { kind: visible(kind) }));
     }
     let compressor = root.attribute("compressor");
     if !matches!(compressor, None | Some("vtkZLibDataCompressor")) {
         let name = visible(compressor.unwrap_or(""));
-        let error = at(&scanner, root, "vtu.compressor", format!("data compressed by `{name}` cannot be read"));
-        return Err(error
-            .value(name)
-            .allowed("vtkZLibDataCompressor, or none")
-            .hint("ParaView saves with other compressors too"));
+        return Err(at(&scanner, root, VtuError::Compressor { name }));
     }
     let header = match root.attribute("header_type") {
         None | Some("UInt32") => 4,
         Some("UInt64") => 8,
-        Some(other) => {
-            let error = at(&scanner, root, SYNTAX, format!("`{}` is no type of headers", visible(other)));
-            return Err(error.value(visible(other)).allowed("UInt32, UInt64"));
-        }
+        Some(other) => return Err(at(&scanner, root, VtuError::HeaderType { word: visible(other) })),
     };
     let big_endian = match root.attribute("byte_order") {
         None | Some("LittleEndian") => false,
         Some("BigEndian") => true,
-        Some(other) => {
-            let error = at(&scanner, root, SYNTAX, format!("`{}` is no order of bytes", visible(other)));
-            return Err(error.value(visible(other)).allowed("LittleEndian, BigEndian"));
-        }
+        Some(other) => return Err(at(&scanner, root, VtuError::ByteOrder { word: visible(other) })),
     };
     let reader = Reader {
         scanner: &scanner,
@@ -139,22 +128,17 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Found, SceneError> {
     found.item_values.values_mut().for_each(|values| values.resize(items, f64::NAN));
     found.node_values.values_mut().for_each(|field| field.values.resize(nodes * field.components, f64::NAN));
     if !any {
-        return Err(at(&scanner, root, SYNTAX, "there is no piece")
-            .value("0")
-            .allowed("<Piece> in <UnstructuredGrid>"));
+        return Err(at(&scanner, root, VtuError::NoPiece {}));
     }
     Ok(found)
 }
 
 impl Reader<'_> {
-    fn count(&self, piece: Node<'_, '_>, name: &str) -> Result<u64, SceneError> {
-        let text = piece.attribute(name).unwrap_or("");
+    fn count(&self, piece: Node<'_, '_>, attribute: &'static str) -> Result<u64, SceneError> {
+        let text = piece.attribute(attribute).unwrap_or("");
         match text.parse() {
             Ok(count) if count <= 1 << 31 => Ok(count),
-            _ => {
-                let error = at(self.scanner, piece, SYNTAX, format!("{name} is `{}`", visible(text)));
-                Err(error.value(visible(text)).allowed("a whole number up to 2147483648"))
-            }
+            _ => Err(at(self.scanner, piece, VtuError::Count { attribute, word: visible(text) })),
         }
     }
 
@@ -162,37 +146,34 @@ impl Reader<'_> {
     fn only<'a>(
         &self,
         parent: Node<'a, 'a>,
-        (what, value): (&str, &str),
+        (what, word): (Doubled, &str),
         wanted: impl Fn(&Node<'a, 'a>) -> bool,
     ) -> Result<Option<Node<'a, 'a>>, SceneError> {
         let mut all = parent.children().filter(wanted);
         let first = all.next();
         match all.next() {
             None => Ok(first),
-            Some(second) => {
-                let error = at(self.scanner, second, SYNTAX, format!("there is a second {what}"));
-                Err(error.value(value).allowed("one"))
-            }
+            Some(second) => Err(at(self.scanner, second, VtuError::Second { what, word: word.into() })),
         }
     }
 
     /// The array of a name below an element of a piece.
     fn array<'a>(&self, piece: Node<'a, 'a>, of: &str, name: Option<&str>) -> Result<Node<'a, 'a>, SceneError> {
-        let tag = format!("<{of}>");
-        let parent = self.only(piece, (&tag, &tag), |node| node.has_tag_name(of))?;
-        let what = name.map_or(String::new(), |name| format!(" `{name}`"));
+        let tag = || of.to_string();
+        let parent =
+            self.only(piece, (Doubled::Tag { tag: tag() }, &format!("<{of}>")), |node| node.has_tag_name(of))?;
+        let named = || name.map(|name| ArrayName::Named { name: name.into() });
         let is_wanted =
             |node: &Node<'_, '_>| node.has_tag_name("DataArray") && (name.is_none() || node.attribute("Name") == name);
         let found = match parent {
             Some(parent) => {
-                self.only(parent, (&format!("array{what} in {tag}"), name.unwrap_or("<DataArray>")), is_wanted)?
+                let twice = Doubled::Array { name: named(), tag: tag() };
+                self.only(parent, (twice, name.unwrap_or("<DataArray>")), is_wanted)?
             }
             None => None,
         };
-        found.ok_or_else(|| {
-            let error = at(self.scanner, parent.unwrap_or(piece), SYNTAX, format!("<{of}> has no array{what}"));
-            error.value("0").allowed("<DataArray>")
-        })
+        let none = || VtuError::NoArray { tag: tag(), name: named() };
+        found.ok_or_else(|| at(self.scanner, parent.unwrap_or(piece), none()))
     }
 
     fn piece(&self, piece: Node<'_, '_>, found: &mut Found) -> Result<(), SceneError> {
@@ -202,16 +183,13 @@ impl Reader<'_> {
         let array = self.array(piece, "Points", None)?;
         let place = array.range().start;
         if let Some(components) = array.attribute("NumberOfComponents").filter(|components| components.trim() != "3") {
-            let error = at(self.scanner, array, SYNTAX, format!("points have `{}` coordinates", visible(components)));
-            return Err(error.value(visible(components)).allowed("3"));
+            return Err(at(self.scanner, array, VtuError::Coordinates { components: visible(components) }));
         }
         found.single |= array.attribute("type") == Some("Float32");
         let numbers = self.values(array, points * 3)?;
         for (number, x) in numbers.chunks_exact(3).enumerate() {
             if let Some(bad) = x.iter().find(|x| !x.is_finite()) {
-                let error =
-                    at(self.scanner, array, "scene.not_finite", format!("a coordinate of point {number} is {bad}"));
-                return Err(error.value(bad.to_string()).allowed("a finite number"));
+                return Err(at(self.scanner, array, VtuError::NotFinitePoint { point: number, number: *bad }));
             }
             found.node(u64::from(first) + number as u64, [x[0], x[1], x[2]], place);
         }
@@ -221,8 +199,7 @@ impl Reader<'_> {
         let types = self.wholes(type_array, cells)?;
         let total = offsets.last().copied().unwrap_or(0);
         if !(0..=10_000_000_000).contains(&total) {
-            let error = at(self.scanner, offset_array, SIZE, format!("the last cell ends at {total}"));
-            return Err(error.value(total.to_string()).allowed("0 or more"));
+            return Err(at(self.scanner, offset_array, VtuError::LastOffset { offset: total }));
         }
         let array = self.array(piece, "Cells", Some("connectivity"))?;
         let place = array.range().start;
@@ -230,13 +207,11 @@ impl Reader<'_> {
         let mut start = 0;
         for (cell, (&end, kind)) in offsets.iter().zip(types).enumerate() {
             if !(start..=total).contains(&end) {
-                let error = at(self.scanner, offset_array, SIZE, format!("cell {cell} reaches from {start} to {end}"));
-                return Err(error.value(end.to_string()).allowed(format!("{start} to {}", nodes.len())));
+                return Err(at(self.scanner, offset_array, VtuError::Reach { cell, start, end, most: nodes.len() }));
             }
             vtk::add(found, kind, &nodes[start as usize..end as usize], first, place).map_err(|error| {
                 let of = if error.code == "mesh.unsupported_element" { type_array } else { array };
-                let marked = at(self.scanner, of, error.code, error.message);
-                SceneError { value: error.value, allowed: error.allowed, ..marked }
+                marked(self.scanner, of, error)
             })?;
             start = end;
         }
@@ -252,8 +227,8 @@ impl Reader<'_> {
         found: &mut Found,
     ) -> Result<(), SceneError> {
         for tag in ["CellData", "PointData"] {
-            let what = format!("<{tag}>");
-            self.only(piece, (&what, &what), |node| node.has_tag_name(tag))?;
+            let twice = Doubled::Tag { tag: tag.into() };
+            self.only(piece, (twice, &format!("<{tag}>")), |node| node.has_tag_name(tag))?;
         }
         let mut names = BTreeSet::new();
         for (of, node) in piece.children().filter(Node::is_element).flat_map(|parent| {
@@ -266,8 +241,7 @@ impl Reader<'_> {
             };
             // Arrays of texts have a type of their own.
             let numbers = node.attribute("type").and_then(Number::of_xml).is_some();
-            let second =
-                || vtk::twice(at(self.scanner, node, SYNTAX, vtk::values_twice(of == "PointData", name)), name);
+            let second = || common(self.scanner, node, vtk::values_twice(of == "PointData", name));
             match of {
                 "PointData" if numbers && is_kept(components) => {
                     if !names.insert((of, name)) {
@@ -289,7 +263,7 @@ impl Reader<'_> {
                     values.extend(own);
                 }
                 "CellData" | "PointData" => {
-                    found.left_out(format!("the values `{}` are left out", visible(name)), visible(name));
+                    found.left_out(MeshFileNotice::Values { name: visible(name) });
                 }
                 _ => {}
             }
@@ -305,10 +279,7 @@ impl Reader<'_> {
     /// The same where only whole numbers say something, whatever their type.
     fn wholes(&self, array: Node<'_, '_>, count: u64) -> Result<Vec<i128>, SceneError> {
         self.numbers(array, count, |value| {
-            value.whole().map_err(|x| {
-                let error = at(self.scanner, array, SYNTAX, format!("`{x}` is no whole number"));
-                error.value(x.to_string()).allowed("a whole number")
-            })
+            value.whole().map_err(|number| at(self.scanner, array, VtuError::NotWhole { number }))
         })
     }
 
@@ -320,8 +291,8 @@ impl Reader<'_> {
     ) -> Result<Vec<T>, SceneError> {
         let name = array.attribute("type").unwrap_or("");
         let Some(kind) = Number::of_xml(name) else {
-            let error = at(self.scanner, array, SYNTAX, format!("`{}` is no type of numbers", visible(name)));
-            return Err(error.value(visible(name)).allowed("Int8 … UInt64, Float32, Float64"));
+            let allowed = "Int8 … UInt64, Float32, Float64";
+            return Err(common(self.scanner, array, ScanError::NumberType { word: visible(name), allowed }));
         };
         let size = kind.size();
         let text: String = array.children().filter_map(|n| n.text()).collect();
@@ -333,21 +304,16 @@ impl Reader<'_> {
             }
             Some("appended") => {
                 let Some((data, raw)) = self.appended else {
-                    let error = at(self.scanner, array, SIZE, "there is no appended data");
-                    return Err(error.value("appended").allowed("<AppendedData>").hint("the file is cut off"));
+                    return Err(at(self.scanner, array, VtuError::NothingAppended {}));
                 };
                 let offset = array.attribute("offset").and_then(|text| text.parse::<usize>().ok());
                 let Some(rest) = offset.and_then(|offset| data.get(offset..)) else {
-                    let value = visible(array.attribute("offset").unwrap_or("no offset"));
-                    let error = at(self.scanner, array, SIZE, "the array begins behind the end of the appended data");
-                    return Err(error.value(value).allowed(format!("0 to {}", data.len())).hint("the file is cut off"));
+                    let offset = visible(array.attribute("offset").unwrap_or("no offset"));
+                    return Err(at(self.scanner, array, VtuError::BehindAppended { offset, most: data.len() }));
                 };
                 self.unpack(array, rest, raw, count, size)?
             }
-            Some(other) => {
-                let error = at(self.scanner, array, SYNTAX, format!("`{}` is no format of arrays", visible(other)));
-                return Err(error.value(visible(other)).allowed("ascii, binary, appended"));
-            }
+            Some(other) => return Err(at(self.scanner, array, VtuError::ArrayFormat { word: visible(other) })),
         };
         bytes.chunks_exact(size).map(|word| made(kind.of_bytes(word, self.big_endian))).collect()
     }
@@ -357,12 +323,11 @@ impl Reader<'_> {
         self.numbers.set(self.numbers.get().saturating_add(count));
         let held = (self.scanner.bytes.len() + self.appended.map_or(0, |(data, _)| data.len())) as u64;
         let counted = NUMBERS.check_beside(self.numbers.get(), NUMBERS_PER_BYTE.saturating_mul(held));
-        counted.map_err(|e| marked(self.scanner, array, e.hint("save the file without compression")))
+        counted.map_err(|e| marked(self.scanner, array, e.advice(LimitHint::Compression)))
     }
 
     fn wrong_count(&self, array: Node<'_, '_>, there: u64, count: u64) -> SceneError {
-        let error = at(self.scanner, array, SIZE, format!("the array has {there} values, not {count}"));
-        error.value(there.to_string()).allowed(count.to_string()).hint("the file is cut off, or its counts are wrong")
+        at(self.scanner, array, VtuError::ArraySize { there, count })
     }
 
     fn words<T>(
@@ -375,11 +340,8 @@ impl Reader<'_> {
     ) -> Result<Vec<T>, SceneError> {
         let mut out = Vec::new();
         for word in text.split_ascii_whitespace() {
-            let value = kind.of_word(word).map_err(|allowed| {
-                let error = at(self.scanner, array, SYNTAX, format!("`{}` is no number of its array", visible(word)));
-                error.value(visible(word)).allowed(allowed)
-            })?;
-            out.push(made(value)?);
+            let refused = |range| at(self.scanner, array, VtuError::NotOfArray { word: visible(word), range });
+            out.push(made(kind.of_word(word).map_err(refused)?)?);
         }
         if out.len() as u64 == count { Ok(out) } else { Err(self.wrong_count(array, out.len() as u64, count)) }
     }
@@ -394,16 +356,8 @@ impl Reader<'_> {
         size: usize,
     ) -> Result<Vec<u8>, SceneError> {
         let wanted = count * size as u64;
-        let cut = || {
-            at(self.scanner, array, SIZE, "the data of the array is cut off")
-                .value(format!("{} bytes", data.len()))
-                .allowed(format!("{wanted} bytes of numbers"))
-        };
-        let letters = || {
-            at(self.scanner, array, SYNTAX, "the data of the array is no base64")
-                .value("base64")
-                .allowed("A–Z a–z 0–9 + / =")
-        };
+        let cut = || at(self.scanner, array, VtuError::Cut { there: data.len(), wanted });
+        let letters = || at(self.scanner, array, VtuError::Base64 {});
         // Bytes from the beginning on, at least so many.
         let take = |least: u64| -> Result<Vec<u8>, SceneError> {
             let least = usize::try_from(least).map_err(|_| cut())?;
@@ -460,8 +414,8 @@ impl Reader<'_> {
             let mut piece = Vec::new();
             let read = flate2::read::ZlibDecoder::new(own).take(plain(k) + 1).read_to_end(&mut piece);
             if read.is_err() || piece.len() as u64 != plain(k) {
-                let error = at(self.scanner, array, SYNTAX, format!("block {k} of the array cannot be decompressed"));
-                return Err(error.value(format!("{} bytes", piece.len())).allowed(format!("{} bytes", plain(k))));
+                let error = VtuError::Block { block: k, there: piece.len(), wanted: plain(k) };
+                return Err(at(self.scanner, array, error));
             }
             out.extend_from_slice(&piece);
         }

@@ -3,6 +3,19 @@
 use crate::limits::Limits;
 use crate::problem::SceneError;
 
+opruga_math::messages! {
+    /// What a scene has too much of.
+    #[derive(Clone, Debug, PartialEq)]
+    pub(crate) enum CostError {
+        "limit.bodies" #[error("the scene has {count} bodies or more")] #[value("{count}")] #[allowed("at most {most} bodies")]
+        Bodies { count: String, most: u64 },
+        "limit.nodes" #[error("the scene has {count} nodes or more")] #[value("{count}")] #[allowed("at most {most} nodes")]
+        Nodes { count: String, most: u64 },
+        "limit.memory" #[error("the scene would take about {count} bytes or more")] #[value("{count}")] #[allowed("at most {most} bytes")]
+        Memory { count: String, most: u64 },
+    }
+}
+
 /// How much there is of what is limited. Bodies that commands take away count too: the world remembers them.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Cost {
@@ -29,27 +42,16 @@ impl Cost {
         let each = nodes * (120.0 + 60.0 * D as f64 * models) + 1000.0 + 600.0 * models;
         self.bytes += nodes * 250.0 * D as f64 + each * copies;
         let Cost { bodies, nodes: all, bytes } = *self;
-        let over = |code, message: String, value: f64, most: u64, what: &str| {
-            Err(SceneError::new(code, message).value(shown(value)).allowed(format!("at most {most} {what}")))
-        };
         // What is no number is above every limit.
         let within = |count: f64, most: u64| count <= most as f64;
         if !within(bodies, limits.bodies) {
-            let message = format!("the scene has {} bodies or more", shown(bodies));
-            return over("limit.bodies", message, bodies, limits.bodies, "bodies");
+            return Err(SceneError::of(CostError::Bodies { count: shown(bodies), most: limits.bodies }));
         }
         if !within(all, limits.nodes) || !within(nodes, u64::from(u32::MAX)) {
-            return over(
-                "limit.nodes",
-                format!("the scene has {} nodes or more", shown(all)),
-                all,
-                limits.nodes,
-                "nodes",
-            );
+            return Err(SceneError::of(CostError::Nodes { count: shown(all), most: limits.nodes }));
         }
         if !within(bytes, limits.memory_bytes) {
-            let message = format!("the scene would take about {} bytes or more", shown(bytes));
-            return over("limit.memory", message, bytes, limits.memory_bytes, "bytes");
+            return Err(SceneError::of(CostError::Memory { count: shown(bytes), most: limits.memory_bytes }));
         }
         Ok(())
     }

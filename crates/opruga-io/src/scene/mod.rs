@@ -34,7 +34,7 @@ use crate::problem::{Notice, SceneError, visible};
 use crate::regular_file::regular_file;
 use crate::source::Source;
 use body_list::Bodies;
-pub(crate) use cost::{Cost, shown};
+pub(crate) use cost::{Cost, CostError, shown};
 use moments::Frames;
 use opruga_core::spec::{Values, nearest};
 use opruga_world::blueprint::{

@@ -5,7 +5,7 @@
 
 use super::curves::Curves;
 use super::drawing::Drawing;
-use crate::budget::{OUTLINES, PIXELS, POINTS};
+use crate::budget::{LimitHint, OUTLINES, PIXELS, POINTS};
 use crate::problem::{SceneError, visible};
 use opruga_core::spec::Values;
 
@@ -20,8 +20,7 @@ pub(super) fn read<'a>(bytes: &[u8], shape: &Values) -> Result<Drawing<'a>, Scen
     let most = pixels(bytes, inside, |row| lines.row(row))?;
     let mut curves = Curves::default();
     let (contours, points) = lines.contours(&mut curves);
-    let hint = "take a picture with fewer spots: one that is smoothed, or drawn with fewer colours";
-    OUTLINES.check(contours).and(POINTS.check(points)).map_err(|e| e.hint(hint))?;
+    OUTLINES.check(contours).and(POINTS.check(points)).map_err(|e| e.advice(LimitHint::Picture))?;
     if f64::from(most) <= threshold {
         let error = SceneError::new("shape.no_area", format!("no pixel is more {inside} than the threshold"));
         let error = error.value(format!("at most {most:.3}")).allowed(format!("pixels above {threshold}"));

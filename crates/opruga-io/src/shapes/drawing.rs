@@ -3,7 +3,7 @@
 use super::curves::{Curves, larger};
 use super::rules::{self, Rule};
 use super::{Content, Loaded, Problem, told};
-use crate::budget::{OUTLINES, POINTS};
+use crate::budget::{LimitHint, OUTLINES, POINTS};
 use crate::problem::SceneError;
 use crate::scene::shown;
 use crate::source::Source;
@@ -76,7 +76,7 @@ impl Outline {
     /// # Errors
     /// What fillings refuse.
     pub(super) fn mesh(&self) -> Result<(Mesh<2>, Option<SceneError>), SceneError> {
-        let too_many = |e: MeshError| refused(&OutlineError::Mesh(e));
+        let too_many = |e: MeshError| refused(&e.into());
         let (mut mesh, thin) = match self.inside {
             Inside::Nothing => (outline::skin(&self.rings).map_err(too_many)?, None),
             Inside::Triangles(spacing) => outline::filled(&self.rings, spacing).map_err(|e| refused(&e))?,
@@ -102,9 +102,7 @@ pub(super) fn loaded(mut drawing: Drawing<'_>, shape: &Values) -> Result<Loaded,
     OUTLINES.check(drawing.curves.closed() as u64)?;
     let tolerance = TOLERANCE * spacing * extent / size;
     let points = drawing.curves.flat_points(tolerance, POINTS.most);
-    POINTS
-        .check(points)
-        .map_err(|e| Problem::new("spacing", e.hint("take a larger `spacing`, or a drawing of fewer points")))?;
+    POINTS.check(points).map_err(|e| Problem::new("spacing", e.advice(LimitHint::Spacing)))?;
     let mut rings = drawing.curves.flatten(tolerance);
     drawing.notices.extend(rules::follow(&mut rings, &drawing.rules));
     let mut painted = painted(&drawing.painted, &rings);
@@ -291,25 +289,5 @@ fn place(
 
 /// An error of outlines as an error of the scene.
 pub(super) fn refused(error: &OutlineError) -> SceneError {
-    let code = match error {
-        OutlineError::Empty | OutlineError::NoArea { .. } => "shape.no_area",
-        OutlineError::NotFinite { .. } => "scene.not_finite",
-        OutlineError::Meeting { .. } => "shape.crossing",
-        OutlineError::TooCoarse { .. } => "shape.spacing",
-        OutlineError::TooFine { .. } => "limit.nodes",
-        OutlineError::Mesh(MeshError::NotCompared { .. }) => "limit.comparisons",
-        OutlineError::Mesh(_) => "scene.shape",
-    };
-    let value = match error {
-        OutlineError::Meeting { place, .. } | OutlineError::NoArea { place, .. } => place.map(number).join(", "),
-        OutlineError::NotFinite { value, .. } => value.to_string(),
-        OutlineError::TooCoarse { spacing, .. } | OutlineError::TooFine { spacing, .. } => spacing.to_string(),
-        OutlineError::Mesh(MeshError::NotCompared { edges, most }) => {
-            let error = SceneError::new(code, error.to_string()).value(edges.to_string());
-            let error = error.allowed(format!("edges of which at most {most} pairs lie side by side"));
-            return error.hint("draw the outline with fewer points");
-        }
-        OutlineError::Empty | OutlineError::Mesh(_) => return SceneError::new(code, error.to_string()),
-    };
-    SceneError::new(code, error.to_string()).value(value)
+    SceneError::of(error.clone())
 }

@@ -1,6 +1,6 @@
 //! How long a drawing becomes when its entities are written out: known before that is done.
 
-use crate::budget::EXPANSION;
+use crate::budget::{EXPANSION, LimitHint};
 use crate::problem::SceneError;
 use crate::source::Source;
 use std::collections::BTreeMap;
@@ -37,7 +37,7 @@ pub(super) fn check(source: &Source<'_>) -> Result<(), SceneError> {
         total = total.saturating_add(lengths.get(name).copied().unwrap_or(0));
         EXPANSION.check(total).map_err(|error| {
             let error = source.mark(error, place, place + name.len() + 2);
-            error.hint("write the drawing without entities, or with `use`")
+            error.advice(LimitHint::Entities)
         })?;
     }
     Ok(())

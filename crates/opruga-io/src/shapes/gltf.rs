@@ -12,7 +12,7 @@ use super::gltf_json::{Accessor, Asset, Buffer, Mesh, Node, Primitive, Root, Vie
 use super::json::{Raw, parse, refuse, span};
 use super::triangles::{Places, Triangles};
 use crate::base64;
-use crate::budget::INSTANCES;
+use crate::budget::{INSTANCES, LimitHint};
 use crate::problem::{SceneError, visible};
 use crate::rounding::Stored;
 use crate::source::Source;
@@ -255,8 +255,9 @@ impl<'a> Reader<'a, '_, '_, '_> {
         self.drawn = self.drawn.saturating_add(more);
         let held: usize = self.buffers.iter().flatten().map(|bytes| bytes.len()).sum();
         let held = (held + self.source.text.len()) as u64 / LEAST_BYTES;
-        let hint = "draw a mesh less often, or leave out what the body does not need";
-        INSTANCES.check_beside(self.drawn, held).map_err(|e| refuse(self.source, at.get(), e.hint(hint)))
+        INSTANCES
+            .check_beside(self.drawn, held)
+            .map_err(|e| refuse(self.source, at.get(), e.advice(LimitHint::Instances)))
     }
 
     fn primitive(&mut self, raw: Raw<'a>, primitive: &Primitive<'a>, map: &Map) -> Result<(), SceneError> {

@@ -7,7 +7,7 @@
 //! G. Turk, The PLY Polygon File Format (1994).
 
 use super::triangles::{CORNERS, Places, Triangles};
-use crate::meshes::{MIDDLE_OF_LINE, middle_of_line};
+use crate::meshes::cut_line;
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
 
@@ -194,7 +194,7 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Triangles, SceneError> {
     // Of an index that is cut off, what is left looks whole.
     if format == Format::Text && bytes.last().is_some_and(|b| !b.is_ascii_whitespace()) {
         let from = bytes.iter().rposition(u8::is_ascii_whitespace).map_or(0, |at| at + 1);
-        return Err(middle_of_line(values.error("ply.syntax", MIDDLE_OF_LINE.into()), &bytes[from..]));
+        return Err(values.placed(cut_line("ply.syntax", &bytes[from..])));
     }
     found.places = match format {
         Format::Text => Places::Lines(starts.into_iter().map(|start| start as u32).collect()),
@@ -285,14 +285,18 @@ struct Reader<'a> {
 impl Reader<'_> {
     /// An error where the reader is: a line of a text, a byte of a binary file.
     fn error(&self, code: &'static str, message: String) -> SceneError {
+        self.placed(SceneError::new(code, message))
+    }
+
+    fn placed(&self, error: SceneError) -> SceneError {
         if self.format == Format::Text {
             let good = self.bytes[..self.at].iter().position(|b| !b.is_ascii()).unwrap_or(self.at);
             let text = core::str::from_utf8(&self.bytes[..good]).unwrap_or("");
             let from = text.trim_end().rfind('\n').map_or(0, |k| k + 1);
-            return Source { file: self.file, text }.mark(SceneError::new(code, message), from, text.trim_end().len());
+            return Source { file: self.file, text }.mark(error, from, text.trim_end().len());
         }
-        let error = SceneError::new(code, format!("{message}, before byte {}", self.at));
-        SceneError { file: self.file.to_string(), ..error }
+        let message = format!("{}, before byte {}", error.message, self.at);
+        SceneError { file: self.file.to_string(), message, ..error }
     }
 
     /// Goes to the next word of a text.

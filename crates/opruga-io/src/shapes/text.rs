@@ -4,7 +4,7 @@ use super::Problem;
 use super::composite;
 use super::curves::Curves;
 use super::drawing::Drawing;
-use crate::budget::{EXPANSION, POINTS};
+use crate::budget::{EXPANSION, LimitHint, POINTS};
 use crate::problem::{SceneError, visible};
 use opruga_core::spec::Values;
 use ttf_parser::{Face, GlyphId, OutlineBuilder};
@@ -109,9 +109,7 @@ pub(super) fn read<'a>(file: &str, bytes: &[u8], shape: &Values) -> Result<Drawi
         }
         let mut own = Pen { curves: Curves::of_part(part as u32), from: pen.from, start: [0.0; 2] };
         read = read.saturating_add(composite::bytes(&face, glyph));
-        EXPANSION
-            .check(read)
-            .map_err(|e| Problem::new("text", e.hint("the letters of this font are made of too many others")))?;
+        EXPANSION.check(read).map_err(|e| Problem::new("text", e.advice(LimitHint::Letters)))?;
         // Spaces have no outline.
         let _ = face.outline_glyph(glyph, &mut own);
         points += own.curves.points() as u64;

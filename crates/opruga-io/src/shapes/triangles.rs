@@ -159,8 +159,7 @@ fn has_twins(corners: &[u32]) -> bool {
 }
 
 fn at_byte(error: SceneError, byte: u64) -> SceneError {
-    let message = format!("{}, at byte {byte}", error.message);
-    SceneError { message, ..error }
+    SceneError { byte: usize::try_from(byte).ok(), ..error }
 }
 
 fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {

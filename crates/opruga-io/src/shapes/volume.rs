@@ -2,7 +2,7 @@
 
 use super::triangles::{CORNERS, Triangles};
 use super::{Content, Loaded, Open, Problem};
-use crate::meshes::{self, Kind, Mending};
+use crate::meshes::{self, Kind, Mending, MeshFileError};
 use crate::problem::{SceneError, visible};
 use opruga_core::spec::Values;
 use opruga_mesh::triangle_parts;
@@ -36,10 +36,7 @@ pub(super) fn surface(name: &str, bytes: &[u8], open: &mut Open<'_>) -> Result<T
     let file = meshes::read(name, bytes, open)?;
     let named = |error: SceneError| SceneError { file: name.to_string(), ..error };
     if file.dimension() > 2 {
-        let error = SceneError::new("mesh.dimension", "the file holds cells that fill a body, and no surface alone");
-        return Err(named(
-            error.value("3").allowed("triangles and quadrilaterals").hint("`kind = \"mesh\"` reads filled bodies"),
-        ));
+        return Err(named(SceneError::of(MeshFileError::NoSurface {})));
     }
     let found = file.into_found();
     let notices = found.all_notices();

@@ -63,7 +63,7 @@ pub fn carry(mesh: &mut Mesh<2>, rings: &[Ring], painted: &[Painted]) -> Result<
     }
     if skin.carriers.len() > u32::MAX as usize / 4 {
         let most = crate::MAXIMUM_NODES;
-        return Err(OutlineError::Mesh(MeshError::TooManyNodes { nodes: skin.carriers.len() as u64, most }));
+        return Err(MeshError::TooManyNodes { nodes: skin.carriers.len() as u64, most }.into());
     }
     mesh.skin = Some(skin);
     Ok(())

@@ -168,7 +168,7 @@ mod tests {
             let count = points.len() as f64;
             LOOKS.set(0);
             let counted = |p: [f64; 2]| Counted(Point2::new(p[0], p[1]));
-            constrained(&[Ring { points, part: 0 }], &[], counted, |_, _| OutlineError::Empty)
+            constrained(&[Ring { points, part: 0 }], &[], counted, |_, _| OutlineError::Empty {})
                 .expect("a triangulation");
             LOOKS.get() as f64 / count
         };

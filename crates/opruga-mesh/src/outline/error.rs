@@ -2,60 +2,64 @@
 
 use crate::MeshError;
 use opruga_math::words::{counted, number};
+use opruga_math::{messages, terms};
 
-/// Why rings make no body. `part` is [`super::Ring::part`], places are in the units of the rings.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum OutlineError {
-    /// There is no ring at all.
-    #[error("there is no closed outline")]
-    Empty,
-    /// A ring has too few points or encloses no area.
-    #[error("an outline encloses no area: {}, the first at {}", counted(*points as u64, "point", "points"), at(place))]
-    NoArea {
-        /// The part that it belongs to.
-        part: u32,
-        /// How many points it has.
-        points: usize,
-        /// Its first point.
-        place: [f64; 2],
-    },
-    /// A coordinate is infinite or not a number.
-    #[error("a coordinate is {value}")]
-    NotFinite {
-        /// The part that it belongs to.
-        part: u32,
-        /// The coordinate.
-        value: f64,
-    },
-    /// Two edges cross, touch or overlap.
-    #[error("{} near {}", if parts[0] == parts[1] { "an outline crosses or touches itself" } else { "two outlines cross or touch" }, at(place))]
-    Meeting {
-        /// The parts that the two edges belong to.
-        parts: [u32; 2],
-        /// Where they meet, roughly.
-        place: [f64; 2],
-    },
-    /// At the wanted spacing of nodes edges cross: the outline has features that are finer.
-    #[error("with nodes {} m apart edges cross near {}", number(*spacing), at(place))]
-    TooCoarse {
-        /// The wanted distance of nodes [m].
-        spacing: f64,
-        /// The parts that the two edges belong to.
-        parts: [u32; 2],
-        /// Where they cross, roughly.
-        place: [f64; 2],
-    },
-    /// Filling would take, or took, too many nodes.
-    #[error("filled with nodes {} m apart the outline would have about {nodes} nodes", number(*spacing))]
-    TooFine {
-        /// The wanted distance of nodes [m].
-        spacing: f64,
-        /// About how many nodes.
-        nodes: u64,
-    },
-    /// The mesh that came out is refused.
-    #[error(transparent)]
-    Mesh(#[from] MeshError),
+terms! {
+    /// Which outlines meet.
+    pub enum MeetingOf = "part.meeting" {
+        Itself = "an outline crosses or touches itself",
+        Others = "two outlines cross or touch",
+    }
+}
+
+messages! {
+    /// Why rings make no body. `part` is [`super::Ring::part`], places are in the units of the rings.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum OutlineError {
+        /// There is no ring at all.
+        "shape.no_area" #[error("there is no closed outline")]
+        Empty {},
+        /// A ring has too few points or encloses no area: how many points it has, and the first.
+        "shape.no_area" #[error("an outline encloses no area: {}, the first at {}", counted(*points as u64, "point", "points"), at(place))]
+        #[value("{}", place.map(number).join(", "))]
+        NoArea { part: u32, points: usize, place: [f64; 2] },
+        /// A coordinate is infinite or not a number.
+        "scene.not_finite" #[error("a coordinate is {value}")] #[value("{value}")]
+        NotFinite { part: u32, value: f64 },
+        /// Two edges of these parts cross, touch or overlap, roughly there.
+        "shape.crossing" #[error("{what} near {}", at(place))] #[value("{}", place.map(number).join(", "))]
+        Meeting { what: MeetingOf, parts: [u32; 2], place: [f64; 2] },
+        /// At the wanted spacing of nodes \[m\] edges of these parts cross: the outline has features that are finer.
+        "shape.spacing" #[error("with nodes {} m apart edges cross near {}", number(*spacing), at(place))] #[value("{spacing}")]
+        TooCoarse { spacing: f64, parts: [u32; 2], place: [f64; 2] },
+        /// Filling with nodes at this distance \[m\] would take, or took, too many nodes.
+        "limit.nodes" #[error("filled with nodes {} m apart the outline would have about {nodes} nodes", number(*spacing))] #[value("{spacing}")]
+        TooFine { spacing: f64, nodes: u64 },
+        /// Edges lie over one another's boxes too often.
+        "limit.comparisons" #[error("{edges} edges run past one another so closely that more than {most} pairs would have to be compared")]
+        #[value("{edges}")] #[allowed("edges of which at most {most} pairs lie side by side")] #[hint("draw the outline with fewer points")]
+        NotCompared { edges: u64, most: u64 },
+        /// The mesh that came out is refused.
+        "scene.shape" #[error("{error}")]
+        Mesh { error: MeshError },
+    }
+}
+
+impl OutlineError {
+    /// That edges of two parts meet.
+    pub(super) fn meeting(parts: [u32; 2], point: [f64; 2]) -> OutlineError {
+        let what = if parts[0] == parts[1] { MeetingOf::Itself } else { MeetingOf::Others };
+        OutlineError::Meeting { what, parts, place: point }
+    }
+}
+
+impl From<MeshError> for OutlineError {
+    fn from(error: MeshError) -> OutlineError {
+        match error {
+            MeshError::NotCompared { edges, most } => OutlineError::NotCompared { edges, most },
+            error => OutlineError::Mesh { error },
+        }
+    }
 }
 
 /// A place in a sentence.

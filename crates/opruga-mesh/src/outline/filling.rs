@@ -42,7 +42,7 @@ pub fn filled(rings: &[Ring], spacing: f64) -> Result<(Mesh<2>, Option<Thin>), O
     if estimate > MAXIMUM_NODES {
         return Err(OutlineError::TooFine { spacing, nodes: estimate });
     }
-    let (low, high) = super::bounds(rings).ok_or(OutlineError::Empty)?;
+    let (low, high) = super::bounds(rings).ok_or(OutlineError::Empty {})?;
     let extent = distance(low, high);
 
     // The library wants numbers of ordinary size: the drawing is brought to the unit square and back.
@@ -102,7 +102,7 @@ pub fn filled(rings: &[Ring], spacing: f64) -> Result<(Mesh<2>, Option<Thin>), O
 /// # Errors
 /// [`OutlineError::TooCoarse`] where rings meet, [`OutlineError::Empty`] without rings.
 pub(crate) fn triangles_between(rings: &[Ring]) -> Result<Vec<[u32; 3]>, OutlineError> {
-    let (low, high) = super::bounds(rings).ok_or(OutlineError::Empty)?;
+    let (low, high) = super::bounds(rings).ok_or(OutlineError::Empty {})?;
     let extent = distance(low, high);
     let shrink = |p: [f64; 2]| Point2::new((p[0] - low[0]) / extent, (p[1] - low[1]) / extent);
     let failed = |part: u32, place| OutlineError::TooCoarse { spacing: extent, parts: [part; 2], place };

@@ -24,7 +24,7 @@ mod touching;
 
 pub use carrying::{Painted, carry};
 pub(crate) use crossing::first_meeting;
-pub use error::OutlineError;
+pub use error::{MeetingOf, OutlineError};
 pub(crate) use filling::triangles_between;
 pub use filling::{filled, node_estimate};
 pub use inside::{Inside, around};

@@ -15,7 +15,7 @@ type Meeting = ([u32; 2], [f64; 2]);
 pub fn nest(rings: &mut [Ring]) -> Result<usize, OutlineError> {
     check(rings)?;
     if let Some((parts, place)) = meeting(rings)? {
-        return Err(OutlineError::Meeting { parts, place });
+        return Err(OutlineError::meeting(parts, place));
     }
     let mut turned = 0;
     let around = around(rings);
@@ -58,7 +58,7 @@ fn is_hole(number: usize, around: &[Option<usize>], known: &mut [Option<bool>]) 
 /// Refuses rings without extent.
 fn check(rings: &[Ring]) -> Result<(), OutlineError> {
     if rings.is_empty() {
-        return Err(OutlineError::Empty);
+        return Err(OutlineError::Empty {});
     }
     for ring in rings {
         if let Some(value) = ring.points.iter().flatten().find(|x| !x.is_finite()) {
@@ -71,7 +71,7 @@ fn check(rings: &[Ring]) -> Result<(), OutlineError> {
                 && !is_on_a_line(ring)
                 && let Some((parts, place)) = meeting(core::slice::from_ref(ring))?
             {
-                return Err(OutlineError::Meeting { parts, place });
+                return Err(OutlineError::meeting(parts, place));
             }
             let place = ring.points.first().copied().unwrap_or([0.0; 2]);
             return Err(OutlineError::NoArea { part: ring.part, points: ring.points.len(), place });

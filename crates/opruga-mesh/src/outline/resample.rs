@@ -1,6 +1,7 @@
 //! Closed curves in equal edges that keep their corners.
 
 use super::{OutlineError, Ring, distance};
+use crate::Quantity;
 use std::collections::BTreeSet;
 
 /// A turn by more than this within one edge length is a corner: cos 35°. The tip of a heart may turn by no more than 40°, a
@@ -16,7 +17,7 @@ const CORNER_COSINE: f64 = 0.819_152_044_288_991_8;
 /// # Errors
 /// [`OutlineError::Mesh`] for too many points; [`OutlineError::NoArea`] for a ring that vanishes, [`OutlineError::TooCoarse`] where edges cross now.
 pub fn resampled(rings: &[Ring], spacing: f64) -> Result<Vec<Ring>, OutlineError> {
-    crate::mesh::positive("spacing", spacing)?;
+    crate::mesh::positive(Quantity::Spacing, spacing)?;
     let pieces: f64 = rings.iter().map(|ring| ring.length() / spacing).sum();
     crate::mesh::limit_nodes(if pieces < 1e18 { pieces as u64 } else { u64::MAX })?;
     let touching = super::touching::touching(rings);

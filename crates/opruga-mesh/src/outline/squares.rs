@@ -1,7 +1,7 @@
 //! The inside of closed curves as a lattice of equal squares.
 
 use super::{OutlineError, Ring, bounds};
-use crate::{MAXIMUM_NODES, Mesh, MeshError};
+use crate::{MAXIMUM_NODES, Mesh, Quantity};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A square by its column and row.
@@ -23,8 +23,8 @@ pub fn squares_estimate(rings: &[Ring], spacing: f64) -> f64 {
 /// # Errors
 /// [`OutlineError::TooFine`] where the lattice would be too large, [`OutlineError::Empty`] without rings.
 pub fn squares(rings: &[Ring], spacing: f64) -> Result<Mesh<2>, OutlineError> {
-    crate::mesh::positive("spacing", spacing)?;
-    let (low, high) = bounds(rings).ok_or(OutlineError::Empty)?;
+    crate::mesh::positive(Quantity::Spacing, spacing)?;
+    let (low, high) = bounds(rings).ok_or(OutlineError::Empty {})?;
     let nodes = squares_estimate(rings, spacing) as u64;
     if nodes > MAXIMUM_NODES {
         return Err(OutlineError::TooFine { spacing, nodes });
@@ -49,7 +49,7 @@ pub fn squares(rings: &[Ring], spacing: f64) -> Result<Mesh<2>, OutlineError> {
     }
     mesh.cells.quadrilaterals =
         kept.iter().map(|square| corners(*square).map(|(i, j)| numbers[&(j, i)])).collect::<Vec<[u32; 4]>>();
-    mesh.facets = mesh.facets_from_cells().map_err(|e: MeshError| OutlineError::Mesh(e))?;
+    mesh.facets = mesh.facets_from_cells()?;
     Ok(mesh)
 }
 

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use opruga_mesh::{Cut, EdgeSet, Measure, Mesh, MeshError, Share, bandwidth, edge_runs, signed_volume};
+use opruga_mesh::{Cut, EdgeSet, Measure, Mesh, MeshError, Quantity, Share, bandwidth, edge_runs, signed_volume};
 
 /// Relative agreement.
 #[track_caller]
@@ -298,7 +298,7 @@ fn impossible_numbers_are_refused() {
     assert!(Mesh::ring(1.0, 8, [0.0, f64::NAN], 0.0).is_err());
     // So far round that all nodes would lie at one point.
     for angle in [1e20, -1e20, f64::NAN] {
-        assert!(matches!(Mesh::ring(1.0, 8, [0.0; 2], angle), Err(MeshError::Size { what: "start angle", .. })));
+        assert!(matches!(Mesh::ring(1.0, 8, [0.0; 2], angle), Err(MeshError::Size { what: Quantity::StartAngle, .. })));
         assert!(Mesh::regular_polygon(5, 1.0, 2, [0.0; 2], angle).is_err());
     }
     assert!(Mesh::ring(1.0, 8, [0.0; 2], -1e6).is_ok());

@@ -2,6 +2,7 @@
 
 use super::assembly::Stiffness;
 use super::frame::{Frame, Rest};
+use super::refusals::TurnedFacets;
 use super::surface::Surface;
 use super::{SPEC, cache, stresses};
 use opruga_core::error::{BuildError, StepError};
@@ -257,11 +258,7 @@ impl<const D: usize> Observe<D> for BoundaryElement<D> {
         out
     }
     fn counts(&self, _memory: &[f64]) -> Vec<Count> {
-        let count = Count {
-            code: "mesh.turned",
-            message: "facets were turned, so that the solid is behind each: those of a boundary inside another one bound a cavity",
-            count: self.turned as u64,
-        };
+        let count = Count { what: TurnedFacets::Turned {}.into(), count: self.turned as u64 };
         if self.turned > 0 { vec![count] } else { Vec::new() }
     }
     fn same_bits_everywhere(&self) -> bool {

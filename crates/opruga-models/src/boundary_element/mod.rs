@@ -36,7 +36,7 @@ mod surface;
 
 #[cfg(not(target_arch = "wasm32"))]
 pub use body::BoundaryElement;
-pub use refusals::Refusal;
+pub use refusals::{Refusal, TurnedFacets};
 pub use spec::SPEC;
 
 use opruga_core::error::BuildError;

@@ -2,7 +2,6 @@
 
 use super::SPEC;
 use opruga_core::error::BuildError;
-use opruga_math::message::Message;
 use opruga_math::messages;
 use opruga_math::words::number;
 use opruga_mesh::MeshError;
@@ -66,9 +65,20 @@ messages! {
     }
 }
 
+messages! {
+    /// What was done to facets.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum TurnedFacets {
+        /// Facets of cavities.
+        "mesh.turned"
+        #[error("facets were turned, so that the solid is behind each: those of a boundary inside another one bound a cavity")]
+        Turned {},
+    }
+}
+
 impl From<Refusal> for BuildError {
     fn from(refusal: Refusal) -> BuildError {
-        BuildError::new(SPEC.kind, refusal.code(), refusal.to_string())
+        BuildError::of(SPEC.kind, refusal)
     }
 }
 

@@ -2,7 +2,6 @@
 
 use super::SPEC;
 use opruga_core::error::BuildError;
-use opruga_math::message::Message;
 use opruga_math::messages;
 use opruga_math::words::number;
 
@@ -33,7 +32,7 @@ messages! {
         /// What quadrilaterals and hexahedra lack, as a part of a refusal.
         "part.no_potential"
         #[error("forces of quadrilaterals and hexahedra, with F at the middle of each dual face, are the gradient of no energy; triangles and tetrahedra have one (`simplices = true`, `order = 1`)")]
-        NoPotential {},
+        NoPotentialOfFaces {},
         /// No thickness without stress across.
         "run.no_thickness"
         #[error("cell {cell} has no positive thickness without stress across the plane at t = {} s: it is stretched or turned inside out beyond what its material can follow in plane stress", number(*time))]
@@ -43,6 +42,6 @@ messages! {
 
 impl From<Refusal> for BuildError {
     fn from(refusal: Refusal) -> BuildError {
-        BuildError::new(SPEC.kind, refusal.code(), refusal.to_string())
+        BuildError::of(SPEC.kind, refusal)
     }
 }

@@ -114,7 +114,7 @@ impl<const D: usize> Potential<D> for Solid<D> {
 
 impl<const D: usize> Observe<D> for Solid<D> {
     fn lacks(&self) -> Option<AnyMessage> {
-        (!self.is_simplicial).then(|| Refusal::NoPotential {}.into())
+        (!self.is_simplicial).then(|| Refusal::NoPotentialOfFaces {}.into())
     }
     fn cell_states(&self, view: &View<D>, body: usize) -> Vec<CellState> {
         let mut rows = vec![0.0; self.rows()];

@@ -333,23 +333,26 @@ impl<const D: usize> Observe<D> for Pressure {
         let sum = |first: usize| -> f64 {
             memory.chunks_exact(MEMORY).flat_map(|chamber| &chamber[first..first + self.bodies()]).sum()
         };
-        let counted = |code, message, first: usize| Count { code, message, count: sum(first) as u64 };
-        vec![
-            counted(
-                "pressure.limited",
-                "a gas was held at its `largest_pressure`, or at that of its `smallest_volume`, counted per substep and body",
-                WIDTH,
-            ),
-            counted(
-                "pressure.inverted",
-                "a chamber enclosed nothing or was turned inside out, counted per substep and body: its gas pushes it open \
-                 as the reference says; an outline that went through itself may stay so",
-                2 * WIDTH,
-            ),
-        ]
+        let counted = |what: PressureWarning, first: usize| Count { what: what.into(), count: sum(first) as u64 };
+        vec![counted(PressureWarning::Limited {}, WIDTH), counted(PressureWarning::Inverted {}, 2 * WIDTH)]
     }
     fn heap_bytes(&self) -> usize {
         self.chambers.iter().map(|c| c.boundary.heap_bytes() + c.gases.capacity() * size_of::<Gas>()).sum()
+    }
+}
+
+opruga_math::messages! {
+    /// What deserves attention in a gas.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum PressureWarning {
+        /// A limit acted.
+        "pressure.limited"
+        #[error("a gas was held at its `largest_pressure`, or at that of its `smallest_volume`, counted per substep and body")]
+        Limited {},
+        /// A chamber without volume.
+        "pressure.inverted"
+        #[error("a chamber enclosed nothing or was turned inside out, counted per substep and body: its gas pushes it open as the reference says; an outline that went through itself may stay so")]
+        Inverted {},
     }
 }
 

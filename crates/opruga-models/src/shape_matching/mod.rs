@@ -38,7 +38,7 @@ mod regions;
 mod shape;
 mod spec;
 
-pub use refusals::Refusal;
+pub use refusals::{MatchingWarning, Refusal};
 pub use spec::SPEC;
 
 use kernels::{Energy, Fit, Law, Moments, Push, SlotForces, Stored, VOLUME};
@@ -274,15 +274,10 @@ impl<const D: usize> Matching<D> {
 
 impl<const D: usize> Observe<D> for Matching<D> {
     fn counts(&self, memory: &[f64]) -> Vec<Count> {
-        vec![Count {
-            code: "shape_matching.mirrored",
-            message: "a cluster was mirrored, counted per substep and cluster: rotations do not turn a mirrored shape back, so overlapping \
-                      clusters that are all mirrored may stay folded; hint: fewer, larger clusters",
-            count: memory.iter().skip(WIDTH).sum::<f64>() as u64,
-        }]
+        vec![Count { what: MatchingWarning::Mirrored {}.into(), count: memory.iter().skip(WIDTH).sum::<f64>() as u64 }]
     }
     fn lacks(&self) -> Option<AnyMessage> {
-        self.is_published.then(|| Refusal::NoPotential {}.into())
+        self.is_published.then(|| Refusal::NoPotentialOfGoal {}.into())
     }
     fn heap_bytes(&self) -> usize {
         self.clusters.heap_bytes() + self.pieces.as_ref().map_or(0, Pieces::heap_bytes)

@@ -2,7 +2,6 @@
 
 use super::SPEC;
 use opruga_core::error::BuildError;
-use opruga_math::message::Message;
 use opruga_math::messages;
 use opruga_math::words::number;
 
@@ -33,12 +32,24 @@ messages! {
         /// What the published scheme lacks, as a part of a refusal.
         "part.no_potential"
         #[error("`scheme` is \"as_published\", whose goal, the fitted map over the root of its determinant, is the gradient of no potential; `scheme = \"potential\"` has both")]
-        NoPotential {},
+        NoPotentialOfGoal {},
+    }
+}
+
+messages! {
+    /// What deserves attention in clusters.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum MatchingWarning {
+        /// A mirrored cluster.
+        "shape_matching.mirrored"
+        #[error("a cluster was mirrored, counted per substep and cluster: rotations do not turn a mirrored shape back, so overlapping clusters that are all mirrored may stay folded")]
+        #[hint("fewer, larger clusters")]
+        Mirrored {},
     }
 }
 
 impl From<Refusal> for BuildError {
     fn from(refusal: Refusal) -> BuildError {
-        BuildError::new(SPEC.kind, refusal.code(), refusal.to_string())
+        BuildError::of(SPEC.kind, refusal)
     }
 }

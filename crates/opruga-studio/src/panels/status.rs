@@ -170,7 +170,7 @@ fn warnings(ui: &mut Ui, shown: &Shown, words: Language) {
     let Some(&(right, first)) = warnings.first() else { return };
     let others = warnings.len() - 1;
     let side = |right: bool| if right { format!("{}: ", words.on_the_right()) } else { String::new() };
-    let said = beginning(&words.detail(&first.message));
+    let said = beginning(&words.warning_text(first));
     let more = if others > 0 { format!("  +{others}") } else { String::new() };
     let text = RichText::new(format!("{}{} ({}){more}: {said}", side(right), words.warning(), first.count))
         .size(SIZE)
@@ -179,7 +179,7 @@ fn warnings(ui: &mut Ui, shown: &Shown, words: Language) {
         ui.set_max_width((ui.ctx().content_rect().width() - 40.0).clamp(80.0, 520.0));
         ScrollArea::vertical().max_height(0.6 * ui.ctx().content_rect().height()).show(ui, |ui| {
             for (right, warning) in &warnings {
-                ui.label(format!("{}{} ({})", side(*right), words.detail(&warning.message), warning.count));
+                ui.label(format!("{}{} ({})", side(*right), words.warning_text(warning), warning.count));
                 ui.label(RichText::new(&warning.code).weak().size(SIZE));
             }
         });
@@ -257,7 +257,8 @@ mod tests {
 
     #[test]
     fn warnings_of_the_right_scene_that_the_left_one_has_not_stand_behind_those_of_the_left_one() {
-        let warning = |code: &str, message: &str| Warning { code: code.into(), message: message.into(), count: 1 };
+        let warning =
+            |code: &str, message: &str| Warning { code: code.into(), message: message.into(), count: 1, about: None };
         let [odd, lost] = [warning("shape.odd", "both"), warning("pressure.inverted", "the right one")];
         let right = Arc::new(Shown { warnings: vec![odd.clone(), lost.clone()], ..Shown::default() });
         let beside = Beside {

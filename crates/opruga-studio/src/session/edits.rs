@@ -374,7 +374,7 @@ impl Session {
             self.document.push_command(add_table(now, &table));
             let added = match read(&self.document, &self.files) {
                 Ok((scene, odd)) => self.engine.add_from(scene, odd).map_err(Said::World),
-                Err(errors) => Err(Said::Because(errors)),
+                Err(errors) => Err(Said::Scene(errors)),
             };
             if let Err(refusal) = added {
                 // It is said of the body that was to be another, and not of one that there never was.

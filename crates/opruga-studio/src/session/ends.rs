@@ -40,7 +40,7 @@ impl Session {
             return;
         }
         let all = self.look_at_shapes();
-        let odd: Vec<String> = all.iter().filter(|w| !self.ends.early.contains(w)).map(|w| w.message.clone()).collect();
+        let odd: Vec<Warning> = all.iter().filter(|w| !self.ends.early.contains(w)).cloned().collect();
         let refused = self.message.as_ref().is_some_and(|message| message.severity == Severity::Refused);
         // Numbers in it may differ when the end comes again: what was told is told by its code.
         let codes: Vec<String> = all.into_iter().map(|warning| warning.code.to_string()).collect();

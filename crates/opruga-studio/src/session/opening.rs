@@ -65,12 +65,9 @@ impl Session {
             self.files = before;
             match said {
                 // What is said of no other file is said of this one.
-                Said::Because(text) => {
-                    let of_file = |line: &str| match line.starts_with("error[") {
-                        true => format!("{}: {line}", shape.file),
-                        false => line.into(),
-                    };
-                    Said::Because(text.lines().map(of_file).collect::<Vec<_>>().join("\n"))
+                Said::Scene(mut errors) => {
+                    errors.iter_mut().filter(|e| e.file.is_empty()).for_each(|e| e.file.clone_from(&shape.file));
+                    Said::Scene(errors)
                 }
                 said => said,
             }

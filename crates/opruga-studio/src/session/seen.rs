@@ -106,7 +106,5 @@ fn give_titles(shown: &mut Shown, titles: &Titles) {
             label.clone_from(&body.title);
         }
     }
-    for warning in &mut shown.warnings {
-        warning.message = titles.in_text(&warning.message);
-    }
+    shown.warnings = std::mem::take(&mut shown.warnings).into_iter().map(|w| titles.in_warning(w)).collect();
 }

@@ -2,7 +2,9 @@
 
 use crate::exploded::Exploded;
 use crate::said::Said;
-use opruga::WorldError;
+use opruga::io::SceneError;
+use opruga::math::message::AnyMessage;
+use opruga::{Warning, WorldError};
 
 /// How bodies were renamed, and which there are.
 #[derive(Debug, Default)]
@@ -62,8 +64,11 @@ impl Titles {
         match said {
             Said::World(error) => Said::World(self.in_error(error)),
             Said::Because(text) => Said::Because(self.in_text(&text)),
+            Said::Scene(errors) => Said::Scene(errors.into_iter().map(|error| self.in_scene_error(error)).collect()),
             Said::Exploded(exploded) => Said::Exploded(Exploded { body: of(&exploded.body), ..exploded }),
-            Said::AtTheEnd(time, list) => Said::AtTheEnd(time, list.iter().map(|text| self.in_text(text)).collect()),
+            Said::AtTheEnd(time, list) => {
+                Said::AtTheEnd(time, list.into_iter().map(|warning| self.in_warning(warning)).collect())
+            }
             Said::GoesOn(name) => Said::GoesOn(of(&name)),
             Said::NoBody(name) => Said::NoBody(of(&name)),
             Said::NoShape(name) => Said::NoShape(of(&name)),
@@ -71,6 +76,25 @@ impl Titles {
             Said::NoDifference(about) => Said::NoDifference(self.in_path(&about)),
             said => said,
         }
+    }
+
+    fn in_scene_error(&self, mut error: SceneError) -> SceneError {
+        let texts = [Some(&mut error.message), error.allowed.as_mut(), error.hint.as_mut()];
+        texts.into_iter().flatten().for_each(|text| *text = self.in_text(text));
+        for message in [&mut error.about, &mut error.advice].into_iter().flatten() {
+            *message = self.in_message(message);
+        }
+        error
+    }
+
+    fn in_message(&self, message: &AnyMessage) -> AnyMessage {
+        message.renamed(&|name| self.in_path(name), &|text| self.in_text(text))
+    }
+
+    /// The same for a warning.
+    pub(super) fn in_warning(&self, warning: Warning) -> Warning {
+        let about = warning.about.map(|message| self.in_message(&message));
+        Warning { message: self.in_text(&warning.message), about, ..warning }
     }
 
     fn in_error(&self, mut error: WorldError) -> WorldError {
@@ -83,6 +107,7 @@ impl Titles {
             }
             WorldError::Build { place, source } => {
                 (*place, source.message) = (self.in_text(place), self.in_text(&source.message));
+                source.about = source.about.take().map(|message| self.in_message(&message));
             }
             WorldError::Path { path, message } => {
                 (*path, *message) = (self.in_path(path), self.in_text(message));

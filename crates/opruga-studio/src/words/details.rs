@@ -1,7 +1,7 @@
 //! What models, integrators, obstacles, the world and the readers of files say in English, in Croatian: sentences with gaps
 //! for names and numbers.
 
-use super::{ends, own, parts, readers, sentences};
+use super::{own, parts, readers, sentences};
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::sync::LazyLock;
@@ -57,12 +57,12 @@ static PARTS: LazyLock<Vec<Known>> = LazyLock::new(|| parts().map(Known::new).co
 
 /// Whole sentences: those of the readers first, since the engine has some that fit much.
 pub(super) fn whole() -> impl Iterator<Item = &'static Pair> {
-    readers::SENTENCES.into_iter().chain([own::SENTENCES, ends::SENTENCES, sentences::SENTENCES]).flatten()
+    readers::SENTENCES.into_iter().chain([own::SENTENCES, sentences::SENTENCES]).flatten()
 }
 
 /// Parts of sentences.
 pub(super) fn parts() -> impl Iterator<Item = &'static Pair> {
-    readers::PARTS.into_iter().chain([ends::PARTS, parts::PARTS]).flatten()
+    readers::PARTS.into_iter().chain([parts::PARTS]).flatten()
 }
 
 /// The Croatian of a sentence, where it is one of these.
@@ -208,8 +208,6 @@ mod tests {
         let missing: Vec<&str> = sentences::SENTENCES
             .iter()
             .chain(parts::PARTS)
-            .chain(ends::SENTENCES)
-            .chain(ends::PARTS)
             .flat_map(|(english, _)| {
                 english.split("{~}").flat_map(|part| part.split("{}")).flat_map(|part| part.split("{#}"))
             })

@@ -8,6 +8,7 @@ use opruga::WorldError;
 use opruga::core::spec::Value;
 use opruga::draw::ArrowKind;
 use opruga::math::words::number;
+use opruga::words::Translation;
 use opruga::world::schema::MOST_SUBSTEPS;
 
 /// A sentence of both languages, the right one of which is taken.
@@ -79,11 +80,12 @@ impl Language {
             Said::Because(text) => match self {
                 Language::English => text.clone(),
                 Language::Croatian => {
-                    // Errors of a file have lines of their own.
-                    let known = scene_errors::croatian(text).or_else(|| details::croatian(text));
-                    known.unwrap_or_else(|| format!("Poruka je na engleskom:\n{text}"))
+                    details::croatian(text).unwrap_or_else(|| format!("Poruka je na engleskom:\n{text}"))
                 }
             },
+            Said::Scene(errors) => {
+                errors.iter().map(|error| scene_errors::text(self, error)).collect::<Vec<_>>().join("\n")
+            }
             Said::World(error) => self.world_error(error),
             Said::Exploded(Exploded { body, integrator, unstable: true }) => {
                 let integrator = self.kind(Part::Integrator, integrator);
@@ -113,7 +115,7 @@ impl Language {
                 )
             }
             Said::AtTheEnd(time, list) => {
-                let list: Vec<String> = list.iter().map(|said| self.detail(said).to_string()).collect();
+                let list: Vec<String> = list.iter().map(|warning| self.warning_text(warning)).collect();
                 let (count, list) = (list.len(), list.join(" · "));
                 let warnings = if count == 1 { "1 warning".into() } else { format!("{count} warnings") };
                 either!(
@@ -280,7 +282,8 @@ impl Language {
                     _ => "ne može",
                 };
                 let place = croatian_place(place);
-                match details::croatian(&source.message) {
+                let known = source.about.as_ref().and_then(|about| Translation::croatian().in_full(&**about));
+                match known.or_else(|| details::croatian(&source.message)) {
                     Some(known) => format!("{place}: {known}"),
                     None => format!("{place}: {why}\n{}", self.english(&source.to_string())),
                 }

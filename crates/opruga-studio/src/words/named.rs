@@ -3,6 +3,7 @@
 //! added it, is called as in the scene file, and its English sentence is marked as such.
 
 use super::{Language, croatian, details};
+use opruga::Warning;
 use opruga::core::spec::{Allowed, Bound, Condition, Default as Unset, Field, Spec};
 
 /// What a kind is a kind of.
@@ -194,6 +195,13 @@ impl Language {
             Language::English => text.into(),
             Language::Croatian => details::croatian(text).unwrap_or_else(|| self.english(text)),
         }
+    }
+
+    /// A warning.
+    pub fn warning_text(self, warning: &Warning) -> String {
+        let known = self.translation().zip(warning.about.as_ref());
+        let known = known.and_then(|(translation, about)| translation.in_full(&**about));
+        known.unwrap_or_else(|| self.detail(&warning.message))
     }
 
     /// Words of which there are English ones alone, told as such.

@@ -2,6 +2,9 @@
 
 /// Parts of sentences, which say nothing by themselves, and what stands below an error.
 pub(super) const PARTS: &[(&str, &str)] = &[
+    ("a number >= {} and <= {}", "broj >= {} i <= {}"),
+    ("a number >= {} and < {}", "broj >= {} i < {}"),
+    ("a number >= {}", "broj >= {}"),
     ("is turned inside out", "je izvrnuta"),
     ("has no volume", "nema obujma"),
     ("the finite numbers", "konačne brojeve"),
@@ -9,15 +12,9 @@ pub(super) const PARTS: &[(&str, &str)] = &[
         "the range in which rounding is small beside its elements, {} m about the origin",
         "područje u kojem je zaokruživanje sitno prema njegovim elementima, {} m oko ishodišta",
     ),
-    ("lay {} m inside the first", "bio je {} m u prvoj"),
-    ("lay where they meet", "bio je gdje se sreću"),
     (
         "the largest number of its models is `{}` = {} of `{}`, and ",
         "najveći broj njegovih modela je `{}` = {} modela `{}`, a ",
-    ),
-    (
-        "; now the cell farthest from its volume is {} of body `{}`, J = {}",
-        "; ćelija najdalje od svojeg obujma je {} tijela `{}`, J = {}",
     ),
     ("substeps >= {}", "podkoraka >= {}"),
     ("a number", "broj"),
@@ -27,7 +24,6 @@ pub(super) const PARTS: &[(&str, &str)] = &[
     ("a table", "tablica"),
     ("a truth value", "istina ili laž"),
     ("a date", "datum"),
-    ("gained", "previše"),
     ("lost", "premalo"),
     ("taken", "uzela"),
     ("made", "dodala"),
@@ -40,11 +36,8 @@ pub(super) const PARTS: &[(&str, &str)] = &[
     ("{} nodes", "čvorova: {}"),
     // What is allowed.
     ("a finite number", "konačan broj"),
-    ("a number >= {} and <= {}", "broj >= {} i <= {}"),
-    ("a number >= {} and < {}", "broj >= {} i < {}"),
     ("a number > {} and <= {}", "broj > {} i <= {}"),
     ("a number > {} and < {}", "broj > {} i < {}"),
-    ("a number >= {}", "broj >= {}"),
     ("a number > {}", "broj > {}"),
     ("a number <= {}", "broj <= {}"),
     ("a number < {}", "broj < {}"),

@@ -1,7 +1,8 @@
 //! What the readers of scenes and shapes find wrong, in Croatian: what their codes mean, with the places, values and limits that
 //! they tell. The English sentence stays beside it where there is no Croatian one.
 
-use super::details;
+use super::{Language, details};
+use opruga::io::SceneError;
 
 /// Codes and what they mean; of a code that stands alone before its dot, all that begin with it.
 const CODES: &[(&str, &str)] = &[
@@ -74,8 +75,17 @@ const CODES: &[(&str, &str)] = &[
     ("limit", "datoteka traži previše"),
 ];
 
-/// The errors of a reader in Croatian; none where the text is not theirs.
-pub(super) fn croatian(text: &str) -> Option<String> {
+/// An error in the words of a language.
+pub(super) fn text(language: Language, error: &SceneError) -> String {
+    match error.about {
+        Some(_) => error.text(language.translation()),
+        None if language == Language::English => error.to_string(),
+        None => croatian(&error.to_string()).unwrap_or_else(|| language.english(&error.to_string())),
+    }
+}
+
+/// An error of a reader in Croatian; none where the text is not theirs.
+fn croatian(text: &str) -> Option<String> {
     let mut known = false;
     let lines: Vec<String> = text
         .lines()

@@ -145,7 +145,7 @@ fn warnings_are_said_in_croatian() {
     let warnings = session.shown().warnings;
     assert!(warnings.len() >= 2, "{warnings:?}");
     for warning in &warnings {
-        let said = Language::Croatian.detail(&warning.message);
+        let said = Language::Croatian.warning_text(warning);
         assert!(!said.contains(ENGLISH), "{said}");
         assert_ne!(said, warning.message);
     }

@@ -88,13 +88,12 @@ fn finer(surface: &Mesh<3>, spacing: f64, now: f64) -> Option<f64> {
 /// The filling that a shape in space asks for.
 ///
 /// # Errors
-/// [`MeshError::Missing`] for a filling without `spacing`.
+/// [`MeshError::NoSpacing`] for a filling without `spacing`.
 pub fn filling(shape: &Values) -> Result<Option<Filling>, MeshError> {
     let make = match shape.text("filling") {
         Some("lattice") => Filling::Lattice,
         Some("tetrahedra") => Filling::Tetrahedra,
         _ => return Ok(None),
     };
-    let why = "the side of the cubes that the filling is made of [m]";
-    shape.number("spacing").map(|spacing| Some(make(spacing))).ok_or(MeshError::Missing { what: "spacing", why })
+    shape.number("spacing").map(|spacing| Some(make(spacing))).ok_or(MeshError::NoSpacing {})
 }

@@ -2,7 +2,7 @@
 
 use super::{number, points};
 use opruga_core::spec::Values;
-use opruga_mesh::{Mesh, MeshError};
+use opruga_mesh::{Mesh, MeshError, Quantity};
 
 /// Circles closer than this share of their radii touch: their nodes are rounded.
 const TOUCHING: f64 = 1e-9;
@@ -12,7 +12,7 @@ pub(super) fn rings(shape: &Values) -> Result<Mesh<2>, MeshError> {
     let (centers, radii) = (points::<2>(shape.rows("centers")), shape.numbers("radii").unwrap_or(&[]));
     if radii.len() != centers.len() {
         let (value, wanted) = (radii.len() as u64, centers.len() as u64);
-        return Err(MeshError::Count { what: "length of `radii`", value, least: wanted, most: wanted });
+        return Err(MeshError::Count { what: Quantity::LengthRadii, value, least: wanted, most: wanted });
     }
     let vertices = number(shape, "vertices");
     let mut all = Mesh::<2>::default();

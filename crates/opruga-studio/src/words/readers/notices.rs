@@ -1,6 +1,7 @@
 //! What readers find odd and take nevertheless: told of, and counted.
 
 pub(super) const SENTENCES: &[(&str, &str)] = &[
+    ("{} of `{}` are left out", "{} od `{}` izostavljeno"),
     // Drawings.
     ("{} outlines without area are left out", "izostavljeno obrisa bez površine: {}"),
     ("{} outline without area is left out", "izostavljeno obrisa bez površine: {}"),
@@ -68,19 +69,10 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     ("{} skin, by which vertices follow bones, is left out", "izostavljeno koža, po kojima vrhovi prate kosti: {}"),
     ("{} parts with shapes to morph into have them left out", "dijelova čiji su oblici za pretapanje izostavljeni: {}"),
     ("{} part with shapes to morph into has them left out", "dijelova čiji su oblici za pretapanje izostavljeni: {}"),
-    ("{} of `{}` are left out", "{} od `{}` izostavljeno"),
     ("{} of `{}` is left out", "{} od `{}` izostavljeno"),
     ("features with polygons", "obilježja s poligonima"),
     ("`{}` is a feature without geometry", "`{}` je obilježje bez geometrije"),
     ("`{}` is nothing but points and lines", "`{}` su samo točke i linije"),
-    (
-        "with a spacing of {} m the filling would have {} of the volume; {} m would keep it",
-        "s razmakom od {} m popunjavanje bi imalo {} obujma; {} m bi ga sačuvalo",
-    ),
-    (
-        "with a spacing of {} m the filling would have {} of the volume",
-        "s razmakom od {} m popunjavanje bi imalo {} obujma",
-    ),
     (
         "{} shapes name no `fill-rule` and would have fewer holes by the non-zero rule",
         "oblika bez `fill-rule`, koji bi po pravilu nonzero imali manje rupa: {}",

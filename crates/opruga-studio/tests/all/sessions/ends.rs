@@ -34,7 +34,7 @@ fn what_attracts_attention_at_the_end_of_a_scene_is_told_there_once() {
     let message = session.shown().message.expect("it is told at the end");
     assert_eq!(message.severity, Severity::Told);
     let told = |said: &str| said.contains("inside out");
-    assert!(matches!(&message.said, Said::AtTheEnd(time, list) if (time - 1.0).abs() < 1e-9 && told(&list[0])));
+    assert!(matches!(&message.said, Said::AtTheEnd(time, list) if (time - 1.0).abs() < 1e-9 && told(&list[0].message)));
     assert!(inverted(&mut session), "and stands with the other warnings");
     // Time goes on, and when the same end comes again nothing is told twice.
     let told = session.told();

@@ -1,0 +1,190 @@
+//! Errors and warnings in other languages: translations in Fluent syntax, read by code, variant and fields of a message.
+//!
+//! An entry is called after the code and the variant, with `-` for the point: `msh-version-Unknown`. Its attributes `.allowed` and
+//! `.hint` are the texts of these names. A field is a variable; where it is a message itself, its own entry is taken. A selector
+//! compares a count with numbers and with plural categories of the language, a text with itself, a message with its variant, and
+//! `none` with a field that is not there. `NUMBER` knows `maximumSignificantDigits`, which is 6 without it.
+//!
+//! # Source
+//! Project Fluent, "Fluent Syntax Guide", <https://projectfluent.org/fluent/guide/>; Unicode CLDR, "Language Plural Rules".
+
+use fluent_syntax::ast::{
+    CallArguments, Entry, Expression, InlineExpression, Message as Known, Pattern, PatternElement, VariantKey,
+};
+use fluent_syntax::parser::parse_runtime;
+use fluent_syntax::unicode::unescape_unicode_to_string;
+use opruga_math::message::{Field, Message};
+use opruga_math::words::rounded;
+use std::collections::HashMap;
+use std::sync::LazyLock;
+
+static CROATIAN: LazyLock<Translation> = LazyLock::new(|| Translation::new(&CROATIAN_FILES).0);
+
+/// The Croatian texts, by what writes them.
+const CROATIAN_FILES: [&str; 6] = [
+    include_str!("../hr/problems.ftl"),
+    include_str!("../hr/limits.ftl"),
+    include_str!("../hr/meshes.ftl"),
+    include_str!("../hr/mesh_files.ftl"),
+    include_str!("../hr/models.ftl"),
+    include_str!("../hr/warnings.ftl"),
+];
+
+/// The texts of a language.
+#[derive(Debug, Default)]
+pub struct Translation {
+    entries: HashMap<&'static str, Known<&'static str>>,
+}
+
+impl Translation {
+    /// The Croatian texts.
+    pub fn croatian() -> &'static Translation {
+        &CROATIAN
+    }
+
+    /// The texts of files, and what is wrong with them. Of two entries of one name the later one counts.
+    fn new(files: &[&'static str]) -> (Translation, Vec<String>) {
+        let (mut translation, mut problems) = (Translation::default(), Vec::new());
+        for file in files {
+            let resource = parse_runtime(*file).unwrap_or_else(|(resource, errors)| {
+                problems.extend(errors.iter().map(|error| format!("{error} at byte {}", error.pos.start)));
+                resource
+            });
+            for entry in resource.body {
+                if let Entry::Message(message) = entry
+                    && let Some(twice) = translation.entries.insert(message.id.name, message)
+                {
+                    problems.push(format!("there are two entries `{}`", twice.id.name));
+                }
+            }
+        }
+        (translation, problems)
+    }
+
+    /// What a message says; none where the translation does not know it.
+    pub fn text(&self, message: &dyn Message) -> Option<String> {
+        let pattern = self.entry(message)?.value.as_ref()?;
+        Some(self.resolved(pattern, &message.fields()))
+    }
+
+    /// What a message says, in English where the translation does not know it.
+    pub fn text_or_english(&self, message: &dyn Message) -> String {
+        self.text(message).unwrap_or_else(|| message.to_string())
+    }
+
+    /// What a message says is allowed.
+    pub fn allowed(&self, message: &dyn Message) -> Option<String> {
+        self.beside(message, "allowed").or_else(|| message.allowed())
+    }
+
+    /// What a message says would help.
+    pub fn hint(&self, message: &dyn Message) -> Option<String> {
+        self.beside(message, "hint").or_else(|| message.hint())
+    }
+
+    /// What a message says, what is allowed and what would help, as [`Message::in_full`] has it in English.
+    pub fn in_full(&self, message: &dyn Message) -> Option<String> {
+        let beside = [("dopušteno", self.allowed(message)), ("savjet", self.hint(message))];
+        let beside = beside.into_iter().filter_map(|(label, text)| text.map(|text| format!("; {label}: {text}")));
+        Some(self.text(message)? + &beside.collect::<String>())
+    }
+
+    fn beside(&self, message: &dyn Message, name: &str) -> Option<String> {
+        let pattern = self.entry(message)?.attributes.iter().find(|attribute| attribute.id.name == name)?;
+        Some(self.resolved(&pattern.value, &message.fields())).filter(|text| !text.is_empty())
+    }
+
+    fn entry(&self, message: &dyn Message) -> Option<&Known<&'static str>> {
+        self.entries.get(&*entry_name(message.code(), message.variant()))
+    }
+
+    fn resolved(&self, pattern: &Pattern<&'static str>, fields: &[(&'static str, Field)]) -> String {
+        let mut out = String::new();
+        for element in &pattern.elements {
+            match element {
+                PatternElement::TextElement { value } => out += value,
+                PatternElement::Placeable { expression } => out += &self.filled(expression, fields),
+            }
+        }
+        out
+    }
+
+    fn filled(&self, expression: &Expression<&'static str>, fields: &[(&'static str, Field)]) -> String {
+        match expression {
+            Expression::Inline(InlineExpression::VariableReference { id }) => match field(fields, id.name) {
+                Some(Field::Message(message)) => self.text_or_english(&**message),
+                Some(field) => field.to_string(),
+                None => format!("{{${}}}", id.name),
+            },
+            Expression::Inline(InlineExpression::StringLiteral { value }) => unescape_unicode_to_string(value).into(),
+            Expression::Inline(InlineExpression::NumberLiteral { value }) => (*value).into(),
+            Expression::Inline(InlineExpression::Placeable { expression }) => self.filled(expression, fields),
+            Expression::Inline(InlineExpression::FunctionReference { id, arguments }) if id.name == "NUMBER" => {
+                number_of(arguments, fields)
+            }
+            Expression::Inline(InlineExpression::MessageReference { id, .. }) => {
+                let pattern = self.entries.get(id.name).and_then(|entry| entry.value.as_ref());
+                pattern.map_or_else(String::new, |pattern| self.resolved(pattern, fields))
+            }
+            Expression::Select { selector: InlineExpression::VariableReference { id }, variants } => {
+                let value = field(fields, id.name);
+                let fits = |key: &VariantKey<&str>| value.is_some_and(|value| fits(key, value));
+                let chosen = variants.iter().find(|variant| fits(&variant.key));
+                let chosen = chosen.or_else(|| variants.iter().find(|variant| variant.default));
+                chosen.map_or_else(String::new, |variant| self.resolved(&variant.value, fields))
+            }
+            // Other functions and terms have no use here.
+            _ => String::new(),
+        }
+    }
+}
+
+mod complete;
+
+/// The name of the entry of a message in a translation.
+fn entry_name(code: &str, variant: &str) -> String {
+    format!("{}-{variant}", code.replace('.', "-"))
+}
+
+/// A number with so many significant digits, as `NUMBER($x, maximumSignificantDigits: 3)` asks for.
+fn number_of(arguments: &CallArguments<&'static str>, fields: &[(&'static str, Field)]) -> String {
+    let digits = arguments.named.iter().find_map(|argument| match &argument.value {
+        InlineExpression::NumberLiteral { value } => value.parse().ok(),
+        _ => None,
+    });
+    match arguments.positional.first() {
+        Some(InlineExpression::VariableReference { id }) => match field(fields, id.name) {
+            Some(Field::Number(x)) => rounded(*x, digits.unwrap_or(6)),
+            other => other.map_or_else(String::new, Field::to_string),
+        },
+        _ => String::new(),
+    }
+}
+
+fn field<'f>(fields: &'f [(&'static str, Field)], name: &str) -> Option<&'f Field> {
+    fields.iter().find(|(known, _)| *known == name).map(|(_, value)| value)
+}
+
+/// Whether a case of a selector is that of a value.
+fn fits(key: &VariantKey<&str>, value: &Field) -> bool {
+    match (key, value) {
+        (VariantKey::NumberLiteral { value }, Field::Count(count)) => value.parse() == Ok(*count),
+        (VariantKey::Identifier { name }, Field::Count(count)) => *name == plural(*count),
+        (VariantKey::Identifier { name }, Field::Text(text)) => name == text || *name == "none" && text.is_empty(),
+        (VariantKey::Identifier { name }, Field::Message(message)) => *name == message.variant(),
+        _ => false,
+    }
+}
+
+/// The plural category of a whole number in Croatian: `one` (1, 21), `few` (2 to 4, 22) or `other` (0, 5, 11).
+fn plural(count: i64) -> &'static str {
+    match (count.unsigned_abs() % 10, count.unsigned_abs() % 100) {
+        (_, 11..=14) => "other",
+        (1, _) => "one",
+        (2..=4, _) => "few",
+        _ => "other",
+    }
+}
+
+#[cfg(test)]
+mod tests;
