@@ -10,6 +10,7 @@ mod readers;
 #[cfg(test)]
 mod said_in_sources;
 mod scene_errors;
+mod scene_titles;
 mod sentences;
 
 pub use named::Part;

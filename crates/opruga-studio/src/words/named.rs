@@ -2,7 +2,7 @@
 //! they say of themselves; in Croatian what stands in [`croatian`]. A kind of which nothing stands there, because a program has
 //! added it, is called as in the scene file, and its English sentence is marked as such.
 
-use super::{Language, croatian, details};
+use super::{Language, croatian, details, scene_titles};
 use opruga::Warning;
 use opruga::core::spec::{Allowed, Bound, Condition, Default as Unset, Field, Spec};
 
@@ -145,7 +145,7 @@ impl Language {
 
     /// The title of a scene that comes with the program.
     pub fn scene_title(self, name: &str) -> String {
-        let known = croatian::SCENES.iter().find(|(known, _)| self == Language::Croatian && *known == name);
+        let known = scene_titles::SCENE_TITLES.iter().find(|(known, _)| self == Language::Croatian && *known == name);
         let own = || self.english(opruga::scenes::find(name).map_or("", opruga::scenes::title));
         known.map_or_else(own, |(_, title)| (*title).into())
     }
@@ -250,9 +250,9 @@ mod tests {
                 missing.extend(unknown.map(|word| format!("{place}.{} = {word}", about.name)));
             }
         }
-        let titled = |name: &&str| croatian::SCENES.iter().any(|(known, _)| known == name);
+        let titled = |name: &&str| scene_titles::SCENE_TITLES.iter().any(|(known, _)| known == name);
         missing.extend(opruga::scenes::names().filter(|name| !titled(name)).map(|name| format!("the scene {name}")));
-        assert!(missing.is_empty(), "without a name in words/croatian.rs: {missing:#?}");
+        assert!(missing.is_empty(), "without a Croatian name: {missing:#?}");
     }
 
     #[test]
