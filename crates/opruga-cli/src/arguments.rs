@@ -329,6 +329,12 @@ pub(crate) struct Run {
     /// at most; of more frames so many are left out, with a warning that counts them.
     #[arg(long, value_name = "FRAMES", value_parser = clap::value_parser!(u32).range(1..=1_000_000_000))]
     pub(crate) diagnostics_every: Option<u32>,
+    /// Check after every frame that no surfaces cross; a run in which some do ends with exit code 1
+    ///
+    /// The check is exact and shares no code with the detection of contact. It takes bodies that touch by `[contact]`, without that
+    /// section all bodies.
+    #[arg(long)]
+    pub(crate) check_contact: bool,
     /// Run even if the step is above the stable limit
     #[arg(long)]
     pub(crate) allow_unstable: bool,

@@ -18,6 +18,8 @@ pub(crate) enum Failure {
     Draw(String),
     /// stdout cannot be written.
     Output(String),
+    /// A check of the run failed: its code, and what it found.
+    Check { code: &'static str, message: String },
     /// The call makes no sense.
     Call { message: String, hint: Option<String> },
     /// Ctrl-C or a signal to end; the files are closed.
@@ -60,12 +62,13 @@ impl Failure {
         Failure::Call { message: message.into(), hint: None }
     }
 
-    /// 2 bad call or content · 3 diverged · 4 reading and writing · 130 interrupted.
+    /// 1 a check failed · 2 bad call or content · 3 diverged · 4 reading and writing · 130 interrupted.
     pub(crate) fn exit_code(&self) -> u8 {
         match self {
             Failure::Scene(errors) => errors.first().map_or(2, |e| e.exit_code() as u8),
             Failure::Run(error) if error.code.starts_with("run.") => 3,
             Failure::Run(error) => error.exit_code() as u8,
+            Failure::Check { .. } => 1,
             Failure::Call { .. } => 2,
             Failure::Write(_) | Failure::Draw(_) | Failure::Output(_) => 4,
             Failure::Interrupted => 130,
@@ -92,6 +95,7 @@ impl Failure {
             Failure::Write(error) => error.to_json(),
             Failure::Draw(message) => plain("draw.failed", message.clone(), None),
             Failure::Output(message) => plain("write.failed", message.clone(), None),
+            Failure::Check { code, message } => plain(code, message.clone(), None),
             Failure::Call { message, hint } => plain("call", message.clone(), hint.as_deref()),
             Failure::Interrupted => plain("interrupted", "interrupted; the files are closed".into(), None),
             Failure::ClosedPipe => Value::Null,
@@ -117,6 +121,7 @@ impl Failure {
             Failure::Write(error) => writeln!(err, "{error}"),
             Failure::Draw(message) => writeln!(err, "error[draw.failed]: {message}"),
             Failure::Output(message) => writeln!(err, "error[write.failed]: {message}"),
+            Failure::Check { code, message } => writeln!(err, "error[{code}]: {message}"),
             Failure::Call { message, hint } => {
                 let _ = writeln!(err, "error: {message}");
                 hint.as_ref().map_or(Ok(()), |h| writeln!(err, "  = hint: {h}"))

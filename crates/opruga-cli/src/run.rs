@@ -17,7 +17,7 @@ use opruga::io::safe_write::WriteError;
 use opruga::io::scene;
 use opruga::io::tables::WarningSummary;
 use opruga::math::words::{counted, number, rounded};
-use opruga::{Options, Simd};
+use opruga::{AnyWorld, Options, Simd};
 use std::collections::BTreeMap;
 use std::io::IsTerminal as _;
 use std::path::PathBuf;
@@ -247,7 +247,11 @@ impl Job<'_> {
                 break;
             }
             looked_at = looked_at || world.look_at_steps_again();
-            failure = tape.as_mut().and_then(|tape| tape.push(&mut *world).err()).map(unrecorded);
+            if call.check_contact {
+                failure = crossed(&*world);
+            }
+            let untaped = tape.as_mut().and_then(|tape| tape.push(&mut *world).err()).map(unrecorded);
+            failure = failure.or(untaped);
             looking += recorder.record(&mut *world);
             if let Some(problem) = keeper.on_the_way(&*world, &recorder.table) {
                 bar.suspend(|| eprintln!("warning: no checkpoint at t = {} s: {problem}", number(world.time())));
@@ -335,4 +339,19 @@ fn progress_bar(frames: u64) -> indicatif::ProgressBar {
     indicatif::ProgressBar::new(frames)
         .with_message("t = 0 s")
         .with_style(style.unwrap_or_else(|_| indicatif::ProgressStyle::default_bar()))
+}
+
+/// The failure of a world in which surfaces cross.
+fn crossed(world: &dyn AnyWorld) -> Option<Failure> {
+    let found = world.crossed_surfaces();
+    let first = found.first()?;
+    let name = |body: usize| world.scene().body(body).map_or("", |body| body.name()).to_owned();
+    let [a, b] = first.bodies;
+    let how = match first.facets {
+        Some([f, g]) if a == b => format!("facets {f} and {g} of body `{}` cross", name(a)),
+        Some([f, g]) => format!("facet {f} of body `{}` and facet {g} of body `{}` cross", name(a), name(b)),
+        None => format!("of bodies `{}` and `{}`, one lies in the other", name(a), name(b)),
+    };
+    let more = if found.len() > 1 { format!("; {} pairs of bodies in all", found.len()) } else { String::new() };
+    Some(Failure::Check { code: "contact.crossed", message: format!("at t = {} s {how}{more}", number(world.time())) })
 }

@@ -161,12 +161,22 @@ impl Recorded {
 /// written to its end are read, and are right; and its last frame can be played.
 #[test]
 fn a_recording_that_is_killed_at_any_moment_has_right_frames() {
+    recordings_survive(40);
+}
+
+#[test]
+#[ignore = "a sweep: cargo test -- --ignored whole_sweep"]
+fn a_recording_that_is_killed_at_any_moment_has_right_frames_whole_sweep() {
+    recordings_survive(RECORDINGS);
+}
+
+fn recordings_survive(kills: u64) {
     let folder = tempfile::tempdir().expect("a folder");
     let (folder, undisturbed) = (folder.path(), Undisturbed::new());
     let ways = ["--record-every=1", "--record-every=3", "--record-every=1000"];
     let ways = ways.map(|every| Recorded::new(folder, every));
     let counts: [AtomicU64; 4] = Default::default();
-    rounds(RECORDINGS, |round| {
+    rounds(kills, |round| {
         let way = &ways[round as usize % ways.len()];
         let at_work = way.killed(folder, round);
         let count = |which: usize| counts[which].fetch_add(1, Ordering::Relaxed);
@@ -205,17 +215,27 @@ fn a_recording_that_is_killed_at_any_moment_has_right_frames() {
     });
     let [before, within, after, closed] = counts.map(AtomicU64::into_inner);
     println!("{before} before the file had its name, {within} within it, {closed} behind its end, {after} had ended");
-    assert_eq!(before + within + after + closed, RECORDINGS);
-    assert!(within > RECORDINGS / 4, "{before} {within} {closed} {after}");
+    assert_eq!(before + within + after + closed, kills);
+    assert!(within > kills / 4, "{before} {within} {closed} {after}");
 }
 
 #[test]
 fn a_run_that_is_killed_at_any_moment_leaves_a_checkpoint_to_go_on_from() {
+    checkpoints_survive(24);
+}
+
+#[test]
+#[ignore = "a sweep: cargo test -- --ignored whole_sweep"]
+fn a_run_that_is_killed_at_any_moment_leaves_a_checkpoint_to_go_on_from_whole_sweep() {
+    checkpoints_survive(CHECKPOINTS);
+}
+
+fn checkpoints_survive(kills: u64) {
     let folder = tempfile::tempdir().expect("a folder");
     let (folder, undisturbed) = (folder.path(), Undisturbed::new());
     undisturbed.is(4_000, 0, None);
     let found = AtomicU64::new(0);
-    rounds(CHECKPOINTS, |round| {
+    rounds(kills, |round| {
         let out = format!("o{round}");
         let call = [
             "run",
@@ -237,9 +257,9 @@ fn a_run_that_is_killed_at_any_moment_leaves_a_checkpoint_to_go_on_from() {
         }
     });
     let found = found.into_inner();
-    assert!(found > CHECKPOINTS / 2, "{found} checkpoints were written");
+    assert!(found > kills / 2, "{found} checkpoints were written");
     // The last that has one goes on.
-    let last = (0..CHECKPOINTS).rev().find(|round| folder.join(format!("o{round}/checkpoint")).exists()).expect("one");
+    let last = (0..kills).rev().find(|round| folder.join(format!("o{round}/checkpoint")).exists()).expect("one");
     let checkpoint = format!("o{last}/checkpoint");
     let hour = ["run", "--resume", &checkpoint, "--seconds=200", "--no-pictures", "--out=on", "--json"];
     let output = opruga(folder, &hour);
@@ -248,12 +268,22 @@ fn a_run_that_is_killed_at_any_moment_leaves_a_checkpoint_to_go_on_from() {
 
 #[test]
 fn a_sweep_that_is_killed_again_and_again_comes_to_its_end() {
+    sweeps_survive(16);
+}
+
+#[test]
+#[ignore = "a sweep: cargo test -- --ignored whole_sweep"]
+fn a_sweep_that_is_killed_again_and_again_comes_to_its_end_whole_sweep() {
+    sweeps_survive(SWEEPS);
+}
+
+fn sweeps_survive(kills: u64) {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
     let call = |out: &'static str| {
         ["sweep", "ball", "--set=body.ball.mass=0.5..2:60", "--metric=bounce_height", "--seconds=2", "--threads=2", out]
     };
-    for round in 0..SWEEPS {
+    for round in 0..kills {
         killed(folder, &call("--out=killed"), "killed/results.csv", round, 50_000);
     }
     for out in ["--out=killed", "--out=whole"] {

@@ -1,8 +1,8 @@
 //! Pairs of features that may meet.
 
 use crate::grid::Grid;
+use crate::reach::around;
 use crate::surface::Surface;
-use opruga_math::Lane;
 
 /// Pairs of a vertex and a facet, and in 3D of two edges, whose swept boxes come closer than a margin; ascending, each once.
 ///
@@ -17,42 +17,33 @@ pub struct Candidates<const D: usize> {
     found: Vec<u32>,
 }
 
-/// The box around points at the start and the end of a step, larger by a margin on all sides.
-fn swept<const D: usize, const N: usize>(points: &[u32; N], ends: [&[[f64; D]]; 2], margin: f64) -> [[f64; D]; 2] {
-    let (mut low, mut high) = ([f64::INFINITY; D], [f64::NEG_INFINITY; D]);
-    for x in points.iter().flat_map(|p| ends.map(|end| &end[*p as usize])) {
-        for d in 0..D {
-            low[d] = x[d].smaller(low[d]);
-            high[d] = x[d].larger(high[d]);
-        }
-    }
+/// A box, larger by a distance [m] on all sides.
+fn wider<const D: usize>([mut low, mut high]: [[f64; D]; 2], distance: f64) -> [[f64; D]; 2] {
     for d in 0..D {
-        low[d] -= margin;
-        high[d] += margin;
+        low[d] -= distance;
+        high[d] += distance;
     }
     [low, high]
 }
 
 impl<const D: usize> Candidates<D> {
-    /// Looks for all pairs whose boxes, swept from `start` to `end` [m], are closer than `margin` [m] along every axis.
+    /// Looks for all pairs of features with boxes closer than `distance` [m] along every axis, given the boxes of the points [m].
     ///
     /// `meet` says of two bodies whether they may touch, of a body with itself whether it may touch itself. Features that share a point
     /// are no pair. False where there are more than `most` pairs: then the search ends.
     pub fn find(
         &mut self,
         surface: &Surface<D>,
-        start: &[[f64; D]],
-        end: &[[f64; D]],
-        margin: f64,
+        boxes: &[[[f64; D]; 2]],
+        distance: f64,
         most: usize,
         meet: impl Fn(u32, u32) -> bool,
     ) -> bool {
-        let ends = [start, end];
         self.vertex_facet.clear();
         self.edge_edge.clear();
-        self.grid.fill(surface.facets.iter().map(|facet| swept(facet, ends, margin)));
+        self.grid.fill(surface.facets.iter().map(|facet| wider(around(boxes, facet), distance)));
         for p in 0..surface.points() as u32 {
-            self.grid.touching(&swept(&[p], ends, 0.0), &mut self.found);
+            self.grid.touching(&boxes[p as usize], &mut self.found);
             let apart = |facet: &[u32; D]| !facet.contains(&p);
             for number in &self.found {
                 let facet = &surface.facets[*number as usize];
@@ -68,9 +59,9 @@ impl<const D: usize> Candidates<D> {
         if D == 2 {
             return true;
         }
-        self.grid.fill(surface.edges.iter().map(|edge| swept(edge, ends, margin)));
+        self.grid.fill(surface.edges.iter().map(|edge| wider(around(boxes, edge), distance)));
         for (number, edge) in surface.edges.iter().enumerate() {
-            self.grid.touching(&swept(edge, ends, 0.0), &mut self.found);
+            self.grid.touching(&around(boxes, edge), &mut self.found);
             let apart = |other: &[u32; 2]| !edge.iter().any(|p| other.contains(p));
             let number = number as u32;
             for other in self.found.iter().filter(|other| **other > number) {

@@ -154,59 +154,105 @@ const MOST_SWEEPS: usize = 60;
 pub(crate) struct Turns {
     /// When the velocity of a point changed last.
     stamps: Vec<u64>,
-    /// The points of the rows in play, and their last turns.
+    /// The points of the rows in play, and their last turns; 0 before the first.
     rows: Vec<([u32; 4], u64)>,
     now: u64,
+    /// Another point that is joined by rows, or the point itself.
+    parent: Vec<u32>,
+    /// Rows in play with the least point that they are joined to.
+    joined: Vec<(u32, u32)>,
 }
 
 impl Turns {
-    /// Begins a step: everything has changed.
+    /// Begins a step.
     pub(crate) fn begin(&mut self, points: usize) {
-        self.stamps.clear();
-        self.stamps.resize(points, 1);
-        self.now = 1;
+        if self.parent.len() != points {
+            self.stamps.resize(points, 0);
+            self.parent = (0..points as u32).collect();
+        }
+    }
+
+    fn root(&mut self, mut point: u32) -> u32 {
+        while self.parent[point as usize] != point {
+            // Half of the way is cut off for whoever comes next.
+            self.parent[point as usize] = self.parent[self.parent[point as usize] as usize];
+            point = self.parent[point as usize];
+        }
+        point
+    }
+
+    /// Sorts rows into those that points join, each in the order of rows.
+    fn join<const D: usize>(&mut self, rows: &[Row<D>], play: &mut [u32]) {
+        let points = |k: &u32| {
+            let row = &rows[*k as usize];
+            (0..4).filter(|k| row.weights[*k] != 0.0).map(|k| row.points[k])
+        };
+        for p in play.iter().flat_map(points) {
+            self.parent[p as usize] = p;
+        }
+        for k in play.iter() {
+            let mut own = points(k);
+            let Some(first) = own.next() else { continue };
+            for p in own {
+                let (a, b) = (self.root(first), self.root(p));
+                let (low, high) = if a < b { (a, b) } else { (b, a) };
+                self.parent[high as usize] = low;
+            }
+        }
+        self.joined.clear();
+        for k in play.iter() {
+            let root = points(k).next().map_or(0, |p| self.root(p));
+            self.joined.push((root, *k));
+        }
+        self.joined.sort_unstable();
+        play.iter_mut().zip(&self.joined).for_each(|(to, (_, k))| *to = *k);
+        self.rows.clear();
+        self.rows.extend(play.iter().map(|k| (rows[*k as usize].points, 0)));
     }
 }
 
-/// Sweeps over the rows in play, to and fro, until the velocities stay. Gives the number of sweeps.
+/// Sweeps over the rows in play, to and fro, until the velocities stay: separately over rows that no point joins. Gives how many turns rows had.
 ///
 /// A row is passed over while nothing that it holds has changed since its last turn by more than the tolerance: so sweeps cost what is still
 /// on the move.
 pub(crate) fn solve<const D: usize>(
     rows: &mut [Row<D>],
-    play: &[u32],
+    play: &mut [u32],
     inverse_mass: &[[f64; D]],
     v: &mut [[f64; D]],
     turns: &mut Turns,
     approach: f64,
 ) -> usize {
-    let Turns { stamps, rows: heads, now } = turns;
-    heads.clear();
-    heads.extend(play.iter().map(|k| (rows[*k as usize].points, 0)));
-    for sweep in 0..MOST_SWEEPS {
-        let mut changed = false;
-        let mut turn = |(number, (points, last)): (&u32, &mut ([u32; 4], u64))| {
-            if points.iter().all(|p| stamps[*p as usize] <= *last) {
-                return;
-            }
-            *now += 1;
-            if rows[*number as usize].solve(inverse_mass, v) > TOLERANCE * approach {
-                changed = true;
-                points.iter().for_each(|p| stamps[*p as usize] = *now);
-            }
-            *last = *now;
-        };
-        let both = play.iter().zip(heads.iter_mut());
-        if sweep % 2 == 0 {
-            both.for_each(&mut turn)
-        } else {
-            both.rev().for_each(&mut turn)
+    turns.join(rows, play);
+    let Turns { stamps, rows: heads, now, joined, .. } = turns;
+    let (mut first, begin) = (0, *now);
+    while first < play.len() {
+        let mut end = first;
+        while end < play.len() && joined[end].0 == joined[first].0 {
+            end += 1;
         }
-        if !changed {
-            return sweep + 1;
+        for sweep in 0..MOST_SWEEPS {
+            let mut changed = false;
+            for k in first..end {
+                let k = if sweep % 2 == 0 { k } else { first + end - 1 - k };
+                let (points, last) = &mut heads[k];
+                if *last > 0 && points.iter().all(|p| stamps[*p as usize] <= *last) {
+                    continue;
+                }
+                *now += 1;
+                if rows[play[k] as usize].solve(inverse_mass, v) > TOLERANCE * approach {
+                    changed = true;
+                    points.iter().for_each(|p| stamps[*p as usize] = *now);
+                }
+                *last = *now;
+            }
+            if !changed {
+                break;
+            }
         }
+        first = end;
     }
-    MOST_SWEEPS
+    (*now - begin) as usize
 }
 
 /// Displacements that take overlapping pairs apart by at most `most` [m], without bringing others into overlap: the same sweeps, on positions.

@@ -4,6 +4,7 @@ use crate::ccd::{edge_meets_edge, vertex_meets_facet};
 use crate::gap::Gap;
 use crate::impulses::Row;
 use crate::law::PairLaw;
+use crate::surface::Surface;
 use crate::touching::Touching;
 use crate::vector::{dot, subtract};
 use core::ops::Range;
@@ -12,8 +13,8 @@ use opruga_math::Lane;
 impl<const D: usize> Touching<D> {
     /// Takes the gaps of all candidates that may come to touch; rows are in the order of their features.
     pub(crate) fn take_gaps(&mut self, h: f64) {
-        let reach = self.window + 2.0 * self.drifted;
         self.rows.clear();
+        self.close.iter_mut().for_each(Vec::clear);
         let pairs = self.candidates.vertex_facet.len();
         let mut k = 0;
         while k < pairs {
@@ -22,24 +23,24 @@ impl<const D: usize> Touching<D> {
             while self.candidates.vertex_facet.get(k).is_some_and(|pair| pair[0] == vertex) {
                 k += 1;
             }
-            self.take_gaps_of(first..k, reach, h);
+            self.take_gaps_of(first..k, h, 0.0);
             // Who seems to be deep inside may be outside, before a facet that is nearer and beyond the reach.
-            let known = |row: &Row<D>, window: f64| row.gap + self.laws.largest_thickness() >= -window;
-            if !self.rows[begin..].iter().all(|row| known(row, self.window)) {
+            let known = -self.reach.push_of(vertex) - self.laws.largest_thickness();
+            if self.rows[begin..].iter().any(|row| row.gap < known) {
                 self.rows.truncate(begin);
-                let window = std::mem::replace(&mut self.window, f64::INFINITY);
-                self.take_gaps_of(first..k, f64::INFINITY, h);
-                self.window = window;
+                self.take_gaps_of(first..k, h, 0.25 * self.margin);
             }
             self.keep_the_nearest(begin);
         }
         for k in 0..self.candidates.edge_edge.len() {
             let [a, b] = self.candidates.edge_edge[k];
-            let bodies = [a, b].map(|e| self.surface.body[self.surface.edges[e as usize][0] as usize]);
+            let edges = [a, b].map(|e| self.surface.edges[e as usize]);
+            let bodies = edges.map(|edge| self.surface.body[edge[0] as usize]);
             let law = *self.laws.of(bodies[0], bodies[1]);
-            if self.bounds[pairs + k] > law.thickness + reach {
+            if !self.reach.meet(&edges[0], &edges[1], law.thickness) {
                 continue;
             }
+            self.close[1].push([a, b]);
             let Some(mut gap) = Gap::of_edges(&self.surface, &self.before[0], a, b) else { continue };
             if bodies[0] == bodies[1] && gap.gap < 0.0 {
                 (gap.gap, gap.normal) = (-gap.gap, gap.normal.map(|n| -n));
@@ -48,46 +49,53 @@ impl<const D: usize> Touching<D> {
             if gap.gap < -law.thickness {
                 continue;
             }
-            self.push(gap, &law, h, [a, b], false);
+            self.push(gap, &law, h, [a, b], false, 0.0);
         }
+        self.put_passing(h);
     }
 
-    /// Takes the gaps of some candidates of one vertex that may be within a reach [m].
-    fn take_gaps_of(&mut self, candidates: Range<usize>, reach: f64, h: f64) {
+    /// Takes the gaps of some candidates of one vertex that may come closer than a distance [m].
+    fn take_gaps_of(&mut self, candidates: Range<usize>, h: f64, distance: f64) {
         for k in candidates {
             let [vertex, facet] = self.candidates.vertex_facet[k];
-            let [own, other] = [vertex, self.surface.facets[facet as usize][0]].map(|p| self.surface.body[p as usize]);
+            let corners = &self.surface.facets[facet as usize];
+            let [own, other] = [vertex, corners[0]].map(|p| self.surface.body[p as usize]);
             let law = *self.laws.of(own, other);
-            if self.bounds[k] > law.thickness + reach {
+            if !self.reach.meet(&[vertex], corners, law.thickness + distance) {
                 continue;
+            }
+            if distance == 0.0 {
+                self.close[0].push([vertex, facet]);
             }
             let mut gap = Gap::of_vertex_and_facet(&self.surface, &self.before[0], vertex, facet);
             if own == other && gap.gap < 0.0 {
                 // A body holds itself on both sides.
                 (gap.gap, gap.normal) = (-gap.gap, gap.normal.map(|n| -n));
             }
-            self.push(gap, &law, h, [vertex, facet], true);
+            self.push(gap, &law, h, [vertex, facet], true, distance);
         }
     }
 
-    /// Adds a row for the gap of a vertex and a facet, or of two edges.
-    fn push(&mut self, mut gap: Gap<D>, law: &PairLaw, h: f64, pair: [u32; 2], with_facet: bool) {
-        if gap.gap > law.thickness + self.window {
+    /// Adds a row for the gap of a vertex and a facet, or of two edges, unless they stay apart by more than a distance [m].
+    fn push(&mut self, mut gap: Gap<D>, law: &PairLaw, h: f64, pair: [u32; 2], with_facet: bool, distance: f64) {
+        // A point goes by itself as far as contact may push it, at most.
+        let first = if with_facet { 1 } else { 2 };
+        let reach = |points: &[u32]| points.iter().fold(0.0, |most: f64, p| self.reach.push_of(*p).larger(most));
+        if gap.gap > law.thickness + distance + 2.0 * (reach(&gap.points[..first]) + reach(&gap.points[first..])) {
             return;
         }
         let mut meets = true;
         if gap.gap > law.thickness && self.goes_far(&gap, with_facet) {
             // The closest points now are not those of the impact.
-            match self.impact(&gap, law.thickness, pair, with_facet) {
-                Some(then) => gap = then,
+            let ends = [&self.before[0][..], &self.after[0]];
+            match impact(&self.surface, ends, &mut self.impact, law.thickness, pair, with_facet) {
+                Some((_, then)) => gap = then,
                 None => meets = false,
             }
         }
+        let mut row = self.row(&gap, law, h, pair, with_facet);
         let ([x0, v0], [x1, v1]) = (&self.before, &self.after);
-        let id = u64::from(!with_facet) << 62 | u64::from(pair[0]) << 31 | u64::from(pair[1]);
-        let mut row = Row::new(id, &gap, law.thickness, law.friction, &self.inverse_mass);
         let (came, comes) = (-gap.along(v0), -gap.along(v1));
-        row.target = if row.gap > 0.0 { -row.gap / h } else { 0.0 };
         let end = row.gap + gap.along(x1) - gap.along(x0);
         row.in_play = row.mass[0] > 0.0 && meets && (end < 0.0 || row.gap < 0.0 || h * comes > row.gap);
         if law.restitution > 0.0 && row.in_play && row.gap > 0.0 {
@@ -99,6 +107,13 @@ impl<const D: usize> Touching<D> {
             }
         }
         self.rows.push(row);
+    }
+
+    /// The row of a gap, which is not to become negative within the step.
+    pub(crate) fn row(&self, gap: &Gap<D>, law: &PairLaw, h: f64, pair: [u32; 2], with_facet: bool) -> Row<D> {
+        let mut row = Row::new(key(pair, with_facet), gap, law.thickness, law.friction, &self.inverse_mass);
+        row.target = if row.gap > 0.0 { -row.gap / h } else { 0.0 };
+        row
     }
 
     /// Whether a pair moves by more than a quarter of a feature within the step, relative to one another.
@@ -113,43 +128,6 @@ impl<const D: usize> Touching<D> {
             }
         }
         16.0 * dot(&travel, &travel) > dot(&edge, &edge)
-    }
-
-    /// The gap of a pair at the start of the step by the normal and the weights where it meets within the step; none where it does not.
-    fn impact(&mut self, gap: &Gap<D>, thickness: f64, [a, b]: [u32; 2], with_facet: bool) -> Option<Gap<D>> {
-        let ([x0, _], [x1, _]) = (&self.before, &self.after);
-        let ends = |p: u32| [x0[p as usize], x1[p as usize]];
-        let time = if with_facet {
-            let corners = self.surface.facets[b as usize].map(ends);
-            vertex_meets_facet(&ends(a), &[corners.map(|c| c[0]), corners.map(|c| c[1])], thickness)
-        } else {
-            let [a, b] = [a, b].map(|e| self.surface.edges[e as usize].map(ends));
-            let swept = |e: [[[f64; D]; 2]; 2]| [[e[0][0], e[1][0]], [e[0][1], e[1][1]]];
-            edge_meets_edge(&swept(a), &swept(b), thickness)
-        }?;
-        // Normals of corners and edges ask the facets around.
-        let moved = &mut self.impact;
-        let mut go = |p: u32| {
-            let (from, to) = (&x0[p as usize], &x1[p as usize]);
-            moved[p as usize] = core::array::from_fn(|d| from[d] + time * (to[d] - from[d]));
-        };
-        for p in gap.points {
-            go(p);
-            let around = self.surface.facets_around(p).iter();
-            around.flat_map(|facet| self.surface.facets[*facet as usize]).for_each(&mut go);
-        }
-        let mut then = if with_facet {
-            Gap::of_vertex_and_facet(&self.surface, &self.impact, a, b)
-        } else {
-            // Edges that meet at an end are met by a vertex too.
-            Gap::of_edges(&self.surface, &self.impact, a, b)?
-        };
-        // They are apart at the start: what is in front now stays in front.
-        if then.gap < 0.0 {
-            then.normal = then.normal.map(|n| -n);
-        }
-        then.gap = then.along(x0);
-        Some(then)
     }
 
     /// Of the rows of one vertex, from one on, keeps what counts: outside of a body all facets before it, each closest point once; inside
@@ -198,6 +176,58 @@ impl<const D: usize> Touching<D> {
         }
         self.rows.truncate(write);
     }
+}
+
+/// The key of a pair of a vertex and a facet, or of two edges.
+pub(crate) fn key([a, b]: [u32; 2], with_facet: bool) -> u64 {
+    u64::from(!with_facet) << 62 | u64::from(a) << 31 | u64::from(b)
+}
+
+/// When, as a part of the step, a vertex comes closer to a facet than a distance [m], or an edge to another one; and their gap at the start of
+/// the step by the normal and the weights that they have then. None where they stay apart.
+pub(crate) fn impact<const D: usize>(
+    surface: &Surface<D>,
+    [x0, x1]: [&[[f64; D]]; 2],
+    moved: &mut [[f64; D]],
+    distance: f64,
+    [a, b]: [u32; 2],
+    with_facet: bool,
+) -> Option<(f64, Gap<D>)> {
+    let ends = |p: u32| [x0[p as usize], x1[p as usize]];
+    let time = if with_facet {
+        let corners = surface.facets[b as usize].map(ends);
+        let facet = core::array::from_fn(|end| corners.map(|corner| corner[end]));
+        vertex_meets_facet(&ends(a), &facet, distance)
+    } else {
+        let [a, b] = [a, b].map(|e| surface.edges[e as usize].map(ends));
+        let swept = |e: [[[f64; D]; 2]; 2]| [[e[0][0], e[1][0]], [e[0][1], e[1][1]]];
+        edge_meets_edge(&swept(a), &swept(b), distance)
+    }?;
+    // Normals of corners and edges ask the facets around.
+    let mut go = |p: u32| {
+        let (from, to) = (&x0[p as usize], &x1[p as usize]);
+        moved[p as usize] = core::array::from_fn(|d| from[d] + time * (to[d] - from[d]));
+    };
+    let mut go_around = |p: u32| {
+        go(p);
+        let around = surface.facets_around(p).iter();
+        around.flat_map(|facet| surface.facets[*facet as usize]).for_each(&mut go);
+    };
+    let mut then = if with_facet {
+        go_around(a);
+        surface.facets[b as usize].into_iter().for_each(go_around);
+        Gap::of_vertex_and_facet(surface, moved, a, b)
+    } else {
+        [a, b].into_iter().flat_map(|edge| surface.edges[edge as usize]).for_each(go_around);
+        // Edges that meet at an end are met by a vertex too.
+        Gap::of_edges(surface, moved, a, b)?
+    };
+    // They are apart at the start: what is in front now stays in front.
+    then.gap = then.along(x0);
+    if then.gap < 0.0 {
+        (then.gap, then.normal) = (-then.gap, then.normal.map(|n| -n));
+    }
+    Some((time, then))
 }
 
 /// The corners of a facet that carry the closest point; the others are `u32::MAX`.

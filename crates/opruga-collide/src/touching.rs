@@ -4,8 +4,10 @@ use crate::candidates::Candidates;
 use crate::gap::Gap;
 use crate::impulses::{Row, Turns, part, solve};
 use crate::law::Laws;
+use crate::reach::Reach;
 use crate::surface::Surface;
 use crate::vector::{dot, length, subtract};
+use crate::zones::Zones;
 use opruga_core::contacts::Touch;
 use opruga_math::Lane;
 
@@ -43,29 +45,30 @@ pub struct Touching<const D: usize> {
     /// The most candidates.
     pub most: usize,
     pub(crate) candidates: Candidates<D>,
-    /// Distances of the candidates where they were found [m]: bounds of what they are later.
-    pub(crate) bounds: Vec<f64>,
-    found_at: Vec<[f64; D]>,
+    pub(crate) reach: Reach<D>,
     pub(crate) rows: Vec<Row<D>>,
-    play: Vec<u32>,
+    pub(crate) play: Vec<u32>,
     /// Features and impulses of the last substep, ascending.
     last: Vec<(u64, f64, [f64; D])>,
     pub(crate) keep: Vec<bool>,
-    /// The gap above which a pair does not meet within the step, whatever contact adds [m].
-    pub(crate) window: f64,
-    /// How far apart candidates may be where they were found [m].
-    covered: f64,
-    /// How far points are from there [m].
-    pub(crate) drifted: f64,
     /// Points whose obstacles are among the rows, ascending.
     known: Vec<u32>,
-    v: Vec<[f64; D]>,
+    pub(crate) v: Vec<[f64; D]>,
     pub(crate) moved: Vec<[f64; D]>,
     /// Positions at an impact within a step.
     pub(crate) impact: Vec<[f64; D]>,
+    /// Where the points are at the end of the step [m].
+    pub(crate) end: Vec<[f64; D]>,
+    /// Pairs that would pass through one another, and the gap by which each is solved for.
+    pub(crate) passing: Vec<(u64, Gap<D>)>,
+    /// Those of them that the last look has found.
+    pub(crate) fresh: Vec<u64>,
+    /// The pairs of a vertex and a facet, and of two edges, that may meet in the step.
+    pub(crate) close: [Vec<[u32; 2]>; 2],
+    pub(crate) zones: Zones<D>,
     wanted: Vec<f64>,
     multipliers: Vec<f64>,
-    touched: Vec<bool>,
+    pub(crate) touched: Vec<bool>,
     /// Where a point stands among those that changed.
     number: Vec<u32>,
     turns: Turns,
@@ -86,15 +89,23 @@ pub struct Counts {
     pub pairs: u64,
     /// Pairs that were solved for.
     pub contacts: u64,
-    /// Sweeps over these.
-    pub sweeps: u64,
+    /// How often one of these was solved for.
+    pub turns: u64,
 }
 
-/// There are more pairs than the limit.
+/// Why a step cannot be made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TooMany {
-    /// How many were found before the search ended.
-    pub found: usize,
+pub enum Trouble {
+    /// There are more pairs than the limit.
+    TooMany {
+        /// How many were found before the search ended.
+        found: usize,
+    },
+    /// Pins and obstacles lead two bodies, or one and itself, through one another.
+    LedThrough {
+        /// The bodies.
+        bodies: [u32; 2],
+    },
 }
 
 /// What obstacles say of a point: callback with the number of the point, its position at the start and the end of the step, and how far to look [m].
@@ -104,7 +115,7 @@ impl<const D: usize> Touching<D> {
     /// Forgets impulses and candidates, at the beginning of a frame.
     pub fn begin(&mut self) {
         self.last.clear();
-        self.found_at.clear();
+        self.reach.forget();
     }
 
     /// Whether any two bodies, or one with itself, may touch.
@@ -116,69 +127,66 @@ impl<const D: usize> Touching<D> {
     /// Lets the points touch after a free substep of h [s]: `after` becomes what contact makes of it.
     ///
     /// # Errors
-    /// [`TooMany`] where there are more candidates than [`Touching::most`].
-    pub fn step(&mut self, h: f64, obstacles: Option<Obstacles<'_, D>>) -> Result<(), TooMany> {
+    /// [`Trouble`] where there are more candidates than [`Touching::most`], or pins and obstacles force a passage.
+    pub fn step(&mut self, h: f64, obstacles: Option<Obstacles<'_, D>>) -> Result<(), Trouble> {
         self.changed.clear();
+        self.passing.clear();
+        self.zones.clear();
         let points = self.surface.points();
         self.moved.resize(points, [0.0; D]);
         self.impact.resize(points, [0.0; D]);
         self.number.resize(points, 0);
         self.counts.steps += 1;
-        let step = farthest(&self.before[0], &self.after[0]);
-        let recovery = h * self.laws.recovery_speed;
-        // Two points come closer by at most twice the farthest way of one: first without what contact adds to that, then with as much again.
-        let mut window = 2.0 * step + recovery;
+        self.reach.begin([&self.before[0], &self.after[0]], h * self.laws.recovery_speed);
+        let mut rounds = 0;
         loop {
-            self.window = 2.0 * window;
             self.search()?;
             self.take_gaps(h);
-            if !self.rows.iter().any(|row| row.in_play) {
-                self.last.clear();
+            if self.rows.iter().any(|row| row.in_play) {
+                self.solve(h, obstacles);
+                self.settle(h);
+                if self.reach.grow(&self.after[0], &self.end) {
+                    continue;
+                }
+            } else {
+                self.play.clear();
+                self.rest();
+            }
+            if !self.find_passages(h) {
                 break;
             }
-            self.solve(h, obstacles);
-            let pushed = h * farthest(&self.after[1], &self.v);
-            if 2.0 * (step + pushed) + recovery <= self.window {
-                self.keep_impulses();
-                self.move_points(h);
+            rounds += 1;
+            if rounds > ROUNDS {
+                self.hold_together(h)?;
                 break;
             }
-            window = 2.0 * (step + pushed) + recovery;
         }
+        self.keep_impulses();
+        self.book(h);
         self.counts.candidates += self.candidates.len() as u64;
         self.counts.pairs += self.rows.len() as u64;
         Ok(())
     }
 
+    /// Nothing touches: everything goes where it goes by itself.
+    fn rest(&mut self) {
+        self.touched.clear();
+        self.touched.resize(self.surface.points(), false);
+        self.v.clone_from(&self.after[1]);
+        self.end.clone_from(&self.after[0]);
+    }
+
     /// Looks for candidates where those at hand may not be all that meet in this step.
-    fn search(&mut self) -> Result<(), TooMany> {
-        let ([x0, _], [x1, _]) = (&self.before, &self.after);
-        if self.found_at.len() == x0.len() {
-            self.drifted = farthest(&self.found_at, x0);
-            if 2.0 * self.drifted + self.window <= self.covered {
-                return Ok(());
-            }
+    fn search(&mut self) -> Result<(), Trouble> {
+        if self.reach.covers(self.margin) {
+            return Ok(());
         }
         self.counts.searches += 1;
-        let laws = &self.laws;
-        (self.covered, self.drifted) = (self.margin + self.window, 0.0);
-        let reach = self.covered + laws.largest_thickness();
-        if !self.candidates.find(&self.surface, x0, x1, reach, self.most, |a, b| laws.meet(a, b)) {
-            return Err(TooMany { found: self.candidates.len() });
-        }
-        self.found_at.clone_from(x0);
-        self.bounds.clear();
-        for [p, facet] in &self.candidates.vertex_facet {
-            let corners = self.surface.facets[*facet as usize].map(|p| x0[p as usize]);
-            let weights = crate::closest::closest_on_facet(&x0[*p as usize], &corners);
-            let between = subtract(&x0[*p as usize], &crate::closest::mean(&weights, &corners));
-            self.bounds.push(length(&between));
-        }
-        for [a, b] in &self.candidates.edge_edge {
-            let [a, b] = [a, b].map(|e| self.surface.edges[*e as usize].map(|p| x0[p as usize]));
-            let [s, t] = crate::closest::closest_of_segments(&a, &b);
-            let between = subtract(&crate::closest::mean(&[1.0 - s, s], &a), &crate::closest::mean(&[1.0 - t, t], &b));
-            self.bounds.push(length(&between));
+        let (laws, reach) = (&self.laws, &mut self.reach);
+        reach.widen(self.margin);
+        if !self.candidates.find(&self.surface, &reach.found_in, laws.largest_thickness(), self.most, |a, b| laws.meet(a, b)) {
+            reach.forget();
+            return Err(Trouble::TooMany { found: self.candidates.len() });
         }
         Ok(())
     }
@@ -200,8 +208,8 @@ impl<const D: usize> Touching<D> {
         self.start_warm();
         self.turns.begin(self.surface.points());
         loop {
-            let (rows, play, turns) = (&mut self.rows, &self.play, &mut self.turns);
-            self.counts.sweeps += solve(rows, play, &self.inverse_mass, &mut self.v, turns, approach) as u64;
+            let (rows, play, turns) = (&mut self.rows, &mut self.play, &mut self.turns);
+            self.counts.turns += solve(rows, play, &self.inverse_mass, &mut self.v, turns, approach) as u64;
             // Whoever was pushed may meet what it would not have met by itself.
             let mut more = false;
             for row in self.rows.iter_mut().filter(|row| !row.in_play && row.mass[0] > 0.0) {
@@ -280,8 +288,8 @@ impl<const D: usize> Touching<D> {
         }
     }
 
-    /// Takes the points along with their new velocities, and overlapping ones apart; books what that took and gave.
-    fn move_points(&mut self, h: f64) {
+    /// Takes the points along with their new velocities, and overlapping ones apart.
+    fn settle(&mut self, h: f64) {
         let points = self.surface.points();
         self.touched.clear();
         self.touched.resize(points, false);
@@ -294,8 +302,19 @@ impl<const D: usize> Touching<D> {
             }
         }
         self.recover(h);
+        self.end.clone_from(&self.after[0]);
+        for (p, _) in self.touched.iter().enumerate().filter(|(_, touched)| **touched) {
+            for d in (0..D).filter(|d| self.inverse_mass[p][*d] > 0.0) {
+                self.end[p][d] = self.before[0][p][d] + (h * self.v[p][d] + self.moved[p][d]);
+            }
+            self.moved[p] = [0.0; D];
+        }
+    }
+
+    /// Books what contact took and gave, and moves the points.
+    fn book(&mut self, h: f64) {
         let touched = &self.touched;
-        self.changed.extend((0..points as u32).filter(|p| touched[*p as usize]));
+        self.changed.extend((0..self.surface.points() as u32).filter(|p| touched[*p as usize]));
         for (k, p) in self.changed.iter().enumerate() {
             self.number[*p as usize] = k as u32;
         }
@@ -330,18 +349,18 @@ impl<const D: usize> Touching<D> {
                 }
             }
         }
+        self.zones.book(&self.before[1], &self.v, &self.inverse_mass, &self.number, &mut self.losses);
         for (p, losses) in self.changed.iter().zip(&mut self.losses) {
             let p = *p as usize;
             for d in 0..D {
                 let inverse = self.inverse_mass[p][d];
                 if inverse > 0.0 {
                     let (v0, free, v1) = (self.before[1][p][d], self.after[1][p][d], self.v[p][d]);
-                    let travel = h * v1 + self.moved[p][d];
+                    let travel = self.end[p][d] - self.before[0][p][d];
                     losses[3] += (free - v0) / (inverse * h) * (0.5 * h * (v0 + v1) - travel);
-                    self.after[0][p][d] = self.before[0][p][d] + travel;
+                    self.after[0][p][d] = self.end[p][d];
                     self.after[1][p][d] = v1;
                 }
-                self.moved[p][d] = 0.0;
             }
         }
     }
@@ -376,13 +395,12 @@ impl<const D: usize> Touching<D> {
 
     /// Bytes on the heap.
     pub fn heap_bytes(&self) -> usize {
-        let vectors =
-            [&self.inverse_mass, &self.found_at, &self.v, &self.moved].map(Vec::capacity).iter().sum::<usize>();
+        let vectors = [&self.inverse_mass, &self.v, &self.moved, &self.impact, &self.end];
+        let vectors = vectors.map(Vec::capacity).iter().sum::<usize>() + 6 * self.reach.points();
         let states: usize = self.before.iter().chain(&self.after).map(Vec::capacity).sum();
         8 * D * (vectors + states)
             + self.surface.heap_bytes()
             + self.candidates.heap_bytes()
-            + 8 * self.bounds.capacity()
             + core::mem::size_of::<Row<D>>() * self.rows.capacity()
     }
 }
@@ -391,12 +409,6 @@ impl<const D: usize> Touching<D> {
 /// leave of a step is no reason to move anything.
 const OVERLAP: f64 = 0.01;
 
-/// The farthest that a point is from where it was [m], or its velocity from what that was [m/s].
-fn farthest<const D: usize>(from: &[[f64; D]], to: &[[f64; D]]) -> f64 {
-    let mut most: f64 = 0.0;
-    for (a, b) in from.iter().zip(to) {
-        let u = subtract(b, a);
-        most = dot(&u, &u).larger(most);
-    }
-    most.sqrt()
-}
+/// How often pairs that would pass through one another are solved for along their normals, before what still passes moves as one: four, as an impulse
+/// along one pair may send another one through, but each round leaves fewer.
+const ROUNDS: usize = 4;

@@ -130,12 +130,26 @@ impl<const N: usize> Work for Product<'_, N> {
     }
 }
 
+/// The packs of a row of a tile. A loop, because a closure is compiled without the vector instructions of its caller: its loads were
+/// calls.
+#[inline(always)]
+fn packs_of<P: Pack>(row: &[f64]) -> [P; PACKS] {
+    let mut out = [P::zero(); PACKS];
+    for (k, out) in out.iter_mut().enumerate() {
+        *out = P::load(&row[k * WIDTH..]);
+    }
+    out
+}
+
 /// Adds T x to sums that are still spread over lanes.
 #[inline(always)]
 fn along_rows<P: Pack, const N: usize>(tile: &[f64], x: [&[f64]; N], sums: &mut [[P; N]; SIDE]) {
-    let packs: [[P; PACKS]; N] = core::array::from_fn(|n| core::array::from_fn(|k| P::load(&x[n][k * WIDTH..])));
+    let mut packs = [[P::zero(); PACKS]; N];
+    for n in 0..N {
+        packs[n] = packs_of(x[n]);
+    }
     for (row, sums) in tile.chunks_exact(SIDE).zip(sums) {
-        let row: [P; PACKS] = core::array::from_fn(|k| P::load(&row[k * WIDTH..]));
+        let row = packs_of::<P>(row);
         for n in 0..N {
             let mut own = sums[n];
             for k in 0..PACKS {
@@ -151,7 +165,7 @@ fn along_rows<P: Pack, const N: usize>(tile: &[f64], x: [&[f64]; N], sums: &mut 
 fn along_columns<P: Pack, const N: usize>(tile: &[f64], x: [&[f64]; N]) -> [[P; PACKS]; N] {
     let mut packs = [[P::zero(); PACKS]; N];
     for (number, row) in tile.chunks_exact(SIDE).enumerate() {
-        let row: [P; PACKS] = core::array::from_fn(|k| P::load(&row[k * WIDTH..]));
+        let row = packs_of::<P>(row);
         for n in 0..N {
             let x = P::splat(x[n][number]);
             for k in 0..PACKS {

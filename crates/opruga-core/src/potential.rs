@@ -316,6 +316,10 @@ pub trait Observe<const D: usize> {
     fn cell_states(&self, _view: &View<D>, _body: usize) -> Vec<CellState> {
         Vec::new()
     }
+    /// Stress and volume ratio of the facets of a body, in any order, for a model that knows its boundary alone; `cell` is the facet.
+    fn facet_states(&self, _view: &View<D>, _body: usize) -> Vec<CellState> {
+        Vec::new()
+    }
     /// How often something happened that a user should know of (a limit acted): counts kept in the memory.
     fn counts(&self, _memory: &[f64]) -> Vec<Count> {
         Vec::new()
@@ -330,7 +334,7 @@ pub trait Observe<const D: usize> {
     }
 }
 
-/// What a cell of a body is under.
+/// What a cell of a body is under, or a facet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellState {
     /// The cell, in the order of [`opruga_mesh::Cells::iter`].

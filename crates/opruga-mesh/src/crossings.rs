@@ -9,7 +9,7 @@ use crate::geometry::{cross, subtract};
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
 /// Pairs that are listed at most.
-const MOST_LISTED: usize = 1000;
+pub(crate) const MOST_LISTED: usize = 1000;
 
 /// Pairs of boxes that are compared at most, for each facet: sound surfaces take about fifty.
 const MOST_COMPARED: u64 = 2000;

@@ -146,7 +146,7 @@ words! {
     grey: "Grey, without colours", "Sivo, bez boja";
     diverging: "Blue to red", "Plavo do crveno";
     elastic_force_hint: "The force of springs, bending or finite elements on each node [N]", "Sila opruga, savijanja ili konačnih elemenata na svaki čvor [N]";
-    von_mises_hint: "Stress of finite elements [Pa]; springs have none: see the elastic force", "Naprezanje konačnih elemenata [Pa]; opruge ga nemaju: vidi elastičnu silu";
+    von_mises_hint: "Stress in solids [Pa]; springs have none: see the elastic force", "Naprezanje u čvrstim tijelima [Pa]; opruge ga nemaju: vidi elastičnu silu";
     pressure_hint: "Of the gas in the whole body [Pa]; bodies without gas have none", "Plina u cijelom tijelu [Pa]; tijela bez plina ga nemaju";
     compare: "Side by side", "Usporedi";
     compare_hint: "The same scene twice, in lock step: on the right with another model, integrator or parameter", "Isti prizor dvaput, korak po korak: desno s drugim modelom, integratorom ili parametrom";

@@ -81,6 +81,8 @@ statics-load_left-LoadLeft = račun završava prije nego je nanesen cijeli teret
     .hint = više sličica ili dulji `arc_length`
 units-sag-Sag = tijelo `{ $body }` od { $mass } kg ulegnulo bi se pod svojom težinom oko { NUMBER($sag, maximumSignificantDigits: 2) } m, više od svoje veličine od { $size } m: jesu li jedinice pomiješane (metri, kilogrami, njutni po metru)?
 contact-starts_inside-StartsInside = tijelo `{ $body }` počinje u prepreci { $collider } ({ $kind }), čvorova: { $nodes }, najdublji je čvor { $deepest }, { $depth } m; { $remedy }
+contact-none-NoContact = u t = { $time } s tijela prolaze jedna kroz druga, parova: { $pairs }, prva dva su `{ $first }` i `{ $second }`
+    .hint = odjeljak `[contact]` drži tijela razdvojenima
 cells-slender-Slender = tijelo `{ $body }` presavija se ili uvija prekruto: najdulji bridovi njegovih ćelija dugi su prosječno { NUMBER($length, maximumSignificantDigits: 3) } m, { NUMBER($times, maximumSignificantDigits: 3) } puta koliko je debelo ({ NUMBER($thickness, maximumSignificantDigits: 3) } m); uz { $limit } puta prve su frekvencije ploča izmjerene { $error } % previsoke, a dalje rastu
     .hint = { $help }
 cells-inverted-Inverted = u t = { $time } s izvrnuto je: { $cells }; prva je ćelija { $cell } tijela `{ $body }` s J = { $ratio }

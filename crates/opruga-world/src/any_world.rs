@@ -7,6 +7,7 @@ use crate::inputs::Input;
 use crate::ledger::Energy;
 use crate::modes::Mode;
 use crate::node_columns::Vectors;
+use crate::crossed::Crossed;
 use crate::node_states::NodeState;
 use crate::refused::RefusedCommand;
 use crate::slots::BodyHandle;
@@ -140,8 +141,12 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     fn node_pressures(&mut self, body: usize) -> Vec<(u32, f64)>;
     /// Stress and volume ratio of the cells of a body.
     fn cell_states(&self, body: usize) -> Vec<CellState>;
-    /// What the nodes of a body are under: means of the cells around them.
+    /// Visits what is known of the cells and facets of a body, with their nodes.
+    fn visit_states(&self, body: usize, visit: &mut dyn FnMut(&CellState, &[u32]));
+    /// What the nodes of a body are under: means of the cells or facets around them.
     fn node_states(&self, body: usize) -> Vec<Option<NodeState>>;
+    /// The surfaces that cross, and bodies that lie in one another.
+    fn crossed_surfaces(&self) -> Vec<Crossed>;
     /// The lowest natural modes of a body about its present state.
     ///
     /// # Errors
@@ -319,6 +324,12 @@ impl<const D: usize> AnyWorld for World<D> {
     }
     fn cell_states(&self, body: usize) -> Vec<CellState> {
         self.cell_states(body)
+    }
+    fn crossed_surfaces(&self) -> Vec<Crossed> {
+        self.crossed_surfaces()
+    }
+    fn visit_states(&self, body: usize, visit: &mut dyn FnMut(&CellState, &[u32])) {
+        self.visit_states(body, visit);
     }
     fn node_states(&self, body: usize) -> Vec<Option<NodeState>> {
         self.node_states(body)

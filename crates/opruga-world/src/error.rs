@@ -108,6 +108,21 @@ pub enum WorldError {
         /// The time of the last good frame [s].
         last: f64,
     },
+    /// Pins and obstacles lead bodies through one another.
+    #[error(
+        "pins and obstacles lead body `{first}` through {} at t = {} s; the world is at its last good frame; hint: another path of what \
+         leads them, or `touch = false` for the pair",
+        if first == second { "itself".into() } else { format!("body `{second}`") },
+        number(*time)
+    )]
+    LedThrough {
+        /// One body.
+        first: String,
+        /// The other one, or the same.
+        second: String,
+        /// The time at the end of the substep [s].
+        time: f64,
+    },
     /// The frame was broken off from outside ([`crate::Options::break_off`]).
     #[error("the frame was broken off; the world is at its last good frame")]
     BrokenOff,
@@ -135,6 +150,7 @@ impl WorldError {
             WorldError::NotConverged { .. } => "run.not_converged",
             WorldError::Overflow { .. } => "run.overflow",
             WorldError::TooManyContacts { .. } => "limit.contacts",
+            WorldError::LedThrough { .. } => "contact.led_through",
             WorldError::BrokenOff => "run.broken_off",
             WorldError::Path { .. } => "path.unknown",
             WorldError::Snapshot(_) => "snapshot.damaged",

@@ -13,6 +13,7 @@ mod carried;
 mod changes;
 mod commands;
 mod contact_laws;
+mod crossed;
 mod crushed;
 pub mod error;
 mod frame_hash;
@@ -68,6 +69,7 @@ pub use inputs::Input;
 pub use ledger::{Energy, Momentum};
 pub use loads::ForceLaw;
 pub use node_columns::{Strided, Vectors};
+pub use crossed::Crossed;
 pub use node_states::NodeState;
 pub use opruga_core::break_off::BreakOff;
 /// What the laws of the finite elements say at one deformation gradient.

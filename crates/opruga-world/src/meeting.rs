@@ -3,7 +3,7 @@
 use crate::blueprint::Blueprint;
 use crate::contact_laws::{edges_of, laws};
 use crate::island::Island;
-use opruga_collide::{TooMany, Touching};
+use opruga_collide::{Touching, Trouble};
 use opruga_core::contacts::Contacts;
 use opruga_math::WIDTH;
 
@@ -21,6 +21,8 @@ pub(crate) struct Meeting<const D: usize> {
     columns: Vec<Vec<(u32, Vec<u32>)>>,
     /// The island of every point and the index in its columns.
     points: Vec<(u32, u32)>,
+    /// The bodies that touch, by their place in the scene.
+    pub(crate) bodies: Vec<usize>,
 }
 
 impl<const D: usize> Meeting<D> {
@@ -65,7 +67,7 @@ impl<const D: usize> Meeting<D> {
         for columns in touching.before.iter_mut().chain(&mut touching.after) {
             columns.resize(points.len(), [0.0; D]);
         }
-        touching.may_touch().then_some(Meeting { touching, made_for, columns, points })
+        touching.may_touch().then_some(Meeting { touching, made_for, columns, points, bodies })
     }
 
     /// Whether it was made for these islands.
@@ -103,7 +105,7 @@ impl<const D: usize> Meeting<D> {
         obstacles: Option<&dyn Contacts<D>>,
         time: f64,
         h: f64,
-    ) -> Result<(), TooMany> {
+    ) -> Result<(), Trouble> {
         let touch = obstacles.map(|obstacles| {
             move |_: u32, from: &[f64; D], to: &[f64; D], reach: f64, visit: &mut dyn FnMut(_)| {
                 obstacles.touch(from, to, time, h, reach, visit);

@@ -1,9 +1,9 @@
-//! What the nodes of a body of finite elements are under: means of the cells around them.
+//! Stress and volume ratio at the nodes of a body: means of the cells or facets around them.
 
 use crate::world::World;
 use opruga_core::potential::CellState;
 
-/// What a node is under: of the cells around it the mean by their volume at rest.
+/// What a node is under: the mean of the cells around it, weighted by their volume at rest, or of the facets, by their area.
 ///
 /// Cells have a mean of their own, which is exact where the stress is linear over a cell; at the boundary, where cells lie
 /// on one side only, the mean of a node is that of the cells' middles.
@@ -63,19 +63,29 @@ impl Sum {
 }
 
 impl<const D: usize> World<D> {
-    /// What the nodes of a body are under; none for a node around which no cell has a stress, empty where the body is not there.
+    /// What the nodes of a body are under; none for a node around which nothing has a stress, empty where the body is not there.
     pub fn node_states(&self, body: usize) -> Vec<Option<NodeState>> {
         if self.handle(body).is_none() {
             return Vec::new();
         }
-        let of_cell: Vec<&[u32]> = self.blueprint.bodies[body].mesh.cells.iter().map(|(_, _, nodes)| nodes).collect();
         let mut sums = vec![Sum::default(); self.node_count(body)];
-        for state in self.cell_states(body) {
-            for node in of_cell[state.cell as usize] {
+        self.visit_states(body, &mut |state, nodes| {
+            for node in nodes {
                 sums[*node as usize].add(state.measure, &state.stress, state.volume_ratio);
             }
-        }
+        });
         sums.iter().map(Sum::mean).collect()
+    }
+
+    /// Visits what is known of the cells and facets of a body, with their nodes.
+    pub fn visit_states(&self, body: usize, visit: &mut dyn FnMut(&CellState, &[u32])) {
+        if self.handle(body).is_none() {
+            return;
+        }
+        let mesh = &self.blueprint.bodies[body].mesh;
+        let of_cell: Vec<&[u32]> = mesh.cells.iter().map(|(_, _, nodes)| nodes).collect();
+        self.cell_states(body).iter().for_each(|state| visit(state, of_cell[state.cell as usize]));
+        self.facet_states(body).iter().for_each(|state| visit(state, &mesh.facets[state.cell as usize]));
     }
 
     /// The mean over some nodes; none where no node has a state.

@@ -7,8 +7,9 @@ use crate::ledger::{Energy, Momentum};
 use crate::slots::BodyHandle;
 use crate::warnings::{Difference, ErrorHint, Warning, WorldWarning, WorstCell};
 use crate::world::{World, lock};
-use opruga_core::potential::{CellState, Count, Reading};
+use opruga_core::potential::{CellState, Count, Potential, Reading};
 use opruga_core::stability::Stability;
+use opruga_core::state::View;
 use opruga_core::system::{SolverWork, Stage, System};
 
 impl<const D: usize> World<D> {
@@ -121,10 +122,23 @@ impl<const D: usize> World<D> {
         let time = self.time();
         self.islands[island].node_pressures(lane, time)
     }
-    /// Stress and volume ratio of the cells of a body of finite elements, in the order of its cells.
+    /// Stress and volume ratio of the cells of a body, in the order of its cells.
     ///
-    /// A body that is not there, or has none, says nothing.
+    /// Empty where the body is not there or no model of it has cells.
     pub fn cell_states(&self, body: usize) -> Vec<CellState> {
+        self.states_by(body, |potential, view, lane| potential.cell_states(view, lane))
+    }
+    /// Stress and volume ratio of the facets of a body, in the order of its facets.
+    ///
+    /// Empty where the body is not there or no model of it knows its boundary alone.
+    pub fn facet_states(&self, body: usize) -> Vec<CellState> {
+        self.states_by(body, |potential, view, lane| potential.facet_states(view, lane))
+    }
+    fn states_by(
+        &self,
+        body: usize,
+        ask: impl Fn(&dyn Potential<D>, &View<D>, usize) -> Vec<CellState>,
+    ) -> Vec<CellState> {
         if self.handle(body).is_none() {
             return Vec::new();
         }
@@ -132,7 +146,7 @@ impl<const D: usize> World<D> {
         let system = &self.islands[island].system;
         let view = system.view(Stage::Current, self.time());
         let mut out: Vec<CellState> =
-            system.members.iter().flat_map(|member| member.potential.cell_states(&view, lane)).collect();
+            system.members.iter().flat_map(|member| ask(&*member.potential, &view, lane)).collect();
         out.sort_by_key(|state| state.cell);
         out
     }

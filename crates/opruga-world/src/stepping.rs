@@ -5,7 +5,7 @@ use crate::island::{FramePlan, Island};
 use crate::meeting::Meeting;
 use crate::together;
 use crate::world::{World, lock};
-use opruga_collide::TooMany;
+use opruga_collide::Trouble;
 use opruga_core::error::StepError;
 use opruga_core::threads;
 use rayon::prelude::*;
@@ -35,12 +35,12 @@ impl<const D: usize> World<D> {
         let workspaces = &mut self.workspaces;
         // One small body has nothing to share: waking threads for it would cost more than its frame.
         let alone = |island: &[Island<D>]| matches!(island, [one] if !one.is_shared_by(self.options.threads, 1));
-        let mut too_many = Ok(());
+        let mut touched = Ok(());
         match self.pool.as_ref().filter(|_| !alone(islands)) {
             pool if self.meeting.is_some() => {
                 if let Some(meeting) = &mut self.meeting {
                     let mut go = |threaded| together::frame(islands, meeting, &plan, workspaces, threaded);
-                    too_many = match pool {
+                    touched = match pool {
                         None => go(false),
                         Some(pool) => pool.install(|| go(true)),
                     };
@@ -62,14 +62,13 @@ impl<const D: usize> World<D> {
                 });
             }),
         }
-        if let Err(TooMany { found }) = too_many {
+        if let Err((trouble, time)) = touched {
             for island in &mut self.islands {
                 island.restore();
                 island.refresh();
                 island.work = Default::default();
             }
-            let most = self.meeting.as_ref().map_or(0, |meeting| meeting.touching.most);
-            return Err(WorldError::TooManyContacts { found, most, last: self.time() });
+            return Err(self.trouble(trouble, time));
         }
         if let Some(first) = self.islands.iter().position(|i| i.outcome.is_err()) {
             // All islands go back to the same frame.
@@ -110,7 +109,26 @@ impl<const D: usize> World<D> {
         self.flows.count_frame(&self.energy);
         self.warn_of_crushed_bodies();
         self.warn_of_turned_cells();
+        self.warn_of_missing_contact();
         self.take_away_what_is_far()
+    }
+
+    /// Why bodies that touch could not go through a frame.
+    fn trouble(&self, trouble: Trouble, time: f64) -> WorldError {
+        let meeting = self.meeting.as_ref();
+        match trouble {
+            Trouble::TooMany { found } => {
+                let most = meeting.map_or(0, |meeting| meeting.touching.most);
+                WorldError::TooManyContacts { found, most, last: self.time() }
+            }
+            Trouble::LedThrough { bodies } => {
+                let name = |number: u32| {
+                    let body = meeting.and_then(|meeting| meeting.bodies.get(number as usize));
+                    body.map_or(String::new(), |body| self.blueprint.bodies[*body].name.clone())
+                };
+                WorldError::LedThrough { first: name(bodies[0]), second: name(bodies[1]), time }
+            }
+        }
     }
 
     /// Goes back to the last good frame, from one whose states are sound and whose sums are not.

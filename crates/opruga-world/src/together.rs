@@ -3,7 +3,7 @@
 use crate::island::{FramePlan, Island};
 use crate::meeting::Meeting;
 use crate::world::lock;
-use opruga_collide::TooMany;
+use opruga_collide::Trouble;
 use opruga_core::system::Workspace;
 use opruga_core::threads::together;
 use rayon::prelude::*;
@@ -12,14 +12,14 @@ use std::sync::{Arc, Mutex};
 /// Steps islands through a frame. Where one fails, its outcome says so, and the others are wherever they were.
 ///
 /// # Errors
-/// [`TooMany`] where more pairs may touch than the scene allows.
+/// [`Trouble`] where more pairs may touch than the scene allows, or pins and obstacles lead bodies through one another; with the time [s].
 pub(crate) fn frame<const D: usize>(
     islands: &mut [Island<D>],
     meeting: &mut Meeting<D>,
     plan: &FramePlan<'_, D>,
     workspaces: &[Mutex<Workspace<D>>],
     threaded: bool,
-) -> Result<(), TooMany> {
+) -> Result<(), (Trouble, f64)> {
     islands.iter_mut().for_each(|island| island.begin_together(plan));
     let contacts = plan.colliders.map(|colliders| Arc::clone(colliders).into_contacts());
     meeting.touching.begin();
@@ -36,7 +36,7 @@ pub(crate) fn frame<const D: usize>(
             islands.iter_mut().for_each(|island| island.end_together(plan));
             return Ok(());
         }
-        meeting.resolve(islands, contacts.as_deref(), time, plan.h)?;
+        meeting.resolve(islands, contacts.as_deref(), time, plan.h).map_err(|trouble| (trouble, time))?;
         islands.iter_mut().for_each(|island| island.look_together(plan, substep));
     }
     islands.iter_mut().for_each(|island| island.end_together(plan));

@@ -172,6 +172,10 @@ messages! {
         "contact.starts_inside"
         #[error("body `{body}` begins inside obstacle {collider} ({kind}): {}, node {deepest} the deepest by {} m; {remedy}", counted(*nodes as u64, "node", "nodes"), number(*depth))]
         StartsInside { body: String, collider: usize, kind: String, nodes: usize, deepest: u32, depth: f64, remedy: Remedy },
+        "contact.none"
+        #[error("at t = {} s {} through one another: `{first}` and `{second}` first", number(*time), if *pairs == 1 { "two bodies pass".into() } else { format!("{pairs} pairs of bodies pass") })]
+        #[hint("a section `[contact]` keeps bodies apart")]
+        NoContact { time: f64, pairs: u64, first: String, second: String },
         "cells.slender"
         #[error("body `{body}` bends or twists too stiffly: the longest edges of its cells are {} m on average, {} times its thickness of {} m; at {limit} times the first frequencies of plates were measured {error} % too high, and they rise farther", rounded(*length, 3), rounded(*times, 3), rounded(*thickness, 3))]
         #[hint("{help}")]

@@ -129,6 +129,9 @@ impl<const D: usize> Observe<D> for Timed<D> {
     fn cell_states(&self, view: &View<D>, body: usize) -> Vec<CellState> {
         self.inner.cell_states(view, body)
     }
+    fn facet_states(&self, view: &View<D>, body: usize) -> Vec<CellState> {
+        self.inner.facet_states(view, body)
+    }
     fn counts(&self, memory: &[f64]) -> Vec<Count> {
         self.inner.counts(memory)
     }

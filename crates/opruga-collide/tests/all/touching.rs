@@ -1,7 +1,7 @@
 //! Impulses between surfaces, on rings of springs that are stepped here: contact by itself, without a world around it.
 #![allow(missing_docs)]
 
-use opruga_collide::{Laws, PairLaw, Touching};
+use opruga_collide::{Laws, PairLaw, Touching, Trouble};
 use opruga_core::contacts::Touch;
 use opruga_mesh::Mesh;
 
@@ -214,21 +214,45 @@ fn rings_meet_and_keep_momentum() {
 /// A thin wire holds what comes at any speed.
 #[test]
 fn nothing_tunnels() {
-    for speed in [1.0, 10.0, 100.0, 1000.0] {
+    for speed in [1.0, 10.0, 100.0, 1000.0, 3e4, 1e5] {
         let wire = Mesh::<2>::line([0.0, -1.0], [0.0, 1.0], 40).expect("a wire");
         let dot = Mesh::<2>::line([-0.02, 0.0], [0.02, 0.015], 1).expect("a wire");
         let mut toy = Toy::new(&[(wire, [0.0; 2], [0.0; 2]), (dot, [-0.3, 0.013], [speed, 0.0])], law(0.0, 0.0));
         let h = 1e-4;
         let steps = if speed < 10.0 { 5000 } else { 600 };
         for step in 0..steps {
+            let before = toy.momentum();
             toy.step(h);
             assert_eq!(toy.crossings(), 0, "{speed} m/s, step {step}");
+            let after = toy.momentum();
+            assert!((0..2).all(|k| (after[k] - before[k]).abs() < 1e-12 * speed), "{speed} m/s, step {step}");
         }
         let x = &toy.touching.after[0];
         assert!(toy.touching.counts.contacts > 0, "{speed} m/s: they met");
         let behind = (41..43).filter(|p| x[*p][0] > x[20][0] + 0.5).count();
         assert_eq!(behind, 0, "{speed} m/s");
     }
+}
+
+/// Two wires that are held, and led through one another.
+#[test]
+fn what_is_led_through_is_refused() {
+    let wire = || Mesh::<2>::line([0.0, -1.0], [0.0, 1.0], 8).expect("a wire");
+    let mut toy = Toy::new(&[(wire(), [-0.05, 0.03], [1.0, 0.0]), (wire(), [0.05, 0.0], [0.0; 2])], law(0.0, 0.0));
+    toy.touching.inverse_mass.fill([0.0; 2]);
+    for step in 0..300 {
+        std::mem::swap(&mut toy.touching.before, &mut toy.touching.after);
+        let [x, v] = toy.touching.before.clone();
+        toy.touching.after = [x.iter().zip(&v).map(|(x, v)| [x[0] + 1e-3 * v[0], x[1]]).collect(), v];
+        let made = toy.touching.step(1e-3, None);
+        if step < 99 {
+            assert_eq!(made, Ok(()), "step {step}");
+        } else if made.is_err() {
+            assert!(matches!(made, Err(Trouble::LedThrough { bodies: [0, 1] | [1, 0] })), "{made:?}");
+            return;
+        }
+    }
+    panic!("they passed");
 }
 
 /// A heap of gas balls in a box comes to rest and stays apart; one of bare springs is crushed and gains no energy.
@@ -305,14 +329,14 @@ fn the_cost_of_many_balls() {
         }
         let c = toy.touching.counts;
         println!(
-            "{part}: free {:.3} ms, contact {:.3} ms a step; searches {}, candidates {}, pairs {}, contacts {}, sweeps {} a step",
+            "{part}: free {:.3} ms, contact {:.3} ms a step; searches {}, candidates {}, pairs {}, contacts {}, turns {} a step",
             10.0 * free,
             10.0 * (whole - free),
             (c.searches - before.searches) as f64 / 100.0,
             (c.candidates - before.candidates) / 100,
             (c.pairs - before.pairs) / 100,
             (c.contacts - before.contacts) / 100,
-            (c.sweeps - before.sweeps) as f64 / 100.0
+            (c.turns - before.turns) / 100
         );
     }
 }

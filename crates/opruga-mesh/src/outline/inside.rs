@@ -181,8 +181,17 @@ mod tests {
     }
 
     #[test]
-    fn rings_in_a_row_and_in_one_another_are_placed_however_many() {
-        let n = 60_000;
+    fn rings_in_a_row_and_in_one_another_are_placed() {
+        are_placed(6000);
+    }
+
+    #[test]
+    #[ignore = "a sweep: cargo test -- --ignored whole_sweep"]
+    fn rings_in_a_row_and_in_one_another_are_placed_however_many_whole_sweep() {
+        are_placed(60_000);
+    }
+
+    fn are_placed(n: u32) {
         let row: Vec<Ring> = (0..n).map(|k| square(f64::from(k), 0.0, 0.4, k % 2 == 0)).collect();
         assert!(around(&row).iter().all(Option::is_none));
         let onion: Vec<Ring> = (0..n).map(|k| square(0.0, 0.0, f64::from(1 + k), k % 2 == 0)).collect();

@@ -3,11 +3,12 @@
 use super::assembly::Stiffness;
 use super::frame::{Frame, Rest};
 use super::refusals::TurnedFacets;
+use super::skin::{Constants, Skin};
 use super::surface::Surface;
 use super::{SPEC, cache, stresses};
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::potential::{
-    Count, Definiteness, DensePart, Ingredients, Observe, Potential, Properties, Reading, Sink, Views,
+    CellState, Count, Definiteness, DensePart, Ingredients, Observe, Potential, Properties, Reading, Sink, Views,
 };
 use opruga_core::spec::Values;
 use opruga_core::state::{Layout, View};
@@ -20,6 +21,7 @@ use std::sync::Arc;
 pub struct BoundaryElement<const D: usize> {
     layout: Layout,
     rest: Rest<D>,
+    skin: Skin<D>,
     exterior: bool,
     bodies: Vec<Body>,
     /// Places of the vertices of each body.
@@ -37,10 +39,12 @@ struct Body {
     strength: f64,
     /// What makes the stresses those of the body [Pa/m].
     stress: f64,
+    law: Constants,
 }
 
-/// Numbers of a body in the scratch beside y, u and g: its frame, λ and U.
+/// Numbers of a body in the scratch beside x, y, u and g: its frame, λ, U, and whether they are known.
 const NUMBERS: usize = 32;
+const KNOWN: usize = NUMBERS - 1;
 
 impl<const D: usize> BoundaryElement<D> {
     pub(super) fn new(ingredients: &Ingredients<D>) -> Result<BoundaryElement<D>, BuildError> {
@@ -66,6 +70,7 @@ impl<const D: usize> BoundaryElement<D> {
         Ok(BoundaryElement {
             layout,
             rest,
+            skin: Skin::new(&surface, ingredients.thickness),
             exterior,
             column: bodies[0].stiffness.matrix.padded(),
             bodies,
@@ -95,7 +100,8 @@ impl Body {
         let exterior = values.flag("exterior");
         let stiffness = cache::stiffness(surface, poisson, exterior, &asked, ingredients.break_off)?;
         let depth = if D == 2 { ingredients.thickness } else { surface.size };
-        Ok(Body { stiffness, strength: shear * depth, stress: shear / surface.size })
+        let law = Constants { shear, poisson: ratio, plane_stress: stress };
+        Ok(Body { stiffness, strength: shear * depth, stress: shear / surface.size, law })
     }
     /// g = K u.
     fn product(&self, simd: Simd, u: &[f64], g: &mut [f64]) {
@@ -122,10 +128,11 @@ impl<const D: usize> BoundaryElement<D> {
         D * self.layout.places(self.rest.weights.len())
     }
     fn of_body(&self) -> usize {
-        3 * self.column + NUMBERS
+        4 * self.column + NUMBERS
     }
     fn known<'a>(&self, scratch: &'a [f64], body: usize) -> Known<'a, D> {
         let own = &scratch[self.forces_len() + body * self.of_body()..][..self.of_body()];
+        let (_, own) = own.split_at(self.column);
         let (y, own) = own.split_at(self.column);
         let (u, own) = own.split_at(self.column);
         let (g, numbers) = own.split_at(self.column);
@@ -141,10 +148,21 @@ impl<const D: usize> BoundaryElement<D> {
     fn prepare_body(&self, simd: Simd, view: &View<D>, body: usize, scratch: &mut [f64]) {
         let (forces, own) = scratch.split_at_mut(self.forces_len());
         let own = &mut own[body * self.of_body()..][..self.of_body()];
+        let (x, own) = own.split_at_mut(self.column);
         let (y, own) = own.split_at_mut(self.column);
         let (u, own) = own.split_at_mut(self.column);
         let (g, numbers) = own.split_at_mut(self.column);
         let index = |node: usize| view.layout.place(node, body);
+        // A step asks for the same state up to four times, and a product with K takes most of its time.
+        let mut known = numbers[KNOWN] == 1.0;
+        for (node, x) in x.chunks_exact_mut(D).enumerate().take(self.rest.weights.len()) {
+            let now = view.position(index(node));
+            known &= (0..D).all(|d| x[d].to_bits() == now[d].to_bits());
+            x.copy_from_slice(&now);
+        }
+        if known {
+            return;
+        }
         let frame = if self.exterior {
             for (node, rest) in self.rest.positions.iter().enumerate() {
                 let x = view.position(index(node));
@@ -166,6 +184,7 @@ impl<const D: usize> BoundaryElement<D> {
         let all = frame.rotation.iter().flatten().chain(frame.stretch.iter().flatten());
         let all = all.chain(frame.follows.iter().flatten()).chain(&multiplier).chain([&energy]);
         numbers.iter_mut().zip(all).for_each(|(to, x)| *to = *x);
+        numbers[KNOWN] = 1.0;
     }
 }
 
@@ -257,6 +276,12 @@ impl<const D: usize> Observe<D> for BoundaryElement<D> {
         }
         out
     }
+    fn facet_states(&self, view: &View<D>, body: usize) -> Vec<CellState> {
+        let mut scratch = vec![0.0; self.properties().scratch_len];
+        self.prepare_body(Simd::best(), view, body, &mut scratch);
+        let known = self.known(&scratch, body);
+        self.skin.states(self.body(body).law, &known.frame.rotation, known.u, known.g)
+    }
     fn counts(&self, _memory: &[f64]) -> Vec<Count> {
         let count = Count { what: TurnedFacets::Turned {}.into(), count: self.turned as u64 };
         if self.turned > 0 { vec![count] } else { Vec::new() }
@@ -266,6 +291,6 @@ impl<const D: usize> Observe<D> for BoundaryElement<D> {
     }
     fn heap_bytes(&self) -> usize {
         let matrices = self.bodies.iter().map(|body| body.stiffness.matrix.heap_bytes()).sum::<usize>();
-        matrices + self.indices.len() * self.rest.weights.len() * 4
+        matrices + self.skin.heap_bytes() + self.indices.len() * self.rest.weights.len() * 4
     }
 }

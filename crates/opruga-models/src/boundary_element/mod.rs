@@ -28,6 +28,8 @@ mod progress;
 #[cfg(not(target_arch = "wasm32"))]
 mod quadrature;
 mod refusals;
+#[cfg(not(target_arch = "wasm32"))]
+mod skin;
 mod spec;
 #[cfg(not(target_arch = "wasm32"))]
 mod stresses;

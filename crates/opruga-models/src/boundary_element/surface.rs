@@ -2,7 +2,7 @@
 
 use super::integrals::Side;
 use super::refusals::Refusal;
-use opruga_mesh::{Mesh, MeshError, THIN_ELEMENT, winding_number};
+use opruga_mesh::{Mesh, MeshError, THIN_ELEMENT, crossing_edges, winding_number};
 
 /// Sides belong to one smooth part where their normals differ by less than 40°.
 const COSINE_OF_SMOOTH: f64 = 0.766_044_443_118_978;
@@ -273,29 +273,9 @@ fn refuse_crossing<const D: usize>(mesh: &Mesh<D>) -> Result<(), Refusal> {
             None => Ok(()),
         };
     }
-    // Whether two edges of the plane meet, by the sides on which their ends lie.
-    let at = |node: u32| mesh.positions[node as usize];
-    let turn = |a: [f64; D], b: [f64; D], c: [f64; D]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-    let mut pairs = Vec::new();
-    for (first, own) in mesh.facets.iter().enumerate() {
-        let [a, b] = [at(own[0]), at(own[1])];
-        for (second, other) in mesh.facets.iter().enumerate().skip(first + 1) {
-            if other.iter().any(|node| own.contains(node)) {
-                continue;
-            }
-            let [c, d] = [at(other[0]), at(other[1])];
-            let apart = |k: usize| {
-                let above = |x: f64, y: f64, z: f64, w: f64| x > z && x > w && y > z && y > w;
-                above(a[k], b[k], c[k], d[k]) || above(c[k], d[k], a[k], b[k])
-            };
-            if apart(0) || apart(1) {
-                continue;
-            }
-            if turn(a, b, c) * turn(a, b, d) <= 0.0 && turn(c, d, a) * turn(c, d, b) <= 0.0 {
-                pairs.push([first as u32, second as u32]);
-            }
-        }
-    }
+    let edges: Vec<[u32; 2]> = mesh.facets.iter().map(|facet| [facet[0], facet[1]]).collect();
+    let positions: Vec<[f64; 2]> = mesh.positions.iter().map(|x| [x[0], x[1]]).collect();
+    let pairs = crossing_edges(&edges, &positions).pairs;
     match pairs.first() {
         Some([first, second]) => Err(Refusal::Crossing { count: pairs.len(), first: *first, second: *second }),
         None => Ok(()),

@@ -237,3 +237,72 @@ fn stresses_of_uniform_strains_are_those_of_hooke() {
         );
     }
 }
+
+/// The stress of each facet with a corner inside a flat side, for small uniform strains e, beside Hooke's; the largest difference over
+/// the largest stress, and how many facets were compared.
+fn off_on_the_boundary<const D: usize>(mesh: &Mesh<D>, values: Values, stress: impl Fn(f64) -> [[f64; 3]; 3]) -> (f64, usize) {
+    let small = 1e-6;
+    let mut body = system(mesh, &[(&Boundary, values)]);
+    let strain = |i: usize, j: usize| small * if i == j { 1.0 + i as f64 } else { 0.5 };
+    for (node, x) in mesh.positions.iter().enumerate() {
+        body.state.x.set(node, core::array::from_fn(|i| x[i] + (0..D).map(|j| strain(i, j) * x[j]).sum::<f64>()));
+    }
+    // Vertices at which all facets have one normal.
+    let normal = |facet: &[u32; D]| -> [f64; 3] {
+        let at = |k: usize, d: usize| if d < D { mesh.positions[facet[k] as usize][d] } else { 0.0 };
+        let arm = |k: usize| -> [f64; 3] { core::array::from_fn(|d| at(k, d) - at(0, d)) };
+        let (a, b) = (arm(1), if D == 3 { arm(D - 1) } else { [0.0, 0.0, 1.0] });
+        let n = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+        let length = n.iter().map(|x| x * x).sum::<f64>().sqrt();
+        n.map(|x| x / length)
+    };
+    let flat = |node: u32| {
+        let own: Vec<_> = mesh.facets.iter().filter(|facet| facet.contains(&node)).map(normal).collect();
+        own.iter().all(|n| (0..3).all(|d| (n[d] - own[0][d]).abs() < 1e-9))
+    };
+    let expected = stress(small);
+    let largest = size(expected.as_flattened());
+    let (mut worst, mut compared) = (0.0f64, 0);
+    for state in body.members[0].potential.facet_states(&body.view(Stage::Current, 0.0), 0) {
+        if mesh.facets[state.cell as usize].iter().any(|node| flat(*node)) {
+            let off = state.stress.iter().flatten().zip(expected.iter().flatten());
+            worst = off.map(|(a, b)| (a - b).abs() / largest).fold(worst, |most, x| if x > most { x } else { most });
+            compared += 1;
+        }
+    }
+    (worst, compared)
+}
+
+#[test]
+fn stresses_on_the_boundary_are_those_of_hooke() {
+    let (young, nu) = (2e5, 0.3);
+    let mu = young / (2.0 * (1.0 + nu));
+    let lambda = young * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));
+    let block = Mesh::box_surface([0.1, 0.2, 0.3], [1.0, 0.8, 0.6], [6, 5, 4]).unwrap();
+    let (off, compared) =
+        off_on_the_boundary(&block, values!(boundary_element, youngs_modulus: young), |small| {
+            let entry = |i: usize, j: usize| {
+                if i == j { 2.0 * mu * (1.0 + i as f64) + 6.0 * lambda } else { mu }
+            };
+            core::array::from_fn(|i| core::array::from_fn(|j| small * entry(i, j)))
+        });
+    assert!(off < 0.05 && compared > 100, "{off} {compared}");
+
+    let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.5], [0.0, 0.5]];
+    let side = |k: usize, t: f64| -> [f64; 2] {
+        core::array::from_fn(|d| corners[k][d] + t * (corners[(k + 1) % 4][d] - corners[k][d]))
+    };
+    let points: Vec<[f64; 2]> = (0..32).map(|k| side(k / 8, (k % 8) as f64 / 8.0)).collect();
+    let mut outline = Mesh::polyline(&points, true).unwrap();
+    outline.facets = std::mem::take(&mut outline.wires);
+    for plane in ["strain", "stress"] {
+        let across = if plane == "stress" { 2.0 * mu * lambda / (lambda + 2.0 * mu) } else { lambda };
+        let values = values!(boundary_element, youngs_modulus: young, plane: plane);
+        let (off, compared) = off_on_the_boundary(&outline, values, |small| {
+            let direct = |k: usize| 2.0 * mu * (1.0 + k as f64) + 3.0 * across;
+            let third = if plane == "stress" { 0.0 } else { 3.0 * lambda };
+            [[direct(0), mu, 0.0], [mu, direct(1), 0.0], [0.0, 0.0, third]].map(|row| row.map(|x| small * x))
+        });
+        assert!(off < 0.01 && compared == 32, "{plane}: {off} {compared}");
+    }
+}

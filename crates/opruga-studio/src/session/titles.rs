@@ -109,6 +109,9 @@ impl Titles {
                 (*place, source.message) = (self.in_text(place), self.in_text(&source.message));
                 source.about = source.about.take().map(|message| self.in_message(&message));
             }
+            WorldError::LedThrough { first, second, .. } => {
+                (*first, *second) = (self.of(first).to_string(), self.of(second).to_string());
+            }
             WorldError::Path { path, message } => {
                 (*path, *message) = (self.in_path(path), self.in_text(message));
             }

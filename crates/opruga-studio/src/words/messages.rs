@@ -298,6 +298,12 @@ impl Language {
                  t = {} s\nSvijet je na zadnjoj dobroj sličici; pomaže veći `most_pairs` u `[contact]` ili grublje plohe",
                 number(*last)
             ),
+            WorldError::LedThrough { first, second, time } => format!(
+                "Učvršćenja i prepreke vode tijelo `{first}` kroz {} u t = {} s\n\
+                 Svijet je na zadnjoj dobroj sličici; pomaže drugi put onoga što ih vodi, ili `touch = false` za taj par",
+                if first == second { "samo sebe".into() } else { format!("tijelo `{second}`") },
+                number(*time)
+            ),
             WorldError::BrokenOff => "Sličica je prekinuta; svijet je na zadnjoj dobroj sličici".into(),
             WorldError::Path { path, message } => format!("`{path}` ne može: {}", self.detail(message)),
             WorldError::Snapshot(why) => format!("Snimljeno stanje ne može se vratiti\n{}", self.english(why)),

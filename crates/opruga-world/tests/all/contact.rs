@@ -4,7 +4,7 @@ use opruga_core::spec::{Value, Values};
 use opruga_mesh::Mesh;
 use opruga_world::blueprint::*;
 use opruga_world::schema::{BODY_CONTACT, CONTACT, CONTACT_PAIR};
-use opruga_world::{Options, Registry, World};
+use opruga_world::{Options, Registry, World, WorldError};
 use std::sync::Arc;
 
 fn contact<const D: usize>(fields: &[(&str, Value)]) -> Option<ContactBlueprint> {
@@ -150,11 +150,10 @@ fn passes(point: [[f64; 2]; 2], edge: [[[f64; 2]; 2]; 2]) -> bool {
     })
 }
 
-/// Nothing passes through a thin wire while it moves by up to two edges in a step (300 m/s here; docs/contact.md says what happens
-/// beyond); between two steps all points move evenly.
+/// Nothing passes through a thin wire, at up to sixteen edges in a step; between two steps all points move evenly.
 #[test]
 fn fast_bodies_do_not_tunnel() {
-    for speed in [1.0, 30.0, 300.0] {
+    for speed in [1.0, 30.0, 300.0, 3000.0] {
         let wire = Mesh::<2>::line([0.0, -1.0], [0.0, 1.0], 40).expect("a wire");
         let springs = vec![model::<2>("mass_spring", &[("stiffness", 2000.0)])];
         let wall = BodyBlueprint::new("wall", wire, Mass::Total(5.0), springs.clone());
@@ -182,9 +181,52 @@ fn fast_bodies_do_not_tunnel() {
             for point in 0..41 {
                 assert!(!through(point, [41, 42]), "{speed} m/s, step {step}: point {point} through the dot");
             }
+            assert_eq!(world.crossed_surfaces(), [], "{speed} m/s, step {step}");
             before = after;
         }
     }
+}
+
+/// Two walls that pins lead through one another, and a ball between them.
+#[test]
+fn pins_that_lead_bodies_through_one_another_end_the_run_with_the_pair_and_the_time() {
+    let led = |name: &str, x: f64, motion: Vec<Vec<f64>>| {
+        let wire = Mesh::<2>::line([x, -1.0], [x, 1.0], 8).expect("a wire");
+        let pin = PinBlueprint { select: Selector::All, axes: [true; 2], motion };
+        let springs = vec![model::<2>("mass_spring", &[("stiffness", 2000.0)])];
+        BodyBlueprint { pins: vec![pin], ..BodyBlueprint::new(name, wire, Mass::Total(1.0), springs) }
+    };
+    let way = vec![vec![0.0, 0.0, 0.0], vec![1.0, 4.0, 0.0]];
+    let mut scene = scene("symplectic_euler", vec![led("left", -1.0, way), led("right", 1.0, Vec::new())]);
+    scene.bodies.push(ball("between", 24, [0.0, 0.0], [0.0; 2]));
+    let mut world = world(&scene);
+    let error = loop {
+        if let Err(error) = world.frame() {
+            break error;
+        }
+        assert_eq!(world.crossed_surfaces(), []);
+        assert!(world.time() < 1.0, "the walls pass at t = 0.5 s");
+    };
+    assert_eq!(error.code(), "contact.led_through");
+    let WorldError::LedThrough { first, second, time } = &error else { panic!("{error}") };
+    assert!([first, second].iter().all(|name| ["left", "right", "between"].contains(&name.as_str())), "{error}");
+    assert!(*time <= 0.52, "{error}");
+    assert_eq!(world.crossed_surfaces(), [], "the world is at its last good frame");
+}
+
+/// Without the section bodies pass through one another, which is reported once.
+#[test]
+fn bodies_that_pass_through_one_another_without_contact_are_reported_once() {
+    let bodies = || vec![ball("a", 24, [-1.5, 0.0], [4.0, 0.0]), ball("b", 24, [1.5, 0.1], [-4.0, 0.0])];
+    let mut scene = scene("symplectic_euler", bodies());
+    let codes = |scene: &Blueprint<2>| -> Vec<String> {
+        let mut world = world(scene);
+        (0..40).for_each(|_| world.frame().expect("a frame"));
+        world.warnings().into_iter().map(|warning| warning.code).filter(|code| code.starts_with("contact")).collect()
+    };
+    assert_eq!(codes(&scene), [""; 0]);
+    scene.contact = None;
+    assert_eq!(codes(&scene), ["contact.none"]);
 }
 
 /// The same bits on any number of threads, alone or side by side, and after going back.

@@ -107,7 +107,7 @@ pub(super) fn push_quantity(
     }
 }
 
-/// Adds the mean of a number of the cells at every node of a body; not a number where a node has none.
+/// Adds the mean of a number of the cells or facets at every node of a body; not a number where a node has none.
 fn push_means(
     world: &dyn AnyWorld,
     body: usize,
@@ -115,15 +115,13 @@ fn push_means(
     number: impl Fn(&CellState) -> f64,
     scalars: &mut Vec<f32>,
 ) {
-    let cells = world.scene().body(body).map(|body| body.cells());
-    let of_cell: Vec<&[u32]> = cells.into_iter().flat_map(|cells| cells.iter()).map(|(_, _, nodes)| nodes).collect();
     let (mut sum, mut count) = (vec![0.0; nodes], vec![0.0; nodes]);
-    for state in world.cell_states(body) {
-        for node in of_cell[state.cell as usize] {
-            sum[*node as usize] += number(&state);
+    world.visit_states(body, &mut |state, nodes| {
+        for node in nodes {
+            sum[*node as usize] += number(state);
             count[*node as usize] += 1.0;
         }
-    }
+    });
     scalars.extend(sum.iter().zip(&count).map(|(sum, count)| (sum / count) as f32));
 }
 

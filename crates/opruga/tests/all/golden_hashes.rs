@@ -1,7 +1,8 @@
 //! Every scene that comes with the library ends with the bits of `scenes/golden.txt`, on any number of threads and with
-//! any vector instructions of this processor: the best ones with 1, 2, 3 and 8 threads, the others with 3.
+//! any vector instructions of this processor. The test tries the best instructions with 1 and 3 threads; the sweep tries them with 1, 2,
+//! 3 and 8 threads, and the others with 3.
 //!
-//! `cargo xtask goldens` writes the hashes anew (it runs this test with `OPRUGA_GOLDENS=write`); the numbers of frames
+//! `cargo xtask goldens` writes the hashes anew (it runs the sweep with `OPRUGA_GOLDENS=write`); the numbers of frames
 //! are written by hand. A changed hash is a changed result: its reason belongs into the commit.
 
 use opruga::blueprint::{AnyBlueprint, Blueprint};
@@ -76,6 +77,18 @@ fn every_scene_file_comes_with_the_library() {
 
 #[test]
 fn every_scene_ends_with_its_golden_hash() {
+    compare(&|best| if best { &[1, 3] } else { &[] });
+}
+
+#[test]
+#[ignore = "a sweep: cargo test -- --ignored whole_sweep"]
+fn every_scene_ends_with_its_golden_hash_whole_sweep() {
+    // How many threads share the work does not depend on the instructions that they use.
+    compare(&|best| if best { &[1, 2, 3, 8] } else { &[3] });
+}
+
+/// Runs every scene with as many threads as given for the best vector instructions and for others.
+fn compare(threads_of: &dyn Fn(bool) -> &'static [usize]) {
     let write = std::env::var("OPRUGA_GOLDENS").is_ok_and(|w| w == "write");
     let (head, golden) = file();
     let (mut text, mut wrong) = (head, Vec::new());
@@ -91,9 +104,7 @@ fn every_scene_ends_with_its_golden_hash() {
         let start = std::time::Instant::now();
         let mut first = String::new();
         for simd in Simd::available() {
-            // How many threads share the work does not depend on the instructions that they use.
-            let best = simd.name() == Simd::best().name();
-            for &threads in if best { &[1, 2, 3, 8][..] } else { &[3] } {
+            for &threads in threads_of(simd.name() == Simd::best().name()) {
                 let options = Options { threads, simd: Some(simd), ..Options::default() };
                 let found = hash_of_any(&blueprint, frames, options);
                 if first.is_empty() {

@@ -1,0 +1,189 @@
+//! Pairs that would pass through one another within a step, whatever was solved for: found on the final motion.
+
+use crate::gap::Gap;
+use crate::rows::{impact, key};
+use crate::touching::{Touching, Trouble};
+use crate::vector::dot;
+use crate::zones::{Led, Zone};
+use opruga_math::Lane;
+
+impl<const D: usize> Touching<D> {
+    /// Looks at the motion to the end of the step, h [s] long: lists the pairs that pass through one another beside those that were listed
+    /// before. Says whether there are new ones.
+    ///
+    /// A vertex that starts inside a body may leave it. Pairs that move as one do not pass.
+    pub(crate) fn find_passages(&mut self, h: f64) -> bool {
+        self.fresh.clear();
+        let mut found = false;
+        for with_facet in [true, false] {
+            for k in 0..self.close[usize::from(!with_facet)].len() {
+                let pair @ [a, b] = self.close[usize::from(!with_facet)][k];
+                let [first, second] = if with_facet {
+                    [self.path(&[a]), self.path(&self.surface.facets[b as usize])]
+                } else {
+                    [a, b].map(|edge| self.path(&self.surface.edges[edge as usize]))
+                };
+                if (0..D).all(|d| first[0][d] <= second[1][d] && second[0][d] <= first[1][d]) {
+                    found |= self.look(pair, with_facet, h);
+                }
+            }
+        }
+        found
+    }
+
+    /// The box around the motion of a feature to the end of the step [m].
+    fn path<const N: usize>(&self, points: &[u32; N]) -> [[f64; D]; 2] {
+        let (mut low, mut high) = ([f64::INFINITY; D], [f64::NEG_INFINITY; D]);
+        for x in points.iter().flat_map(|p| [&self.before[0][*p as usize], &self.end[*p as usize]]) {
+            for d in 0..D {
+                (low[d], high[d]) = (x[d].smaller(low[d]), x[d].larger(high[d]));
+            }
+        }
+        [low, high]
+    }
+
+    /// Looks at one pair.
+    fn look(&mut self, pair: [u32; 2], with_facet: bool, h: f64) -> bool {
+        let x0 = &self.before[0];
+        let start = if with_facet {
+            Some(Gap::of_vertex_and_facet(&self.surface, x0, pair[0], pair[1]))
+        } else {
+            Gap::of_edges(&self.surface, x0, pair[0], pair[1])
+        };
+        let bodies = self.bodies_of(pair, with_facet);
+        if start.is_some_and(|start| start.gap < 0.0) && bodies[0] != bodies[1] {
+            return false;
+        }
+        if self.zones.hold(&self.points_of_pair(pair, with_facet)) {
+            return false;
+        }
+        let ends = [&x0[..], &self.end];
+        let Some((time, gap)) = impact(&self.surface, ends, &mut self.impact, 0.0, pair, with_facet) else { return false };
+        // Who touches at the start passes where the end lies behind.
+        if time == 0.0 && gap.along(&self.end) >= -ROUNDING * h * (1.0 + gap.gap.abs()) {
+            return false;
+        }
+        let id = key(pair, with_facet);
+        match self.passing.iter_mut().find(|(other, _)| *other == id) {
+            Some((_, known)) => *known = gap,
+            None => self.passing.push((id, gap)),
+        }
+        self.fresh.push(id);
+        true
+    }
+
+    fn points_of_pair(&self, [a, b]: [u32; 2], with_facet: bool) -> ([u32; 6], usize) {
+        let mut out = ([0; 6], 0);
+        let mut add = |p: u32| {
+            out.0[out.1] = p;
+            out.1 += 1;
+        };
+        if with_facet {
+            add(a);
+            self.surface.facets[b as usize].into_iter().for_each(add);
+        } else {
+            [a, b].into_iter().flat_map(|e| self.surface.edges[e as usize]).for_each(add);
+        }
+        out
+    }
+
+    fn bodies_of(&self, [a, b]: [u32; 2], with_facet: bool) -> [u32; 2] {
+        let points = if with_facet {
+            [a, self.surface.facets[b as usize][0]]
+        } else {
+            [a, b].map(|e| self.surface.edges[e as usize][0])
+        };
+        points.map(|p| self.surface.body[p as usize])
+    }
+
+    /// Puts the rows of passing pairs in place of those of the same features.
+    pub(crate) fn put_passing(&mut self, h: f64) {
+        if self.passing.is_empty() {
+            return;
+        }
+        for k in 0..self.passing.len() {
+            let (id, gap) = self.passing[k];
+            let (pair, with_facet) = pair_of(id);
+            let bodies = self.bodies_of(pair, with_facet);
+            let law = *self.laws.of(bodies[0], bodies[1]);
+            let mut row = self.row(&gap, &law, h, pair, with_facet);
+            row.in_play = row.mass[0] > 0.0;
+            match self.rows.iter_mut().find(|row| row.id == id) {
+                Some(known) => *known = row,
+                None => self.rows.push(row),
+            }
+        }
+        self.rows.sort_by_key(|row| row.id);
+    }
+
+    /// Lets what still passes move as one: x = x₀ + h (c + ω × r), in which no two features pass, with the momenta that the points have.
+    ///
+    /// # Errors
+    /// [`Trouble::LedThrough`] where pins and obstacles do not let them.
+    ///
+    /// # Source
+    /// X. Provot, Collision and self-collision handling in cloth model dedicated to design garments (1997);
+    /// R. Bridson, R. Fedkiw, J. Anderson, Robust treatment of collisions, contact and friction for cloth animation (2002), section 7.4.
+    pub(crate) fn hold_together(&mut self, h: f64) -> Result<(), Trouble> {
+        loop {
+            let Some(first) = self.fresh.first().map(|id| pair_of(*id)) else { return Ok(()) };
+            let trouble = Trouble::LedThrough { bodies: self.bodies_of(first.0, first.1) };
+            self.zones.resize(self.surface.points());
+            for id in std::mem::take(&mut self.fresh) {
+                let (pair, with_facet) = pair_of(id);
+                let (points, count) = self.points_of_pair(pair, with_facet);
+                self.zones.join(&points[..count], &self.v);
+            }
+            for zone in self.zones.list() {
+                let Some(motion) = self.motion_of(&zone, h) else { return Err(trouble) };
+                for number in zone {
+                    let p = number as usize;
+                    self.v[p] = motion.velocity(&self.before[0][p]);
+                    self.end[p] = core::array::from_fn(|d| self.before[0][p][d] + h * self.v[p][d]);
+                    self.touched[p] = true;
+                    self.zones.set_led(number, motion.led);
+                }
+            }
+            self.find_passages(h);
+        }
+    }
+
+    /// How the points of a zone move as one: as pins and obstacles lead them, else with their momentum and angular momentum.
+    fn motion_of(&self, points: &[u32], h: f64) -> Option<Zone<D>> {
+        let mut led = Led::default();
+        for p in points {
+            let p = *p as usize;
+            for d in (0..D).filter(|d| self.inverse_mass[p][*d] == 0.0) {
+                led.lead(d, (self.end[p][d] - self.before[0][p][d]) / h)?;
+            }
+        }
+        let mut motion = Zone::of(points, &self.before[0], &self.v, &self.inverse_mass, &led);
+        let against = |motion: &Zone<D>| {
+            self.rows.iter().filter(|row| row.of_obstacle && points.binary_search(&row.points[0]).is_ok()).find(|row| {
+                let v = motion.velocity(&self.before[0][row.points[0] as usize]);
+                let relative: [f64; D] = core::array::from_fn(|d| v[d] - row.carry[d]);
+                dot(&relative, &row.normal) < row.target - ROUNDING * (1.0 + row.target.abs())
+            })
+        };
+        // An obstacle in the way leads them.
+        if let Some(row) = against(&motion) {
+            for d in 0..D {
+                led.lead(d, row.carry[d])?;
+            }
+            motion = Zone::of(points, &self.before[0], &self.v, &self.inverse_mass, &led);
+            if against(&motion).is_some() {
+                return None;
+            }
+        }
+        Some(motion)
+    }
+}
+
+/// The features of a key.
+fn pair_of(id: u64) -> ([u32; 2], bool) {
+    let part = |shift: u32| ((id >> shift) & ((1 << 31) - 1)) as u32;
+    ([part(31), part(0)], id >> 62 == 0)
+}
+
+/// Differences of speeds, relative to 1 m/s or to themselves, that are rounding.
+pub(crate) const ROUNDING: f64 = 1e-9;

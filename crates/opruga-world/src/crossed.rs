@@ -1,0 +1,141 @@
+//! Whether surfaces of a world cross: a check that shares no code with the detection of contact.
+
+use crate::contact_laws::laws;
+use crate::warnings::{Warning, WorldWarning};
+use crate::world::World;
+use opruga_mesh::{Crossings, Mesh, crossing_edges, winding_number};
+
+/// Two bodies, or a body and itself, whose surfaces cross.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Crossed {
+    /// The bodies, by their place in the scene.
+    pub bodies: [usize; 2],
+    /// A facet of each, in the order facets, open surfaces, wires of its mesh; none where one body lies in the other without crossing it.
+    pub facets: Option<[u32; 2]>,
+}
+
+/// The surfaces of some bodies as they are now, as one mesh.
+struct Surfaces<const D: usize> {
+    positions: Vec<[f64; D]>,
+    /// Boundaries, open surfaces, and in the plane wires.
+    facets: Vec<[u32; D]>,
+    /// The body of every facet, and its number there.
+    origin: Vec<(usize, u32)>,
+    /// The closed boundary of every body, by its facets here.
+    closed: Vec<(usize, core::ops::Range<usize>)>,
+}
+
+impl<const D: usize> World<D> {
+    /// The surfaces that cross of bodies that contact keeps apart, one pair of facets for each pair of bodies, ascending; and bodies that
+    /// lie in one another. Without a section `[contact]`, those of all bodies, and none of a body with itself.
+    ///
+    /// Exact for the coordinates as they are. Wires of space are not looked at.
+    pub fn crossed_surfaces(&self) -> Vec<Crossed> {
+        let there = (0..self.blueprint.bodies.len()).filter(|body| self.handle(*body).is_some());
+        let contact = self.blueprint.contact.as_ref();
+        let bodies: Vec<usize> = there.filter(|b| contact.is_none() || self.blueprint.bodies[*b].touches()).collect();
+        let laws = contact.map(|contact| laws(&self.blueprint, contact, &bodies, 1.0));
+        let index = |body: usize| bodies.binary_search(&body).unwrap_or(0) as u32;
+        let meet = |a: usize, b: usize| laws.as_ref().map_or(a != b, |laws| laws.meet(index(a), index(b)));
+        let surfaces = self.surfaces(&bodies);
+        let mut found: Vec<Crossed> = Vec::new();
+        for [first, second] in surfaces.crossings().pairs {
+            let (mut a, mut b) = (surfaces.origin[first as usize], surfaces.origin[second as usize]);
+            if a.0 > b.0 {
+                (a, b) = (b, a);
+            }
+            if meet(a.0, b.0) {
+                found.push(Crossed { bodies: [a.0, b.0], facets: Some([a.1, b.1]) });
+            }
+        }
+        found.extend(surfaces.nested().into_iter().filter(|crossed| meet(crossed.bodies[0], crossed.bodies[1])));
+        found.sort_by_key(|crossed| (crossed.bodies, crossed.facets.is_none()));
+        found.dedup_by_key(|crossed| crossed.bodies);
+        found
+    }
+
+    /// Warns once of bodies that pass through one another in a scene without contact. Looks in frames 1, 2, 4, 8, …, so that looking costs
+    /// little in long runs.
+    pub(crate) fn warn_of_missing_contact(&mut self) {
+        const NONE: &str = "contact.none";
+        let due = self.frames.is_power_of_two() && self.blueprint.contact.is_none() && self.blueprint.bodies.len() > 1;
+        if !due || self.warnings.iter().any(|warning| warning.code == NONE) {
+            return;
+        }
+        let crossed = self.crossed_surfaces();
+        let Some(first) = crossed.first() else { return };
+        let [a, b] = first.bodies.map(|body| self.blueprint.bodies[body].name.clone());
+        let warning = WorldWarning::NoContact { time: self.time(), pairs: crossed.len() as u64, first: a, second: b };
+        self.warnings.push(Warning::new(warning, 1));
+    }
+
+    fn surfaces(&self, bodies: &[usize]) -> Surfaces<D> {
+        let mut out = Surfaces { positions: Vec::new(), facets: Vec::new(), origin: Vec::new(), closed: Vec::new() };
+        for body in bodies {
+            let mesh = &self.blueprint.bodies[*body].mesh;
+            let (first, begin) = (out.positions.len() as u32, out.facets.len());
+            out.positions.extend((0..mesh.nodes() as u32).map(|node| self.position(*body, node)));
+            out.facets.extend(mesh.facets.iter().map(|facet| facet.map(|node| first + node)));
+            if !mesh.facets.is_empty() {
+                out.closed.push((*body, begin..out.facets.len()));
+            }
+            if D == 2 {
+                out.facets.extend(mesh.wires.iter().map(|wire| core::array::from_fn(|k| first + wire[k])));
+            } else {
+                out.facets.extend(mesh.sheets.iter().map(|sheet| core::array::from_fn(|k| first + sheet[k])));
+            }
+            out.origin.extend((0..(out.facets.len() - begin) as u32).map(|number| (*body, number)));
+        }
+        out
+    }
+}
+
+impl<const D: usize> Surfaces<D> {
+    fn crossings(&self) -> Crossings {
+        if D == 2 {
+            let edges: Vec<[u32; 2]> = self.facets.iter().map(|facet| [facet[0], facet[1]]).collect();
+            let positions: Vec<[f64; 2]> = self.positions.iter().map(|x| [x[0], x[1]]).collect();
+            return crossing_edges(&edges, &positions);
+        }
+        let lifted = Mesh::<3> {
+            positions: self.positions.iter().map(|x| core::array::from_fn(|d| x[d])).collect(),
+            facets: self.facets.iter().map(|facet| core::array::from_fn(|k| facet[k])).collect(),
+            ..Mesh::default()
+        };
+        lifted.crossing_facets()
+    }
+
+    /// Bodies of which a point lies inside another one.
+    fn nested(&self) -> Vec<Crossed> {
+        let bounds = |facets: &[[u32; D]]| {
+            let (mut low, mut high) = ([f64::INFINITY; D], [f64::NEG_INFINITY; D]);
+            for x in facets.iter().flatten().map(|node| &self.positions[*node as usize]) {
+                for d in 0..D {
+                    low[d] = if x[d] < low[d] { x[d] } else { low[d] };
+                    high[d] = if x[d] > high[d] { x[d] } else { high[d] };
+                }
+            }
+            [low, high]
+        };
+        let boxes: Vec<[[f64; D]; 2]> = self.closed.iter().map(|(_, range)| bounds(&self.facets[range.clone()])).collect();
+        let mut found = Vec::new();
+        for (outer, range) in &self.closed {
+            let own = &boxes[self.closed.iter().position(|(body, _)| body == outer).unwrap_or(0)];
+            let mut last = None;
+            for (facet, (inner, _)) in self.facets.iter().zip(&self.origin) {
+                // One point of every other body.
+                if inner == outer || last == Some(*inner) {
+                    continue;
+                }
+                last = Some(*inner);
+                let point = &self.positions[facet[0] as usize];
+                let near = (0..D).all(|d| own[0][d] <= point[d] && point[d] <= own[1][d]);
+                if near && winding_number(&self.facets[range.clone()], &self.positions, point).abs() > 0.5 {
+                    let bodies = if inner < outer { [*inner, *outer] } else { [*outer, *inner] };
+                    found.push(Crossed { bodies, facets: None });
+                }
+            }
+        }
+        found
+    }
+}
