@@ -58,7 +58,9 @@ impl<const D: usize> Touching<D> {
             return false;
         }
         let ends = [&x0[..], &self.end];
-        let Some((time, gap)) = impact(&self.surface, ends, &mut self.impact, 0.0, pair, with_facet) else { return false };
+        let Some((time, gap)) = impact(&self.surface, ends, &mut self.impact, 0.0, pair, with_facet) else {
+            return false;
+        };
         // Who touches at the start passes where the end lies behind.
         if time == 0.0 && gap.along(&self.end) >= -ROUNDING * h * (1.0 + gap.gap.abs()) {
             return false;

@@ -184,7 +184,10 @@ impl<const D: usize> Touching<D> {
         self.counts.searches += 1;
         let (laws, reach) = (&self.laws, &mut self.reach);
         reach.widen(self.margin);
-        if !self.candidates.find(&self.surface, &reach.found_in, laws.largest_thickness(), self.most, |a, b| laws.meet(a, b)) {
+        if !self
+            .candidates
+            .find(&self.surface, &reach.found_in, laws.largest_thickness(), self.most, |a, b| laws.meet(a, b))
+        {
             reach.forget();
             return Err(Trouble::TooMany { found: self.candidates.len() });
         }

@@ -61,7 +61,17 @@ mod tests {
 
     #[test]
     fn edges_that_cross_touch_or_overlap_are_found_and_neighbours_are_not() {
-        let points = [[0.0, 0.0], [2.0, 0.0], [1.0, -1.0], [1.0, 1.0], [3.0, 0.0], [1.5, 0.0], [4.0, 0.0], [0.1, 0.1], [0.1, 0.9]];
+        let points = [
+            [0.0, 0.0],
+            [2.0, 0.0],
+            [1.0, -1.0],
+            [1.0, 1.0],
+            [3.0, 0.0],
+            [1.5, 0.0],
+            [4.0, 0.0],
+            [0.1, 0.1],
+            [0.1, 0.9],
+        ];
         let found = |edges: &[[u32; 2]]| crossing_edges(edges, &points).pairs;
         assert_eq!(found(&[[0, 1], [2, 3]]), [[0, 1]], "across");
         assert_eq!(found(&[[0, 1], [5, 3]]), [[0, 1]], "an end on the other");

@@ -2,12 +2,12 @@
 
 use crate::any_scene::{AnyBody, AnyScene, three};
 use crate::blueprint::{AnyBlueprint, CommandBlueprint};
+use crate::crossed::Crossed;
 use crate::error::WorldError;
 use crate::inputs::Input;
 use crate::ledger::Energy;
 use crate::modes::Mode;
 use crate::node_columns::Vectors;
-use crate::crossed::Crossed;
 use crate::node_states::NodeState;
 use crate::refused::RefusedCommand;
 use crate::slots::BodyHandle;

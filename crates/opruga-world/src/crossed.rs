@@ -117,7 +117,8 @@ impl<const D: usize> Surfaces<D> {
             }
             [low, high]
         };
-        let boxes: Vec<[[f64; D]; 2]> = self.closed.iter().map(|(_, range)| bounds(&self.facets[range.clone()])).collect();
+        let boxes: Vec<[[f64; D]; 2]> =
+            self.closed.iter().map(|(_, range)| bounds(&self.facets[range.clone()])).collect();
         let mut found = Vec::new();
         for (outer, range) in &self.closed {
             let own = &boxes[self.closed.iter().position(|(body, _)| body == outer).unwrap_or(0)];

@@ -64,12 +64,12 @@ mod world;
 pub use any_scene::{AnyBody, AnyScene};
 pub use any_world::AnyWorld;
 pub use body_view::BodyView;
+pub use crossed::Crossed;
 pub use error::WorldError;
 pub use inputs::Input;
 pub use ledger::{Energy, Momentum};
 pub use loads::ForceLaw;
 pub use node_columns::{Strided, Vectors};
-pub use crossed::Crossed;
 pub use node_states::NodeState;
 pub use opruga_core::break_off::BreakOff;
 /// What the laws of the finite elements say at one deformation gradient.

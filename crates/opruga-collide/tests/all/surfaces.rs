@@ -51,7 +51,10 @@ fn boxes_meet<const D: usize>(a: &[u32], b: &[u32], ends: [&[[f64; D]]; 2], marg
 fn boxes<const D: usize>(start: &[[f64; D]], end: &[[f64; D]]) -> Vec<[[f64; D]; 2]> {
     let least = |a: f64, b: f64| if a < b { a } else { b };
     let both = start.iter().zip(end);
-    both.map(|(a, b)| [0, 1].map(|k| core::array::from_fn(|d| if k == 0 { least(a[d], b[d]) } else { -least(-a[d], -b[d]) }))).collect()
+    both.map(|(a, b)| {
+        [0, 1].map(|k| core::array::from_fn(|d| if k == 0 { least(a[d], b[d]) } else { -least(-a[d], -b[d]) }))
+    })
+    .collect()
 }
 
 fn compare_with_all_pairs<const D: usize>(meshes: &[Mesh<D>], seed: u64) -> usize {

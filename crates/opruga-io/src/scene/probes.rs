@@ -96,7 +96,7 @@ fn refuse_without_cells<const D: usize>(
     let Some((word, _)) = Recorded::ALL.iter().find(|(_, what)| what.is_of_cells() && record.contains(what)) else {
         return;
     };
-    let knows = |spec: &Spec| spec.has_role(Role::OwnsCells);
+    let knows = |spec: &Spec| spec.has_role(Role::OwnsCells) || spec.has_role(Role::InsideOfBoundary);
     let models = &reader.catalogue.models;
     let commands = match root.get("command").map(|commands| &commands.data) {
         Some(Data::Array(commands)) => &commands[..],

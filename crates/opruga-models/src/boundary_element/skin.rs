@@ -117,7 +117,13 @@ impl<const D: usize> Skin<D> {
         let states = self.facets.iter().enumerate().map(|(number, facet)| {
             let stress = of(facet);
             let volume_ratio = 1.0 + bulk * (stress[0][0] + stress[1][1] + stress[2][2]);
-            CellState { cell: number as u32, stress, volume_ratio, smallest_volume_ratio: volume_ratio, measure: facet.measure }
+            CellState {
+                cell: number as u32,
+                stress,
+                volume_ratio,
+                smallest_volume_ratio: volume_ratio,
+                measure: facet.measure,
+            }
         });
         states.collect()
     }

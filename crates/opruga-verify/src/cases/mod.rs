@@ -15,6 +15,7 @@ mod integrators;
 mod ledgers;
 mod matching;
 mod materials;
+mod meetings;
 mod membranes;
 mod patches;
 mod pressure;
@@ -64,10 +65,12 @@ pub fn cases() -> impl Iterator<Item = &'static Case> {
         finite_differences::DYNAMICS,
         vibrations::CASES,
         contact::CASES,
+        meetings::CASES,
         volumes::DYNAMICS,
         matching::DYNAMICS,
         integrators::CASES,
         ledgers::CASES,
+        meetings::LEDGERS,
         boundary::LEDGERS,
     ];
     lists.into_iter().flatten()

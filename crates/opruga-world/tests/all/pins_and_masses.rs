@@ -167,7 +167,8 @@ fn every_rule_lets_a_bar_hang_back_behind_its_accelerated_base_by_its_mass_and_t
 
 #[test]
 #[ignore = "a sweep: cargo test -- --ignored whole_sweep"]
-fn every_rule_lets_a_bar_hang_back_behind_its_accelerated_base_by_its_mass_and_tells_the_force_on_the_base_whole_sweep() {
+fn every_rule_lets_a_bar_hang_back_behind_its_accelerated_base_by_its_mass_and_tells_the_force_on_the_base_whole_sweep()
+{
     hangs_back(&[0.02, 0.005]);
 }
 

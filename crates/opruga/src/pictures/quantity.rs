@@ -3,7 +3,7 @@
 use super::Fixed;
 use crate::core::potential::{Account, CellState};
 use crate::draw::{ColourMap, Legend};
-use crate::{AnyScene, AnyWorld};
+use crate::{AnyBody, AnyScene, AnyWorld};
 use opruga_core::spec::Role;
 
 /// What the colours of the bodies tell.
@@ -40,13 +40,15 @@ impl Quantity {
     ];
 
     /// What the colours of some bodies tell by themselves: nothing where one is painted in colours of its own, stress where
-    /// all are made of finite elements, else strain.
+    /// all are solids that know it, else strain.
     pub(super) fn of(scene: &dyn AnyScene) -> Quantity {
         let mut areas = scene.bodies().filter_map(|body| body.skin()).flat_map(|skin| &skin.areas);
         if areas.any(|area| area.colour.is_some()) {
             return Quantity::Plain;
         }
-        let mut solids = scene.bodies().map(|body| body.has_role(Role::OwnsCells));
+        let knows =
+            |body: &dyn AnyBody| [Role::OwnsCells, Role::InsideOfBoundary].iter().any(|role| body.has_role(*role));
+        let mut solids = scene.bodies().map(knows);
         if scene.body_count() > 0 && solids.all(|solid| solid) { Quantity::VonMises } else { Quantity::Strain }
     }
 
