@@ -3,10 +3,13 @@
 use crate::grid::Grid;
 use crate::reach::around;
 use crate::surface::Surface;
+use opruga_math::Lane;
 
-/// Pairs of a vertex and a facet, and in 3D of two edges, whose swept boxes come closer than a margin; ascending, each once.
+type Bounds<const D: usize> = [[f64; D]; 2];
+
+/// Pairs of a vertex and a facet, and in 3D of two edges, whose boxes come closer than a distance; ascending, each once.
 ///
-/// What is found depends on the positions alone, not on how the boxes are sorted.
+/// What is found depends on the boxes alone, not on how they are sorted.
 #[derive(Clone, Debug, Default)]
 pub struct Candidates<const D: usize> {
     /// Vertex and facet.
@@ -15,16 +18,29 @@ pub struct Candidates<const D: usize> {
     pub edge_edge: Vec<[u32; 2]>,
     grid: Grid<D>,
     found: Vec<u32>,
+    /// Around the points of every body.
+    bodies: Vec<Bounds<D>>,
+    near: Vec<[u32; 2]>,
+    first: Vec<(u32, Bounds<D>)>,
+    second: Vec<(u32, Bounds<D>)>,
 }
 
 /// A box, larger by a distance [m] on all sides.
-fn wider<const D: usize>([mut low, mut high]: [[f64; D]; 2], distance: f64) -> [[f64; D]; 2] {
+fn wider<const D: usize>([mut low, mut high]: Bounds<D>, distance: f64) -> Bounds<D> {
     for d in 0..D {
         low[d] -= distance;
         high[d] += distance;
     }
     [low, high]
 }
+
+fn meet_boxes<const D: usize>(a: &Bounds<D>, b: &Bounds<D>) -> bool {
+    (0..D).all(|d| a[0][d] <= b[1][d] && b[0][d] <= a[1][d])
+}
+
+/// Products of counts up to which all pairs of features of two bodies are compared: sorting them into cells costs as much as some
+/// thousand comparisons.
+const FEW: usize = 4096;
 
 impl<const D: usize> Candidates<D> {
     /// Looks for all pairs of features with boxes closer than `distance` [m] along every axis, given the boxes of the points [m].
@@ -34,48 +50,124 @@ impl<const D: usize> Candidates<D> {
     pub fn find(
         &mut self,
         surface: &Surface<D>,
-        boxes: &[[[f64; D]; 2]],
+        boxes: &[Bounds<D>],
         distance: f64,
         most: usize,
         meet: impl Fn(u32, u32) -> bool,
     ) -> bool {
         self.vertex_facet.clear();
         self.edge_edge.clear();
-        self.grid.fill(surface.facets.iter().map(|facet| wider(around(boxes, facet), distance)));
-        for p in 0..surface.points() as u32 {
-            self.grid.touching(&boxes[p as usize], &mut self.found);
-            let apart = |facet: &[u32; D]| !facet.contains(&p);
-            for number in &self.found {
-                let facet = &surface.facets[*number as usize];
-                let (own, other) = (surface.body[p as usize], surface.body[facet[0] as usize]);
-                if meet(own, other) && (own != other || apart(facet)) {
-                    self.vertex_facet.push([p, *number]);
+        self.find_near(surface, boxes, distance, meet);
+        let mut pairs = std::mem::take(&mut self.vertex_facet);
+        let near = std::mem::take(&mut self.near);
+        let mut complete = true;
+        for [a, b] in &near {
+            let [a, b] = [*a as usize, *b as usize];
+            self.choose(surface.points_of(a), b, distance, |p| boxes[p]);
+            std::mem::swap(&mut self.first, &mut self.second);
+            self.choose(surface.facets_of(b), a, 0.0, |f| wider(around(boxes, &surface.facets[f]), distance));
+            std::mem::swap(&mut self.first, &mut self.second);
+            let apart = |p: u32, facet: u32| a != b || !surface.facets[facet as usize].contains(&p);
+            self.join(|p, facet| {
+                if apart(p, facet) {
+                    pairs.push([p, facet]);
+                }
+            });
+            complete = pairs.len() <= most;
+            if !complete {
+                break;
+            }
+        }
+        pairs.sort_unstable();
+        self.vertex_facet = pairs;
+        let mut pairs = std::mem::take(&mut self.edge_edge);
+        for [a, b] in near.iter().filter(|[a, b]| D == 3 && a <= b) {
+            let [a, b] = [*a as usize, *b as usize];
+            let of = |edge: usize| around(boxes, &surface.edges[edge]);
+            self.choose(surface.edges_of(a), b, distance, of);
+            std::mem::swap(&mut self.first, &mut self.second);
+            self.choose(surface.edges_of(b), a, 0.0, |edge| wider(of(edge), distance));
+            std::mem::swap(&mut self.first, &mut self.second);
+            let apart = |i: u32, j: u32| {
+                let [first, second] = [i, j].map(|edge| &surface.edges[edge as usize]);
+                a != b || i < j && !first.iter().any(|p| second.contains(p))
+            };
+            self.join(|i, j| {
+                if apart(i, j) {
+                    pairs.push(if i < j { [i, j] } else { [j, i] });
+                }
+            });
+            complete &= self.vertex_facet.len() + pairs.len() <= most;
+            if !complete {
+                break;
+            }
+        }
+        pairs.sort_unstable();
+        self.edge_edge = pairs;
+        self.near = near;
+        complete
+    }
+
+    /// Lists the bodies whose boxes come closer than a distance [m], each pair both ways, and bodies that touch themselves.
+    fn find_near(&mut self, surface: &Surface<D>, boxes: &[Bounds<D>], distance: f64, meet: impl Fn(u32, u32) -> bool) {
+        self.bodies.clear();
+        for number in 0..surface.bodies() {
+            let mut whole = [[f64::INFINITY; D], [f64::NEG_INFINITY; D]];
+            for [low, high] in &boxes[surface.points_of(number)] {
+                for d in 0..D {
+                    whole[0][d] = low[d].smaller(whole[0][d]);
+                    whole[1][d] = high[d].larger(whole[1][d]);
                 }
             }
-            if self.vertex_facet.len() > most {
-                return false;
-            }
+            self.bodies.push(whole);
         }
-        if D == 2 {
-            return true;
-        }
-        self.grid.fill(surface.edges.iter().map(|edge| wider(around(boxes, edge), distance)));
-        for (number, edge) in surface.edges.iter().enumerate() {
-            self.grid.touching(&around(boxes, edge), &mut self.found);
-            let apart = |other: &[u32; 2]| !edge.iter().any(|p| other.contains(p));
-            let number = number as u32;
-            for other in self.found.iter().filter(|other| **other > number) {
-                let second = &surface.edges[*other as usize];
-                let bodies = [edge[0], second[0]].map(|p| surface.body[p as usize]);
-                if meet(bodies[0], bodies[1]) && (bodies[0] != bodies[1] || apart(second)) {
-                    self.edge_edge.push([number, *other]);
+        self.near.clear();
+        // A body without points has no box.
+        let body = |number: usize| surface.body.get(surface.points_of(number).start).copied();
+        self.grid.fill(self.bodies.iter().map(|whole| wider(*whole, distance)));
+        for a in 0..surface.bodies() {
+            self.grid.touching(&self.bodies[a], &mut self.found);
+            for b in &self.found {
+                if let (Some(own), Some(other)) = (body(a), body(*b as usize))
+                    && meet(own, other)
+                {
+                    self.near.push([a as u32, *b]);
                 }
             }
-            if self.vertex_facet.len() + self.edge_edge.len() > most {
-                return false;
-            }
         }
-        true
+    }
+
+    /// Puts the features of a body whose boxes come closer than a distance [m] to another body into the first list.
+    fn choose(
+        &mut self,
+        features: core::ops::Range<usize>,
+        other: usize,
+        distance: f64,
+        bounds: impl Fn(usize) -> Bounds<D>,
+    ) {
+        let region = wider(self.bodies[other], distance);
+        self.first.clear();
+        let own = features.map(|feature| (feature as u32, bounds(feature)));
+        self.first.extend(own.filter(|(_, own)| meet_boxes(own, &region)));
+    }
+
+    /// Calls back with the features of both lists whose boxes meet.
+    fn join(&mut self, mut visit: impl FnMut(u32, u32)) {
+        if self.first.len() * self.second.len() <= FEW {
+            for (a, box_a) in &self.first {
+                for (b, box_b) in &self.second {
+                    if meet_boxes(box_a, box_b) {
+                        visit(*a, *b);
+                    }
+                }
+            }
+            return;
+        }
+        self.grid.fill(self.second.iter().map(|(_, bounds)| *bounds));
+        for (a, bounds) in &self.first {
+            self.grid.touching(bounds, &mut self.found);
+            self.found.iter().for_each(|k| visit(*a, self.second[*k as usize].0));
+        }
     }
 
     /// The number of pairs.
@@ -92,6 +184,7 @@ impl<const D: usize> Candidates<D> {
     pub fn heap_bytes(&self) -> usize {
         8 * (self.vertex_facet.capacity() + self.edge_edge.capacity())
             + 4 * self.found.capacity()
+            + 16 * D * (self.bodies.capacity() + self.first.capacity() + self.second.capacity())
             + self.grid.heap_bytes()
     }
 }

@@ -18,8 +18,8 @@ pub struct Surface<const D: usize> {
     pub edges: Vec<[u32; 2]>,
     /// The facets of each edge that have an inside, as numbers of facets; `u32::MAX` for none.
     pub sides: Vec<[u32; 2]>,
-    /// Where the points of a body begin, and behind the last one.
-    starts: Vec<u32>,
+    /// Where the points, facets and edges of a body begin.
+    starts: Vec<[u32; 3]>,
     /// The facets around a point: `around[ring[p]..ring[p + 1]]`, ascending.
     ring: Vec<u32>,
     around: Vec<u32>,
@@ -33,15 +33,34 @@ impl<const D: usize> Surface<D> {
 
     /// The points of a body, by its place among those that were added.
     pub fn points_of(&self, number: usize) -> core::ops::Range<usize> {
-        let at = |k: usize| self.starts.get(k).map_or(self.points(), |s| *s as usize);
+        self.range(number, 0, self.points())
+    }
+
+    /// The facets of a body, by its place among those that were added.
+    pub fn facets_of(&self, number: usize) -> core::ops::Range<usize> {
+        self.range(number, 1, self.facets.len())
+    }
+
+    /// The edges of a body, by its place among those that were added.
+    pub fn edges_of(&self, number: usize) -> core::ops::Range<usize> {
+        self.range(number, 2, self.edges.len())
+    }
+
+    fn range(&self, number: usize, what: usize, end: usize) -> core::ops::Range<usize> {
+        let at = |k: usize| self.starts.get(k).map_or(end, |start| start[what] as usize);
         at(number)..at(number + 1)
+    }
+
+    /// How many bodies were added.
+    pub fn bodies(&self) -> usize {
+        self.starts.len()
     }
 
     /// Adds the surface of a body: boundary, open surfaces, wires, and without any of these its nodes as points. Gives the nodes that
     /// are the points which were added, in order.
     pub fn add(&mut self, mesh: &Mesh<D>, body: u32) -> Vec<u32> {
         let start = self.points() as u32;
-        self.starts.push(start);
+        self.starts.push([start, self.facets.len() as u32, self.edges.len() as u32]);
         let mut nodes: Vec<u32> = mesh.facets.iter().flatten().copied().collect();
         nodes.extend(mesh.sheets.iter().flatten());
         nodes.extend(mesh.wires.iter().flatten());
@@ -123,6 +142,6 @@ impl<const D: usize> Surface<D> {
     pub fn heap_bytes(&self) -> usize {
         4 * (self.body.capacity() + D * self.facets.capacity() + 4 * self.edges.capacity())
             + self.closed.capacity()
-            + 4 * (self.starts.capacity() + self.ring.capacity() + self.around.capacity())
+            + 4 * (3 * self.starts.capacity() + self.ring.capacity() + self.around.capacity())
     }
 }
