@@ -20,7 +20,7 @@ pub struct Candidates<const D: usize> {
     found: Vec<u32>,
     /// Around the points of every body.
     bodies: Vec<Bounds<D>>,
-    near: Vec<[u32; 2]>,
+    close_bodies: Vec<[u32; 2]>,
     first: Vec<(u32, Bounds<D>)>,
     second: Vec<(u32, Bounds<D>)>,
 }
@@ -57,11 +57,11 @@ impl<const D: usize> Candidates<D> {
     ) -> bool {
         self.vertex_facet.clear();
         self.edge_edge.clear();
-        self.find_near(surface, boxes, distance, meet);
+        self.find_close_bodies(surface, boxes, distance, meet);
         let mut pairs = std::mem::take(&mut self.vertex_facet);
-        let near = std::mem::take(&mut self.near);
+        let close = std::mem::take(&mut self.close_bodies);
         let mut complete = true;
-        for [a, b] in &near {
+        for [a, b] in &close {
             let [a, b] = [*a as usize, *b as usize];
             self.choose(surface.points_of(a), b, distance, |p| boxes[p]);
             std::mem::swap(&mut self.first, &mut self.second);
@@ -81,7 +81,7 @@ impl<const D: usize> Candidates<D> {
         pairs.sort_unstable();
         self.vertex_facet = pairs;
         let mut pairs = std::mem::take(&mut self.edge_edge);
-        for [a, b] in near.iter().filter(|[a, b]| D == 3 && a <= b) {
+        for [a, b] in close.iter().filter(|[a, b]| D == 3 && a <= b) {
             let [a, b] = [*a as usize, *b as usize];
             let of = |edge: usize| around(boxes, &surface.edges[edge]);
             self.choose(surface.edges_of(a), b, distance, of);
@@ -104,12 +104,18 @@ impl<const D: usize> Candidates<D> {
         }
         pairs.sort_unstable();
         self.edge_edge = pairs;
-        self.near = near;
+        self.close_bodies = close;
         complete
     }
 
     /// Lists the bodies whose boxes come closer than a distance [m], each pair both ways, and bodies that touch themselves.
-    fn find_near(&mut self, surface: &Surface<D>, boxes: &[Bounds<D>], distance: f64, meet: impl Fn(u32, u32) -> bool) {
+    fn find_close_bodies(
+        &mut self,
+        surface: &Surface<D>,
+        boxes: &[Bounds<D>],
+        distance: f64,
+        meet: impl Fn(u32, u32) -> bool,
+    ) {
         self.bodies.clear();
         for number in 0..surface.bodies() {
             let mut whole = [[f64::INFINITY; D], [f64::NEG_INFINITY; D]];
@@ -121,7 +127,7 @@ impl<const D: usize> Candidates<D> {
             }
             self.bodies.push(whole);
         }
-        self.near.clear();
+        self.close_bodies.clear();
         // A body without points has no box.
         let body = |number: usize| surface.body.get(surface.points_of(number).start).copied();
         self.grid.fill(self.bodies.iter().map(|whole| wider(*whole, distance)));
@@ -131,7 +137,7 @@ impl<const D: usize> Candidates<D> {
                 if let (Some(own), Some(other)) = (body(a), body(*b as usize))
                     && meet(own, other)
                 {
-                    self.near.push([a as u32, *b]);
+                    self.close_bodies.push([a as u32, *b]);
                 }
             }
         }

@@ -4,7 +4,7 @@ use crate::gap::Gap;
 use crate::rows::{impact, key};
 use crate::touching::{Touching, Trouble};
 use crate::vector::dot;
-use crate::zones::{Led, Zone};
+use crate::zones::{Led, ROUNDING, Zone};
 use opruga_math::Lane;
 
 impl<const D: usize> Touching<D> {
@@ -186,6 +186,3 @@ fn pair_of(id: u64) -> ([u32; 2], bool) {
     let part = |shift: u32| ((id >> shift) & ((1 << 31) - 1)) as u32;
     ([part(31), part(0)], id >> 62 == 0)
 }
-
-/// Differences of speeds, relative to 1 m/s or to themselves, that are rounding.
-pub(crate) const ROUNDING: f64 = 1e-9;

@@ -25,8 +25,8 @@ impl<const D: usize> Reach<D> {
         self.push.clear();
         self.swept.clear();
         for (from, to) in from.iter().zip(to) {
-            let way = subtract(to, from);
-            let push = dot(&way, &way).sqrt() + recovery;
+            let displacement = subtract(to, from);
+            let push = dot(&displacement, &displacement).sqrt() + recovery;
             self.push.push(push);
             let (mut low, mut high) = ([0.0; D], [0.0; D]);
             for d in 0..D {
@@ -72,8 +72,8 @@ impl<const D: usize> Reach<D> {
     pub(crate) fn grow(&mut self, free: &[[f64; D]], end: &[[f64; D]]) -> bool {
         let mut any = false;
         for (p, (free, end)) in free.iter().zip(end).enumerate() {
-            let way = subtract(end, free);
-            let pushed = dot(&way, &way).sqrt();
+            let displacement = subtract(end, free);
+            let pushed = dot(&displacement, &displacement).sqrt();
             if pushed > self.push[p] {
                 let more = 2.0 * pushed - self.push[p];
                 self.push[p] = 2.0 * pushed;

@@ -1,7 +1,9 @@
 //! Zones of points that move as one within a step, because each other motion would let surfaces pass through one another.
 
-use crate::passages::ROUNDING;
 use opruga_math::symmetric;
+
+/// Differences of speeds, relative to 1 m/s or to themselves, that are rounding.
+pub(crate) const ROUNDING: f64 = 1e-9;
 
 /// The zones of a step, and what their points did before.
 #[derive(Clone, Debug, Default)]

@@ -130,8 +130,8 @@ impl<const D: usize> Surfaces<D> {
                 }
                 last = Some(*inner);
                 let point = &self.positions[facet[0] as usize];
-                let near = (0..D).all(|d| own[0][d] <= point[d] && point[d] <= own[1][d]);
-                if near && winding_number(&self.facets[range.clone()], &self.positions, point).abs() > 0.5 {
+                let within = (0..D).all(|d| own[0][d] <= point[d] && point[d] <= own[1][d]);
+                if within && winding_number(&self.facets[range.clone()], &self.positions, point).abs() > 0.5 {
                     let bodies = if inner < outer { [*inner, *outer] } else { [*outer, *inner] };
                     found.push(Crossed { bodies, facets: None });
                 }
