@@ -37,7 +37,16 @@ impl<const D: usize> World<D> {
         let laws = contact.map(|contact| laws(&self.blueprint, contact, &bodies, 1.0));
         let index = |body: usize| bodies.binary_search(&body).unwrap_or(0) as u32;
         let meet = |a: usize, b: usize| laws.as_ref().map_or(a != b, |laws| laws.meet(index(a), index(b)));
-        let surfaces = self.surfaces(&bodies);
+        // Most bodies are far from all others.
+        let bounds: Vec<[[f64; D]; 2]> = bodies.iter().map(|body| self.bounds_of(*body)).collect();
+        let mut close = Vec::new();
+        for (a, own) in bodies.iter().zip(&bounds) {
+            let mut others = bodies.iter().zip(&bounds).filter(|(b, _)| *b != a);
+            if meet(*a, *a) || others.any(|(b, other)| overlap(own, other) && meet(*a, *b)) {
+                close.push(*a);
+            }
+        }
+        let surfaces = self.surfaces(&close);
         let mut found: Vec<Crossed> = Vec::new();
         for [first, second] in surfaces.crossings().pairs {
             let (mut a, mut b) = (surfaces.origin[first as usize], surfaces.origin[second as usize]);
@@ -52,6 +61,12 @@ impl<const D: usize> World<D> {
         found.sort_by_key(|crossed| (crossed.bodies, crossed.facets.is_none()));
         found.dedup_by_key(|crossed| crossed.bodies);
         found
+    }
+
+    /// The box around the nodes of a body [m].
+    fn bounds_of(&self, body: usize) -> [[f64; D]; 2] {
+        let nodes = 0..self.blueprint.bodies[body].mesh.nodes() as u32;
+        bounds(nodes.map(|node| self.position(body, node)))
     }
 
     /// Warns once of bodies that pass through one another in a scene without contact. Looks in frames 1, 2, 4, 8, …, so that looking costs
@@ -107,21 +122,10 @@ impl<const D: usize> Surfaces<D> {
 
     /// Bodies of which a point lies inside another one.
     fn nested(&self) -> Vec<Crossed> {
-        let bounds = |facets: &[[u32; D]]| {
-            let (mut low, mut high) = ([f64::INFINITY; D], [f64::NEG_INFINITY; D]);
-            for x in facets.iter().flatten().map(|node| &self.positions[*node as usize]) {
-                for d in 0..D {
-                    low[d] = if x[d] < low[d] { x[d] } else { low[d] };
-                    high[d] = if x[d] > high[d] { x[d] } else { high[d] };
-                }
-            }
-            [low, high]
-        };
-        let boxes: Vec<[[f64; D]; 2]> =
-            self.closed.iter().map(|(_, range)| bounds(&self.facets[range.clone()])).collect();
+        let around = |facets: &[[u32; D]]| bounds(facets.iter().flatten().map(|node| self.positions[*node as usize]));
         let mut found = Vec::new();
         for (outer, range) in &self.closed {
-            let own = &boxes[self.closed.iter().position(|(body, _)| body == outer).unwrap_or(0)];
+            let own = around(&self.facets[range.clone()]);
             let mut last = None;
             for (facet, (inner, _)) in self.facets.iter().zip(&self.origin) {
                 // One point of every other body.
@@ -139,4 +143,20 @@ impl<const D: usize> Surfaces<D> {
         }
         found
     }
+}
+
+/// The box around some points.
+fn bounds<const D: usize>(points: impl Iterator<Item = [f64; D]>) -> [[f64; D]; 2] {
+    let (mut low, mut high) = ([f64::INFINITY; D], [f64::NEG_INFINITY; D]);
+    for x in points {
+        for d in 0..D {
+            low[d] = if x[d] < low[d] { x[d] } else { low[d] };
+            high[d] = if x[d] > high[d] { x[d] } else { high[d] };
+        }
+    }
+    [low, high]
+}
+
+fn overlap<const D: usize>(a: &[[f64; D]; 2], b: &[[f64; D]; 2]) -> bool {
+    (0..D).all(|d| a[0][d] <= b[1][d] && b[0][d] <= a[1][d])
 }
