@@ -37,15 +37,23 @@ impl<const D: usize> World<D> {
         let laws = contact.map(|contact| laws(&self.blueprint, contact, &bodies, 1.0));
         let index = |body: usize| bodies.binary_search(&body).unwrap_or(0) as u32;
         let meet = |a: usize, b: usize| laws.as_ref().map_or(a != b, |laws| laws.meet(index(a), index(b)));
-        // Most bodies are far from all others.
+        // Most bodies are far from all others: a line that sweeps along x holds the boxes over it.
         let bounds: Vec<[[f64; D]; 2]> = bodies.iter().map(|body| self.bounds_of(*body)).collect();
-        let mut close = Vec::new();
-        for (a, own) in bodies.iter().zip(&bounds) {
-            let mut others = bodies.iter().zip(&bounds).filter(|(b, _)| *b != a);
-            if meet(*a, *a) || others.any(|(b, other)| overlap(own, other) && meet(*a, *b)) {
-                close.push(*a);
+        let mut order: Vec<usize> = (0..bodies.len()).collect();
+        order.sort_by(|a, b| bounds[*a][0][0].total_cmp(&bounds[*b][0][0]));
+        let mut is_close: Vec<bool> = bodies.iter().map(|body| meet(*body, *body)).collect();
+        let mut over: Vec<usize> = Vec::new();
+        for a in order {
+            over.retain(|b| bounds[*b][1][0] >= bounds[a][0][0]);
+            for b in &over {
+                if overlap(&bounds[a], &bounds[*b]) && meet(bodies[a], bodies[*b]) {
+                    (is_close[a], is_close[*b]) = (true, true);
+                }
             }
+            over.push(a);
         }
+        let close: Vec<usize> =
+            bodies.iter().zip(&is_close).filter(|(_, close)| **close).map(|(body, _)| *body).collect();
         let surfaces = self.surfaces(&close);
         let mut found: Vec<Crossed> = Vec::new();
         for [first, second] in surfaces.crossings().pairs {
