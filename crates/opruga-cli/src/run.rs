@@ -247,6 +247,7 @@ impl Job<'_> {
                 break;
             }
             looked_at = looked_at || world.look_at_steps_again();
+            world.warn_of_missing_contact();
             if call.check_contact {
                 failure = crossed(&*world);
             }

@@ -185,7 +185,9 @@ impl Living {
 
 impl Engine for Living {
     fn frame(&mut self) -> Result<(), WorldError> {
-        self.world.frame()
+        self.world.frame()?;
+        self.world.warn_of_missing_contact();
+        Ok(())
     }
     fn begin_what_is_due(&mut self) -> Result<(), WorldError> {
         self.world.begin_what_is_due()

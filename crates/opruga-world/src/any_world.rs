@@ -145,6 +145,8 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     fn visit_states(&self, body: usize, visit: &mut dyn FnMut(&CellState, &[u32]));
     /// What the nodes of a body are under: means of the cells or facets around them.
     fn node_states(&self, body: usize) -> Vec<Option<NodeState>>;
+    /// Warns once of bodies that pass through one another in a scene without contact; to be called after every frame.
+    fn warn_of_missing_contact(&mut self);
     /// The surfaces that cross, and bodies that lie in one another.
     fn crossed_surfaces(&self) -> Vec<Crossed>;
     /// The lowest natural modes of a body about its present state.
@@ -324,6 +326,9 @@ impl<const D: usize> AnyWorld for World<D> {
     }
     fn cell_states(&self, body: usize) -> Vec<CellState> {
         self.cell_states(body)
+    }
+    fn warn_of_missing_contact(&mut self) {
+        self.warn_of_missing_contact();
     }
     fn crossed_surfaces(&self) -> Vec<Crossed> {
         self.crossed_surfaces()

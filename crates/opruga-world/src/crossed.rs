@@ -77,9 +77,9 @@ impl<const D: usize> World<D> {
         bounds(nodes.map(|node| self.position(body, node)))
     }
 
-    /// Warns once of bodies that pass through one another in a scene without contact. Looks in frames 1, 2, 4, 8, …, so that looking costs
-    /// little in long runs.
-    pub(crate) fn warn_of_missing_contact(&mut self) {
+    /// Warns once of bodies that pass through one another in a scene without contact, to be called after every frame. Looks in frames 1, 2,
+    /// 4, 8, …, so that it costs little in long runs. No part of a frame: games have no use for it, and it asks for memory.
+    pub fn warn_of_missing_contact(&mut self) {
         const NONE: &str = "contact.none";
         let due = self.frames.is_power_of_two() && self.blueprint.contact.is_none() && self.blueprint.bodies.len() > 1;
         if !due || self.warnings.iter().any(|warning| warning.code == NONE) {

@@ -109,7 +109,6 @@ impl<const D: usize> World<D> {
         self.flows.count_frame(&self.energy);
         self.warn_of_crushed_bodies();
         self.warn_of_turned_cells();
-        self.warn_of_missing_contact();
         self.take_away_what_is_far()
     }
 
