@@ -36,7 +36,12 @@ impl Level {
         (hash as usize) & (self.starts.len() - 2)
     }
     fn cell_of<const D: usize>(&self, origin: &[f64; 3], x: &[f64; D]) -> [i64; D] {
-        core::array::from_fn(|d| ((x[d] - origin[d]) / self.cell).floor() as i64)
+        // Rounded towards zero and corrected: rounding down is a call of a function.
+        core::array::from_fn(|d| {
+            let at = (x[d] - origin[d]) / self.cell;
+            let cell = at as i64;
+            cell - i64::from(cell as f64 > at)
+        })
     }
 }
 

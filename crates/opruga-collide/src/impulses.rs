@@ -24,8 +24,6 @@ pub(crate) struct Row<const D: usize> {
     /// Multipliers: the impulse along the normal and that across it [N s].
     pub(crate) normal_impulse: f64,
     pub(crate) friction_impulse: [f64; D],
-    /// Whether it is solved for, or only watched.
-    pub(crate) in_play: bool,
     /// Whether the second feature is an obstacle.
     pub(crate) of_obstacle: bool,
 }
@@ -44,7 +42,6 @@ impl<const D: usize> Row<D> {
             mass: [0.0; 2],
             normal_impulse: 0.0,
             friction_impulse: [0.0; D],
-            in_play: false,
             of_obstacle: false,
         };
         row.weigh(inverse_mass);
@@ -54,7 +51,7 @@ impl<const D: usize> Row<D> {
     /// Works out what it weighs.
     pub(crate) fn weigh(&mut self, inverse_mass: &[[f64; D]]) {
         let (mut along, mut across) = (0.0, 0.0);
-        for k in 0..4 {
+        for k in 0..=D {
             let (w, m) = (self.weights[k] * self.weights[k], &inverse_mass[self.points[k] as usize]);
             let mut most: f64 = 0.0;
             for d in 0..D {
@@ -71,7 +68,7 @@ impl<const D: usize> Row<D> {
     #[inline]
     pub(crate) fn mean(&self, of: &[[f64; D]]) -> [f64; D] {
         let mut sum = [0.0; D];
-        for k in 0..4 {
+        for k in 0..=D {
             let a = &of[self.points[k] as usize];
             for d in 0..D {
                 sum[d] += self.weights[k] * a[d];
@@ -83,7 +80,7 @@ impl<const D: usize> Row<D> {
     /// Gives its points an impulse [N s].
     #[inline]
     pub(crate) fn give(&self, impulse: &[f64; D], inverse_mass: &[[f64; D]], v: &mut [[f64; D]]) {
-        for k in 0..4 {
+        for k in 0..=D {
             let p = self.points[k] as usize;
             for d in 0..D {
                 v[p][d] += self.weights[k] * impulse[d] * inverse_mass[p][d];
@@ -101,22 +98,45 @@ impl<const D: usize> Row<D> {
     }
 
     /// One turn: the normal impulse that its bound needs, then the friction that this allows. Gives by how much its velocity changed [m/s].
-    #[inline]
+    #[inline(always)]
     fn solve(&mut self, inverse_mass: &[[f64; D]], v: &mut [[f64; D]]) -> f64 {
-        let mut u = subtract(&self.mean(v), &self.carry);
+        // Velocities and inverse masses of its points, which are at most D + 1, come from memory once.
+        let (mut own, mut inverse) = ([[0.0; D]; 4], [[0.0; D]; 4]);
+        for k in 0..=D {
+            let p = self.points[k] as usize;
+            (own[k], inverse[k]) = (v[p], inverse_mass[p]);
+        }
+        let mean = |own: &[[f64; D]; 4]| {
+            let mut sum = [0.0; D];
+            for k in 0..=D {
+                for d in 0..D {
+                    sum[d] += self.weights[k] * own[k][d];
+                }
+            }
+            subtract(&sum, &self.carry)
+        };
+        let give = |own: &mut [[f64; D]; 4], impulse: &[f64; D]| {
+            for k in 0..=D {
+                for d in 0..D {
+                    own[k][d] += self.weights[k] * impulse[d] * inverse[k][d];
+                }
+            }
+        };
+        let mut u = mean(&own);
+        let mut un = dot(&u, &self.normal);
         let old = self.normal_impulse;
-        let new = (old + (self.target - dot(&u, &self.normal)) * self.mass[0]).larger(0.0);
+        let new = (old + (self.target - un) * self.mass[0]).larger(0.0);
         let mut changed = 0.0;
         if new != old {
-            self.normal_impulse = new;
-            self.give(&scaled(&self.normal, new - old), inverse_mass, v);
+            give(&mut own, &scaled(&self.normal, new - old));
             changed = ((new - old) / self.mass[0]).abs();
         }
+        let mut after = self.friction_impulse;
         if self.friction > 0.0 && (new > 0.0 || old > 0.0) {
-            u = subtract(&self.mean(v), &self.carry);
-            let un = dot(&u, &self.normal);
-            let before = self.friction_impulse;
-            let mut after = before;
+            if new != old {
+                u = mean(&own);
+                un = dot(&u, &self.normal);
+            }
             for d in 0..D {
                 after[d] -= (u[d] - un * self.normal[d]) * self.mass[1];
             }
@@ -129,12 +149,18 @@ impl<const D: usize> Row<D> {
             if size > most {
                 after = scaled(&after, most / size);
             }
-            let change = subtract(&after, &before);
+            let change = subtract(&after, &self.friction_impulse);
             let largest = dot(&change, &change);
             if largest > 0.0 {
-                self.friction_impulse = after;
-                self.give(&change, inverse_mass, v);
+                give(&mut own, &change);
                 changed = (largest.sqrt() / self.mass[1]).larger(changed);
+            }
+        }
+        if changed > 0.0 {
+            (self.normal_impulse, self.friction_impulse) = (new, after);
+            // The first point last: an obstacle has no points, and repeats it.
+            for k in (0..=D).rev() {
+                v[self.points[k] as usize] = own[k];
             }
         }
         changed
@@ -142,8 +168,10 @@ impl<const D: usize> Row<D> {
 }
 
 /// What is left of the velocities of contacts, relative to the mean approach of the step, where the sweeps end: at rest, where that is
-/// h g, a contact then creeps by less than a thousandth of what one step of free fall would make, and impulses of the next step start from there.
-const TOLERANCE: f64 = 1e-3;
+/// h g, a contact then creeps by less than a hundredth of what one step of free fall would make. Impulses of the next step start from there and
+/// every contact gets a turn in it, so what is left of a step does not add up; at the beginning of a frame alone all starts anew. A
+/// thousandth needs two to three times the turns, for kinetic energies of a heap that differ by less than a thousandth.
+const TOLERANCE: f64 = 1e-2;
 
 /// The most sweeps of a step. A sweep carries an impulse through all contacts in its direction, so a column of bodies converges with the
 /// number of its contacts that hang together within one step of the elastic wave: a few.
@@ -151,24 +179,28 @@ const MOST_SWEEPS: usize = 60;
 
 /// When rows were solved for, and when what they hold has changed, counted in turns of rows: beside the rows, which are large.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Turns {
+pub(crate) struct Turns<const D: usize> {
     /// When the velocity of a point changed last.
     stamps: Vec<u64>,
-    /// The points of the rows in play, and their last turns; 0 before the first.
-    rows: Vec<([u32; 4], u64)>,
+    /// The points of the rows, and their last turns; 0 before the first.
+    heads: Vec<([u32; 4], u64)>,
     now: u64,
     /// Another point that is joined by rows, or the point itself.
     parent: Vec<u32>,
-    /// Rows in play with the least point that they are joined to.
-    joined: Vec<(u32, u32)>,
+    /// The number of those that a point is joined to, by its root; and where their rows begin, in the order in which they are met.
+    number: Vec<u32>,
+    starts: Vec<u32>,
+    joined: Vec<u32>,
+    sorted: Vec<Row<D>>,
 }
 
-impl Turns {
+impl<const D: usize> Turns<D> {
     /// Begins a step.
     pub(crate) fn begin(&mut self, points: usize) {
         if self.parent.len() != points {
             self.stamps.resize(points, 0);
             self.parent = (0..points as u32).collect();
+            self.number.resize(points, 0);
         }
     }
 
@@ -181,17 +213,21 @@ impl Turns {
         point
     }
 
-    /// Sorts rows into those that points join, each in the order of rows.
-    fn join<const D: usize>(&mut self, rows: &[Row<D>], play: &mut [u32]) {
-        let points = |k: &u32| {
-            let row = &rows[*k as usize];
-            (0..4).filter(|k| row.weights[*k] != 0.0).map(|k| row.points[k])
-        };
-        for p in play.iter().flat_map(points) {
-            self.parent[p as usize] = p;
+    /// Sorts rows into those that points join, each in the order of features: what is solved together lies together.
+    fn join(&mut self, rows: &mut Vec<Row<D>>) {
+        if !rows.is_sorted_by_key(|row| row.id) {
+            rows.sort_by_key(|row| row.id);
         }
-        for k in play.iter() {
-            let mut own = points(k);
+        let points = |row: &Row<D>| {
+            let (points, weights) = (row.points, row.weights);
+            (0..=D).filter(move |k| weights[*k] != 0.0).map(move |k| points[k])
+        };
+        for p in rows.iter().flat_map(points) {
+            self.parent[p as usize] = p;
+            self.number[p as usize] = u32::MAX;
+        }
+        for row in rows.iter() {
+            let mut own = points(row);
             let Some(first) = own.next() else { continue };
             for p in own {
                 let (a, b) = (self.root(first), self.root(p));
@@ -199,50 +235,65 @@ impl Turns {
                 self.parent[high as usize] = low;
             }
         }
+        // Counted, summed up, and entered from behind.
+        self.starts.clear();
         self.joined.clear();
-        for k in play.iter() {
-            let root = points(k).next().map_or(0, |p| self.root(p));
-            self.joined.push((root, *k));
+        for row in rows.iter() {
+            let root = points(row).next().map_or(0, |p| self.root(p)) as usize;
+            if self.number[root] == u32::MAX {
+                self.number[root] = self.starts.len() as u32;
+                self.starts.push(0);
+            }
+            let number = self.number[root];
+            self.starts[number as usize] += 1;
+            self.joined.push(number);
         }
-        self.joined.sort_unstable();
-        play.iter_mut().zip(&self.joined).for_each(|(to, (_, k))| *to = *k);
-        self.rows.clear();
-        self.rows.extend(play.iter().map(|k| (rows[*k as usize].points, 0)));
+        let mut sum = 0;
+        for start in &mut self.starts {
+            sum += *start;
+            *start = sum;
+        }
+        self.sorted.clone_from(rows);
+        self.heads.resize(rows.len(), ([0; 4], 0));
+        for (row, number) in rows.iter().zip(&self.joined).rev() {
+            let start = &mut self.starts[*number as usize];
+            *start -= 1;
+            (self.sorted[*start as usize], self.heads[*start as usize]) = (*row, (row.points, 0));
+        }
+        self.starts.push(sum);
+        std::mem::swap(rows, &mut self.sorted);
     }
 }
 
-/// Sweeps over the rows in play, to and fro, until the velocities stay: separately over rows that no point joins. Gives how many turns rows had.
+/// Sweeps over the rows, to and fro, until the velocities stay: separately over rows that no point joins. Gives how many turns rows had.
 ///
 /// A row is passed over while nothing that it holds has changed since its last turn by more than the tolerance: so sweeps cost what is still
 /// on the move.
 pub(crate) fn solve<const D: usize>(
-    rows: &mut [Row<D>],
-    play: &mut [u32],
+    rows: &mut Vec<Row<D>>,
     inverse_mass: &[[f64; D]],
     v: &mut [[f64; D]],
-    turns: &mut Turns,
+    turns: &mut Turns<D>,
     approach: f64,
 ) -> usize {
-    turns.join(rows, play);
-    let Turns { stamps, rows: heads, now, joined, .. } = turns;
-    let (mut first, begin) = (0, *now);
-    while first < play.len() {
-        let mut end = first;
-        while end < play.len() && joined[end].0 == joined[first].0 {
-            end += 1;
-        }
+    turns.join(rows);
+    let Turns { stamps, heads, now, starts, .. } = turns;
+    let begin = *now;
+    for ends in starts.windows(2) {
+        let range = ends[0] as usize..ends[1] as usize;
+        let (rows, heads) = (&mut rows[range.clone()], &mut heads[range]);
         for sweep in 0..MOST_SWEEPS {
             let mut changed = false;
-            for k in first..end {
-                let k = if sweep % 2 == 0 { k } else { first + end - 1 - k };
+            for k in 0..rows.len() {
+                let k = if sweep % 2 == 0 { k } else { rows.len() - 1 - k };
                 let (points, last) = &mut heads[k];
-                if *last > 0 && points.iter().all(|p| stamps[*p as usize] <= *last) {
+                if *last > 0 && points[..=D].iter().all(|p| stamps[*p as usize] <= *last) {
                     continue;
                 }
                 *now += 1;
-                if rows[play[k] as usize].solve(inverse_mass, v) > TOLERANCE * approach {
+                if rows[k].solve(inverse_mass, v) > TOLERANCE * approach {
                     changed = true;
-                    points.iter().for_each(|p| stamps[*p as usize] = *now);
+                    points[..=D].iter().for_each(|p| stamps[*p as usize] = *now);
                 }
                 *last = *now;
             }
@@ -250,7 +301,6 @@ pub(crate) fn solve<const D: usize>(
                 break;
             }
         }
-        first = end;
     }
     (*now - begin) as usize
 }
@@ -258,7 +308,6 @@ pub(crate) fn solve<const D: usize>(
 /// Displacements that take overlapping pairs apart by at most `most` [m], without bringing others into overlap: the same sweeps, on positions.
 pub(crate) fn part<const D: usize>(
     rows: &[Row<D>],
-    play: &[u32],
     inverse_mass: &[[f64; D]],
     wanted: &[f64],
     multipliers: &mut Vec<f64>,
@@ -266,11 +315,10 @@ pub(crate) fn part<const D: usize>(
     most: f64,
 ) {
     multipliers.clear();
-    multipliers.resize(play.len(), 0.0);
+    multipliers.resize(rows.len(), 0.0);
     for _ in 0..MOST_SWEEPS {
         let mut largest: f64 = 0.0;
-        for (k, number) in play.iter().enumerate() {
-            let row = &rows[*number as usize];
+        for (k, row) in rows.iter().enumerate() {
             let now = dot(&row.mean(moved), &row.normal);
             let old = multipliers[k];
             let new = (old + (wanted[k] - now) * row.mass[0]).larger(0.0);

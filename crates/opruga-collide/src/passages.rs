@@ -1,7 +1,7 @@
 //! Pairs that would pass through one another within a step, whatever was solved for: found on the final motion.
 
 use crate::gap::Gap;
-use crate::rows::{impact, key};
+use crate::rows::{impact, key, meeting_time};
 use crate::touching::{Touching, Trouble};
 use crate::vector::dot;
 use crate::zones::{Led, ROUNDING, Zone};
@@ -45,6 +45,8 @@ impl<const D: usize> Touching<D> {
     /// Looks at one pair.
     fn look(&mut self, pair: [u32; 2], with_facet: bool, h: f64) -> bool {
         let x0 = &self.before[0];
+        let ends = [&x0[..], &self.end];
+        let Some(time) = meeting_time(&self.surface, ends, 0.0, pair, with_facet) else { return false };
         let start = if with_facet {
             Some(Gap::of_vertex_and_facet(&self.surface, x0, pair[0], pair[1]))
         } else {
@@ -57,10 +59,7 @@ impl<const D: usize> Touching<D> {
         if self.zones.hold(&self.points_of_pair(pair, with_facet)) {
             return false;
         }
-        let ends = [&x0[..], &self.end];
-        let Some((time, gap)) = impact(&self.surface, ends, &mut self.impact, 0.0, pair, with_facet) else {
-            return false;
-        };
+        let Some(gap) = impact(&self.surface, ends, &mut self.impact, time, pair, with_facet) else { return false };
         // Who touches at the start passes where the end lies behind.
         if time == 0.0 && gap.along(&self.end) >= -ROUNDING * h * (1.0 + gap.gap.abs()) {
             return false;
@@ -108,11 +107,14 @@ impl<const D: usize> Touching<D> {
             let (pair, with_facet) = pair_of(id);
             let bodies = self.bodies_of(pair, with_facet);
             let law = *self.laws.of(bodies[0], bodies[1]);
-            let mut row = self.row(&gap, &law, h, pair, with_facet);
-            row.in_play = row.mass[0] > 0.0;
-            match self.rows.iter_mut().find(|row| row.id == id) {
-                Some(known) => *known = row,
-                None => self.rows.push(row),
+            let row = self.row(&gap, &law, h, pair, with_facet);
+            self.rows.retain(|row| row.id != id);
+            if let Some(k) = self.watched.iter().position(|row| row.id == id) {
+                self.watched.remove(k);
+                self.heads.remove(k);
+            }
+            if row.mass[0] > 0.0 {
+                self.rows.push(row);
             }
         }
         self.rows.sort_by_key(|row| row.id);

@@ -14,27 +14,34 @@ impl<const D: usize> Touching<D> {
     /// Takes the gaps of all candidates that may come to touch; rows are in the order of their features.
     pub(crate) fn take_gaps(&mut self, h: f64) {
         self.rows.clear();
+        self.watched.clear();
+        self.heads.clear();
         self.close.iter_mut().for_each(Vec::clear);
         let pairs = self.candidates.vertex_facet.len();
         let mut k = 0;
         while k < pairs {
             let [vertex, _] = self.candidates.vertex_facet[k];
-            let (first, begin) = (k, self.rows.len());
+            let first = k;
+            self.around.clear();
             while self.candidates.vertex_facet.get(k).is_some_and(|pair| pair[0] == vertex) {
                 k += 1;
             }
             self.take_gaps_of(first..k, h, 0.0);
             // Who seems to be deep inside may be outside, before a facet that is nearer and beyond the reach.
-            let known = -self.reach.push_of(vertex) - self.laws.largest_thickness();
-            if self.rows[begin..].iter().any(|row| row.gap < known) {
-                self.rows.truncate(begin);
+            let known = -self.reach.push_of(vertex) - self.thickest;
+            if self.around.iter().any(|(row, _)| row.gap < known) {
+                self.around.clear();
                 self.take_gaps_of(first..k, h, 0.25 * self.margin);
             }
-            self.keep_the_nearest(begin);
+            self.keep_the_nearest();
+            self.take_around();
         }
         for k in 0..self.candidates.edge_edge.len() {
             let [a, b] = self.candidates.edge_edge[k];
             let edges = [a, b].map(|e| self.surface.edges[e as usize]);
+            if !self.reach.meet(&edges[0], &edges[1], self.thickest) {
+                continue;
+            }
             let bodies = edges.map(|edge| self.surface.body[edge[0] as usize]);
             let law = *self.laws.of(bodies[0], bodies[1]);
             if !self.reach.meet(&edges[0], &edges[1], law.thickness) {
@@ -50,15 +57,32 @@ impl<const D: usize> Touching<D> {
                 continue;
             }
             self.push(gap, &law, h, [a, b], false, 0.0);
+            self.take_around();
         }
         self.put_passing(h);
     }
 
+    /// Puts rows in play, or under watch where they do not meet by themselves; those that cannot move are neither.
+    fn take_around(&mut self) {
+        for (row, meets) in self.around.drain(..).filter(|(row, _)| row.mass[0] > 0.0) {
+            if meets {
+                self.rows.push(row);
+            } else {
+                self.heads.push(row.points);
+                self.watched.push(row);
+            }
+        }
+    }
+
     /// Takes the gaps of some candidates of one vertex that may come closer than a distance [m].
     fn take_gaps_of(&mut self, candidates: Range<usize>, h: f64, distance: f64) {
+        let farthest = self.thickest + distance;
         for k in candidates {
             let [vertex, facet] = self.candidates.vertex_facet[k];
             let corners = &self.surface.facets[facet as usize];
+            if !self.reach.meet(&[vertex], corners, farthest) {
+                continue;
+            }
             let [own, other] = [vertex, corners[0]].map(|p| self.surface.body[p as usize]);
             let law = *self.laws.of(own, other);
             if !self.reach.meet(&[vertex], corners, law.thickness + distance) {
@@ -88,8 +112,9 @@ impl<const D: usize> Touching<D> {
         if gap.gap > law.thickness && self.goes_far(&gap, with_facet) {
             // The closest points now are not those of the impact.
             let ends = [&self.before[0][..], &self.after[0]];
-            match impact(&self.surface, ends, &mut self.impact, law.thickness, pair, with_facet) {
-                Some((_, then)) => gap = then,
+            let time = meeting_time(&self.surface, ends, law.thickness, pair, with_facet);
+            match time.and_then(|time| impact(&self.surface, ends, &mut self.impact, time, pair, with_facet)) {
+                Some(then) => gap = then,
                 None => meets = false,
             }
         }
@@ -97,8 +122,8 @@ impl<const D: usize> Touching<D> {
         let ([x0, v0], [x1, v1]) = (&self.before, &self.after);
         let (came, comes) = (-gap.along(v0), -gap.along(v1));
         let end = row.gap + gap.along(x1) - gap.along(x0);
-        row.in_play = row.mass[0] > 0.0 && meets && (end < 0.0 || row.gap < 0.0 || h * comes > row.gap);
-        if law.restitution > 0.0 && row.in_play && row.gap > 0.0 {
+        let meets = meets && (end < 0.0 || row.gap < 0.0 || h * comes > row.gap);
+        if law.restitution > 0.0 && meets && row.gap > 0.0 {
             // The surface is met within the step, whose force goes on to its end: s² = u² + 2 a g, between the speeds at both ends.
             let square = came * came + 2.0 * (comes - came) / h * row.gap;
             let speed = square.larger(0.0).sqrt().smaller(came.larger(comes)).larger(came.smaller(comes));
@@ -106,7 +131,7 @@ impl<const D: usize> Touching<D> {
                 row.target = law.restitution * speed;
             }
         }
-        self.rows.push(row);
+        self.around.push((row, meets));
     }
 
     /// The row of a gap, which is not to become negative within the step.
@@ -130,10 +155,10 @@ impl<const D: usize> Touching<D> {
         16.0 * dot(&travel, &travel) > dot(&edge, &edge)
     }
 
-    /// Of the rows of one vertex, from one on, keeps what counts: outside of a body all facets before it, each closest point once; inside
+    /// Of the rows of one vertex, keeps what counts: outside of a body all facets before it, each closest point once; inside
     /// the nearest one, through which it leaves.
-    fn keep_the_nearest(&mut self, begin: usize) {
-        if self.rows.len() - begin < 2 {
+    fn keep_the_nearest(&mut self) {
+        if self.around.len() < 2 {
             return;
         }
         let body = |row: &Row<D>| self.surface.body[row.points[1] as usize];
@@ -142,13 +167,13 @@ impl<const D: usize> Touching<D> {
             let own = self.surface.body[row.points[0] as usize];
             row.gap + self.laws.of(own, body(row)).thickness
         };
-        let rows = &self.rows[begin..];
+        let rows = &self.around;
         self.keep.clear();
         self.keep.resize(rows.len(), true);
-        for (j, row) in rows.iter().enumerate() {
+        for (j, (row, _)) in rows.iter().enumerate() {
             let own = self.surface.body[row.points[0] as usize];
             let key = features(row);
-            for (k, other) in rows.iter().enumerate() {
+            for (k, (other, _)) in rows.iter().enumerate() {
                 if j == k || body(row) != body(other) {
                     continue;
                 }
@@ -167,14 +192,8 @@ impl<const D: usize> Touching<D> {
                 }
             }
         }
-        let mut write = begin;
-        for k in 0..self.keep.len() {
-            if self.keep[k] {
-                self.rows[write] = self.rows[begin + k];
-                write += 1;
-            }
-        }
-        self.rows.truncate(write);
+        let mut keep = self.keep.iter();
+        self.around.retain(|_| keep.next() == Some(&true));
     }
 }
 
@@ -183,18 +202,17 @@ pub(crate) fn key([a, b]: [u32; 2], with_facet: bool) -> u64 {
     u64::from(!with_facet) << 62 | u64::from(a) << 31 | u64::from(b)
 }
 
-/// When, as a part of the step, a vertex comes closer to a facet than a distance [m], or an edge to another one; and their gap at the start of
-/// the step by the normal and the weights that they have then. None where they stay apart.
-pub(crate) fn impact<const D: usize>(
+/// When, as a part of the step, a vertex comes closer to a facet than a distance [m], or an edge to another one; none where they stay apart.
+#[inline]
+pub(crate) fn meeting_time<const D: usize>(
     surface: &Surface<D>,
     [x0, x1]: [&[[f64; D]]; 2],
-    moved: &mut [[f64; D]],
     distance: f64,
     [a, b]: [u32; 2],
     with_facet: bool,
-) -> Option<(f64, Gap<D>)> {
+) -> Option<f64> {
     let ends = |p: u32| [x0[p as usize], x1[p as usize]];
-    let time = if with_facet {
+    if with_facet {
         let corners = surface.facets[b as usize].map(ends);
         let facet = core::array::from_fn(|end| corners.map(|corner| corner[end]));
         vertex_meets_facet(&ends(a), &facet, distance)
@@ -202,7 +220,19 @@ pub(crate) fn impact<const D: usize>(
         let [a, b] = [a, b].map(|e| surface.edges[e as usize].map(ends));
         let swept = |e: [[[f64; D]; 2]; 2]| [[e[0][0], e[1][0]], [e[0][1], e[1][1]]];
         edge_meets_edge(&swept(a), &swept(b), distance)
-    }?;
+    }
+}
+
+/// The gap of a pair at the start of the step, by the normal and the weights that they have at a time within it; none for edges that then meet
+/// at an end.
+pub(crate) fn impact<const D: usize>(
+    surface: &Surface<D>,
+    [x0, x1]: [&[[f64; D]]; 2],
+    moved: &mut [[f64; D]],
+    time: f64,
+    [a, b]: [u32; 2],
+    with_facet: bool,
+) -> Option<Gap<D>> {
     // Normals of corners and edges ask the facets around.
     let mut go = |p: u32| {
         let (from, to) = (&x0[p as usize], &x1[p as usize]);
@@ -227,7 +257,7 @@ pub(crate) fn impact<const D: usize>(
     if then.gap < 0.0 {
         (then.gap, then.normal) = (-then.gap, then.normal.map(|n| -n));
     }
-    Some((time, then))
+    Some(then)
 }
 
 /// The corners of a facet that carry the closest point; the others are `u32::MAX`.

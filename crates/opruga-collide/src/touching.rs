@@ -5,6 +5,7 @@ use crate::gap::Gap;
 use crate::impulses::{Row, Turns, part, solve};
 use crate::law::Laws;
 use crate::reach::Reach;
+use crate::reports::Report;
 use crate::surface::Surface;
 use crate::vector::{dot, length, subtract};
 use crate::zones::Zones;
@@ -40,19 +41,29 @@ pub struct Touching<const D: usize> {
     /// What contact and friction took from every point that changed, what obstacles and pins gave by their motion, and what moving the
     /// point gave [J].
     pub losses: Vec<[f64; 4]>,
+    /// Whether the steps report what contact did.
+    pub report: bool,
+    /// What contact did since the beginning of the frame, ascending by bodies.
+    pub reports: Vec<Report<D>>,
     /// The margin of the search [m].
     pub margin: f64,
     /// The most candidates.
     pub most: usize,
     pub(crate) candidates: Candidates<D>,
     pub(crate) reach: Reach<D>,
+    /// The contacts that are solved for: once solved, in the order of that.
     pub(crate) rows: Vec<Row<D>>,
-    pub(crate) play: Vec<u32>,
+    /// Pairs that do not meet by themselves, and their points; those that came into play leave nobody behind.
+    pub(crate) watched: Vec<Row<D>>,
+    pub(crate) heads: Vec<[u32; 4]>,
+    /// The pairs of one vertex, or of two edges, and whether they meet by themselves.
+    pub(crate) around: Vec<(Row<D>, bool)>,
     /// Features and impulses of the last substep, ascending.
     last: Vec<(u64, f64, [f64; D])>,
     pub(crate) keep: Vec<bool>,
-    /// Points whose obstacles are among the rows, ascending.
-    known: Vec<u32>,
+    /// Whether the obstacles of a point are among the rows; and points whose obstacles are asked for.
+    known: Vec<bool>,
+    asked: Vec<u32>,
     pub(crate) v: Vec<[f64; D]>,
     pub(crate) moved: Vec<[f64; D]>,
     /// Positions at an impact within a step.
@@ -66,12 +77,14 @@ pub struct Touching<const D: usize> {
     /// The pairs of a vertex and a facet, and of two edges, that may meet in the step.
     pub(crate) close: [Vec<[u32; 2]>; 2],
     pub(crate) zones: Zones<D>,
+    /// The largest distance that surfaces keep in contact [m].
+    pub(crate) thickest: f64,
     wanted: Vec<f64>,
     multipliers: Vec<f64>,
     pub(crate) touched: Vec<bool>,
     /// Where a point stands among those that changed.
     number: Vec<u32>,
-    turns: Turns,
+    turns: Turns<D>,
     /// What was done since the counts were last taken.
     pub counts: Counts,
 }
@@ -115,6 +128,7 @@ impl<const D: usize> Touching<D> {
     /// Forgets impulses and candidates, at the beginning of a frame.
     pub fn begin(&mut self) {
         self.last.clear();
+        self.reports.clear();
         self.reach.forget();
     }
 
@@ -137,19 +151,19 @@ impl<const D: usize> Touching<D> {
         self.impact.resize(points, [0.0; D]);
         self.number.resize(points, 0);
         self.counts.steps += 1;
-        self.reach.begin([&self.before[0], &self.after[0]], h * self.laws.recovery_speed);
+        self.thickest = self.laws.largest_thickness();
+        self.reach.begin([&self.before[0], &self.after[0]], h * self.laws.recovery_speed, self.margin);
         let mut rounds = 0;
         loop {
             self.search()?;
             self.take_gaps(h);
-            if self.rows.iter().any(|row| row.in_play) {
+            if !self.rows.is_empty() {
                 self.solve(h, obstacles);
                 self.settle(h);
-                if self.reach.grow(&self.after[0], &self.end) {
+                if self.reach.grow(&self.touched, &self.after[0], &self.end, self.margin) {
                     continue;
                 }
             } else {
-                self.play.clear();
                 self.rest();
             }
             if !self.find_passages(h) {
@@ -162,9 +176,12 @@ impl<const D: usize> Touching<D> {
             }
         }
         self.keep_impulses();
+        if self.report {
+            self.add_reports();
+        }
         self.book(h);
         self.counts.candidates += self.candidates.len() as u64;
-        self.counts.pairs += self.rows.len() as u64;
+        self.counts.pairs += (self.rows.len() + self.watched.len()) as u64;
         Ok(())
     }
 
@@ -178,16 +195,13 @@ impl<const D: usize> Touching<D> {
 
     /// Looks for candidates where those at hand may not be all that meet in this step.
     fn search(&mut self) -> Result<(), Trouble> {
-        if self.reach.covers(self.margin) {
+        if self.reach.is_covered() {
             return Ok(());
         }
         self.counts.searches += 1;
         let (laws, reach) = (&self.laws, &mut self.reach);
         reach.widen(self.margin);
-        if !self
-            .candidates
-            .find(&self.surface, &reach.found_in, laws.largest_thickness(), self.most, |a, b| laws.meet(a, b))
-        {
+        if !self.candidates.find(&self.surface, &reach.found_in, self.thickest, self.most, |a, b| laws.meet(a, b)) {
             reach.forget();
             return Err(Trouble::TooMany { found: self.candidates.len() });
         }
@@ -198,65 +212,67 @@ impl<const D: usize> Touching<D> {
     fn solve(&mut self, h: f64, obstacles: Option<Obstacles<'_, D>>) {
         self.v.clone_from(&self.after[1]);
         self.known.clear();
-        self.put_in_play(h, obstacles);
+        self.known.resize(self.surface.points(), false);
+        self.hold_points(h, obstacles);
         // The mean approach: where one pair crashes, others may lie at rest.
         let mut approach: f64 = 0.0;
-        for k in &self.play {
-            let row = &self.rows[*k as usize];
+        for row in &self.rows {
             let u = subtract(&row.mean(&self.v), &row.carry);
             let speed = (row.target - dot(&u, &row.normal)).larger(0.0);
             approach += if row.friction > 0.0 { length(&u).larger(speed) } else { speed };
         }
-        approach /= self.play.len() as f64;
+        approach /= self.rows.len() as f64;
         self.start_warm();
         self.turns.begin(self.surface.points());
         loop {
-            let (rows, play, turns) = (&mut self.rows, &mut self.play, &mut self.turns);
-            self.counts.turns += solve(rows, play, &self.inverse_mass, &mut self.v, turns, approach) as u64;
-            // Whoever was pushed may meet what it would not have met by itself.
-            let mut more = false;
-            for row in self.rows.iter_mut().filter(|row| !row.in_play && row.mass[0] > 0.0) {
-                if row.points.iter().any(|p| self.v[*p as usize] != self.after[1][*p as usize])
-                    && dot(&subtract(&row.mean(&self.v), &row.carry), &row.normal) < row.target
-                {
-                    (row.in_play, more) = (true, true);
-                }
-            }
-            if !more {
+            let (rows, turns) = (&mut self.rows, &mut self.turns);
+            self.counts.turns += solve(rows, &self.inverse_mass, &mut self.v, turns, approach) as u64;
+            if !self.call_who_was_pushed() {
                 break;
             }
-            self.put_in_play(h, obstacles);
+            self.hold_points(h, obstacles);
         }
-        self.counts.contacts += self.play.len() as u64;
+        self.counts.contacts += self.rows.len() as u64;
+    }
+
+    /// Takes in what meets because one of its points was pushed, which it would not have done by itself; says whether there is any.
+    fn call_who_was_pushed(&mut self) -> bool {
+        let before = self.rows.len();
+        for (head, row) in self.heads.iter_mut().zip(&self.watched) {
+            let [v, free] = [&self.v, &self.after[1]];
+            let pushed = head[..=D].iter().any(|p| *p != CALLED && v[*p as usize] != free[*p as usize]);
+            if pushed && dot(&subtract(&row.mean(v), &row.carry), &row.normal) < row.target {
+                self.rows.push(*row);
+                *head = [CALLED; 4];
+            }
+        }
+        self.rows.len() > before
     }
 
     /// Keeps the impulses for the next substep.
     fn keep_impulses(&mut self) {
         self.last.clear();
-        for k in &self.play {
-            let row = &self.rows[*k as usize];
-            if row.normal_impulse > 0.0 {
-                self.last.push((row.id, row.normal_impulse, row.friction_impulse));
-            }
-        }
+        let held = self.rows.iter().filter(|row| row.normal_impulse > 0.0);
+        self.last.extend(held.map(|row| (row.id, row.normal_impulse, row.friction_impulse)));
         self.last.sort_unstable_by_key(|(id, ..)| *id);
     }
 
-    /// Lists the rows to solve for; of their points, also what obstacles hold: what bodies push against them must not go through.
-    fn put_in_play(&mut self, h: f64, obstacles: Option<Obstacles<'_, D>>) {
-        self.play.clear();
-        self.play.extend((0..self.rows.len() as u32).filter(|k| self.rows[*k as usize].in_play));
+    /// Adds what obstacles hold of the points of all contacts: what bodies push against them must not go through.
+    fn hold_points(&mut self, h: f64, obstacles: Option<Obstacles<'_, D>>) {
         let Some(obstacles) = obstacles else { return };
-        let mut points: Vec<u32> = Vec::new();
-        for k in &self.play {
-            let row = &self.rows[*k as usize];
-            points.extend((0..4).filter(|k| row.weights[*k] != 0.0).map(|k| row.points[k]));
+        self.asked.clear();
+        for row in &self.rows {
+            for k in (0..=D).filter(|k| row.weights[*k] != 0.0) {
+                let known = &mut self.known[row.points[k] as usize];
+                if !*known {
+                    *known = true;
+                    self.asked.push(row.points[k]);
+                }
+            }
         }
-        points.sort_unstable();
-        points.dedup();
-        for p in points {
-            let Err(at) = self.known.binary_search(&p) else { continue };
-            self.known.insert(at, p);
+        self.asked.sort_unstable();
+        for p in &self.asked {
+            let p = *p;
             let (x0, x1) = (self.before[0][p as usize], self.after[0][p as usize]);
             let travel = length(&subtract(&x1, &x0));
             let reach = travel + h * length(&self.v[p as usize]) + self.margin;
@@ -268,11 +284,10 @@ impl<const D: usize> Touching<D> {
                 let mut row = Row::new(id, &gap, 0.0, touch.friction, inverse_mass);
                 row.carry = touch.velocity;
                 row.target = if row.gap > 0.0 { -row.gap / h } else { 0.0 };
-                (row.in_play, row.of_obstacle) = (row.mass[0] > 0.0, true);
-                if row.in_play {
-                    self.play.push(rows.len() as u32);
+                row.of_obstacle = true;
+                if row.mass[0] > 0.0 {
+                    rows.push(row);
                 }
-                rows.push(row);
             });
         }
     }
@@ -280,7 +295,7 @@ impl<const D: usize> Touching<D> {
     /// Begins with the impulses of the last substep.
     fn start_warm(&mut self) {
         let mut k = 0;
-        for row in self.rows.iter_mut().filter(|row| row.in_play) {
+        for row in &mut self.rows {
             while self.last.get(k).is_some_and(|(id, ..)| *id < row.id) {
                 k += 1;
             }
@@ -296,10 +311,9 @@ impl<const D: usize> Touching<D> {
         let points = self.surface.points();
         self.touched.clear();
         self.touched.resize(points, false);
-        for k in &self.play {
-            let row = &self.rows[*k as usize];
+        for row in &self.rows {
             if row.normal_impulse > 0.0 && !row.of_obstacle {
-                for k in (0..4).filter(|k| row.weights[*k] != 0.0) {
+                for k in (0..=D).filter(|k| row.weights[*k] != 0.0) {
                     self.touched[row.points[k] as usize] = true;
                 }
             }
@@ -323,12 +337,11 @@ impl<const D: usize> Touching<D> {
         }
         self.losses.clear();
         self.losses.resize(self.changed.len(), [0.0; 4]);
-        for k in &self.play {
-            let row = &self.rows[*k as usize];
+        for row in &self.rows {
             if row.normal_impulse == 0.0 {
                 continue;
             }
-            for k in (0..4).filter(|k| row.weights[*k] != 0.0) {
+            for k in (0..=D).filter(|k| row.weights[*k] != 0.0) {
                 let p = row.points[k];
                 if !self.touched[p as usize] {
                     continue;
@@ -373,23 +386,21 @@ impl<const D: usize> Touching<D> {
         let most = self.laws.recovery_speed * h;
         self.wanted.clear();
         let mut overlap = false;
-        for k in &self.play {
-            let row = &self.rows[*k as usize];
+        for row in &self.rows {
             row.points.iter().for_each(|p| self.moved[*p as usize] = [0.0; D]);
             let u = subtract(&row.mean(&self.v), &row.carry);
             let end = row.gap + h * dot(&u, &row.normal);
             // Sweeps that end early leave less than this.
-            overlap |= end < -OVERLAP * self.laws.largest_thickness();
+            overlap |= end < -OVERLAP * self.thickest;
             self.wanted.push(if row.of_obstacle { -end } else { (-end).smaller(most) });
         }
         if !overlap {
             return;
         }
-        part(&self.rows, &self.play, &self.inverse_mass, &self.wanted, &mut self.multipliers, &mut self.moved, most);
-        for (k, number) in self.play.iter().enumerate() {
-            let row = &self.rows[*number as usize];
-            if self.multipliers[k] > 0.0 {
-                for k in (0..4).filter(|k| row.weights[*k] != 0.0) {
+        part(&self.rows, &self.inverse_mass, &self.wanted, &mut self.multipliers, &mut self.moved, most);
+        for (row, multiplier) in self.rows.iter().zip(&self.multipliers) {
+            if *multiplier > 0.0 {
+                for k in (0..=D).filter(|k| row.weights[*k] != 0.0) {
                     self.touched[row.points[k] as usize] = true;
                 }
             }
@@ -404,9 +415,12 @@ impl<const D: usize> Touching<D> {
         8 * D * (vectors + states)
             + self.surface.heap_bytes()
             + self.candidates.heap_bytes()
-            + core::mem::size_of::<Row<D>>() * self.rows.capacity()
+            + core::mem::size_of::<Row<D>>() * (self.rows.capacity() + self.watched.capacity())
     }
 }
+
+/// In place of the points of a pair that is solved for.
+const CALLED: u32 = u32::MAX;
 
 /// The part of the thickness that pairs may lack before they are taken apart: the surfaces themselves do not overlap then, and what sweeps
 /// leave of a step is no reason to move anything.

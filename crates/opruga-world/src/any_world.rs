@@ -2,6 +2,7 @@
 
 use crate::any_scene::{AnyBody, AnyScene, three};
 use crate::blueprint::{AnyBlueprint, CommandBlueprint};
+use crate::contact_report::Contact;
 use crate::crossed::Crossed;
 use crate::error::WorldError;
 use crate::inputs::Input;
@@ -149,6 +150,10 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     fn warn_of_missing_contact(&mut self);
     /// The surfaces that cross, and bodies that lie in one another.
     fn crossed_surfaces(&self) -> Vec<Crossed>;
+    /// Lets the frames that follow report their contacts, or not.
+    fn report_contacts(&mut self, report: bool);
+    /// The contacts between bodies in the last frame, ascending by bodies.
+    fn contacts(&self) -> Vec<Contact<3>>;
     /// The lowest natural modes of a body about its present state.
     ///
     /// # Errors
@@ -332,6 +337,12 @@ impl<const D: usize> AnyWorld for World<D> {
     }
     fn crossed_surfaces(&self) -> Vec<Crossed> {
         self.crossed_surfaces()
+    }
+    fn report_contacts(&mut self, report: bool) {
+        self.report_contacts(report);
+    }
+    fn contacts(&self) -> Vec<Contact<3>> {
+        self.contacts().iter().map(|contact| contact.in_space()).collect()
     }
     fn visit_states(&self, body: usize, visit: &mut dyn FnMut(&CellState, &[u32])) {
         self.visit_states(body, visit);

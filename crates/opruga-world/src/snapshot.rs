@@ -115,6 +115,7 @@ impl<const D: usize> World<D> {
     }
 
     fn restored(&mut self, bytes: &[u8], other_future: bool) -> Result<(), WorldError> {
+        self.forget_contacts();
         // Those that the program had given are in the snapshot.
         let commands: Vec<Running<D>> = self.running.iter().filter(|r| !r.given).map(Running::anew).collect();
         if self.go_to_alike(bytes, &commands, other_future)? {

@@ -69,6 +69,7 @@ impl<const D: usize> World<D> {
             colliders,
             islands: Vec::new(),
             meeting: None,
+            contacts: None,
             islands_built: 0,
             place: Vec::new(),
             slots: Slots::of_scene(bodies),

@@ -39,6 +39,7 @@ impl<const D: usize> World<D> {
         match self.pool.as_ref().filter(|_| !alone(islands)) {
             pool if self.meeting.is_some() => {
                 if let Some(meeting) = &mut self.meeting {
+                    meeting.touching.report = self.contacts.is_some();
                     let mut go = |threaded| together::frame(islands, meeting, &plan, workspaces, threaded);
                     touched = match pool {
                         None => go(false),
@@ -97,6 +98,7 @@ impl<const D: usize> World<D> {
         }
         self.frames += 1;
         self.looks.fresh = true;
+        self.take_contacts();
         for island in &mut self.islands {
             let work = std::mem::take(&mut island.work);
             self.flows.add(&island.system, island.numerical_loss(&work), &work);

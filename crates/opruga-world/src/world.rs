@@ -2,6 +2,7 @@
 
 use crate::at_start::AtStart;
 use crate::blueprint::{Blueprint, CommandBlueprint};
+use crate::contact_report::Contact;
 use crate::inputs::Input;
 use crate::island::Island;
 use crate::ledger::{Energy, Flows, Momentum};
@@ -68,6 +69,8 @@ pub struct World<const D: usize> {
     pub(crate) islands: Vec<Island<D>>,
     /// The surfaces of bodies that may touch.
     pub(crate) meeting: Option<Box<Meeting<D>>>,
+    /// The contacts of the last frame; none where they are not reported.
+    pub(crate) contacts: Option<Vec<Contact<D>>>,
     /// How many islands were built since the start.
     pub(crate) islands_built: u64,
     /// Island and lane of every body.

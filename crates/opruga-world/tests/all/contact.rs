@@ -4,7 +4,7 @@ use opruga_core::spec::{Value, Values};
 use opruga_mesh::Mesh;
 use opruga_world::blueprint::*;
 use opruga_world::schema::{BODY_CONTACT, CONTACT, CONTACT_PAIR};
-use opruga_world::{Options, Registry, World, WorldError};
+use opruga_world::{ContactPhase, Options, Registry, World, WorldError};
 use std::sync::Arc;
 
 fn contact<const D: usize>(fields: &[(&str, Value)]) -> Option<ContactBlueprint> {
@@ -362,4 +362,53 @@ fn cubes_stack() {
     };
     assert!((low(1) - 1.0).abs() < 0.05 && (low(2) - 2.0).abs() < 0.1, "{} {}", low(1), low(2));
     assert!(world.energy().kinetic < 1e-3, "{:?}", world.energy());
+}
+
+/// Two balls that meet and part: the contact begins once, ends once, and its impulses are the change of momentum, on any number of threads.
+#[test]
+fn contacts_begin_persist_and_end() {
+    let mut seen = Vec::new();
+    for threads in [1, 3] {
+        let bodies = vec![ball("a", 36, [-0.8, 0.1], [2.0, 0.0]), ball("b", 36, [0.8, 0.0], [-1.0, 0.0])];
+        let mut scene = scene("symplectic_euler", bodies);
+        scene.contact = contact::<2>(&[("friction", 0.4.into()), ("self", false.into())]);
+        let mut world = World::new(scene, Options { threads, ..Default::default() }).expect("a world");
+        world.frame().expect("a frame");
+        assert_eq!(world.contacts(), [], "nobody asked");
+        world.report_contacts(true);
+        let momentum = |world: &World<2>| -> [f64; 2] {
+            let nodes = world.node_count(0);
+            let mass = world.blueprint().bodies[0].mesh.positions.len() as f64;
+            core::array::from_fn(|d| (0..nodes as u32).map(|n| world.velocity(0, n)[d] / mass).sum())
+        };
+        let (mut phases, mut all) = (Vec::new(), Vec::new());
+        for _ in 0..90 {
+            let before = momentum(&world);
+            world.frame().expect("a frame");
+            let after = momentum(&world);
+            let impulse = world.contacts().first().map_or([0.0; 2], |contact| contact.impulse);
+            for d in 0..2 {
+                assert!(
+                    (after[d] - before[d] - impulse[d]).abs() < 1e-12,
+                    "{before:?} {after:?} {:?}",
+                    world.contacts()
+                );
+            }
+            for contact in world.contacts() {
+                assert_eq!(contact.bodies, [0, 1]);
+                assert!(contact.normal[0] < -0.9 && contact.place[0].abs() < 1.0, "{contact:?}");
+                assert_eq!(contact.pressed > 0.0, contact.phase != ContactPhase::Ended, "{contact:?}");
+                phases.push(contact.phase);
+                all.push(*contact);
+            }
+        }
+        let (first, last) = (phases.first(), phases.last());
+        assert_eq!((first, last), (Some(&ContactPhase::Began), Some(&ContactPhase::Ended)), "{phases:?}");
+        for pair in phases.windows(2) {
+            assert_eq!(pair[1] == ContactPhase::Began, pair[0] == ContactPhase::Ended, "{phases:?}");
+        }
+        assert!(phases.contains(&ContactPhase::Persists), "{phases:?}");
+        seen.push(all);
+    }
+    assert_eq!(seen[0], seen[1]);
 }

@@ -1,0 +1,49 @@
+//! Which bodies began to touch, go on, and came apart: for programs that ask.
+
+use crate::contact_report::{Contact, ContactPhase};
+use crate::world::World;
+
+impl<const D: usize> World<D> {
+    /// Lets the frames that follow report their contacts, or not; at the start they do not, which costs nothing.
+    pub fn report_contacts(&mut self, report: bool) {
+        self.contacts = report.then(Vec::new);
+    }
+
+    /// The contacts between bodies in the last frame, ascending by bodies: the same for every number of threads. Empty unless
+    /// [`World::report_contacts`] was asked for.
+    ///
+    /// Reports are no part of the state: after [`World::restore`] all contacts begin anew.
+    pub fn contacts(&self) -> &[Contact<D>] {
+        self.contacts.as_deref().unwrap_or_default()
+    }
+
+    /// Forgets who touched before.
+    pub(crate) fn forget_contacts(&mut self) {
+        self.contacts.iter_mut().for_each(Vec::clear);
+    }
+
+    /// Takes the reports of a frame.
+    pub(crate) fn take_contacts(&mut self) {
+        let Some(before) = self.contacts.take() else { return };
+        let mut now = Vec::new();
+        if let Some(meeting) = &self.meeting {
+            for report in &meeting.touching.reports {
+                let bodies = report.bodies.map(|number| meeting.bodies[number as usize]);
+                let known = before.binary_search_by_key(&bodies, |contact| contact.bodies);
+                let touched = known.is_ok_and(|k| before[k].phase != ContactPhase::Ended);
+                let phase = if touched { ContactPhase::Persists } else { ContactPhase::Began };
+                now.push(Contact::of(report, bodies, phase));
+            }
+        }
+        now.sort_by_key(|contact| contact.bodies);
+        let still = now.len();
+        for contact in before.into_iter().filter(|contact| contact.phase != ContactPhase::Ended) {
+            let there = contact.bodies.iter().all(|body| self.handle(*body).is_some());
+            if there && now[..still].binary_search_by_key(&contact.bodies, |other| other.bodies).is_err() {
+                now.push(Contact { phase: ContactPhase::Ended, impulse: [0.0; D], pressed: 0.0, ..contact });
+            }
+        }
+        now.sort_by_key(|contact| contact.bodies);
+        self.contacts = Some(now);
+    }
+}

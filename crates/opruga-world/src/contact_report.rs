@@ -1,0 +1,59 @@
+//! The contact of two bodies in a frame.
+
+use opruga_collide::Report;
+
+/// Whether two bodies touched in the last frame and in the one before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ContactPhase {
+    /// In the last frame alone.
+    Began,
+    /// In both.
+    Persists,
+    /// In the one before alone.
+    Ended,
+}
+
+/// The contact of two bodies, or of a body with itself, in a frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact<const D: usize> {
+    /// The bodies, by their place in the scene, the lower one first.
+    pub bodies: [usize; 2],
+    /// Whether it is new, goes on or is over.
+    pub phase: ContactPhase,
+    /// The mean of its places, each weighted by the normal impulse there [m]. Of a contact that ended, where it was.
+    pub place: [f64; D],
+    /// The mean of its normals, from the second body to the first, of length 1; zero where they cancel. Of a contact that ended, what it was.
+    pub normal: [f64; D],
+    /// The impulse that the first body got in the frame [N s]; its mean force is that over the length of the frame. Zero of a contact
+    /// that ended, and of a body with itself, which pushes both ways alike.
+    pub impulse: [f64; D],
+    /// Σ λₙ of all its points and substeps [N s]: how hard the surfaces were pressed together. Zero of a contact that ended.
+    pub pressed: f64,
+}
+
+impl<const D: usize> Contact<D> {
+    pub(crate) fn of(report: &Report<D>, bodies: [usize; 2], phase: ContactPhase) -> Contact<D> {
+        let mut square = 0.0;
+        for d in 0..D {
+            square += report.normal[d] * report.normal[d];
+        }
+        let over = |size: f64| if size > 0.0 { 1.0 / size } else { 0.0 };
+        let (unit, mean) = (over(square.sqrt()), over(report.pressed));
+        let own = bodies[0] == bodies[1];
+        Contact {
+            bodies,
+            phase,
+            place: report.moment.map(|m| m * mean),
+            normal: report.normal.map(|n| n * unit),
+            impulse: if own { [0.0; D] } else { report.impulse },
+            pressed: report.pressed,
+        }
+    }
+
+    /// The same contact as one in space.
+    pub(crate) fn in_space(self) -> Contact<3> {
+        let lift = |a: [f64; D]| core::array::from_fn(|d| if d < D { a[d] } else { 0.0 });
+        let Contact { bodies, phase, place, normal, impulse, pressed } = self;
+        Contact { bodies, phase, place: lift(place), normal: lift(normal), impulse: lift(impulse), pressed }
+    }
+}
