@@ -43,25 +43,30 @@ fn meet_boxes<const D: usize>(a: &Bounds<D>, b: &Bounds<D>) -> bool {
 const FEW: usize = 4096;
 
 impl<const D: usize> Candidates<D> {
-    /// Looks for all pairs of features with boxes closer than `distance` [m] along every axis, given the boxes of the points [m].
+    /// Looks for all pairs of features with boxes closer than a distance [m] along every axis, given the boxes of the points [m]: the first
+    /// distance for pairs of bodies, the second one for those with obstacles.
     ///
     /// `meet` says of two bodies whether they may touch, of a body with itself whether it may touch itself. Features that share a point
-    /// are no pair. False where there are more than `most` pairs: then the search ends.
+    /// are no pair, and neither are vertices of bodies with facets of obstacles. False where there are more than `most` pairs: then the
+    /// search ends.
     pub fn find(
         &mut self,
         surface: &Surface<D>,
         boxes: &[Bounds<D>],
-        distance: f64,
+        distances: [f64; 2],
         most: usize,
         meet: impl Fn(u32, u32) -> bool,
     ) -> bool {
         self.vertex_facet.clear();
         self.edge_edge.clear();
-        self.find_close_bodies(surface, boxes, distance, meet);
+        self.find_close_bodies(surface, boxes, distances, meet);
         let mut pairs = std::mem::take(&mut self.vertex_facet);
         let close = std::mem::take(&mut self.close_bodies);
         let mut complete = true;
-        for [a, b] in &close {
+        let of_obstacle = |body: u32| surface.is_obstacle(body);
+        let distance_of = |pair: &[u32; 2]| distances[usize::from(pair.iter().any(|body| of_obstacle(*body)))];
+        for pair @ [a, b] in close.iter().filter(|[_, b]| !of_obstacle(*b)) {
+            let distance = distance_of(pair);
             let [a, b] = [*a as usize, *b as usize];
             self.choose(surface.points_of(a), b, distance, |p| boxes[p]);
             std::mem::swap(&mut self.first, &mut self.second);
@@ -81,7 +86,8 @@ impl<const D: usize> Candidates<D> {
         pairs.sort_unstable();
         self.vertex_facet = pairs;
         let mut pairs = std::mem::take(&mut self.edge_edge);
-        for [a, b] in close.iter().filter(|[a, b]| D == 3 && a <= b) {
+        for pair @ [a, b] in close.iter().filter(|[a, b]| D == 3 && a <= b) {
+            let distance = distance_of(pair);
             let [a, b] = [*a as usize, *b as usize];
             let of = |edge: usize| around(boxes, &surface.edges[edge]);
             self.choose(surface.edges_of(a), b, distance, of);
@@ -108,12 +114,12 @@ impl<const D: usize> Candidates<D> {
         complete
     }
 
-    /// Lists the bodies whose boxes come closer than a distance [m], each pair both ways, and bodies that touch themselves.
+    /// Lists the bodies whose boxes come closer than their distance [m], each pair both ways, and bodies that touch themselves.
     fn find_close_bodies(
         &mut self,
         surface: &Surface<D>,
         boxes: &[Bounds<D>],
-        distance: f64,
+        distances: [f64; 2],
         meet: impl Fn(u32, u32) -> bool,
     ) {
         self.bodies.clear();
@@ -130,9 +136,13 @@ impl<const D: usize> Candidates<D> {
         self.close_bodies.clear();
         // A body without points has no box.
         let body = |number: usize| surface.body.get(surface.points_of(number).start).copied();
-        self.grid.fill(self.bodies.iter().map(|whole| wider(*whole, distance)));
+        let own = |number: usize| {
+            let of_obstacle = body(number).is_some_and(|body| surface.is_obstacle(body));
+            wider(self.bodies[number], distances[usize::from(of_obstacle)])
+        };
+        self.grid.fill((0..surface.bodies()).map(own));
         for a in 0..surface.bodies() {
-            self.grid.touching(&self.bodies[a], &mut self.found);
+            self.grid.touching(&own(a), &mut self.found);
             for b in &self.found {
                 if let (Some(own), Some(other)) = (body(a), body(*b as usize))
                     && meet(own, other)

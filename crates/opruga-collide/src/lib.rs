@@ -49,8 +49,11 @@
 //! **Deformable bodies.** [`Surface`] holds what touches of bodies that meet one another, [`Candidates`] the pairs that may,
 //! [`Gap`] how far a pair is apart, and [`vertex_meets_facet`] and [`edge_meets_edge`] whether and when it meets within a step.
 //!
-//! **Limits.** Nodes meet colliders; edges and facets between nodes do not: an obstacle finer than the mesh can poke
-//! through between two nodes. The tilted or curved surface is taken at the end of the step: first order in h.
+//! **Whole obstacles.** Where bodies meet one another, corners and edges of obstacles ([`Outline`]) are part of the surfaces, with no inverse
+//! mass, and meet the facets and edges of bodies as those of another body do. Nodes meet obstacles as above.
+//!
+//! **Limits.** Elsewhere nodes alone meet colliders: an obstacle finer than the mesh can poke through between two nodes. The tilted or
+//! curved surface is taken at the end of the step: first order in h.
 
 // Units stand in brackets, [m], which rustdoc takes for links.
 #![allow(rustdoc::broken_intra_doc_links)]
@@ -72,6 +75,7 @@ mod impulses;
 mod inside;
 mod law;
 mod motion;
+mod outline;
 mod pass;
 mod passages;
 mod picture;
@@ -94,6 +98,7 @@ pub use contacts::Colliders;
 pub use gap::Gap;
 pub use inside::Buried;
 pub use law::{Laws, PairLaw};
+pub use outline::Outline;
 pub use picture::Picture;
 pub use reports::Report;
 pub use spec::all;

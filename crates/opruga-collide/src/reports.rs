@@ -36,6 +36,9 @@ impl<const D: usize> Touching<D> {
                 }
             }
             let (Some(first), Some(second), Some(place)) = (first, second, place) else { continue };
+            if [first, second].iter().any(|body| self.surface.is_obstacle(*body)) {
+                continue;
+            }
             let (bodies, sign) = if first <= second { ([first, second], 1.0) } else { ([second, first], -1.0) };
             let nothing = Report { bodies, impulse: [0.0; D], pressed: 0.0, normal: [0.0; D], moment: [0.0; D] };
             let at = self.reports.binary_search_by_key(&bodies, |report| report.bodies).unwrap_or_else(|at| {

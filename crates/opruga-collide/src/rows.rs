@@ -28,7 +28,7 @@ impl<const D: usize> Touching<D> {
             }
             self.take_gaps_of(first..k, h, 0.0);
             // Who seems to be deep inside may be outside, before a facet that is nearer and beyond the reach.
-            let known = -self.reach.push_of(vertex) - self.thickest;
+            let known = -self.reach.push_of(vertex) - self.thickest_at(vertex);
             if self.around.iter().any(|(row, _)| row.gap < known) {
                 self.around.clear();
                 self.take_gaps_of(first..k, h, 0.25 * self.margin);
@@ -39,7 +39,7 @@ impl<const D: usize> Touching<D> {
         for k in 0..self.candidates.edge_edge.len() {
             let [a, b] = self.candidates.edge_edge[k];
             let edges = [a, b].map(|e| self.surface.edges[e as usize]);
-            if !self.reach.meet(&edges[0], &edges[1], self.thickest) {
+            if !self.reach.meet(&edges[0], &edges[1], self.thickest_at(edges[1][0])) {
                 continue;
             }
             let bodies = edges.map(|edge| self.surface.body[edge[0] as usize]);
@@ -74,11 +74,16 @@ impl<const D: usize> Touching<D> {
         }
     }
 
+    /// The largest distance that the surface of a point keeps from that of a body [m]. Obstacles come after bodies.
+    fn thickest_at(&self, point: u32) -> f64 {
+        self.thickest[usize::from(self.surface.is_of_obstacle(point))]
+    }
+
     /// Takes the gaps of some candidates of one vertex that may come closer than a distance [m].
     fn take_gaps_of(&mut self, candidates: Range<usize>, h: f64, distance: f64) {
-        let farthest = self.thickest + distance;
         for k in candidates {
             let [vertex, facet] = self.candidates.vertex_facet[k];
+            let farthest = self.thickest_at(vertex) + distance;
             let corners = &self.surface.facets[facet as usize];
             if !self.reach.meet(&[vertex], corners, farthest) {
                 continue;

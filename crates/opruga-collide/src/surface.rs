@@ -1,5 +1,7 @@
 //! The surface of deformable bodies: what touches.
 
+use crate::closest::facet_normal;
+use crate::vector::{dot, subtract};
 use opruga_mesh::Mesh;
 
 /// Points, edges and facets of the surfaces of some bodies, all of one kind for those who look for contact.
@@ -20,6 +22,8 @@ pub struct Surface<const D: usize> {
     pub sides: Vec<[u32; 2]>,
     /// Where the points, facets and edges of a body begin.
     starts: Vec<[u32; 3]>,
+    /// The first body that is an obstacle, and its first point.
+    obstacles: Option<[u32; 2]>,
     /// The facets around a point: `around[ring[p]..ring[p + 1]]`, ascending.
     ring: Vec<u32>,
     around: Vec<u32>,
@@ -93,6 +97,46 @@ impl<const D: usize> Surface<D> {
         nodes
     }
 
+    /// Adds the surface of an obstacle, after all bodies. Edges between faces of one plane are left out.
+    pub fn add_obstacle(&mut self, mesh: &Mesh<D>, body: u32) {
+        let (point, first) = (self.points() as u32, self.edges.len());
+        self.obstacles.get_or_insert([body, point]);
+        let nodes = self.add(mesh, body);
+        let normal = |facet: u32| {
+            let corners = self.facets[facet as usize];
+            facet_normal(&corners.map(|p| mesh.positions[nodes[(p - point) as usize] as usize]))
+        };
+        let mut keep = Vec::new();
+        for k in first..self.edges.len() {
+            let [a, b] = self.sides[k];
+            let flat = a != u32::MAX && b != u32::MAX && {
+                let (a, b) = (normal(a), normal(b));
+                let difference = subtract(&a.map(|c| c / dot(&a, &a).sqrt()), &b.map(|c| c / dot(&b, &b).sqrt()));
+                dot(&difference, &difference) < FLAT * FLAT
+            };
+            if !flat {
+                keep.push((self.edges[k], self.sides[k]));
+            }
+        }
+        self.edges.truncate(first);
+        self.sides.truncate(first);
+        for (edge, sides) in keep {
+            self.edges.push(edge);
+            self.sides.push(sides);
+        }
+    }
+
+    /// Whether a body is an obstacle.
+    pub fn is_obstacle(&self, body: u32) -> bool {
+        self.obstacles.is_some_and(|[first, _]| body >= first)
+    }
+
+    /// Whether a point belongs to an obstacle.
+    #[inline]
+    pub fn is_of_obstacle(&self, point: u32) -> bool {
+        self.obstacles.is_some_and(|[_, first]| point >= first)
+    }
+
     /// Finds the edges of the facets from one on, and the facets around every point.
     fn join(&mut self, first_facet: usize, wires: Vec<[u32; 2]>, points: usize) {
         let mut edges: Vec<([u32; 2], u32)> = Vec::new();
@@ -145,3 +189,6 @@ impl<const D: usize> Surface<D> {
             + 4 * (3 * self.starts.capacity() + self.ring.capacity() + self.around.capacity())
     }
 }
+
+/// The angle of an edge below which its two faces lie in one plane.
+const FLAT: f64 = 1e-9;

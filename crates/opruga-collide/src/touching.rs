@@ -77,8 +77,8 @@ pub struct Touching<const D: usize> {
     /// The pairs of a vertex and a facet, and of two edges, that may meet in the step.
     pub(crate) close: [Vec<[u32; 2]>; 2],
     pub(crate) zones: Zones<D>,
-    /// The largest distance that surfaces keep in contact [m].
-    pub(crate) thickest: f64,
+    /// The largest distance that surfaces keep in contact [m]: of bodies, and with obstacles.
+    pub(crate) thickest: [f64; 2],
     wanted: Vec<f64>,
     multipliers: Vec<f64>,
     pub(crate) touched: Vec<bool>,
@@ -261,8 +261,9 @@ impl<const D: usize> Touching<D> {
     fn hold_points(&mut self, h: f64, obstacles: Option<Obstacles<'_, D>>) {
         let Some(obstacles) = obstacles else { return };
         self.asked.clear();
+        let surface = &self.surface;
         for row in &self.rows {
-            for k in (0..=D).filter(|k| row.weights[*k] != 0.0) {
+            for k in (0..=D).filter(|k| row.weights[*k] != 0.0 && !surface.is_of_obstacle(row.points[*k])) {
                 let known = &mut self.known[row.points[k] as usize];
                 if !*known {
                     *known = true;
@@ -391,7 +392,7 @@ impl<const D: usize> Touching<D> {
             let u = subtract(&row.mean(&self.v), &row.carry);
             let end = row.gap + h * dot(&u, &row.normal);
             // Sweeps that end early leave less than this.
-            overlap |= end < -OVERLAP * self.thickest;
+            overlap |= end < -OVERLAP * self.thickest[0];
             self.wanted.push(if row.of_obstacle { -end } else { (-end).smaller(most) });
         }
         if !overlap {

@@ -110,6 +110,7 @@ pub(crate) fn laws<const D: usize>(
     Laws {
         class,
         classes: classes.len(),
+        obstacles: 0,
         table,
         itself: classes.iter().map(|class| class.itself).collect(),
         rest_speed: values.number("rest_speed").unwrap_or(0.0),

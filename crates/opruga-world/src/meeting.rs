@@ -3,9 +3,10 @@
 use crate::blueprint::Blueprint;
 use crate::contact_laws::{edges_of, laws};
 use crate::island::Island;
-use opruga_collide::{Touching, Trouble};
+use opruga_collide::{Colliders, Outline, Touching, Trouble};
 use opruga_core::contacts::Contacts;
 use opruga_math::WIDTH;
+use std::sync::Arc;
 
 /// The margin of the search for candidates, relative to the mean edge: half of that is what points go between two searches, a quarter of
 /// an edge, about as far as gaps are taken at all.
@@ -15,19 +16,43 @@ const MARGIN_OF_EDGE: f64 = 0.5;
 #[derive(Debug)]
 pub(crate) struct Meeting<const D: usize> {
     pub(crate) touching: Touching<D>,
-    /// The islands that it was made for: how many were built by then, and how many there were.
-    made_for: (u64, usize),
+    /// The islands and obstacles that it was made for.
+    made_for: MadeFor<D>,
     /// For every island the first of its points and where their nodes lie in its columns, body by body.
     columns: Vec<Vec<(u32, Vec<u32>)>>,
     /// The island of every point and the index in its columns.
     points: Vec<(u32, u32)>,
     /// The bodies that touch, by their place in the scene.
     pub(crate) bodies: Vec<usize>,
+    /// Corners and edges of obstacles, which follow the bodies, and the first point of each.
+    pub(crate) outlines: Vec<(Outline<D>, usize)>,
+}
+
+/// What the surfaces were made for: they are made anew where it has changed.
+#[derive(Clone, Debug)]
+pub(crate) struct MadeFor<const D: usize> {
+    /// How many islands were built by then.
+    pub(crate) built: u64,
+    /// How many there were.
+    pub(crate) islands: usize,
+    /// The obstacles.
+    pub(crate) colliders: Option<Arc<Colliders<D>>>,
+}
+
+impl<const D: usize> MadeFor<D> {
+    fn is(&self, other: &MadeFor<D>) -> bool {
+        let same = match (&self.colliders, &other.colliders) {
+            (None, None) => true,
+            (Some(own), Some(other)) => Arc::ptr_eq(own, other),
+            _ => false,
+        };
+        same && self.built == other.built && self.islands == other.islands
+    }
 }
 
 impl<const D: usize> Meeting<D> {
     /// The surfaces of the bodies of a scene as it is now; none where no two of them may touch.
-    pub(crate) fn of(scene: &Blueprint<D>, islands: &[Island<D>], made_for: (u64, usize)) -> Option<Meeting<D>> {
+    pub(crate) fn of(scene: &Blueprint<D>, islands: &[Island<D>], made_for: MadeFor<D>) -> Option<Meeting<D>> {
         let contact = scene.contact.as_ref()?;
         let mut touching = Touching::<D>::default();
         let (mut columns, mut points, mut bodies) = (vec![Vec::new(); islands.len()], Vec::new(), Vec::new());
@@ -62,21 +87,47 @@ impl<const D: usize> Meeting<D> {
         }
         let mean_edge = if edges > 0 { length / edges as f64 } else { 1.0 };
         touching.laws = laws(scene, contact, &bodies, mean_edge);
+        let mut outlines = Vec::new();
+        for outline in made_for.colliders.iter().flat_map(|colliders| colliders.outlines()) {
+            let first = touching.surface.points();
+            touching.surface.add_obstacle(&outline.mesh, (bodies.len() + outlines.len()) as u32);
+            touching.laws.add_obstacle(outline.law);
+            touching.inverse_mass.resize(touching.surface.points(), [0.0; D]);
+            outlines.push((outline, first));
+        }
         touching.margin = MARGIN_OF_EDGE * mean_edge;
         touching.most = contact.values.number("most_pairs").unwrap_or(0.0) as usize;
         for columns in touching.before.iter_mut().chain(&mut touching.after) {
-            columns.resize(points.len(), [0.0; D]);
+            columns.resize(touching.inverse_mass.len(), [0.0; D]);
         }
-        touching.may_touch().then_some(Meeting { touching, made_for, columns, points, bodies })
+        touching.may_touch().then_some(Meeting { touching, made_for, columns, points, bodies, outlines })
     }
 
-    /// Whether it was made for these islands.
-    pub(crate) fn is_for(&self, made_for: (u64, usize)) -> bool {
-        self.made_for == made_for
+    /// Whether it was made for these islands and obstacles.
+    pub(crate) fn is_for(&self, made_for: &MadeFor<D>) -> bool {
+        self.made_for.is(made_for)
     }
 
-    /// Takes positions and velocities after the free motion, or at the beginning of a frame.
-    pub(crate) fn take(&mut self, islands: &[Island<D>]) {
+    /// What a body or an obstacle is called, by its number among those that touch.
+    pub(crate) fn name_of(&self, number: u32, scene: &Blueprint<D>) -> String {
+        let number = number as usize;
+        match (self.bodies.get(number), self.outlines.get(number.saturating_sub(self.bodies.len()))) {
+            (Some(body), _) => scene.bodies[*body].name.clone(),
+            (None, Some((outline, _))) => format!("collider {}", outline.collider),
+            (None, None) => String::new(),
+        }
+    }
+
+    /// Takes positions and velocities at a time [s], after the free motion or at the beginning of a frame.
+    pub(crate) fn take(&mut self, islands: &[Island<D>], time: f64) {
+        let [x, v] = &mut self.touching.after;
+        for (outline, first) in &self.outlines {
+            let points = *first..*first + outline.mesh.positions.len();
+            if let Some(colliders) = &self.made_for.colliders {
+                let places = [&mut x[points.clone()], &mut v[points]];
+                colliders.place(outline.collider, time, &outline.mesh.positions, places);
+            }
+        }
         let [x, v] = &mut self.touching.after;
         for (island, bodies) in islands.iter().zip(&self.columns) {
             let state = &island.system.state;
@@ -114,9 +165,11 @@ impl<const D: usize> Meeting<D> {
         self.touching.step(h, touch.as_ref().map(|touch| touch as _))?;
         let Touching { changed, losses, after: [x, v], .. } = &self.touching;
         for (p, [contact, friction, user, correction]) in changed.iter().zip(losses) {
-            let (island, index) = self.points[*p as usize];
+            // What contact takes at points of obstacles is booked with the first island.
+            let point = self.points.get(*p as usize).copied();
+            let (island, index) = point.unwrap_or_default();
             let (system, index) = (&mut islands[island as usize].system, index as usize);
-            for d in 0..D {
+            for d in (0..D).filter(|_| point.is_some()) {
                 system.state.x.0[d][index] = x[*p as usize][d];
                 system.state.v.0[d][index] = v[*p as usize][d];
             }

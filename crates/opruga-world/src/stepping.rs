@@ -2,7 +2,7 @@
 
 use crate::error::WorldError;
 use crate::island::{FramePlan, Island};
-use crate::meeting::Meeting;
+use crate::meeting::{MadeFor, Meeting};
 use crate::together;
 use crate::world::{World, lock};
 use opruga_collide::Trouble;
@@ -27,8 +27,9 @@ impl<const D: usize> World<D> {
             unfold: self.blueprint.surroundings.unfold.then_some(&self.blueprint.bodies[..]),
         };
         (self.looks.flows, self.looks.fresh) = (self.flows, false);
-        let made_for = (self.islands_built, self.islands.len());
-        if self.blueprint.contact.is_some() && self.meeting.as_ref().is_none_or(|meeting| !meeting.is_for(made_for)) {
+        let (built, colliders) = (self.islands_built, self.colliders.clone());
+        let made_for = MadeFor { built, islands: self.islands.len(), colliders };
+        if self.blueprint.contact.is_some() && self.meeting.as_ref().is_none_or(|meeting| !meeting.is_for(&made_for)) {
             self.meeting = Meeting::of(&self.blueprint, &self.islands, made_for).map(Box::new);
         }
         let islands = &mut self.islands;
@@ -123,10 +124,8 @@ impl<const D: usize> World<D> {
                 WorldError::TooManyContacts { found, most, last: self.time() }
             }
             Trouble::LedThrough { bodies } => {
-                let name = |number: u32| {
-                    let body = meeting.and_then(|meeting| meeting.bodies.get(number as usize));
-                    body.map_or(String::new(), |body| self.blueprint.bodies[*body].name.clone())
-                };
+                let name =
+                    |number: u32| meeting.map_or(String::new(), |meeting| meeting.name_of(number, &self.blueprint));
                 WorldError::LedThrough { first: name(bodies[0]), second: name(bodies[1]), time }
             }
         }

@@ -23,15 +23,15 @@ pub(crate) fn frame<const D: usize>(
     islands.iter_mut().for_each(|island| island.begin_together(plan));
     let contacts = plan.colliders.map(|colliders| Arc::clone(colliders).into_contacts());
     meeting.touching.begin();
-    meeting.take(islands);
+    meeting.take(islands, plan.start);
     for substep in 0..plan.substeps {
         meeting.set_out();
         step_freely(islands, plan, substep, workspaces, threaded);
         if islands.iter().any(|island| island.outcome.is_err()) {
             return Ok(());
         }
-        meeting.take(islands);
         let time = plan.start + f64::from(substep + 1) * plan.h;
+        meeting.take(islands, time);
         if !meeting.touching.after.iter().flatten().flatten().all(|c| c.is_finite()) {
             islands.iter_mut().for_each(|island| island.end_together(plan));
             return Ok(());

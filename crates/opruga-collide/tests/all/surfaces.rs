@@ -64,8 +64,8 @@ fn compare_with_all_pairs<const D: usize>(meshes: &[Mesh<D>], seed: u64) -> usiz
     let mut candidates = Candidates::default();
     let margin = 0.03;
     // Twice, so that what the first search left has no effect on the second.
-    assert!(candidates.find(&surface, &boxes(&end, &end), 0.5, usize::MAX, |_, _| true));
-    assert!(candidates.find(&surface, &boxes(&start, &end), margin, usize::MAX, meet));
+    assert!(candidates.find(&surface, &boxes(&end, &end), [0.5; 2], usize::MAX, |_, _| true));
+    assert!(candidates.find(&surface, &boxes(&start, &end), [margin; 2], usize::MAX, meet));
     let mut expected = Vec::new();
     for p in 0..surface.points() as u32 {
         for (k, facet) in surface.facets.iter().enumerate() {
@@ -89,7 +89,10 @@ fn compare_with_all_pairs<const D: usize>(meshes: &[Mesh<D>], seed: u64) -> usiz
     }
     assert_eq!(candidates.edge_edge, expected);
     let found = candidates.len();
-    assert!(found < 10 || !candidates.find(&surface, &boxes(&start, &end), margin, 3, meet), "a limit ends the search");
+    assert!(
+        found < 10 || !candidates.find(&surface, &boxes(&start, &end), [margin; 2], 3, meet),
+        "a limit ends the search"
+    );
     found
 }
 
@@ -200,7 +203,7 @@ fn edges_know_their_inner_side() {
         let x: Vec<[f64; 3]> =
             nodes[0].iter().map(|n| turned[*n as usize]).chain(nodes[1].iter().map(|n| lifted[*n as usize])).collect();
         let mut candidates = Candidates::default();
-        assert!(candidates.find(&surface, &boxes(&x, &x), 0.05, 1000, |a, b| a != b));
+        assert!(candidates.find(&surface, &boxes(&x, &x), [0.05; 2], 1000, |a, b| a != b));
         let gaps: Vec<Gap<3>> =
             candidates.edge_edge.iter().filter_map(|[a, b]| Gap::of_edges(&surface, &x, *a, *b)).collect();
         let nearest = gaps.iter().fold(f64::INFINITY, |best, g| if g.gap.abs() < best.abs() { g.gap } else { best });

@@ -52,6 +52,7 @@ impl<const D: usize> Toy<D> {
             }
         }
         touching.laws = Laws {
+            obstacles: 0,
             class: vec![0; meshes.len()],
             classes: 1,
             table: vec![law],

@@ -25,3 +25,4 @@ mod slender_cells;
 mod statics;
 mod stiff_bodies;
 mod torn_by_pins;
+mod whole_obstacles;

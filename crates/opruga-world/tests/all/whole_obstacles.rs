@@ -1,0 +1,257 @@
+//! Obstacles that are finer than the mesh, against edges and facets of bodies.
+
+use opruga_core::spec::{Value, Values};
+use opruga_mesh::Mesh;
+use opruga_world::blueprint::*;
+use opruga_world::schema::CONTACT;
+use opruga_world::{Options, Registry, World};
+
+fn model<const D: usize>(kind: &str, fields: &[(&str, f64)]) -> Values {
+    let fields: Vec<(&str, Value)> = fields.iter().map(|(name, x)| (*name, Value::Number(*x))).collect();
+    Registry::<D>::default().model_values(kind, &fields).expect("a model")
+}
+
+fn collider<const D: usize>(kind: &str, fields: &[(&str, Value)]) -> ColliderBlueprint {
+    ColliderBlueprint::new::<D>(kind, fields).expect("a collider")
+}
+
+fn scene<const D: usize>(rule: &str, body: BodyBlueprint<D>, obstacle: ColliderBlueprint) -> Blueprint<D> {
+    let registry = Registry::<D>::default();
+    let mut scene = Blueprint::new("whole obstacles", registry.integrator_values(rule, &[]).expect("a rule"));
+    scene.bodies.push(body);
+    scene.colliders.push(obstacle);
+    scene.contact = Some(ContactBlueprint { values: Values::defaults(CONTACT.spec, D), pairs: Vec::new() });
+    scene
+}
+
+/// A coarse gas ball, the middle of whose lowest edge lies below its centre.
+fn ball(at: [f64; 2], velocity: [f64; 2]) -> BodyBlueprint<2> {
+    let ring = Mesh::ring(0.5, 12, [0.0; 2], std::f64::consts::PI / 12.0).expect("a ring");
+    let models = vec![
+        model::<2>("mass_spring", &[("stiffness", 400.0), ("damping", 1.0)]),
+        model::<2>("pressure", &[("nRT", 20.0)]),
+    ];
+    let body = BodyBlueprint::new("ball", ring, Mass::Total(1.0), models);
+    BodyBlueprint { translation: at, velocity, ..body }
+}
+
+/// The distance of a point from the outline of the ball [m], negative within.
+fn signed_distance(world: &World<2>, p: [f64; 2]) -> f64 {
+    let (mut inside, mut least) = (false, f64::INFINITY);
+    for facet in &world.blueprint().bodies[0].mesh.facets {
+        let [q, r] = facet.map(|n| world.position(0, n));
+        if (q[1] > p[1]) != (r[1] > p[1]) {
+            inside ^= q[0] + (p[1] - q[1]) / (r[1] - q[1]) * (r[0] - q[0]) > p[0];
+        }
+        let t = opruga_collide::closest_on_segment(&p, &q, &r);
+        let square: f64 = (0..2).map(|d| (p[d] - q[d] - t * (r[d] - q[d])).powi(2)).sum();
+        least = if square < least { square } else { least };
+    }
+    if inside { -least.sqrt() } else { least.sqrt() }
+}
+
+/// Obstacles of the plane with a tip at the origin, less wide than an edge of the ball; with the points that must stay out of it, and
+/// how far.
+fn needles() -> Vec<(ColliderBlueprint, f64, [f64; 2])> {
+    let numbers = |x: &[f64]| Value::Numbers(x.to_vec());
+    let rows = |x: &[[f64; 2]]| Value::Rows(x.iter().map(|row| row.to_vec()).collect());
+    vec![
+        (collider::<2>("box", &[("min", numbers(&[-0.02, -2.0])), ("max", numbers(&[0.02, 0.0]))]), 0.0, [0.02, 0.0]),
+        (collider::<2>("ball", &[("center", numbers(&[0.0, -0.03])), ("radius", 0.03.into())]), 0.03, [0.0, -0.03]),
+        (
+            collider::<2>(
+                "capsule",
+                &[("a", numbers(&[0.0, -2.0])), ("b", numbers(&[0.0, -0.02])), ("radius", 0.02.into())],
+            ),
+            0.02,
+            [0.0, -0.02],
+        ),
+        (collider::<2>("convex", &[("points", rows(&[[-0.1, -2.0], [0.1, -2.0], [0.0, 0.0]]))]), 0.0, [0.0, 0.0]),
+        (collider::<2>("polyline", &[("points", rows(&[[-0.1, -2.0], [0.0, 0.0], [0.1, -2.0]]))]), 0.0, [0.0, 0.0]),
+    ]
+}
+
+/// The ball lands on a needle with the middle of an edge: with contact the needle stays outside, and carries it.
+#[test]
+fn needles_stay_outside_of_a_coarse_ball() {
+    for rule in ["symplectic_euler", "verlet", "runge_kutta"] {
+        for (needle, radius, tip) in needles() {
+            let kind = needle.values.kind();
+            let mut scene = scene(rule, ball([0.0, 0.6], [0.0; 2]), needle);
+            scene.surroundings.gravity = [0.0, -9.81];
+            let run = |scene: &Blueprint<2>| {
+                let mut world = World::new(scene.clone(), Options::default()).expect("a world");
+                let mut least = f64::INFINITY;
+                for _ in 0..60 {
+                    world.frame().expect("a frame");
+                    let distance = signed_distance(&world, tip) - radius;
+                    least = if distance < least { distance } else { least };
+                }
+                (world, least)
+            };
+            let (with, least) = run(&scene);
+            assert!(least > -1e-6, "{rule}, {kind}: {least} m inside");
+            assert!(least < 0.02, "{rule}, {kind}: it meets the needle: {least}");
+            let energy = with.energy();
+            assert!(energy.loss_contact > 0.0 && energy.closure < 0.05, "{rule}, {kind}: {energy:?}");
+            scene.contact = None;
+            let (_, without) = run(&scene);
+            assert!(without < -0.05, "{rule}, {kind}: without contact it goes in: {without}");
+        }
+    }
+}
+
+/// What is shot at a needle does not pass it, whatever the speed.
+#[test]
+fn a_fast_edge_does_not_pass_a_needle() {
+    for speed in [10.0, 100.0, 1000.0] {
+        for (needle, radius, tip) in needles() {
+            let kind = needle.values.kind();
+            let mut scene = scene("symplectic_euler", ball([0.0, 0.6], [0.0, -speed]), needle);
+            scene.time.frame = 0.1 / speed;
+            let mut world = World::new(scene, Options::default()).expect("a world");
+            for _ in 0..20 {
+                world.frame().expect("a frame");
+                let distance = signed_distance(&world, tip) - radius;
+                assert!(distance > -1e-6, "{kind} at {speed} m/s: {distance} m inside");
+            }
+        }
+    }
+}
+
+/// A needle that moves pushes the ball along, and what it gives is in the ledger.
+#[test]
+fn a_needle_that_moves_pushes_the_ball() {
+    for (needle, radius, tip) in needles() {
+        let kind = needle.values.kind().to_string();
+        let mut needle = needle;
+        let path = Value::Rows(vec![vec![0.0, 0.0, 0.0], vec![1.0, 0.0, 1.0]]);
+        let spec = opruga_collide::all(2).into_iter().find(|spec| spec.kind == kind).expect("a kind");
+        needle.values.set(spec, "motion", path, 2).expect("a path");
+        let scene = scene("symplectic_euler", ball([0.0, 0.55], [0.0; 2]), needle);
+        let mut world = World::new(scene, Options::default()).expect("a world");
+        for _ in 0..50 {
+            world.frame().expect("a frame");
+            let at = [tip[0], tip[1] + world.time()];
+            let distance = signed_distance(&world, at) - radius;
+            assert!(distance > -1e-6, "{kind}: {distance} m inside at {} s", world.time());
+        }
+        let speed = world.momentum().linear.0[1];
+        assert!(speed > 0.5, "{kind}: it goes along: {speed} kg m/s");
+        assert!(world.energy().closure < 0.05, "{kind}: {:?}", world.energy());
+    }
+}
+
+/// Whether a segment passes through a triangle.
+fn pierces([a, b]: [[f64; 3]; 2], triangle: [[f64; 3]; 3]) -> bool {
+    let minus = |a: [f64; 3], b: [f64; 3]| -> [f64; 3] { core::array::from_fn(|d| a[d] - b[d]) };
+    let volume = |p: [f64; 3], q: [f64; 3], r: [f64; 3], s: [f64; 3]| {
+        let (u, v, w) = (minus(q, p), minus(r, p), minus(s, p));
+        u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) + u[2] * (v[0] * w[1] - v[1] * w[0])
+    };
+    let [p, q, r] = triangle;
+    if volume(a, p, q, r) * volume(b, p, q, r) >= 0.0 {
+        return false;
+    }
+    let sides = [volume(a, b, p, q), volume(a, b, q, r), volume(a, b, r, p)];
+    sides.iter().all(|s| *s > 0.0) || sides.iter().all(|s| *s < 0.0)
+}
+
+/// A coarse sheet falls on edges and corners that are finer than its triangles: none of these passes through it.
+#[test]
+fn edges_of_obstacles_stay_on_their_side_of_a_coarse_sheet() {
+    let numbers = |x: &[f64]| Value::Numbers(x.to_vec());
+    let ridge = [[-2.0, 0.0, 0.07], [2.0, 0.0, 0.07]];
+    let rows = |x: &[[f64; 3]]| Value::Rows(x.iter().map(|row| row.to_vec()).collect());
+    let roof = [
+        [-2.0, 0.0, 0.07],
+        [2.0, 0.0, 0.07],
+        [-2.0, -1.0, -0.1],
+        [2.0, -1.0, -0.1],
+        [-2.0, -1.0, 0.3],
+        [2.0, -1.0, 0.3],
+    ];
+    let spike = [[0.07, 0.0, 0.06], [0.02, -1.0, 0.0], [0.15, -1.0, 0.02], [0.05, -1.0, 0.15]];
+    let edge = |x: [f64; 3], y: [f64; 3]| vec![[x, y]];
+    let cases = [
+        (
+            "box",
+            vec![("min", numbers(&[-2.0, -1.0, 0.06])), ("max", numbers(&[2.0, 0.0, 0.08]))],
+            0.0,
+            edge([-2.0, 0.0, 0.06], [2.0, 0.0, 0.06]),
+        ),
+        ("convex", vec![("points", rows(&roof))], 0.0, edge(ridge[0], ridge[1])),
+        (
+            "convex",
+            vec![("points", rows(&spike))],
+            0.0,
+            vec![[spike[0], spike[1]], [spike[0], spike[2]], [spike[0], spike[3]]],
+        ),
+        (
+            "capsule",
+            vec![("a", numbers(&ridge[0])), ("b", numbers(&ridge[1])), ("radius", 0.01.into())],
+            0.01,
+            edge(ridge[0], ridge[1]),
+        ),
+        ("ball", vec![("center", numbers(&[0.07, 0.0, 0.06])), ("radius", 0.02.into())], 0.02, vec![]),
+        (
+            "triangle_mesh",
+            vec![("points", rows(&spike)), ("triangles", Value::Integers(vec![0, 1, 2, 0, 2, 3, 0, 3, 1]))],
+            0.0,
+            vec![[spike[0], spike[1]], [spike[0], spike[2]], [spike[0], spike[3]]],
+        ),
+    ];
+    for (kind, fields, radius, edges) in cases {
+        let sheet = Mesh::sheet([-0.5, 0.1, -0.5], [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]], [3, 3]).expect("a sheet");
+        let models = vec![model::<3>("mass_spring", &[("stiffness", 300.0), ("damping", 0.5)])];
+        let body = BodyBlueprint::new("sheet", sheet, Mass::Total(0.5), models);
+        let mut scene = scene("symplectic_euler", body, collider::<3>(kind, &fields));
+        scene.surroundings.gravity = [0.0, -9.81, 0.0];
+        let mut run = |contact: bool| {
+            let mut scene = scene.clone();
+            if !contact {
+                scene.contact = None;
+            }
+            let mut world = World::new(scene, Options::default()).expect("a world");
+            let (mut pierced, mut least) = (false, f64::INFINITY);
+            for _ in 0..40 {
+                world.frame().expect("a frame");
+                for corners in &world.blueprint().bodies[0].mesh.sheets {
+                    let at = corners.map(|n| world.position(0, n));
+                    pierced |= edges.iter().any(|edge| pierces(*edge, at));
+                    if kind == "ball" {
+                        let center = [0.07, 0.0, 0.06];
+                        let weights = opruga_collide::closest_on_facet(&center, &at);
+                        let square: f64 = (0..3)
+                            .map(|d| ((0..3).map(|k| weights[k] * at[k][d]).sum::<f64>() - center[d]).powi(2))
+                            .sum();
+                        least = if square.sqrt() - radius < least { square.sqrt() - radius } else { least };
+                    }
+                }
+            }
+            (pierced || least < -1e-6, world.energy())
+        };
+        let (inside, energy) = run(true);
+        assert!(!inside, "{kind} passes through the sheet");
+        assert!(energy.loss_contact > 0.0 && energy.closure < 0.05, "{kind}: {energy:?}");
+        assert!(run(false).0, "{kind}: it does without contact");
+    }
+}
+
+/// The same bits on any number of threads.
+#[test]
+fn whole_obstacles_have_the_same_bits() {
+    for (needle, _, _) in needles() {
+        let kind = needle.values.kind();
+        let mut scene = scene("symplectic_euler", ball([0.0, 0.6], [0.3, 0.0]), needle);
+        scene.surroundings.gravity = [0.0, -9.81];
+        let other = BodyBlueprint { name: "other".into(), ..ball([0.3, 1.7], [0.0; 2]) };
+        scene.bodies.push(other);
+        let run = |threads: usize| {
+            let mut world = World::new(scene.clone(), Options { threads, ..Options::default() }).expect("a world");
+            (0..60).for_each(|_| world.frame().expect("a frame"));
+            world.frame_hash()
+        };
+        assert_eq!(run(1), run(3), "{kind}");
+    }
+}
