@@ -36,7 +36,7 @@ impl<const D: usize> Colliders<D> {
     }
 
     /// Where points of a collider are at a time [s], and how fast they move [m/s].
-    pub fn place(&self, collider: usize, time: f64, points: &[[f64; D]], [x, v]: [&mut [[f64; D]]; 2]) {
+    pub fn move_points(&self, collider: usize, time: f64, points: &[[f64; D]], [x, v]: [&mut [[f64; D]]; 2]) {
         let pose = self.collider(collider).motion.pose(time);
         for ((point, x), v) in points.iter().zip(x).zip(v) {
             *x = pose.place(point);

@@ -1,6 +1,7 @@
 //! What contact did to bodies, pair by pair: for programs that ask.
 
-use crate::touching::Touching;
+use crate::impulses::Row;
+use crate::surface::Surface;
 
 /// What contact did to two bodies, or to a body and itself, summed over substeps.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,45 +14,48 @@ pub struct Report<const D: usize> {
     pub pressed: f64,
     /// Σ λₙ n, from the second body to the first [N s].
     pub normal: [f64; D],
-    /// Σ λₙ x of the places of all contacts at the end of their substep [N s m].
+    /// Σ λₙ x of the positions of all contacts at the end of their substep [N s m].
     pub moment: [f64; D],
 }
 
-impl<const D: usize> Touching<D> {
-    /// Adds the impulses of a step to the reports, in the order of its contacts: so the sums are the same for every number of threads.
-    pub(crate) fn add_reports(&mut self) {
-        for row in self.rows.iter().filter(|row| row.normal_impulse > 0.0 && !row.of_obstacle) {
-            // The points of the first feature have weights above 0, those of the second below.
-            let (mut first, mut second, mut place) = (None, None, None);
-            for k in (0..=D).filter(|k| row.weights[*k] != 0.0) {
-                let (p, weight) = (row.points[k] as usize, row.weights[k]);
-                if weight > 0.0 {
-                    first = Some(self.surface.body[p]);
-                    let place = place.get_or_insert([0.0; D]);
-                    for d in 0..D {
-                        place[d] += weight * self.end[p][d];
-                    }
-                } else {
-                    second = Some(self.surface.body[p]);
+/// Adds the impulses of a step to the reports, in the order of its contacts: so the sums are the same for every number of threads.
+pub(crate) fn add<const D: usize>(
+    reports: &mut Vec<Report<D>>,
+    rows: &[Row<D>],
+    surface: &Surface<D>,
+    end: &[[f64; D]],
+) {
+    for row in rows.iter().filter(|row| row.normal_impulse > 0.0 && !row.of_obstacle) {
+        // The points of the first feature have weights above 0, those of the second below.
+        let (mut first, mut second, mut position) = (None, None, None);
+        for k in (0..=D).filter(|k| row.weights[*k] != 0.0) {
+            let (p, weight) = (row.points[k] as usize, row.weights[k]);
+            if weight > 0.0 {
+                first = Some(surface.body[p]);
+                let position = position.get_or_insert([0.0; D]);
+                for d in 0..D {
+                    position[d] += weight * end[p][d];
                 }
+            } else {
+                second = Some(surface.body[p]);
             }
-            let (Some(first), Some(second), Some(place)) = (first, second, place) else { continue };
-            if [first, second].iter().any(|body| self.surface.is_obstacle(*body)) {
-                continue;
-            }
-            let (bodies, sign) = if first <= second { ([first, second], 1.0) } else { ([second, first], -1.0) };
-            let nothing = Report { bodies, impulse: [0.0; D], pressed: 0.0, normal: [0.0; D], moment: [0.0; D] };
-            let at = self.reports.binary_search_by_key(&bodies, |report| report.bodies).unwrap_or_else(|at| {
-                self.reports.insert(at, nothing);
-                at
-            });
-            let (report, whole) = (&mut self.reports[at], row.impulse());
-            report.pressed += row.normal_impulse;
-            for d in 0..D {
-                report.impulse[d] += sign * whole[d];
-                report.normal[d] += sign * row.normal_impulse * row.normal[d];
-                report.moment[d] += row.normal_impulse * place[d];
-            }
+        }
+        let (Some(first), Some(second), Some(position)) = (first, second, position) else { continue };
+        if [first, second].iter().any(|body| surface.is_obstacle(*body)) {
+            continue;
+        }
+        let (bodies, sign) = if first <= second { ([first, second], 1.0) } else { ([second, first], -1.0) };
+        let nothing = Report { bodies, impulse: [0.0; D], pressed: 0.0, normal: [0.0; D], moment: [0.0; D] };
+        let at = reports.binary_search_by_key(&bodies, |report| report.bodies).unwrap_or_else(|at| {
+            reports.insert(at, nothing);
+            at
+        });
+        let (report, whole) = (&mut reports[at], row.impulse());
+        report.pressed += row.normal_impulse;
+        for d in 0..D {
+            report.impulse[d] += sign * whole[d];
+            report.normal[d] += sign * row.normal_impulse * row.normal[d];
+            report.moment[d] += row.normal_impulse * position[d];
         }
     }
 }

@@ -5,7 +5,7 @@ use crate::gap::Gap;
 use crate::impulses::{Row, Turns, part, solve};
 use crate::law::Laws;
 use crate::reach::Reach;
-use crate::reports::Report;
+use crate::reports::{self, Report};
 use crate::surface::Surface;
 use crate::vector::{dot, length, subtract};
 use crate::zones::Zones;
@@ -177,7 +177,7 @@ impl<const D: usize> Touching<D> {
         }
         self.keep_impulses();
         if self.report {
-            self.add_reports();
+            reports::add(&mut self.reports, &self.rows, &self.surface, &self.end);
         }
         self.book(h);
         self.counts.candidates += self.candidates.len() as u64;
@@ -252,8 +252,8 @@ impl<const D: usize> Touching<D> {
     /// Keeps the impulses for the next substep.
     fn keep_impulses(&mut self) {
         self.last.clear();
-        let held = self.rows.iter().filter(|row| row.normal_impulse > 0.0);
-        self.last.extend(held.map(|row| (row.id, row.normal_impulse, row.friction_impulse)));
+        let pressed = self.rows.iter().filter(|row| row.normal_impulse > 0.0);
+        self.last.extend(pressed.map(|row| (row.id, row.normal_impulse, row.friction_impulse)));
         self.last.sort_unstable_by_key(|(id, ..)| *id);
     }
 

@@ -16,12 +16,12 @@ pub enum ContactPhase {
 /// The contact of two bodies, or of a body with itself, in a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact<const D: usize> {
-    /// The bodies, by their place in the scene, the lower one first.
+    /// The bodies, by their index in the scene, the lower one first.
     pub bodies: [usize; 2],
     /// Whether it is new, goes on or is over.
     pub phase: ContactPhase,
-    /// The mean of its places, each weighted by the normal impulse there [m]. Of a contact that ended, where it was.
-    pub place: [f64; D],
+    /// The mean position of its points, each weighted by the normal impulse there [m]. Of a contact that ended, where it was.
+    pub position: [f64; D],
     /// The mean of its normals, from the second body to the first, of length 1; zero where they cancel. Of a contact that ended, what it was.
     pub normal: [f64; D],
     /// The impulse that the first body got in the frame [N s]; its mean force is that over the length of the frame. Zero of a contact
@@ -43,7 +43,7 @@ impl<const D: usize> Contact<D> {
         Contact {
             bodies,
             phase,
-            place: report.moment.map(|m| m * mean),
+            position: report.moment.map(|m| m * mean),
             normal: report.normal.map(|n| n * unit),
             impulse: if own { [0.0; D] } else { report.impulse },
             pressed: report.pressed,
@@ -53,7 +53,7 @@ impl<const D: usize> Contact<D> {
     /// The same contact as one in space.
     pub(crate) fn in_space(self) -> Contact<3> {
         let lift = |a: [f64; D]| core::array::from_fn(|d| if d < D { a[d] } else { 0.0 });
-        let Contact { bodies, phase, place, normal, impulse, pressed } = self;
-        Contact { bodies, phase, place: lift(place), normal: lift(normal), impulse: lift(impulse), pressed }
+        let Contact { bodies, phase, position, normal, impulse, pressed } = self;
+        Contact { bodies, phase, position: lift(position), normal: lift(normal), impulse: lift(impulse), pressed }
     }
 }

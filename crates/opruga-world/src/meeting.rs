@@ -124,8 +124,8 @@ impl<const D: usize> Meeting<D> {
         for (outline, first) in &self.outlines {
             let points = *first..*first + outline.mesh.positions.len();
             if let Some(colliders) = &self.made_for.colliders {
-                let places = [&mut x[points.clone()], &mut v[points]];
-                colliders.place(outline.collider, time, &outline.mesh.positions, places);
+                let state = [&mut x[points.clone()], &mut v[points]];
+                colliders.move_points(outline.collider, time, &outline.mesh.positions, state);
             }
         }
         let [x, v] = &mut self.touching.after;

@@ -396,7 +396,7 @@ fn contacts_begin_persist_and_end() {
             }
             for contact in world.contacts() {
                 assert_eq!(contact.bodies, [0, 1]);
-                assert!(contact.normal[0] < -0.9 && contact.place[0].abs() < 1.0, "{contact:?}");
+                assert!(contact.normal[0] < -0.9 && contact.position[0].abs() < 1.0, "{contact:?}");
                 assert_eq!(contact.pressed > 0.0, contact.phase != ContactPhase::Ended, "{contact:?}");
                 phases.push(contact.phase);
                 all.push(*contact);
