@@ -135,7 +135,7 @@ pub(crate) fn mean<const D: usize, const N: usize>(weights: &[f64; N], points: &
 
 /// A normal of a facet, not of unit length: in 2D to the right of the edge, in 3D by the right-hand rule. With the orientation of a
 /// closed boundary it points outward.
-pub(crate) fn facet_normal<const D: usize>(corners: &[[f64; D]; D]) -> [f64; D] {
+pub fn facet_normal<const D: usize>(corners: &[[f64; D]; D]) -> [f64; D] {
     let mut out = [0.0; D];
     let e = subtract(&corners[1], &corners[0]);
     if D == 2 {

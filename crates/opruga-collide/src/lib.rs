@@ -93,7 +93,7 @@ mod zones;
 
 pub use candidates::Candidates;
 pub use ccd::{edge_meets_edge, vertex_meets_facet};
-pub use closest::{closest_of_segments, closest_on_facet, closest_on_segment};
+pub use closest::{closest_of_segments, closest_on_facet, closest_on_segment, facet_normal};
 pub use contacts::Colliders;
 pub use gap::Gap;
 pub use inside::Buried;

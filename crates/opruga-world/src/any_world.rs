@@ -10,6 +10,7 @@ use crate::ledger::Energy;
 use crate::modes::Mode;
 use crate::node_columns::Vectors;
 use crate::node_states::NodeState;
+use crate::queries::SurfacePoint;
 use crate::refused::RefusedCommand;
 use crate::slots::BodyHandle;
 use crate::warnings::Warning;
@@ -154,6 +155,21 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     fn report_contacts(&mut self, report: bool);
     /// The contacts between bodies in the last frame, ascending by bodies.
     fn contacts(&self) -> Vec<Contact<3>>;
+    /// The first point of a body that a ray meets, at most `reach` [m] from its origin. In the plane the third coordinates do not count.
+    ///
+    /// # Errors
+    /// As for [`World::cast_ray`].
+    fn cast_ray(
+        &self,
+        origin: [f64; 3],
+        direction: [f64; 3],
+        reach: f64,
+    ) -> Result<Option<SurfacePoint<3>>, WorldError>;
+    /// The point of the surfaces of all bodies that is nearest to a point, at most `reach` [m] away.
+    ///
+    /// # Errors
+    /// As for [`World::nearest_surface_point`].
+    fn nearest_surface_point(&self, point: [f64; 3], reach: f64) -> Result<Option<SurfacePoint<3>>, WorldError>;
     /// The lowest natural modes of a body about its present state.
     ///
     /// # Errors
@@ -340,6 +356,19 @@ impl<const D: usize> AnyWorld for World<D> {
     }
     fn report_contacts(&mut self, report: bool) {
         self.report_contacts(report);
+    }
+    fn cast_ray(
+        &self,
+        origin: [f64; 3],
+        direction: [f64; 3],
+        reach: f64,
+    ) -> Result<Option<SurfacePoint<3>>, WorldError> {
+        let flat = |x: [f64; 3]| core::array::from_fn(|d| x[d]);
+        Ok(self.cast_ray(flat(origin), flat(direction), reach)?.map(SurfacePoint::in_space))
+    }
+    fn nearest_surface_point(&self, point: [f64; 3], reach: f64) -> Result<Option<SurfacePoint<3>>, WorldError> {
+        let flat = core::array::from_fn(|d| point[d]);
+        Ok(self.nearest_surface_point(flat, reach)?.map(SurfacePoint::in_space))
     }
     fn contacts(&self) -> Vec<Contact<3>> {
         self.contacts().iter().map(|contact| contact.in_space()).collect()

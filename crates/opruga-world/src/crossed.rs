@@ -72,7 +72,7 @@ impl<const D: usize> World<D> {
     }
 
     /// The box around the nodes of a body [m].
-    fn bounds_of(&self, body: usize) -> [[f64; D]; 2] {
+    pub(crate) fn bounds_of(&self, body: usize) -> [[f64; D]; 2] {
         let nodes = 0..self.blueprint.bodies[body].mesh.nodes() as u32;
         bounds(nodes.map(|node| self.position(body, node)))
     }

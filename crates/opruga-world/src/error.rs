@@ -110,15 +110,15 @@ pub enum WorldError {
     },
     /// Pins and obstacles lead bodies through one another.
     #[error(
-        "pins and obstacles lead body `{first}` through {} at t = {} s; the world is at its last good frame; hint: another path of what \
+        "pins and obstacles lead `{first}` through {} at t = {} s; the world is at its last good frame; hint: another path of what \
          leads them, or `touch = false` for the pair",
-        if first == second { "itself".into() } else { format!("body `{second}`") },
+        if first == second { "itself".into() } else { format!("`{second}`") },
         number(*time)
     )]
     LedThrough {
         /// One body.
         first: String,
-        /// The other one, or the same.
+        /// The other one, the same, or an obstacle.
         second: String,
         /// The time at the end of the substep [s].
         time: f64,

@@ -40,6 +40,7 @@ mod population;
 mod problems;
 mod program_inputs;
 mod programs;
+mod queries;
 mod readings;
 mod rebuild;
 mod refused;
@@ -80,6 +81,7 @@ pub mod law {
     pub use opruga_models::fem::{SPEC, own_fields};
     pub use opruga_models::materials::{AtPoint, NAMES, in_plane, in_space};
 }
+pub use queries::SurfacePoint;
 pub use refused::RefusedCommand;
 pub use registry::{Registries, Registry};
 pub use slots::BodyHandle;

@@ -123,7 +123,9 @@ impl<const D: usize> World<D> {
                 let most = meeting.map_or(0, |meeting| meeting.touching.most);
                 WorldError::TooManyContacts { found, most, last: self.time() }
             }
-            Trouble::LedThrough { bodies } => {
+            Trouble::LedThrough { mut bodies } => {
+                // Obstacles have the highest numbers: a body is named first.
+                bodies.sort_unstable();
                 let name =
                     |number: u32| meeting.map_or(String::new(), |meeting| meeting.name_of(number, &self.blueprint));
                 WorldError::LedThrough { first: name(bodies[0]), second: name(bodies[1]), time }

@@ -299,9 +299,9 @@ impl Language {
                 number(*last)
             ),
             WorldError::LedThrough { first, second, time } => format!(
-                "Učvršćenja i prepreke vode tijelo `{first}` kroz {} u t = {} s\n\
+                "Učvršćenja i prepreke vode `{first}` kroz {} u t = {} s\n\
                  Svijet je na zadnjoj dobroj sličici; pomaže drugi put onoga što ih vodi, ili `touch = false` za taj par",
-                if first == second { "samo sebe".into() } else { format!("tijelo `{second}`") },
+                if first == second { "samo sebe".into() } else { format!("`{second}`") },
                 number(*time)
             ),
             WorldError::BrokenOff => "Sličica je prekinuta; svijet je na zadnjoj dobroj sličici".into(),

@@ -17,6 +17,7 @@ mod led_bodies;
 mod looks;
 mod other_balances;
 mod pins_and_masses;
+mod queries;
 mod real_time;
 mod refusals;
 mod robust_steps;
