@@ -132,6 +132,21 @@ impl<const D: usize> Touching<D> {
         self.reach.forget();
     }
 
+    /// Forgets the impulses of the last step, where the state is no longer the one that they led to.
+    pub fn forget_impulses(&mut self) {
+        self.rows.clear();
+    }
+
+    /// Calls back with the points and the impulses of the last step [N s], but for those of obstacles on points.
+    pub fn visit_impulses(&self, mut visit: impl FnMut(usize, [f64; D])) {
+        for row in self.rows.iter().filter(|row| row.normal_impulse > 0.0 && !row.of_obstacle) {
+            let impulse = row.impulse();
+            for k in (0..=D).filter(|k| row.weights[*k] != 0.0) {
+                visit(row.points[k] as usize, impulse.map(|c| row.weights[k] * c));
+            }
+        }
+    }
+
     /// Whether any two bodies, or one with itself, may touch.
     pub fn may_touch(&self) -> bool {
         let bodies = self.laws.class.len() as u32;

@@ -316,6 +316,10 @@ impl Document {
             true
         };
         match parts.as_slice() {
+            ["contact", field] => {
+                let table = self.text.get_mut("contact").and_then(Item::as_table_like_mut);
+                table.is_some_and(|table| put(table, field))
+            }
             ["world" | "time", field] => {
                 match self.text.entry(parts[0]).or_insert_with(toml_edit::table).as_table_like_mut() {
                     Some(table) => put(table, field),
@@ -361,8 +365,25 @@ impl Document {
         }
     }
 
-    /// Takes a field of an obstacle out of the scene itself; `false` where it is not written there.
+    /// Lets bodies touch one another with all that contact assumes, or takes the section out.
+    pub fn set_contact(&mut self, touch: bool) {
+        if touch {
+            self.text.entry("contact").or_insert_with(|| {
+                let mut table = Table::new();
+                table.decor_mut().set_prefix("\n");
+                Item::Table(table)
+            });
+        } else {
+            self.text.remove("contact");
+        }
+    }
+
+    /// Takes a field of an obstacle or of contact out of the scene itself; `false` where it is not written there.
     pub fn unset(&mut self, path: &str) -> bool {
+        if let Some(field) = path.strip_prefix("contact.") {
+            let table = self.text.get_mut("contact").and_then(Item::as_table_like_mut);
+            return table.is_some_and(|table| table.remove(field).is_some());
+        }
         let ["collider", number, field] = path.split('.').collect::<Vec<_>>()[..] else { return false };
         let tables = self.text.get_mut("collider").and_then(Item::as_array_of_tables_mut);
         let table = tables.zip(number.parse().ok()).and_then(|(tables, number)| tables.get_mut(number));

@@ -405,6 +405,7 @@ impl Engine for Living {
             warnings: self.warnings(),
             bodies,
             obstacles,
+            contact: scene.contact().map(|contact| contact.values.clone()),
             has_drawings: has_drawings(&*self.world),
             extents: picture.bodies.iter().map(Extent::of).collect(),
             picture,

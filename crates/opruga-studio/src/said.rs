@@ -24,6 +24,8 @@ pub enum Step {
     Turn,
     /// A body was scaled.
     Scale,
+    /// Contact was switched on or off.
+    Contact,
     /// A field of a body's shape was changed.
     Shape(&'static str),
     /// A body was taken away.
@@ -71,6 +73,8 @@ pub enum Said {
     SetDown,
     /// A field, by its path, that is given or not from the start on.
     AtTheStartAlone(String),
+    /// Contact between bodies is switched on and off at the start alone.
+    ContactAtTheStartAlone,
     /// The scene is at its end, at this time \[s\], and attracts attention by this.
     AtTheEnd(f64, Vec<Warning>),
     /// The recording that is viewed ends at this time \[s\].

@@ -244,6 +244,8 @@ pub struct Shown {
     pub bodies: Vec<BodyShown>,
     /// The obstacles.
     pub obstacles: Vec<ObstacleShown>,
+    /// How bodies touch one another; none where they pass through one another.
+    pub contact: Option<Values>,
     /// Pulls: node, pointer, force [m, m, N].
     pub pulls: Vec<[[f64; 3]; 3]>,
     /// Pushes of the pointer: node, end of the arrow, force [m, m, N].

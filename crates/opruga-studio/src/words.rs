@@ -132,13 +132,16 @@ words! {
     vertices: "Vertices", "Vrhovi";
     velocities: "Velocities", "Brzine";
     normals: "Normals", "Normale";
+    contact: "Contact", "Dodir";
+    bodies_touch: "Bodies touch one another", "Tijela se dodiruju";
+    bodies_touch_hint: "Without contact bodies pass through one another. It is switched on and off at the start, and works with explicit integrators", "Bez dodira tijela prolaze jedno kroz drugo. Uključuje se i isključuje na početku, a radi uz eksplicitne integratore";
     contacts: "Contact forces", "Sile dodira";
     arrow_of_velocity: "velocity", "brzina";
     arrow_of_normal: "normal", "normala";
     arrow_of_contact: "contact force", "sila dodira";
     arrow_of_pressure: "pressure", "tlak";
     arrow_of_force: "force", "sila";
-    contacts_hint: "Of obstacles on the nodes in the coming step: normal force, friction, and the impulse of an impact over the step", "Prepreka na čvorove u idućem koraku: normalna sila, trenje i impuls sudara kroz trajanje koraka";
+    contacts_hint: "Of obstacles and other bodies on the nodes: normal force, friction, and the impulse of an impact over the step", "Prepreka i drugih tijela na čvorove: normalna sila, trenje i impuls sudara kroz trajanje koraka";
     colour_map: "Colours", "Boje";
     viridis: "Violet to yellow", "Ljubičasto do žuto";
     embers: "Pale to dark violet", "Blijedo do tamnoljubičasto";

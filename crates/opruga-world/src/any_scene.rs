@@ -1,6 +1,8 @@
 //! A scene without a dimension in its type: what readers of either dimension ask of it.
 
-use crate::blueprint::{AnyBlueprint, Blueprint, BodyBlueprint, ColliderBlueprint, Pictured, Recorded, Time};
+use crate::blueprint::{
+    AnyBlueprint, Blueprint, BodyBlueprint, ColliderBlueprint, ContactBlueprint, Pictured, Recorded, Time,
+};
 use crate::world::{Options, World};
 use crate::{AnyWorld, Registries, WorldError};
 use opruga_core::spec::{Role, Values};
@@ -32,6 +34,8 @@ pub trait AnyScene {
     fn integrator(&self) -> &Values;
     /// Rigid obstacles.
     fn colliders(&self) -> &[ColliderBlueprint];
+    /// How bodies touch one another; none where they pass through one another.
+    fn contact(&self) -> Option<&ContactBlueprint>;
     /// How many numbers of bodies there are; a number may belong to a body that is gone.
     fn body_count(&self) -> usize;
     /// A body by its number; none where there is no such number.
@@ -83,6 +87,9 @@ impl<const D: usize> AnyScene for Blueprint<D> {
     }
     fn colliders(&self) -> &[ColliderBlueprint] {
         &self.colliders
+    }
+    fn contact(&self) -> Option<&ContactBlueprint> {
+        self.contact.as_ref()
     }
     fn body_count(&self) -> usize {
         self.bodies.len()

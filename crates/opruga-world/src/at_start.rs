@@ -11,6 +11,7 @@ pub(crate) struct AtStart<const D: usize> {
     pub(crate) surroundings: Option<Surroundings<D>>,
     pub(crate) time: Option<Time>,
     pub(crate) colliders: BTreeMap<usize, Values>,
+    pub(crate) contact: Option<Values>,
     /// Models and integrators of bodies of the scene; a body that a command of it adds begins as the command says.
     pub(crate) bodies: BTreeMap<usize, (Vec<Values>, Option<Values>)>,
 }

@@ -8,7 +8,7 @@ use crate::build::build_colliders;
 use crate::error::WorldError;
 use crate::inputs::Input;
 use crate::rebuild::Touched;
-use crate::schema::MOST_SUBSTEPS;
+use crate::schema::{CONTACT, MOST_SUBSTEPS};
 use crate::slots::Origin;
 use crate::world::World;
 use opruga_core::spec::{Allowed, Value, Values, nearest};
@@ -33,15 +33,16 @@ pub(crate) enum Before<const D: usize> {
     Surroundings(Surroundings<D>),
     Time(Time),
     Collider(usize, Values),
+    Contact(Values),
 }
 
-const FORMS: &str = "body.NAME.models.KIND.FIELD, body.NAME.integrator.FIELD, integrator.FIELD, collider.NUMBER.FIELD, world.gravity, world.drag, \
+const FORMS: &str = "body.NAME.models.KIND.FIELD, body.NAME.integrator.FIELD, integrator.FIELD, collider.NUMBER.FIELD, contact.FIELD, world.gravity, world.drag, \
                      world.largest_force, world.largest_velocity, world.largest_distance, \
                      world.unfold, time.substeps";
 
 impl<const D: usize> World<D> {
-    /// Changes a parameter: `body.NAME.models.KIND.FIELD`, `body.NAME.integrator.FIELD`, `integrator.FIELD`, `collider.NUMBER.FIELD`, `world.gravity`,
-    /// `world.drag`, `world.largest_force`, `world.largest_velocity`, `world.largest_distance`, `world.unfold`, `time.substeps`.
+    /// Changes a parameter: `body.NAME.models.KIND.FIELD`, `body.NAME.integrator.FIELD`, `integrator.FIELD`, `collider.NUMBER.FIELD`,
+    /// `contact.FIELD`, `world.gravity`, `world.drag`, `world.largest_force`, `world.largest_velocity`, `world.largest_distance`, `world.unfold`, `time.substeps`.
     ///
     /// The name of a body with copies means all of them, `NAME[i]` one; a body or a model may be named by its number. The
     /// stable step is estimated anew.
@@ -160,6 +161,15 @@ impl<const D: usize> World<D> {
                 }
                 Ok((Before::Collider(number, before), Touched::Bodies(Vec::new())))
             }
+            ["contact", field] => {
+                let message = "the scene has no `[contact]`, without which bodies pass through one another; allowed: in a scene with one";
+                let contact = self.blueprint.contact.as_mut().ok_or_else(|| refuse(message.into()))?;
+                let before = contact.values.clone();
+                contact.values.set_instead(CONTACT.spec, field, value, D).map_err(|e| refuse(e.to_string()))?;
+                // Made anew with the laws that hold from now on.
+                self.meeting = None;
+                Ok((Before::Contact(before), Touched::Bodies(Vec::new())))
+            }
             ["world", field] => {
                 let before = self.blueprint.surroundings;
                 let accept = |range: Allowed| {
@@ -262,17 +272,24 @@ impl<const D: usize> World<D> {
                     self.colliders = colliders;
                 }
             }
+            Before::Contact(values) => {
+                if let Some(contact) = &mut self.blueprint.contact {
+                    contact.values = values;
+                }
+                self.meeting = None;
+            }
         }
     }
 
     /// Keeps what a part of the scene was at the start, where it has changed for the first time.
     pub(crate) fn keep_start(&mut self, before: Before<D>) {
-        let AtStart { integrator, surroundings, time, colliders, bodies } = &mut self.at_start;
+        let AtStart { integrator, surroundings, time, colliders, contact, bodies } = &mut self.at_start;
         match before {
             Before::Integrator(values) => _ = integrator.get_or_insert(values),
             Before::Surroundings(was) => _ = surroundings.get_or_insert(was),
             Before::Time(was) => _ = time.get_or_insert(was),
             Before::Collider(number, values) => _ = colliders.entry(number).or_insert(values),
+            Before::Contact(values) => _ = contact.get_or_insert(values),
             Before::Models(changed) => {
                 for (body, models) in changed {
                     let own = &self.blueprint.bodies[body].integrator;
@@ -295,13 +312,17 @@ impl<const D: usize> World<D> {
 
     /// Takes the scene back to what it was at the start, in the blueprint alone.
     pub(crate) fn undo_all(&mut self) {
-        let AtStart { integrator, surroundings, time, colliders, bodies } = std::mem::take(&mut self.at_start);
+        let AtStart { integrator, surroundings, time, colliders, contact, bodies } = std::mem::take(&mut self.at_start);
         let scene = &mut self.blueprint;
         scene.integrator = integrator.unwrap_or_else(|| scene.integrator.clone());
         scene.surroundings = surroundings.unwrap_or(scene.surroundings);
         scene.time = time.unwrap_or(scene.time);
         for (number, values) in colliders {
             scene.colliders[number].values = values;
+        }
+        if let (Some(now), Some(values)) = (&mut scene.contact, contact) {
+            now.values = values;
+            self.meeting = None;
         }
         scene.bodies.truncate(self.slots.initial);
         for (number, (models, own)) in bodies {

@@ -17,8 +17,9 @@ impl<const D: usize> World<D> {
         self.contacts.as_deref().unwrap_or_default()
     }
 
-    /// Forgets who touched before.
+    /// Forgets who touched before, and how hard.
     pub(crate) fn forget_contacts(&mut self) {
+        self.meeting.iter_mut().for_each(|meeting| meeting.touching.forget_impulses());
         self.contacts.iter_mut().for_each(Vec::clear);
     }
 

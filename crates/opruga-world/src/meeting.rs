@@ -143,6 +143,21 @@ impl<const D: usize> Meeting<D> {
         }
     }
 
+    /// Adds the forces of the last substep of h [s] on the nodes of a body [N], but for those of obstacles on nodes. `stride` is how many
+    /// bodies lie side by side in its island.
+    pub(crate) fn add_forces(&self, body: usize, h: f64, stride: usize, forces: &mut [[f64; D]]) {
+        let Some(number) = self.bodies.iter().position(|other| *other == body) else { return };
+        let own = self.touching.surface.points_of(number);
+        self.touching.visit_impulses(|point, impulse| {
+            if own.contains(&point) {
+                let node = self.points[point].1 as usize / stride;
+                for d in 0..D {
+                    forces[node][d] += impulse[d] / h;
+                }
+            }
+        });
+    }
+
     /// Where the step that follows begins: where the last one ended.
     pub(crate) fn set_out(&mut self) {
         let Touching { before, after, .. } = &mut self.touching;

@@ -34,12 +34,24 @@ impl<const D: usize> World<D> {
         let held: std::collections::BTreeSet<usize> = system.pins.iter().map(|pin| pin.place).collect();
         (0..system.nodes as u32).filter(|node| held.contains(&system.layout.place(*node as usize, lane))).collect()
     }
-    /// The forces of obstacles on the nodes of a body in the coming substep, f = m (v' − v*)/h [N].
+    /// The forces of contact on the nodes of a body [N]: of obstacles in the coming substep, f = m (v' − v*)/h, and of bodies, and of corners
+    /// and edges of obstacles, in the last one, impulse over h.
     ///
     /// v* is the velocity that the forces of now would give a node within h without obstacles, v' the one with them:
     /// normal force, friction, and in an impact the impulse over h. Held nodes feel none; the pin takes it.
-    /// Empty where the body is not there, there are no obstacles, or a model refuses the state.
+    /// Empty where the body is not there, nothing can touch it, or a model refuses the state.
     pub fn contact_forces(&mut self, body: usize) -> Vec<[f64; D]> {
+        let mut forces = self.obstacle_forces(body);
+        if let Some(meeting) = self.meeting.as_ref().filter(|_| self.handle(body).is_some()) {
+            let (h, nodes) = (self.h(), self.node_count(body));
+            forces.resize(nodes, [0.0; D]);
+            let stride = self.islands[self.place[body].0].system.layout.stride();
+            meeting.add_forces(body, h, stride, &mut forces);
+        }
+        forces
+    }
+
+    fn obstacle_forces(&mut self, body: usize) -> Vec<[f64; D]> {
         let Some(colliders) = self.colliders.clone().filter(|_| self.handle(body).is_some()) else { return Vec::new() };
         let (h, time, (island, lane)) = (self.h(), self.time(), self.place[body]);
         let system = &mut self.islands[island].system;

@@ -6,7 +6,7 @@ use crate::bytes::{Reader, Writer};
 use crate::changes::Before;
 use crate::error::WorldError;
 use crate::running::Running;
-use crate::schema::MOST_SUBSTEPS;
+use crate::schema::{CONTACT, MOST_SUBSTEPS};
 use crate::slots::Origin;
 use crate::world::World;
 use opruga_core::spec::Values;
@@ -40,6 +40,13 @@ impl<const D: usize> World<D> {
         for (number, _) in colliders() {
             out.count(*number as u64);
             out.values(&now.colliders[*number].values);
+        }
+        if let Some(contact) = &now.contact {
+            let changed = then.contact.as_ref().is_some_and(|values| *values != contact.values);
+            out.count(u64::from(changed));
+            if changed {
+                out.values(&contact.values);
+            }
         }
         self.write_added(out);
         let changed = || {
@@ -132,6 +139,14 @@ impl<const D: usize> World<D> {
             self.keep_start(Before::Collider(number, before));
         }
         self.colliders = build_colliders(&self.blueprint)?;
+        if let Some(contact) = &mut self.blueprint.contact
+            && reader.count()? > 0
+        {
+            let values = reader.values(D, |kind| (kind == CONTACT.spec.kind).then_some(CONTACT.spec))?;
+            let before = std::mem::replace(&mut contact.values, values);
+            self.meeting = None;
+            self.keep_start(Before::Contact(before));
+        }
         self.take_added(reader, commands, &known)?;
         for _ in 0..reader.length()? {
             let number = reader.count()? as usize;

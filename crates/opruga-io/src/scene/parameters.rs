@@ -121,6 +121,7 @@ fn resolve<const D: usize>(
 ) -> Result<Option<&'static Field>, Lost> {
     match parts {
         ["world", name] => find(schema::WORLD.spec, name).map(Some),
+        ["contact", name] => find(schema::CONTACT.spec, name).map(Some),
         ["time", "substeps"] => find(schema::TIME.spec, "substeps").map(Some),
         ["time", ..] => Err(lost("parameter that changes in the run", parameter, ["time.substeps"].into_iter())),
         ["integrator", name] => {
@@ -166,15 +167,16 @@ fn resolve<const D: usize>(
             }
         }
         _ => {
-            const FORMS: [&str; 6] = [
+            const FORMS: [&str; 7] = [
                 "world.FIELD",
+                "contact.FIELD",
                 "time.substeps",
                 "integrator.FIELD",
                 "collider.NUMBER.FIELD",
                 "body.NAME.models.KIND.FIELD",
                 "body.NAME.integrator.FIELD",
             ];
-            const HEADS: [&str; 5] = ["world", "time", "integrator", "collider", "body"];
+            const HEADS: [&str; 6] = ["world", "contact", "time", "integrator", "collider", "body"];
             let near =
                 nearest(parts.first().unwrap_or(&""), HEADS.into_iter()).filter(|n| Some(&n.as_str()) != parts.first());
             Err(Lost {

@@ -69,6 +69,9 @@ impl Properties {
             CollapsingHeader::new(heading(words.world())).id_salt("world").default_open(true).show(ui, |ui| {
                 self.world(ui, shown, &kinds, words, asks);
             });
+            CollapsingHeader::new(heading(words.contact())).id_salt("contact").default_open(false).show(ui, |ui| {
+                self.contact(ui, shown, kinds.dimension, words, asks);
+            });
             for (number, obstacle) in shown.obstacles.iter().enumerate().take(16) {
                 let kind = obstacle.values.kind();
                 let title = format!("{}: {}", words.obstacle(), words.kind(Part::Obstacle, kind));
@@ -338,6 +341,32 @@ impl Properties {
             && let Some((name, field, value)) = self.pending.take()
         {
             asks.push(Request::Edit(Edit::Shape(name, field, value)));
+        }
+    }
+
+    /// Whether and how bodies touch one another.
+    fn contact(&mut self, ui: &mut Ui, shown: &Shown, dimension: usize, words: Language, asks: &mut Vec<Request>) {
+        let mut touch = shown.contact.is_some();
+        if ui.checkbox(&mut touch, words.bodies_touch()).on_hover_text(words.bodies_touch_hint()).changed() {
+            asks.push(Request::Edit(Edit::Contact(touch)));
+        }
+        let Some(values) = &shown.contact else { return };
+        let spec = values.spec();
+        // A choice of one word is none.
+        for field in spec.fields.iter().filter(|field| !matches!(field.range, Allowed::Choice([_]))) {
+            let path = &format!("contact.{}", field.name);
+            let place = Place {
+                path,
+                part: Part::Contact,
+                kind: spec.kind,
+                field,
+                dimension,
+                words,
+                values: Some(values),
+                whole: Some(spec),
+            };
+            let unset = |_| Some(Request::Unset(path.clone()));
+            self.set(ui, place, values.get(field.name), asks, unset);
         }
     }
 

@@ -41,6 +41,8 @@ pub enum Edit {
     ShapeWithout(String, &'static str),
     /// Takes a body away.
     Delete(String),
+    /// Lets bodies touch one another, or pass through one another.
+    Contact(bool),
 }
 
 impl Session {
@@ -254,6 +256,17 @@ impl Session {
                 self.exchange(Step::Shape(field), Some(name), Some(table))
             }
             Edit::Delete(name) => self.exchange(Step::Delete, Some(name), None),
+            Edit::Contact(touch) => {
+                if !(self.at_start() && self.document.commands() == self.own_commands) {
+                    return Err(Said::ContactAtTheStartAlone);
+                }
+                let past = self.past(Step::Contact);
+                let mut document = self.document.clone();
+                document.set_contact(*touch);
+                self.begin_with(document, self.own_commands)?;
+                self.remember(past);
+                Ok(())
+            }
         }
     }
 

@@ -306,3 +306,39 @@ fn what_one_scene_differs_in_from_that_beside_it_is_to_be_saved_too() {
     pass(&mut session, 1);
     assert!(session.is_edited());
 }
+
+/// Contact is switched on at the start, its numbers change while bodies move, and the command line does the same with the scene.
+#[test]
+fn bodies_that_land_on_each_other_touch_once_contact_is_switched_on() {
+    let text = opruga::scenes::find("pressures").expect("it").replace("center = [1.7, 1.6]", "center = [0.2, 2.8]");
+    let mut session = Session::open("landing", &text, opruga::scenes::files(), Options::default()).expect("it opens");
+    assert!(session.shown().contact.is_none());
+    let height = |session: &mut Session| {
+        let center = |body: usize| {
+            let positions = session.shown().picture.bodies[body].positions.clone();
+            positions.iter().fold(0.0, |sum, x| sum + x[1] / positions.len() as f64)
+        };
+        [0, 1].map(center)
+    };
+    let touch = |on: bool| Request::Edit(Edit::Contact(on));
+    ask(&mut session, touch(true));
+    ask(&mut session, touch(false));
+    assert!(session.shown().contact.is_none() && !session.saved().contains("[contact]"));
+    ask(&mut session, Request::Undo);
+    assert_eq!(session.shown().contact.as_ref().and_then(|values| values.number("friction")), Some(0.0));
+    ask(&mut session, Request::Set("contact.restitution".into(), Value::Number(0.2)));
+    assert!(session.saved().contains("[contact]\nrestitution = 0.2"), "{}", session.saved());
+    pass(&mut session, 60);
+    ask(&mut session, Request::Set("contact.friction".into(), Value::Number(0.7)));
+    assert_eq!(session.shown().contact.as_ref().and_then(|values| values.number("friction")), Some(0.7));
+    pass(&mut session, 60);
+    assert_replays(&session);
+    let [lower, upper] = height(&mut session);
+    assert!(upper - lower > 0.3 || (upper - lower).abs() < 0.2, "one lies on the other or beside it: {lower} {upper}");
+    // Not while they move.
+    let hash = session.hash();
+    session.handle(touch(false));
+    let message = session.shown().message.expect("a refusal");
+    assert_eq!((message.severity, message.said), (Severity::Refused, crate::said::Said::ContactAtTheStartAlone));
+    assert_eq!(session.hash(), hash);
+}

@@ -89,6 +89,7 @@ pub(super) const KINDS: &[(&str, &str, &str)] = &[
     ("shape.bitmap", "slika", "kontura slike"),
     ("shape.surface", "ploha iz datoteke", "ploha od trokuta"),
     ("shape.mesh", "mreža iz datoteke", "ispunjeno tijelo od ćelija kako ga je umrežio drugi program"),
+    ("contact.contact", "dodir", "kako se mekana tijela dodiruju međusobno i sama sa sobom"),
     ("obstacle.half_space", "poluprostor", "sve iza pravca (2D) ili ravnine (3D): pod, zid, kosina"),
     ("obstacle.box", "kvadar", "kvadar, pun ili kao posuda"),
     ("obstacle.ball", "kugla", "krug (2D) ili kugla (3D), puna ili kao posuda"),
@@ -361,6 +362,39 @@ pub(super) const FIELDS: &[(&str, &str, &str)] = &[
         "točke naprezanja",
         "Točke tijela u mirovanju čije se naprezanje čita: stress0.xx, stress0.xy, …, u okviru R.",
     ),
+    // Contact of bodies.
+    (
+        "contact.*.friction",
+        "trenje",
+        "Coulombov koeficijent µ, jednak za mirovanje i klizanje; dvaju tijela sredina njihovih.",
+    ),
+    (
+        "contact.*.restitution",
+        "restitucija",
+        "Omjer normalnih brzina nakon sudara dviju točaka i prije njega; dvaju tijela sredina njihovih.",
+    ),
+    ("contact.*.rest_speed", "brzina mirovanja", "Brzina približavanja do koje se par ne odbija."),
+    (
+        "contact.*.thickness",
+        "debljina",
+        "Udaljenost ploha u dodiru; dvaju tijela sredina njihovih. Kad se ne navede, stoti dio srednjeg brida plohe.",
+    ),
+    (
+        "contact.*.recovery_speed",
+        "brzina razdvajanja",
+        "Brzina kojom se razdvajaju tijela koja se preklapaju. Pomiču se samo položaji; rad pritom ulazi u `work_correction`.",
+    ),
+    ("contact.*.self", "sa sobom", "Dodiruju li tijela sama sebe."),
+    (
+        "contact.*.most_pairs",
+        "najviše parova",
+        "Najviše parova koji se gledaju u koraku; više ih završava s `limit.contacts`.",
+    ),
+    (
+        "contact.*.response",
+        "odziv",
+        "Kako se održava dodir: `constraint` impulsima koji parovima daju da se dodirnu, i ništa više.",
+    ),
     // Obstacles.
     ("obstacle.*.restitution", "restitucija", "Omjer normalnih brzina nakon sudara i prije njega."),
     ("obstacle.*.friction", "trenje", "Coulombov koeficijent µ, jednak za mirovanje i klizanje."),
@@ -498,6 +532,7 @@ pub(super) const FIELDS: &[(&str, &str, &str)] = &[
 
 /// Words that parameters may take, and their names.
 pub(super) const CHOICES: &[(&str, &str)] = &[
+    ("constraint", "ograničenje"),
     ("accept", "prihvati"),
     ("adiabatic", "adijabatski"),
     ("all", "svi"),

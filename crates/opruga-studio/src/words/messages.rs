@@ -34,6 +34,7 @@ impl Language {
             Step::Duplicate => self.step_duplicate().into(),
             Step::Move => self.step_move().into(),
             Step::Turn => self.step_turn().into(),
+            Step::Contact => self.contact().into(),
             Step::Scale => self.step_scale().into(),
             Step::Delete => self.step_delete().into(),
             Step::Open(name) => format!("{} {name}", self.step_open()),
@@ -114,6 +115,11 @@ impl Language {
                     "`{name}` se može izostaviti samo na početku: „Na početak”, pa ×"
                 )
             }
+            Said::ContactAtTheStartAlone => either!(
+                self,
+                "Contact is switched on and off at the start alone: Reset first",
+                "Dodir se uključuje i isključuje samo na početku: najprije „Na početak”"
+            ),
             Said::AtTheEnd(time, list) => {
                 let list: Vec<String> = list.iter().map(|warning| self.warning_text(warning)).collect();
                 let (count, list) = (list.len(), list.join(" · "));

@@ -17,6 +17,8 @@ pub enum Part {
     Shape,
     /// An obstacle.
     Obstacle,
+    /// How bodies touch one another.
+    Contact,
 }
 
 impl Part {
@@ -26,6 +28,7 @@ impl Part {
             Part::Model => "model",
             Part::Shape => "shape",
             Part::Obstacle => "obstacle",
+            Part::Contact => "contact",
         }
     }
 }
@@ -79,6 +82,7 @@ impl Language {
             (_, "gravity") => self.gravity(),
             (_, "drag") => self.drag(),
             (_, "substeps") => self.substeps(),
+            (_, "contact") => self.contact(),
             (_, "models") => self.models(),
             (_, "integrator") => self.integrator(),
             _ => "",
@@ -230,6 +234,7 @@ mod tests {
             .chain(of(Part::Shape, opruga::shapes::all()))
             .chain(of(Part::Obstacle, opruga::collide::all(2)))
             .chain(of(Part::Obstacle, opruga::collide::all(3)))
+            .chain(of(Part::Contact, vec![opruga::world::schema::CONTACT.spec]))
             .collect()
     }
 

@@ -412,3 +412,60 @@ fn contacts_begin_persist_and_end() {
     }
     assert_eq!(seen[0], seen[1]);
 }
+
+/// A ball that lies on another one presses on it with its weight: the forces on its nodes say so, and those on the other are opposite.
+#[test]
+fn forces_of_contact_carry_what_lies_on_a_body() {
+    let lower = BodyBlueprint { pins: vec![], ..ball("lower", 36, [0.0, 0.5], [0.0; 2]) };
+    let mut scene = scene("symplectic_euler", vec![lower, ball("upper", 36, [0.0, 1.5], [0.0; 2])]);
+    scene.surroundings.gravity = [0.0, -9.81];
+    scene.surroundings.drag = 5.0;
+    let fields = [("point", Value::Numbers(vec![0.0; 2])), ("normal", Value::Numbers(vec![0.0, 1.0]))];
+    scene.colliders.push(ColliderBlueprint::new::<2>("half_space", &fields).expect("a plane"));
+    for side in [-0.55, 0.55] {
+        let fields = [("point", Value::Numbers(vec![side, 0.0])), ("normal", Value::Numbers(vec![-side / 0.55, 0.0]))];
+        scene.colliders.push(ColliderBlueprint::new::<2>("half_space", &fields).expect("a wall"));
+    }
+    let mut world = world(&scene);
+    (0..240).for_each(|_| world.frame().expect("a frame"));
+    let sum = |forces: Vec<[f64; 2]>| forces.iter().fold(0.0, |sum, f| sum + f[1]);
+    let (below, above) = (sum(world.contact_forces(0)), sum(world.contact_forces(1)));
+    // The floor carries both, and the lower ball the upper one.
+    assert!((above - 9.81).abs() < 0.5, "the lower ball carries the upper one: {above} N");
+    assert!((below - 9.81).abs() < 0.5, "from the floor two weights, from above one: {below} N");
+    let kept = world.snapshot();
+    world.restore(&kept).expect("its own snapshot");
+    assert!(sum(world.contact_forces(1)).abs() < 1e-9, "nothing is known of a step that was not made");
+}
+
+/// How bodies touch can change while they move; snapshots know of it.
+#[test]
+fn contact_changes_while_bodies_move() {
+    let bodies = vec![ball("a", 24, [-0.52, 0.1], [0.4, 1.0]), ball("b", 24, [0.52, 0.0], [-0.4, 0.0])];
+    let mut scene = scene("symplectic_euler", bodies);
+    scene.contact = contact::<2>(&[("friction", 0.0.into())]);
+    let mut smooth = world(&scene);
+    let mut rough = world(&scene);
+    (0..5).for_each(|_| rough.frame().expect("a frame"));
+    (0..5).for_each(|_| smooth.frame().expect("a frame"));
+    rough.set("contact.friction", 0.9.into()).expect("a parameter");
+    assert_eq!(rough.blueprint().contact.as_ref().and_then(|contact| contact.values.number("friction")), Some(0.9));
+    let kept = rough.snapshot();
+    for world in [&mut smooth, &mut rough] {
+        (0..30).for_each(|_| world.frame().expect("a frame"));
+    }
+    assert_eq!(smooth.energy().loss_friction, 0.0);
+    assert!(rough.energy().loss_friction > 1e-3, "{:?}", rough.energy());
+    let end = rough.frame_hash();
+    // Back in the same world, and in one of the scene as it was.
+    for world in [&mut rough, &mut smooth] {
+        world.restore(&kept).expect("a snapshot of the scene");
+        (0..30).for_each(|_| world.frame().expect("a frame"));
+        assert_eq!(world.frame_hash(), end);
+    }
+    let refused = smooth.set("contact.friction", Value::Number(-1.0)).expect_err("refused");
+    assert!(refused.to_string().contains("allowed"), "{refused}");
+    scene.contact = None;
+    let refused = world(&scene).set("contact.friction", 0.5.into()).expect_err("refused");
+    assert!(refused.to_string().contains("[contact]"), "{refused}");
+}
