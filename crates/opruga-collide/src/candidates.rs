@@ -38,6 +38,11 @@ fn meet_boxes<const D: usize>(a: &Bounds<D>, b: &Bounds<D>) -> bool {
     (0..D).all(|d| a[0][d] <= b[1][d] && b[0][d] <= a[1][d])
 }
 
+/// Sorts pairs: by one number each, which is compared faster than two.
+fn sort(pairs: &mut [[u32; 2]]) {
+    pairs.sort_unstable_by_key(|[a, b]| u64::from(*a) << 32 | u64::from(*b));
+}
+
 /// Products of counts up to which all pairs of features of two bodies are compared: sorting them into cells costs as much as some
 /// thousand comparisons.
 const FEW: usize = 4096;
@@ -83,7 +88,7 @@ impl<const D: usize> Candidates<D> {
                 break;
             }
         }
-        pairs.sort_unstable();
+        sort(&mut pairs);
         self.vertex_facet = pairs;
         let mut pairs = std::mem::take(&mut self.edge_edge);
         for pair @ [a, b] in close.iter().filter(|[a, b]| D == 3 && a <= b) {
@@ -108,7 +113,7 @@ impl<const D: usize> Candidates<D> {
                 break;
             }
         }
-        pairs.sort_unstable();
+        sort(&mut pairs);
         self.edge_edge = pairs;
         self.close_bodies = close;
         complete

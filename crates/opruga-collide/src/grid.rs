@@ -2,43 +2,48 @@
 
 use opruga_math::Lane;
 
-/// Boxes sorted into cells that are at least as large as they are: the smallest cells have the mean extent of the boxes, each level
-/// above it twice that. So a box lies in at most 2ᴰ cells, however different the sizes are.
+/// Boxes sorted into the cell of their lowest corner, which is at least as large as they are: the smallest cells have the mean extent of
+/// the boxes, each level above it twice that. So a box reaches at most into the next cell of every axis, however different the sizes are,
+/// and none is found twice.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Grid<const D: usize> {
     boxes: Vec<[[f64; D]; 2]>,
-    levels: Vec<Level>,
+    levels: Vec<Level<D>>,
     /// The level of every box.
     level_of: Vec<u8>,
     origin: [f64; 3],
+    /// How many queries there were since the boxes were sorted.
+    queries: u32,
 }
 
 #[derive(Clone, Debug, Default)]
-struct Level {
-    /// The extent of a cell [m].
-    cell: f64,
-    /// Boxes of the buckets, `entries[starts[b]..starts[b + 1]]`; a bucket holds the cells of one hash.
-    starts: Vec<u32>,
-    entries: Vec<u32>,
+struct Level<const D: usize> {
+    /// One over the extent of a cell [1/m].
+    per_metre: f64,
+    /// Where the boxes of every bucket begin among `entries`, and the query that has looked into it last. A bucket holds the cells of one
+    /// hash.
+    buckets: Vec<[u32; 2]>,
+    /// Boxes with their numbers, bucket by bucket.
+    entries: Vec<([[f64; D]; 2], u32)>,
     count: usize,
 }
 
 /// The most levels: cells of the last one hold whatever is left.
 const LEVELS: usize = 24;
 
-impl Level {
-    fn bucket<const D: usize>(&self, cell: &[i64; D]) -> usize {
+impl<const D: usize> Level<D> {
+    fn bucket(&self, cell: &[i64; D]) -> usize {
         const PRIMES: [u64; 3] = [73_856_093, 19_349_663, 83_492_791];
         let mut hash = 0u64;
         for (c, prime) in cell.iter().zip(PRIMES) {
             hash ^= (*c as u64).wrapping_mul(prime);
         }
-        (hash as usize) & (self.starts.len() - 2)
+        (hash as usize) & (self.buckets.len() - 2)
     }
-    fn cell_of<const D: usize>(&self, origin: &[f64; 3], x: &[f64; D]) -> [i64; D] {
+    fn cell_of(&self, origin: &[f64; 3], x: &[f64; D]) -> [i64; D] {
         // Rounded towards zero and corrected: rounding down is a call of a function.
         core::array::from_fn(|d| {
-            let at = (x[d] - origin[d]) / self.cell;
+            let at = (x[d] - origin[d]) * self.per_metre;
             let cell = at as i64;
             cell - i64::from(cell as f64 > at)
         })
@@ -71,6 +76,7 @@ impl<const D: usize> Grid<D> {
         self.boxes.clear();
         self.boxes.extend(boxes);
         self.level_of.clear();
+        self.queries = 0;
         self.levels.iter_mut().for_each(|level| level.count = 0);
         let Some(first) = self.boxes.first() else { return };
         let extent = |[low, high]: &[[f64; D]; 2]| (0..D).fold(0.0, |most: f64, d| (high[d] - low[d]).larger(most));
@@ -96,71 +102,77 @@ impl<const D: usize> Grid<D> {
         }
         let mut cell = base;
         for level in &mut self.levels {
-            level.cell = cell;
+            // Rounded so that no box is larger than its cell.
+            level.per_metre = (1.0 - 1e-9) / cell;
             cell *= 2.0;
-            level.starts.clear();
-            level.starts.resize((2 * level.count).next_power_of_two() + 1, 0);
+            level.buckets.clear();
+            level.buckets.resize((2 * level.count).next_power_of_two() + 1, [0; 2]);
             level.entries.clear();
         }
         // Counted, summed up, and entered from behind, so that a bucket is in the order of the boxes.
-        for (number, [low, high]) in self.boxes.iter().enumerate() {
+        for (number, [low, _]) in self.boxes.iter().enumerate() {
             let level = &mut self.levels[self.level_of[number] as usize];
-            let (from, to) = (level.cell_of(&self.origin, low), level.cell_of(&self.origin, high));
-            cells_between(from, to, |cell| {
-                let bucket = level.bucket(&cell);
-                level.starts[bucket] += 1;
-            });
+            let bucket = level.bucket(&level.cell_of(&self.origin, low));
+            level.buckets[bucket][0] += 1;
         }
         for level in &mut self.levels {
             let mut sum = 0;
-            for start in &mut level.starts {
+            for [start, _] in &mut level.buckets {
                 sum += *start;
                 *start = sum;
             }
-            level.entries.resize(sum as usize, 0);
+            level.entries.resize(sum as usize, ([[0.0; D]; 2], 0));
         }
-        for (number, [low, high]) in self.boxes.iter().enumerate().rev() {
+        for (number, one) in self.boxes.iter().enumerate().rev() {
             let level = &mut self.levels[self.level_of[number] as usize];
-            let (from, to) = (level.cell_of(&self.origin, low), level.cell_of(&self.origin, high));
-            cells_between(from, to, |cell| {
-                let bucket = level.bucket(&cell);
-                level.starts[bucket] -= 1;
-                let entry = level.starts[bucket] as usize;
-                level.entries[entry] = number as u32;
-            });
+            let bucket = level.bucket(&level.cell_of(&self.origin, &one[0]));
+            level.buckets[bucket][0] -= 1;
+            let entry = level.buckets[bucket][0] as usize;
+            level.entries[entry] = (*one, number as u32);
         }
     }
 
-    /// Collects the numbers of all boxes that one touches, ascending and each once.
-    pub(crate) fn touching(&self, [low, high]: &[[f64; D]; 2], found: &mut Vec<u32>) {
+    /// Collects the numbers of all boxes that one touches, each once, in an order that depends on the boxes alone.
+    pub(crate) fn touching(&mut self, [low, high]: &[[f64; D]; 2], found: &mut Vec<u32>) {
         found.clear();
-        let meets = |other: &[[f64; D]; 2]| (0..D).all(|d| other[0][d] <= high[d] && low[d] <= other[1][d]);
-        for level in self.levels.iter().filter(|level| level.count > 0) {
-            let (from, to) = (level.cell_of(&self.origin, low), level.cell_of(&self.origin, high));
+        let meets = |other: &[[f64; D]; 2]| {
+            let mut meets = true;
+            for d in 0..D {
+                meets &= (other[0][d] <= high[d]) & (low[d] <= other[1][d]);
+            }
+            meets
+        };
+        self.queries += 1;
+        for level in self.levels.iter_mut().filter(|level| level.count > 0) {
+            let (mut from, to) = (level.cell_of(&self.origin, low), level.cell_of(&self.origin, high));
             let mut cells = 1.0;
             for d in 0..D {
+                from[d] -= 1;
                 cells *= (to[d] - from[d]) as f64 + 1.0;
             }
             // A box over more cells than there are boxes.
             if cells > level.entries.len() as f64 {
-                let number = self.levels.iter().position(|other| core::ptr::eq(other, level)).unwrap_or(0);
-                let all = (0..self.boxes.len() as u32).filter(|k| self.level_of[*k as usize] as usize == number);
-                found.extend(all.filter(|k| meets(&self.boxes[*k as usize])));
+                found.extend(level.entries.iter().filter(|(other, _)| meets(other)).map(|(_, number)| *number));
                 continue;
             }
             cells_between(from, to, |cell| {
                 let bucket = level.bucket(&cell);
-                let entries = &level.entries[level.starts[bucket] as usize..level.starts[bucket + 1] as usize];
-                found.extend(entries.iter().copied().filter(|k| meets(&self.boxes[*k as usize])));
+                // Several cells may share a bucket.
+                let [begin, looked] = level.buckets[bucket];
+                if looked == self.queries {
+                    return;
+                }
+                level.buckets[bucket][1] = self.queries;
+                let entries = &level.entries[begin as usize..level.buckets[bucket + 1][0] as usize];
+                found.extend(entries.iter().filter(|(other, _)| meets(other)).map(|(_, number)| *number));
             });
         }
-        found.sort_unstable();
-        found.dedup();
     }
 
     /// Bytes on the heap.
     pub(crate) fn heap_bytes(&self) -> usize {
-        let levels: usize = self.levels.iter().map(|l| 4 * (l.starts.capacity() + l.entries.capacity())).sum();
+        let of = |level: &Level<D>| 8 * level.buckets.capacity() + (16 * D + 8) * level.entries.capacity();
+        let levels: usize = self.levels.iter().map(of).sum();
         16 * D * self.boxes.capacity() + self.level_of.capacity() + levels
     }
 }
