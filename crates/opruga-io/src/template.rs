@@ -29,6 +29,10 @@ gravity = [0.0, -9.81]     # m/s²
 [integrator]
 kind = "symplectic_euler"
 
+# How bodies touch one another and themselves; without this they pass through one another. With explicit integrators only.
+[contact]
+friction = 0.3
+
 # A ball: springs on its outline, gas inside.
 [[body]]
 name = "ball"

@@ -68,7 +68,7 @@ fn around(file: &str, fields: &str, space: bool, ending: &str) -> String {
     format!(
         "# A shape from a file, dropped on the studio.\nformat = \"opruga-1\"\ntitle = \"{title}\"\ndimension = {dimension}\n\n\
          [time]\nseconds = 6.0\nframe = 0.016666666666666666\nsubsteps = 96\n\n[world]\ngravity = {gravity}\n\n\
-         [integrator]\nkind = \"symplectic_euler\"\n\n[[body]]\nname = \"shape\"\n\
+         [integrator]\nkind = \"symplectic_euler\"\n\n[contact]\nfriction = 0.3\n\n[[body]]\nname = \"shape\"\n\
          shape = {{ kind = \"{kind}\", file = \"{file}\", {fields} }}\nposition = {up}\nmass = 1.0\nmodels = [{models}]\n\n\
          [[collider]]\nkind = \"half_space\"\npoint = {floor}\nnormal = {normal}\nrestitution = 0.2\nfriction = 0.5\n",
         title = file.chars().filter(|c| c.is_alphanumeric() || " ._-".contains(*c)).take(60).collect::<String>(),

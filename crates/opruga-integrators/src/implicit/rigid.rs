@@ -43,10 +43,10 @@ struct Piece<const D: usize> {
 /// The motions of the whole that are free in an iteration.
 #[derive(Debug, Default)]
 pub(crate) struct Rigid<const D: usize> {
-    /// The nodes of each piece; none: not asked for yet.
+    /// The nodes of each piece, which stay the same while the models do; none: not asked for yet.
     nodes: Vec<Vec<usize>>,
-    /// The models that only push nodes against one another.
-    inner: Vec<usize>,
+    /// The models that only push nodes against one another; none: not asked for in this step.
+    inner: Option<Vec<usize>>,
     pieces: Vec<Piece<D>>,
     /// The forces that rounding of positions makes, over the loads; zero where that is not of interest.
     pub(super) conditioning: f64,
@@ -63,22 +63,17 @@ pub(super) struct Stage<'a, const D: usize> {
 }
 
 impl<const D: usize> Rigid<D> {
-    /// Forgets the pieces of an earlier step.
+    /// Forgets what an earlier step has found.
     pub(super) fn begin(&mut self) {
-        self.nodes.clear();
+        self.inner = None;
         self.conditioning = 0.0;
     }
 
     /// Finds the motions of every piece that nothing holds, and their matrix; after the forces were evaluated.
     pub(super) fn find(&mut self, stage: &Stage<'_, D>) {
         let Stage { mixture, x0, u, filter, .. } = stage;
-        if self.nodes.is_empty() {
-            let system = mixture.system;
-            self.nodes = pieces(system);
-            self.inner.clear();
-            self.inner.extend(
-                (0..system.members.len()).filter(|number| acts_between_nodes(system, &system.members[*number])),
-            );
+        if self.nodes.iter().map(Vec::len).sum::<usize>() != mixture.mass.len() {
+            self.nodes = pieces(mixture.system);
         }
         self.pieces.clear();
         let mut displacements = vec![[0.0; D]; mixture.mass.len() * MOST];
@@ -94,6 +89,15 @@ impl<const D: usize> Rigid<D> {
                 }
             }
             self.pieces.push(piece);
+        }
+        // Whoever asks the models pays for their matrices: not for bodies that are held.
+        if !self.any_is_free() {
+            return;
+        }
+        if self.inner.is_none() {
+            let system = mixture.system;
+            let inner = |number: &usize| acts_between_nodes(system, &system.members[*number]);
+            self.inner = Some((0..system.members.len()).filter(inner).collect());
         }
         let mut sink = Resistance {
             factor: 1.0,
@@ -128,10 +132,18 @@ impl<const D: usize> Rigid<D> {
         }
     }
 
+    /// Whether any piece has a motion that nothing holds.
+    fn any_is_free(&self) -> bool {
+        self.pieces.iter().any(|piece| !piece.motions.is_empty())
+    }
+
     /// What is out of balance in the free directions but for the forces between nodes: inertia, the weight, friction and all models that
     /// act from outside. It is added up without those forces, in whose rounding it may be lost.
     pub(super) fn residual(&self, stage: &Stage<'_, D>) -> Vec<f64> {
         let Stage { mixture, u, y, filter, contacting, .. } = stage;
+        if !self.any_is_free() {
+            return Vec::new();
+        }
         let system = mixture.system;
         let displacement: Vec<f64> = u.iter().zip(*y).map(|(u, y)| u - y).collect();
         let mut out = momenta::<D>(mixture.mass, system.inertia.as_ref(), &displacement);
@@ -153,7 +165,11 @@ impl<const D: usize> Rigid<D> {
 
     /// The models that act from outside.
     fn outer<'a>(&'a self, system: &'a System<D>) -> impl Iterator<Item = (usize, &'a Member<D>)> {
-        system.members.iter().enumerate().filter(|(number, _)| !self.inner.contains(number))
+        system
+            .members
+            .iter()
+            .enumerate()
+            .filter(|(number, _)| !self.inner.iter().flatten().any(|inner| inner == number))
     }
 
     /// φᵀ f of forces in the free directions, piece by piece.
