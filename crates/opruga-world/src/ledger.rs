@@ -361,9 +361,9 @@ impl Flows {
         self.limited_velocities += work.limited_velocities;
         self.solver.add(&work.solver);
     }
-    /// Counts a frame that ended with this ledger, where it is one to warn of.
-    pub(crate) fn count_frame(&mut self, energy: &Energy) {
-        self.open_frames += u64::from(energy.closure > LARGEST_CLOSURE);
+    /// Counts a frame that ended with this ledger, where it is one to warn of. The ledger of models without an energy does not close.
+    pub(crate) fn count_frame(&mut self, energy: &Energy, has_energy: impl FnOnce() -> bool) {
+        self.open_frames += u64::from(energy.closure > LARGEST_CLOSURE && has_energy());
         self.damped_frames += u64::from(energy.is_damped_by_rules());
     }
     /// The ledger for the present stock, after steps of h [s].

@@ -323,7 +323,7 @@ pub const BODY: Section = Section {
                 "",
                 Default::Absent,
                 "2: a node more in the middle of every edge of its triangles and tetrahedra, whose finite elements then neither lock in bending nor near incompressibility. \
-A body with a `fem` model whose cells are all triangles or tetrahedra has 2 where the scene is silent, others 1; `order = 1` is faster, bends too stiffly and is refused above ν = 0.45.",
+A body with a `fem` model, or another that owns its cells, whose cells are all triangles or tetrahedra has 2 where the scene is silent, others 1; `finite_volume` needs `order = 1`; `order = 1` is faster, bends too stiffly and is refused above ν = 0.45.",
             ),
         ],
     ),

@@ -109,7 +109,12 @@ impl<const D: usize> World<D> {
         if !(self.energy.is_finite() && self.momentum.is_finite()) {
             return Err(self.take_back_frame());
         }
-        self.flows.count_frame(&self.energy);
+        let islands = &self.islands;
+        let members = || islands.iter().flat_map(|island| &island.system.members);
+        // Derivatives of forces that have an energy are symmetric.
+        let has_energy =
+            || members().map(|member| member.potential.properties().views).all(|v| v.symmetric || !v.hessian);
+        self.flows.count_frame(&self.energy, has_energy);
         self.warn_of_crushed_bodies();
         self.warn_of_turned_cells();
         self.take_away_what_is_far()

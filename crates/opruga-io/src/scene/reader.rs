@@ -220,10 +220,19 @@ impl<'a> Reader<'a> {
             if let Some(Place::Override(_)) = tag.and_then(|tag| node.get(tag)).map(|kind| kind.place)
                 && let (Place::Bytes(..), Some((table, _))) = (entry.place, here.rsplit_once('.'))
             {
-                error.hint = Some(format!(
-                    "`{table}.kind` was set to `{0}`, and the other fields stayed; --set {table}={0} takes its defaults",
-                    section.spec.kind
-                ));
+                let kind = section.spec.kind;
+                // An integrator may be a word alone; others are tables with all that has no default.
+                error.hint = Some(if table == "integrator" {
+                    format!(
+                        "`{table}.kind` was set to `{kind}`, and the other fields stayed; --set {table}={kind} takes its defaults"
+                    )
+                } else {
+                    let needed = section.spec.fields.iter().filter(|field| field.default == Default::Required);
+                    let needed: String = needed.map(|field| format!(", {}=…", field.name)).collect();
+                    format!(
+                        "`{table}.kind` was set to `{kind}`, and the other fields stayed; --set '{table}={{kind=\"{kind}\"{needed}}}' replaces them"
+                    )
+                });
             }
             error
         };

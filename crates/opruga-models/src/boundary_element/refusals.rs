@@ -36,7 +36,7 @@ messages! {
         Degenerate { facet: usize, measure: f64, edge: f64 },
         /// Nodes that are not on the surface.
         "model.inner_nodes"
-        #[error("{count} of {nodes} nodes are not on the boundary, the first of them node {first}; allowed: nodes of the boundary alone, since the method knows no others; hint: the surface without its filling")]
+        #[error("{count} of {nodes} nodes are not on the boundary, the first of them node {first}; allowed: nodes of the boundary alone, since the method knows no others; hint: the surface without its filling, such as `polygon` or `svg` in the plane and `box`, `icosphere` or `surface` in space")]
         InnerNodes { count: usize, nodes: usize, first: usize },
         /// Several solids.
         "model.several_solids"

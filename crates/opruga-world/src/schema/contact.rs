@@ -15,7 +15,7 @@ pub const CONTACT: Section = Section {
         "contact",
         "How deformable bodies touch one another and themselves",
         "Without this section bodies pass through one another. Boundaries, open surfaces and wires touch, points where a body has none \
-         of these; a body filled by a lattice touches with the boundary of its cells. A substep moves all bodies freely, and then gives impulses to pairs of a vertex and a facet, and in space of two edges.",
+         of these; a body filled by a lattice touches with the boundary of its cells. Edges and facets touch the corners and edges of obstacles too, not nodes alone. A substep moves all bodies freely, and then gives impulses to pairs of a vertex and a facet, and in space of two edges.",
         &[
             Field::new(
                 "response",

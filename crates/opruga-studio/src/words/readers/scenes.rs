@@ -342,6 +342,10 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
         "`{}.kind` was set to `{}`, and the other fields stayed; --set {} takes its defaults",
         "`{}.kind` je postavljen na `{}`, a druga su polja ostala; --set {} uzima njegove zadane vrijednosti",
     ),
+    (
+        "`{}.kind` was set to `{}`, and the other fields stayed; --set '{}={kind=\"{}\"{}}' replaces them",
+        "`{}.kind` je postavljen na `{}`, a druga su polja ostala; --set '{}={kind=\"{}\"{}}' ih zamjenjuje",
+    ),
     ("`{}` has no effect here; it has one only {}", "`{}` ovdje ne djeluje; djeluje samo {}"),
     ("`{}` does not exist in {}D", "`{}` ne postoji u {}D"),
     ("a list of tables", "popis tablica"),
