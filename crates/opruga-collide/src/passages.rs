@@ -1,6 +1,7 @@
 //! Pairs that would pass through one another within a step, whatever was solved for: found on the final motion.
 
 use crate::gap::Gap;
+use crate::impulses::Row;
 use crate::rows::{impact, key, meeting_time};
 use crate::touching::{Touching, Trouble};
 use crate::vector::dot;
@@ -65,9 +66,9 @@ impl<const D: usize> Touching<D> {
             return false;
         }
         let id = key(pair, with_facet);
-        match self.passing.iter_mut().find(|(other, _)| *other == id) {
-            Some((_, known)) => *known = gap,
-            None => self.passing.push((id, gap)),
+        match self.passing.binary_search_by_key(&id, |(other, _)| *other) {
+            Ok(k) => self.passing[k].1 = gap,
+            Err(k) => self.passing.insert(k, (id, gap)),
         }
         self.fresh.push(id);
         true
@@ -102,17 +103,18 @@ impl<const D: usize> Touching<D> {
         if self.passing.is_empty() {
             return;
         }
+        let passing = &self.passing;
+        let passes = |row: &Row<D>| passing.binary_search_by_key(&row.id, |(id, _)| *id).is_ok();
+        self.rows.retain(|row| !passes(row));
+        let mut stay = self.watched.iter().map(|row| !passes(row));
+        self.heads.retain(|_| stay.next() == Some(true));
+        self.watched.retain(|row| !passes(row));
         for k in 0..self.passing.len() {
             let (id, gap) = self.passing[k];
             let (pair, with_facet) = pair_of(id);
             let bodies = self.bodies_of(pair, with_facet);
             let law = *self.laws.of(bodies[0], bodies[1]);
             let row = self.row(&gap, &law, h, pair, with_facet);
-            self.rows.retain(|row| row.id != id);
-            if let Some(k) = self.watched.iter().position(|row| row.id == id) {
-                self.watched.remove(k);
-                self.heads.remove(k);
-            }
             if row.mass[0] > 0.0 {
                 self.rows.push(row);
             }

@@ -70,7 +70,7 @@ pub struct Touching<const D: usize> {
     pub(crate) impact: Vec<[f64; D]>,
     /// Where the points are at the end of the step [m].
     pub(crate) end: Vec<[f64; D]>,
-    /// Pairs that would pass through one another, and the gap by which each is solved for.
+    /// Pairs that would pass through one another, ascending, and the gap by which each is solved for.
     pub(crate) passing: Vec<(u64, Gap<D>)>,
     /// Those of them that the last look has found.
     pub(crate) fresh: Vec<u64>,
