@@ -3,6 +3,7 @@
 use crate::error::WorldError;
 use crate::world::World;
 use opruga_collide::{closest_on_facet, closest_on_segment, facet_normal};
+use opruga_math::Lane;
 use opruga_mesh::winding_number;
 
 /// A point on the surface of a body as it is now.
@@ -128,7 +129,7 @@ impl<const D: usize> World<D> {
                 enter = if a > enter { a } else { enter };
                 leave = if b < leave { b } else { leave };
             }
-            if enter > leave + 1e-9 * (1.0 + farthest.abs().min(enter.abs())) {
+            if enter > leave + 1e-9 * (1.0 + farthest.smaller(enter)) {
                 continue;
             }
             self.pieces(body, &mut |piece| {
@@ -161,7 +162,7 @@ impl<const D: usize> World<D> {
                 if beyond > 0.0 { beyond } else { 0.0 }
             });
             let farthest = best.as_ref().map_or(reach, |best| best.0);
-            if !(dot(&outside, &outside).sqrt() <= farthest) {
+            if dot(&outside, &outside).sqrt() > farthest {
                 continue;
             }
             self.pieces(body, &mut |piece| {

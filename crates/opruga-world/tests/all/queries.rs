@@ -83,7 +83,7 @@ fn queries_see_bodies_where_they_are() {
     let line = Mesh::<2>::line([0.0, -1.0], [0.0, 1.0], 4).expect("a line");
     let mut world = world(vec![(ring(), [4.0, 0.0]), (ring(), [2.0, 0.0]), (line, [6.0, 0.0])]);
     let ray = |world: &World<2>, y: f64| world.cast_ray([0.0, y], [1.0, 0.0], 100.0).expect("a ray");
-    let apothem = 0.5 * (std::f64::consts::PI / 48.0).cos();
+    let apothem = 0.5 * libm::cos(std::f64::consts::PI / 48.0);
     let hit = ray(&world, 0.0).expect("the second ring");
     assert_eq!(hit.body, 1);
     assert!(hit.distance >= 1.5 - 1e-12 && hit.distance <= 2.0 - apothem, "{hit:?}");

@@ -44,7 +44,8 @@ fn signed_distance(world: &World<2>, p: [f64; 2]) -> f64 {
             inside ^= q[0] + (p[1] - q[1]) / (r[1] - q[1]) * (r[0] - q[0]) > p[0];
         }
         let t = opruga_collide::closest_on_segment(&p, &q, &r);
-        let square: f64 = (0..2).map(|d| (p[d] - q[d] - t * (r[d] - q[d])).powi(2)).sum();
+        let away: [f64; 2] = core::array::from_fn(|d| p[d] - q[d] - t * (r[d] - q[d]));
+        let square = away[0] * away[0] + away[1] * away[1];
         least = if square < least { square } else { least };
     }
     if inside { -least.sqrt() } else { least.sqrt() }
