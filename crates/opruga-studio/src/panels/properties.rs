@@ -355,7 +355,7 @@ impl Properties {
         // A choice of one word is none.
         for field in spec.fields.iter().filter(|field| !matches!(field.range, Allowed::Choice([_]))) {
             let path = &format!("contact.{}", field.name);
-            let place = Place {
+            let row = Place {
                 path,
                 part: Part::Contact,
                 kind: spec.kind,
@@ -366,7 +366,7 @@ impl Properties {
                 whole: Some(spec),
             };
             let unset = |_| Some(Request::Unset(path.clone()));
-            self.set(ui, place, values.get(field.name), asks, unset);
+            self.set(ui, row, values.get(field.name), asks, unset);
         }
     }
 
