@@ -1,5 +1,6 @@
 //! Impulses on pairs in contact: projected Gauss–Seidel.
 
+use crate::coupled::Coupled;
 use crate::gap::Gap;
 use crate::vector::{dot, length, scaled, subtract};
 use opruga_math::Lane;
@@ -26,6 +27,8 @@ pub(crate) struct Row<const D: usize> {
     pub(crate) friction_impulse: [f64; D],
     /// Whether the second feature is an obstacle.
     pub(crate) of_obstacle: bool,
+    /// Whether points of a body follow one another ([`Coupled`]).
+    pub(crate) coupled: bool,
 }
 
 impl<const D: usize> Row<D> {
@@ -43,6 +46,7 @@ impl<const D: usize> Row<D> {
             normal_impulse: 0.0,
             friction_impulse: [0.0; D],
             of_obstacle: false,
+            coupled: false,
         };
         row.weigh(inverse_mass);
         row
@@ -62,6 +66,58 @@ impl<const D: usize> Row<D> {
         }
         let inverse = |k: f64| if k > 0.0 { 1.0 / k } else { 0.0 };
         self.mass = [inverse(along), inverse(across)];
+    }
+
+    /// Works out what it weighs where points follow one another.
+    pub(crate) fn weigh_coupled(&mut self, coupled: &Coupled<D>, inverse_mass: &[[f64; D]]) {
+        let mobility = coupled.mobility(self, inverse_mass);
+        // Across the normal the largest row sum is at least what any direction has.
+        let (mut along, mut across) = (0.0, 0.0);
+        for (d, row) in mobility.iter().enumerate() {
+            along += self.normal[d] * dot(row, &self.normal);
+            across = row.iter().map(|c| c.abs()).sum::<f64>().larger(across);
+        }
+        let inverse = |k: f64| if k > 0.0 { 1.0 / k } else { 0.0 };
+        (self.mass, self.coupled) = ([inverse(along), inverse(across)], true);
+    }
+
+    /// One turn where points follow one another: as [`Row::solve`].
+    fn solve_coupled(&mut self, inverse_mass: &[[f64; D]], coupled: &mut Coupled<D>, v: &mut [[f64; D]]) -> f64 {
+        if self.mass[0] == 0.0 {
+            return 0.0;
+        }
+        let un = dot(&subtract(&self.mean(v), &self.carry), &self.normal);
+        let old = self.normal_impulse;
+        let new = (old + (self.target - un) * self.mass[0]).larger(0.0);
+        let mut changed = ((new - old) / self.mass[0]).abs();
+        if new != old {
+            coupled.give(self, &scaled(&self.normal, new - old), inverse_mass, v);
+            self.normal_impulse = new;
+        }
+        if self.friction > 0.0 && (new > 0.0 || old > 0.0) {
+            let u = subtract(&self.mean(v), &self.carry);
+            let un = dot(&u, &self.normal);
+            let mut after = self.friction_impulse;
+            for d in 0..D {
+                after[d] -= (u[d] - un * self.normal[d]) * self.mass[1];
+            }
+            let along = dot(&after, &self.normal);
+            for d in 0..D {
+                after[d] -= along * self.normal[d];
+            }
+            let (size, most) = (length(&after), self.friction * new);
+            if size > most {
+                after = scaled(&after, most / size);
+            }
+            let change = subtract(&after, &self.friction_impulse);
+            let largest = length(&change);
+            if largest > 0.0 {
+                coupled.give(self, &change, inverse_mass, v);
+                self.friction_impulse = after;
+                changed = (largest / self.mass[1]).larger(changed);
+            }
+        }
+        changed
     }
 
     /// Σ wᵢ aᵢ.
@@ -177,6 +233,11 @@ const TOLERANCE: f64 = 1e-2;
 /// number of its contacts that hang together within one step of the elastic wave: a few.
 const MOST_SWEEPS: usize = 60;
 
+/// The same of contacts of bodies that solve for the end of a step, with more sweeps: every sweep of theirs comes with a step of the body, and
+/// what one leaves has to be balanced by forces.
+const COUPLED_TOLERANCE: f64 = 1e-5;
+const MOST_COUPLED_SWEEPS: usize = 300;
+
 /// When rows were solved for, and when what they hold has changed, counted in turns of rows: beside the rows, which are large.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Turns<const D: usize> {
@@ -213,8 +274,14 @@ impl<const D: usize> Turns<D> {
         point
     }
 
+    fn join_points(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.root(a), self.root(b));
+        let (low, high) = if a < b { (a, b) } else { (b, a) };
+        self.parent[high as usize] = low;
+    }
+
     /// Sorts rows into those that points join, each in the order of features: what is solved together lies together.
-    fn join(&mut self, rows: &mut Vec<Row<D>>) {
+    fn join(&mut self, rows: &mut Vec<Row<D>>, coupled: &Coupled<D>) {
         if !rows.is_sorted_by_key(|row| row.id) {
             rows.sort_by_key(|row| row.id);
         }
@@ -222,17 +289,24 @@ impl<const D: usize> Turns<D> {
             let (points, weights) = (row.points, row.weights);
             (0..=D).filter(move |k| weights[*k] != 0.0).map(move |k| points[k])
         };
-        for p in rows.iter().flat_map(points) {
-            self.parent[p as usize] = p;
-            self.number[p as usize] = u32::MAX;
+        for row in rows.iter() {
+            let mut begin = |p: u32| {
+                self.parent[p as usize] = p;
+                self.number[p as usize] = u32::MAX;
+            };
+            points(row).for_each(&mut begin);
+            if row.coupled {
+                coupled.followers(row, begin);
+            }
         }
         for row in rows.iter() {
             let mut own = points(row);
             let Some(first) = own.next() else { continue };
             for p in own {
-                let (a, b) = (self.root(first), self.root(p));
-                let (low, high) = if a < b { (a, b) } else { (b, a) };
-                self.parent[high as usize] = low;
+                self.join_points(first, p);
+            }
+            if row.coupled {
+                coupled.followers(row, |p| self.join_points(first, p));
             }
         }
         // Counted, summed up, and entered from behind.
@@ -272,17 +346,21 @@ impl<const D: usize> Turns<D> {
 pub(crate) fn solve<const D: usize>(
     rows: &mut Vec<Row<D>>,
     inverse_mass: &[[f64; D]],
+    coupled: &mut Coupled<D>,
     v: &mut [[f64; D]],
     turns: &mut Turns<D>,
     approach: f64,
 ) -> usize {
-    turns.join(rows);
+    turns.join(rows, coupled);
     let Turns { stamps, heads, now, starts, .. } = turns;
     let begin = *now;
     for ends in starts.windows(2) {
         let range = ends[0] as usize..ends[1] as usize;
         let (rows, heads) = (&mut rows[range.clone()], &mut heads[range]);
-        for sweep in 0..MOST_SWEEPS {
+        let together = rows.iter().any(|row| row.coupled);
+        let (most, tolerance) =
+            if together { (MOST_COUPLED_SWEEPS, COUPLED_TOLERANCE) } else { (MOST_SWEEPS, TOLERANCE) };
+        for sweep in 0..most {
             let mut changed = false;
             for k in 0..rows.len() {
                 let k = if sweep % 2 == 0 { k } else { rows.len() - 1 - k };
@@ -291,9 +369,17 @@ pub(crate) fn solve<const D: usize>(
                     continue;
                 }
                 *now += 1;
-                if rows[k].solve(inverse_mass, v) > TOLERANCE * approach {
+                let change = if rows[k].coupled {
+                    rows[k].solve_coupled(inverse_mass, coupled, v)
+                } else {
+                    rows[k].solve(inverse_mass, v)
+                };
+                if change > tolerance * approach {
                     changed = true;
                     points[..=D].iter().for_each(|p| stamps[*p as usize] = *now);
+                    if rows[k].coupled {
+                        coupled.followers(&rows[k], |p| stamps[p as usize] = *now);
+                    }
                 }
                 *last = *now;
             }

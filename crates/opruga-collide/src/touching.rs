@@ -1,6 +1,7 @@
 //! Deformable bodies that touch: what a substep makes of their surfaces.
 
 use crate::candidates::Candidates;
+use crate::coupled::{Coupled, Respond};
 use crate::gap::Gap;
 use crate::impulses::{Row, Turns, part, solve};
 use crate::law::Laws;
@@ -32,6 +33,8 @@ pub struct Touching<const D: usize> {
     pub laws: Laws,
     /// One over the mass of every point along every axis [1/kg]; 0 where it is pinned.
     pub inverse_mass: Vec<[f64; D]>,
+    /// Bodies whose points follow one another. Their velocities after the motion are the mean ones of the step.
+    pub coupled: Coupled<D>,
     /// Positions [m] and velocities [m/s] of the points at the start of the step.
     pub before: [Vec<[f64; D]>; 2],
     /// Those after the free motion; where points touch, what contact makes of them.
@@ -158,14 +161,40 @@ impl<const D: usize> Touching<D> {
     /// # Errors
     /// [`Trouble`] where there are more candidates than [`Touching::most`], or pins and obstacles force a passage.
     pub fn step(&mut self, h: f64, obstacles: Option<Obstacles<'_, D>>) -> Result<(), Trouble> {
-        self.changed.clear();
+        self.begin_step();
+        self.coupled.apart = true;
+        self.find_impulses(h, obstacles, None)?;
+        self.end_step(h);
+        Ok(())
+    }
+
+    /// Begins a substep.
+    pub fn begin_step(&mut self) {
         self.passing.clear();
+        self.coupled.apart = false;
+        self.counts.steps += 1;
+    }
+
+    /// Finds the impulses of a substep of h [s] and the motion that they lead to; bodies that answer as a whole do so by `respond`. Says
+    /// whether that motion holds: not where they do not answer, or points of them would have to move in another way.
+    ///
+    /// # Errors
+    /// [`Trouble`] as of [`Touching::step`].
+    pub fn find_impulses(
+        &mut self,
+        h: f64,
+        obstacles: Option<Obstacles<'_, D>>,
+        mut respond: Option<&mut dyn Respond<D>>,
+    ) -> Result<bool, Trouble> {
+        self.changed.clear();
         self.zones.clear();
         let points = self.surface.points();
         self.moved.resize(points, [0.0; D]);
         self.impact.resize(points, [0.0; D]);
         self.number.resize(points, 0);
-        self.counts.steps += 1;
+        for p in (0..self.coupled.count()).flat_map(|body| self.coupled.points_of(body)) {
+            self.moved[p] = [0.0; D];
+        }
         self.thickest = self.laws.largest_thickness();
         self.reach.begin([&self.before[0], &self.after[0]], h * self.laws.recovery_speed, self.margin);
         let mut rounds = 0;
@@ -173,7 +202,9 @@ impl<const D: usize> Touching<D> {
             self.search()?;
             self.take_gaps(h);
             if !self.rows.is_empty() {
-                self.solve(h, obstacles);
+                if !self.solve(h, obstacles, respond.as_mut().map(|respond| &mut **respond as _)) {
+                    return Ok(false);
+                }
                 self.settle(h);
                 if self.reach.grow(&self.touched, &self.after[0], &self.end, self.margin) {
                     continue;
@@ -186,18 +217,67 @@ impl<const D: usize> Touching<D> {
             }
             rounds += 1;
             if rounds > ROUNDS {
+                if !self.coupled.apart && self.coupled.count() > 0 {
+                    return Ok(false);
+                }
                 self.hold_together(h)?;
                 break;
             }
         }
         self.keep_impulses();
+        Ok(true)
+    }
+
+    /// Ends a substep: books what contact did, and moves the points.
+    pub fn end_step(&mut self, h: f64) {
         if self.report {
             reports::add(&mut self.reports, &self.rows, &self.surface, &self.end);
         }
         self.book(h);
         self.counts.candidates += self.candidates.len() as u64;
         self.counts.pairs += (self.rows.len() + self.watched.len()) as u64;
-        Ok(())
+    }
+
+    /// Lets all points answer by themselves for the rest of the substep: contact and the balance of forces did not come to terms.
+    pub fn part_coupled(&mut self) {
+        self.coupled.apart = true;
+        self.passing.clear();
+        self.last.clear();
+    }
+
+    /// How far the points of a body end from where the impulses were to lead them, at most [m].
+    pub fn missed_by(&self, body: usize, actual: &[[f64; D]]) -> f64 {
+        let points = self.coupled.points_of(body);
+        let mut most: f64 = 0.0;
+        for (p, x) in points.zip(actual) {
+            let end = subtract(&self.end[p], &self.moved_of(p));
+            most = length(&subtract(x, &end)).larger(most);
+        }
+        most
+    }
+
+    /// The velocity of a point that impulses lead to [m/s].
+    pub fn velocity_found(&self, point: usize) -> [f64; D] {
+        self.v[point]
+    }
+
+    /// Whether a point follows others of its body in this substep.
+    pub fn follows(&self, point: u32) -> bool {
+        self.coupled.body_of(point).is_some()
+    }
+
+    /// Looks whether pairs pass through one another where bodies that solve for the end of a step go to where they are now; those pairs are
+    /// solved for next.
+    pub fn passes(&mut self, h: f64) -> bool {
+        for p in (0..self.coupled.count()).flat_map(|body| self.coupled.points_of(body)) {
+            self.end[p] = self.after[0][p];
+        }
+        self.find_passages(h)
+    }
+
+    /// How far overlap is taken apart at a point of a body that follows others [m].
+    pub fn moved_of(&self, point: usize) -> [f64; D] {
+        if self.coupled.body_of(point as u32).is_some() { self.moved[point] } else { [0.0; D] }
     }
 
     /// Nothing touches: everything goes where it goes by itself.
@@ -223,8 +303,8 @@ impl<const D: usize> Touching<D> {
         Ok(())
     }
 
-    /// Solves for the velocities after contact.
-    fn solve(&mut self, h: f64, obstacles: Option<Obstacles<'_, D>>) {
+    /// Solves for the velocities after contact; says whether all bodies that follow as a whole have answered.
+    fn solve(&mut self, h: f64, obstacles: Option<Obstacles<'_, D>>, mut respond: Option<&mut dyn Respond<D>>) -> bool {
         self.v.clone_from(&self.after[1]);
         self.known.clear();
         self.known.resize(self.surface.points(), false);
@@ -237,17 +317,45 @@ impl<const D: usize> Touching<D> {
             approach += if row.friction > 0.0 { length(&u).larger(speed) } else { speed };
         }
         approach /= self.rows.len() as f64;
+        self.coupled.begin();
+        if !self.weigh_coupled(0, &mut respond) {
+            return false;
+        }
         self.start_warm();
         self.turns.begin(self.surface.points());
         loop {
-            let (rows, turns) = (&mut self.rows, &mut self.turns);
-            self.counts.turns += solve(rows, &self.inverse_mass, &mut self.v, turns, approach) as u64;
+            let (rows, turns, coupled) = (&mut self.rows, &mut self.turns, &mut self.coupled);
+            self.counts.turns += solve(rows, &self.inverse_mass, coupled, &mut self.v, turns, approach) as u64;
+            self.touched.clear();
+            self.touched.resize(self.surface.points(), false);
+            self.coupled.finish(&self.after[1], &mut self.v, &mut self.touched);
+            let known = self.rows.len();
             if !self.call_who_was_pushed() {
                 break;
             }
             self.hold_points(h, obstacles);
+            if !self.weigh_coupled(known, &mut respond) {
+                return false;
+            }
         }
         self.counts.contacts += self.rows.len() as u64;
+        true
+    }
+
+    /// Works out what rows from a number on weigh where their points follow one another; says whether these answer.
+    fn weigh_coupled(&mut self, first: usize, respond: &mut Option<&mut dyn Respond<D>>) -> bool {
+        if self.coupled.count() == 0 || self.coupled.apart {
+            return true;
+        }
+        for row in &mut self.rows[first..] {
+            if self.coupled.holds(row) {
+                if !respond.as_mut().is_some_and(|respond| self.coupled.need(row, &mut **respond)) {
+                    return false;
+                }
+                row.weigh_coupled(&self.coupled, &self.inverse_mass);
+            }
+        }
+        true
     }
 
     /// Takes in what meets because one of its points was pushed, which it would not have done by itself; says whether there is any.
@@ -278,7 +386,10 @@ impl<const D: usize> Touching<D> {
         self.asked.clear();
         let surface = &self.surface;
         for row in &self.rows {
-            for k in (0..=D).filter(|k| row.weights[*k] != 0.0 && !surface.is_of_obstacle(row.points[*k])) {
+            let coupled = &self.coupled;
+            // What answers as a whole looks for its end between the obstacles.
+            let asks = |p: u32| !surface.is_of_obstacle(p) && coupled.body_of(p).is_none();
+            for k in (0..=D).filter(|k| row.weights[*k] != 0.0 && asks(row.points[*k])) {
                 let known = &mut self.known[row.points[k] as usize];
                 if !*known {
                     *known = true;
@@ -317,16 +428,18 @@ impl<const D: usize> Touching<D> {
             }
             if let Some((_, along, across)) = self.last.get(k).filter(|(id, ..)| *id == row.id) {
                 (row.normal_impulse, row.friction_impulse) = (*along, *across);
-                row.give(&row.impulse(), &self.inverse_mass, &mut self.v);
+                let impulse = row.impulse();
+                if row.coupled {
+                    self.coupled.give(row, &impulse, &self.inverse_mass, &mut self.v);
+                } else {
+                    row.give(&impulse, &self.inverse_mass, &mut self.v);
+                }
             }
         }
     }
 
     /// Takes the points along with their new velocities, and overlapping ones apart.
     fn settle(&mut self, h: f64) {
-        let points = self.surface.points();
-        self.touched.clear();
-        self.touched.resize(points, false);
         for row in &self.rows {
             if row.normal_impulse > 0.0 && !row.of_obstacle {
                 for k in (0..=D).filter(|k| row.weights[*k] != 0.0) {
@@ -340,7 +453,9 @@ impl<const D: usize> Touching<D> {
             for d in (0..D).filter(|d| self.inverse_mass[p][*d] > 0.0) {
                 self.end[p][d] = self.before[0][p][d] + (h * self.v[p][d] + self.moved[p][d]);
             }
-            self.moved[p] = [0.0; D];
+            if self.coupled.body_of(p as u32).is_none() {
+                self.moved[p] = [0.0; D];
+            }
         }
     }
 
@@ -363,6 +478,13 @@ impl<const D: usize> Touching<D> {
                     continue;
                 }
                 let (v0, v1) = (&self.before[1][p as usize], &self.v[p as usize]);
+                // The velocity of what follows as a whole is the mean one already. What answers by itself after a step that was solved for
+                // gets its impulse at the end of that.
+                let v0 = match (self.coupled.body_of(p), self.coupled.has(p)) {
+                    (Some(_), _) => v1,
+                    (None, true) => &self.after[1][p as usize],
+                    (None, false) => v0,
+                };
                 let (mut along, mut across, mut carried) = (0.0, 0.0, 0.0);
                 for d in 0..D {
                     let mean = 0.5 * (v0[d] + v1[d]) - row.carry[d];
@@ -384,12 +506,17 @@ impl<const D: usize> Touching<D> {
         self.zones.book(&self.before[1], &self.v, &self.inverse_mass, &self.number, &mut self.losses);
         for (p, losses) in self.changed.iter().zip(&mut self.losses) {
             let p = *p as usize;
-            for d in 0..D {
+            for d in (0..D).filter(|_| self.coupled.body_of(p as u32).is_none()) {
                 let inverse = self.inverse_mass[p][d];
                 if inverse > 0.0 {
                     let (v0, free, v1) = (self.before[1][p][d], self.after[1][p][d], self.v[p][d]);
                     let travel = self.end[p][d] - self.before[0][p][d];
-                    losses[3] += (free - v0) / (inverse * h) * (0.5 * h * (v0 + v1) - travel);
+                    let by_velocity = if self.coupled.has(p as u32) {
+                        self.after[0][p][d] - self.before[0][p][d]
+                    } else {
+                        0.5 * h * (v0 + v1)
+                    };
+                    losses[3] += (free - v0) / (inverse * h) * (by_velocity - travel);
                     self.after[0][p][d] = self.end[p][d];
                     self.after[1][p][d] = v1;
                 }
@@ -430,6 +557,7 @@ impl<const D: usize> Touching<D> {
         let states: usize = self.before.iter().chain(&self.after).map(Vec::capacity).sum();
         8 * D * (vectors + states)
             + self.surface.heap_bytes()
+            + self.coupled.heap_bytes()
             + self.candidates.heap_bytes()
             + core::mem::size_of::<Row<D>>() * (self.rows.capacity() + self.watched.capacity())
     }

@@ -37,9 +37,19 @@ impl<const D: usize> System<D> {
                 out.0[d][range.clone()].copy_from_slice(&self.forces[d][buffer..buffer + range.len()]);
             }
         }
+        self.add_pushes(out);
         if weight == 0.0 {
             // A trial counts nothing.
             self.work.limited_forces = limited;
+        }
+    }
+
+    /// Adds the forces of other bodies.
+    fn add_pushes(&self, out: &mut Columns<D>) {
+        for (place, force) in self.pushes.iter().flatten() {
+            for d in 0..D {
+                out.0[d][*place] += force[d];
+            }
         }
     }
 
@@ -48,13 +58,27 @@ impl<const D: usize> System<D> {
         self.members.iter().all(|m| m.memory.is_empty() && m.potential.properties().account == Account::Elastic)
     }
 
-    /// The potential energy of all models and of the weight in a state [J], after [`System::evaluate`] of the same state;
+    /// The potential energy of all models, of the weight and of the forces of other bodies in a state [J], after [`System::evaluate`] of the same state;
     /// none where a model that pushes has no energy.
     pub fn potential_energy(&self, stage: Stage, time: f64) -> Option<f64> {
         let silent = |member: &Member<D>| {
             member.potential.properties().account == Account::User && !member.potential.properties().views.energy
         };
-        (self.has_energy() && !self.members.iter().any(silent)).then(|| self.stored_energy(stage, time))
+        (self.has_energy() && !self.members.iter().any(silent))
+            .then(|| self.stored_energy(stage, time) - self.work_of_pushes(stage, time))
+    }
+
+    /// Σ F·x of the forces of other bodies, which are those of a potential: they stay throughout the step [J].
+    fn work_of_pushes(&self, stage: Stage, time: f64) -> f64 {
+        let Some(pushes) = &self.pushes else { return 0.0 };
+        let view = self.view(stage, self.time + time);
+        let mut sum = 0.0;
+        for (place, force) in pushes {
+            for d in 0..D {
+                sum += force[d] * view.x[d][*place];
+            }
+        }
+        sum
     }
 
     /// Whether every model says what its forces do: it has an energy, or its power is entered as that of damping or of loads.
@@ -121,6 +145,7 @@ impl<const D: usize> System<D> {
                 out.0[d][range.clone()].copy_from_slice(&force[d][..range.len()]);
             }
         }
+        self.add_pushes(out);
     }
 
     /// Delivers the second derivatives of what acts from outside, after [`System::evaluate`] of the same state.

@@ -76,6 +76,23 @@ pub trait Integrator<const D: usize>: Send + Sync + Debug {
     /// # Errors
     /// [`StepError`] where a model refuses.
     fn step(&self, system: &mut System<D>, h: f64) -> Result<(), StepError>;
+    /// Whether other bodies push within the step ([`System::pushes`]): so contact is part of the balance that it solves for. Else contact
+    /// changes velocities after the step.
+    fn takes_pushes(&self) -> bool {
+        false
+    }
+    /// Works out, after a step, how its end answers to pushes, for [`Integrator::answer`]; says whether it could.
+    ///
+    /// # Errors
+    /// [`StepError`] where a model refuses.
+    fn prepare_answer(&self, _system: &mut System<D>) -> Result<bool, StepError> {
+        Ok(false)
+    }
+    /// Replaces forces on the nodes, that act throughout the step [N], by the displacements that they add to its end, to first order [m]; the
+    /// coordinates of one node after the other. Says whether it could.
+    fn answer(&self, _system: &mut System<D>, _vector: &mut [f64]) -> bool {
+        false
+    }
 }
 
 impl<const D: usize> System<D> {

@@ -105,6 +105,9 @@ pub struct System<const D: usize> {
     pub pins: Vec<Pin<D>>,
     /// What the nodes may collide with in this frame.
     pub contacts: Option<std::sync::Arc<dyn Contacts<D>>>,
+    /// Forces with which other bodies push nodes throughout the step, by place [N]; none: it touches nobody. Implicit integrators take
+    /// them into the balance, explicit ones do not look at them.
+    pub pushes: Option<Vec<(usize, [f64; D])>>,
     /// The thesis's limits.
     pub stabilisers: Stabilisers,
     /// Energy that went in and out.
@@ -161,6 +164,7 @@ impl<const D: usize> System<D> {
             members: Vec::new(),
             pins: Vec::new(),
             contacts: None,
+            pushes: None,
             stabilisers: Stabilisers::default(),
             work: Work8::default(),
             history: History::default(),

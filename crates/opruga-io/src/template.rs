@@ -29,7 +29,7 @@ gravity = [0.0, -9.81]     # m/s²
 [integrator]
 kind = "symplectic_euler"
 
-# How bodies touch one another and themselves; without this they pass through one another. With explicit integrators only.
+# How bodies touch one another and themselves; without this they pass through one another.
 [contact]
 friction = 0.3
 

@@ -127,11 +127,10 @@ pub(crate) fn check<const D: usize>(
     if scene.contact.is_none() {
         return Ok(());
     }
-    if body.touches() && (integrator.needs().hessian || integrator.is_static()) {
+    if body.touches() && integrator.is_static() {
         let message = format!(
-            "`{}` solves for the end of a step, and contact between bodies is known for explicit integrators so far; allowed: an \
-             explicit one, such as `symplectic_euler` or `verlet`; hint: or `contact.touch = false` in this body, which then passes \
-             through the others",
+            "`{}` finds a state at rest, where bodies do not touch one another yet; allowed: an integrator of motion, such as \
+             `backward_euler` or `verlet`; hint: or `contact.touch = false` in this body, which then passes through the others",
             integrator.name()
         );
         return Err(BuildError::new("contact", "contact.implicit", message));

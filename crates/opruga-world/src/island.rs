@@ -34,6 +34,8 @@ pub(crate) struct Island<const D: usize> {
     last: Option<Saved<D>>,
     /// The states at the looks within the last frame.
     looks: Vec<Saved<D>>,
+    /// The state at the start of a substep that may be made again.
+    substep_start: Option<Saved<D>>,
 }
 
 /// The state at the last good frame, or within a frame.
@@ -77,6 +79,19 @@ impl<const D: usize> Saved<D> {
         }
         self.history.copy_from(&system.history);
         (self.time, self.work) = (time, system.work);
+    }
+
+    /// Writes the state into a system.
+    fn write_into(&self, system: &mut System<D>) {
+        for d in 0..D {
+            system.state.x.0[d].copy_from_slice(&self.x.0[d]);
+            system.state.v.0[d].copy_from_slice(&self.v.0[d]);
+        }
+        for (member, kept) in system.members.iter_mut().zip(&self.memory) {
+            member.memory.clone_from(kept);
+        }
+        system.history.copy_from(&self.history);
+        system.time = self.time;
     }
 
     /// Exchanges the state with that of a system.
@@ -131,6 +146,7 @@ impl<const D: usize> Island<D> {
             outcome: Ok(()),
             last: None,
             looks: Vec::new(),
+            substep_start: None,
         };
         island.stock = take_stock(&mut island.system);
         island
@@ -347,6 +363,24 @@ impl<const D: usize> Island<D> {
         self.outcome = Ok(());
     }
 
+    /// Keeps the state at the start of a substep, to which [`Island::rewind`] goes back.
+    pub(crate) fn mark(&mut self) {
+        let time = self.system.time;
+        match &mut self.substep_start {
+            Some(kept) => kept.take(&mut self.system, time),
+            None => self.substep_start = Some(Saved::of(&self.system, time)),
+        }
+    }
+
+    /// Goes back to the start of the substep.
+    pub(crate) fn rewind(&mut self) {
+        if let Some(kept) = self.substep_start.take() {
+            kept.write_into(&mut self.system);
+            self.system.work = kept.work;
+            self.substep_start = Some(kept);
+        }
+    }
+
     /// Makes one substep in a workspace that is lent.
     pub(crate) fn step_together(&mut self, plan: &FramePlan<D>, substep: u32, workspace: &mut Workspace<D>) {
         self.system.exchange(workspace);
@@ -411,15 +445,7 @@ impl<const D: usize> Island<D> {
     /// Goes back to the last good frame.
     pub(crate) fn restore(&mut self) {
         if let Some(saved) = &self.last {
-            for d in 0..D {
-                self.system.state.x.0[d].copy_from_slice(&saved.x.0[d]);
-                self.system.state.v.0[d].copy_from_slice(&saved.v.0[d]);
-            }
-            for (member, kept) in self.system.members.iter_mut().zip(&saved.memory) {
-                member.memory.clone_from(kept);
-            }
-            self.system.history.copy_from(&saved.history);
-            self.system.time = saved.time;
+            saved.write_into(&mut self.system);
         }
     }
 

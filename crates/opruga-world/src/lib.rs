@@ -40,6 +40,7 @@ mod population;
 mod problems;
 mod program_inputs;
 mod programs;
+mod pushes;
 mod queries;
 mod readings;
 mod rebuild;

@@ -2,9 +2,11 @@
 
 use crate::blueprint::Blueprint;
 use crate::contact_laws::{edges_of, laws};
-use crate::island::Island;
+use crate::island::{FramePlan, Island};
+use crate::pushes::Pushed;
 use opruga_collide::{Colliders, Outline, Touching, Trouble};
 use opruga_core::contacts::Contacts;
+use opruga_core::system::Workspace;
 use opruga_math::WIDTH;
 use std::sync::Arc;
 
@@ -26,6 +28,18 @@ pub(crate) struct Meeting<const D: usize> {
     pub(crate) bodies: Vec<usize>,
     /// Corners and edges of obstacles, which follow the bodies, and the first point of each.
     pub(crate) outlines: Vec<(Outline<D>, usize)>,
+    /// The bodies that take pushes into the balance of forces of their steps.
+    pub(crate) pushed: Vec<Pushed<D>>,
+}
+
+/// A substep that bodies have made without one another.
+#[derive(Clone, Copy)]
+pub(crate) struct Substep<'a, const D: usize> {
+    pub(crate) plan: &'a FramePlan<'a, D>,
+    pub(crate) number: u32,
+    /// The time at its end [s].
+    pub(crate) time: f64,
+    pub(crate) obstacles: Option<&'a dyn Contacts<D>>,
 }
 
 /// What the surfaces were made for: they are made anew where it has changed.
@@ -56,6 +70,7 @@ impl<const D: usize> Meeting<D> {
         let contact = scene.contact.as_ref()?;
         let mut touching = Touching::<D>::default();
         let (mut columns, mut points, mut bodies) = (vec![Vec::new(); islands.len()], Vec::new(), Vec::new());
+        let mut pushed = Vec::new();
         let (mut length, mut edges) = (0.0, 0);
         // In the order of the bodies: results depend on no batches.
         let mut seats: Vec<(usize, usize, usize)> = Vec::new();
@@ -83,6 +98,10 @@ impl<const D: usize> Meeting<D> {
                 touching.inverse_mass.push(inverse);
                 points.push((number as u32, *index));
             }
+            if islands[number].integrator.takes_pushes() {
+                touching.coupled.add(first as usize..touching.surface.points());
+                pushed.push(Pushed::new(number, indices.clone()));
+            }
             columns[number].push((first, indices));
         }
         let mean_edge = if edges > 0 { length / edges as f64 } else { 1.0 };
@@ -100,7 +119,7 @@ impl<const D: usize> Meeting<D> {
         for columns in touching.before.iter_mut().chain(&mut touching.after) {
             columns.resize(touching.inverse_mass.len(), [0.0; D]);
         }
-        touching.may_touch().then_some(Meeting { touching, made_for, columns, points, bodies, outlines })
+        touching.may_touch().then_some(Meeting { touching, made_for, columns, points, bodies, outlines, pushed })
     }
 
     /// Whether it was made for these islands and obstacles.
@@ -159,32 +178,51 @@ impl<const D: usize> Meeting<D> {
     }
 
     /// Where the step that follows begins: where the last one ended.
-    pub(crate) fn set_out(&mut self) {
+    pub(crate) fn set_out(&mut self, islands: &mut [Island<D>]) {
         let Touching { before, after, .. } = &mut self.touching;
         std::mem::swap(before, after);
+        self.mark(islands);
     }
 
-    /// Lets the bodies touch after a free substep of h that ends at `time` [s].
+    /// Lets the bodies touch after a substep that each made by itself. Where one of them fails in it, its outcome says so.
     pub(crate) fn resolve(
         &mut self,
         islands: &mut [Island<D>],
-        obstacles: Option<&dyn Contacts<D>>,
-        time: f64,
-        h: f64,
+        step: &Substep<'_, D>,
+        workspace: &mut Workspace<D>,
     ) -> Result<(), Trouble> {
-        let touch = obstacles.map(|obstacles| {
+        let (time, h) = (step.time, step.plan.h);
+        let touch = step.obstacles.map(|obstacles| {
             move |_: u32, from: &[f64; D], to: &[f64; D], reach: f64, visit: &mut dyn FnMut(_)| {
                 obstacles.touch(from, to, time, h, reach, visit);
             }
         });
-        self.touching.step(h, touch.as_ref().map(|touch| touch as _))?;
+        let touch = touch.as_ref().map(|touch| touch as _);
+        self.touching.begin_step();
+        if self.pushed.is_empty() {
+            self.touching.find_impulses(h, touch, None)?;
+        } else if !self.come_to_terms(islands, step, touch, workspace)? {
+            self.part(islands, step, workspace);
+            if islands.iter().any(|island| island.outcome.is_err()) {
+                return Ok(());
+            }
+            self.touching.find_impulses(h, touch, None)?;
+        }
+        self.touching.end_step(h);
+        self.write_back(islands);
+        self.end_pushes(islands, h);
+        Ok(())
+    }
+
+    /// Writes what contact made of the bodies into their islands, and enters its works.
+    fn write_back(&mut self, islands: &mut [Island<D>]) {
         let Touching { changed, losses, after: [x, v], .. } = &self.touching;
         for (p, [contact, friction, user, correction]) in changed.iter().zip(losses) {
             // What contact takes at points of obstacles is booked with the first island.
             let point = self.points.get(*p as usize).copied();
             let (island, index) = point.unwrap_or_default();
             let (system, index) = (&mut islands[island as usize].system, index as usize);
-            for d in (0..D).filter(|_| point.is_some()) {
+            for d in (0..D).filter(|_| point.is_some() && !self.touching.follows(*p)) {
                 system.state.x.0[d][index] = x[*p as usize][d];
                 system.state.v.0[d][index] = v[*p as usize][d];
             }
@@ -194,6 +232,5 @@ impl<const D: usize> Meeting<D> {
             system.work.user[lane] += user;
             system.work.correction[lane] += correction;
         }
-        Ok(())
     }
 }

@@ -1,7 +1,7 @@
 //! A frame of bodies that touch: all islands go through it substep by substep.
 
 use crate::island::{FramePlan, Island};
-use crate::meeting::Meeting;
+use crate::meeting::{Meeting, Substep};
 use crate::world::lock;
 use opruga_collide::Trouble;
 use opruga_core::system::Workspace;
@@ -22,10 +22,10 @@ pub(crate) fn frame<const D: usize>(
 ) -> Result<(), (Trouble, f64)> {
     islands.iter_mut().for_each(|island| island.begin_together(plan));
     let contacts = plan.colliders.map(|colliders| Arc::clone(colliders).into_contacts());
-    meeting.touching.begin();
+    meeting.begin(islands);
     meeting.take(islands, plan.start);
     for substep in 0..plan.substeps {
-        meeting.set_out();
+        meeting.set_out(islands);
         step_freely(islands, plan, substep, workspaces, threaded);
         if islands.iter().any(|island| island.outcome.is_err()) {
             return Ok(());
@@ -36,7 +36,11 @@ pub(crate) fn frame<const D: usize>(
             islands.iter_mut().for_each(|island| island.end_together(plan));
             return Ok(());
         }
-        meeting.resolve(islands, contacts.as_deref(), time, plan.h).map_err(|trouble| (trouble, time))?;
+        let step = Substep { plan, number: substep, time, obstacles: contacts.as_deref() };
+        meeting.resolve(islands, &step, &mut lock(&workspaces[0])).map_err(|trouble| (trouble, time))?;
+        if islands.iter().any(|island| island.outcome.is_err()) {
+            return Ok(());
+        }
         islands.iter_mut().for_each(|island| island.look_together(plan, substep));
     }
     islands.iter_mut().for_each(|island| island.end_together(plan));

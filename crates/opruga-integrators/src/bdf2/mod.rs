@@ -52,9 +52,11 @@ const STEP: PerBody<f64> = PerBody::new("bdf2.step");
 #[derive(Debug)]
 pub struct Bdf2Kind;
 
-/// The backward differentiation formula of second order.
-#[derive(Clone, Copy, Debug)]
-pub struct Bdf2;
+/// The backward differentiation formula of second order; or a step of its formula of first order, with which it begins anew.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Bdf2 {
+    begins: bool,
+}
 
 impl<const D: usize> IntegratorKind<D> for Bdf2Kind {
     fn spec(&self) -> &'static Spec {
@@ -64,13 +66,16 @@ impl<const D: usize> IntegratorKind<D> for Bdf2Kind {
         false
     }
     fn build(&self, values: &Values) -> Result<Box<dyn Integrator<D>>, BuildError> {
-        Ok(Box::new(Implicit::new(SPEC.kind, Bdf2, values)?))
+        Ok(Box::new(Implicit::new(SPEC.kind, Bdf2::default(), values)?))
     }
 }
 
 impl<const D: usize> Rule<D> for Bdf2 {
     const NAME: &'static str = SPEC.kind;
     const TRAPEZOID: bool = true;
+    fn pushed(self) -> Self {
+        Bdf2 { begins: true }
+    }
     fn history(&self) -> Vec<Channel> {
         vec![DISPLACEMENT.declared(), VELOCITY.declared(), STEP.declared()]
     }
@@ -90,7 +95,7 @@ impl<const D: usize> Rule<D> for Bdf2 {
     }
     fn begin(&self, system: &System<D>, workspace: &mut Workspace<D>, h: f64) -> Balance {
         // With the ratio r = h/h₋: x₁ = x₀ + r²(x₀ − x₋₁)/(1 + 2r) + γ h v₁, γ = (1 + r)/(1 + 2r); r = 0 is backward Euler.
-        let last = system.history.get(STEP);
+        let last = if self.begins { 0.0 } else { system.history.get(STEP) };
         let kept = [DISPLACEMENT, VELOCITY].map(|channel| system.history.vectors(channel).filter(|_| last > 0.0));
         let r = if last > 0.0 { h / last } else { 0.0 };
         let (share, span) = (r * r / (1.0 + 2.0 * r), h * (1.0 + r) / (1.0 + 2.0 * r));
@@ -126,7 +131,7 @@ impl<const D: usize> Rule<D> for Bdf2 {
             h,
             load: 1.0,
             impulse: span / h,
-            echo: 0.5 * span / h,
+            echo: if self.begins { 0.0 } else { 0.5 * span / h },
         }
     }
     fn end(&self, _system: &System<D>, workspace: &mut Workspace<D>, balance: &Balance, _h: f64) {
@@ -136,6 +141,9 @@ impl<const D: usize> Rule<D> for Bdf2 {
         }
     }
     fn remembered(&self, workspace: &Workspace<D>, k: usize, _h: f64) -> f64 {
+        if self.begins {
+            return 0.0;
+        }
         0.5 * (workspace.v1[k] - workspace.v0[k])
     }
     fn remember(&self, system: &mut System<D>, workspace: &Workspace<D>, h: f64) {
@@ -157,6 +165,6 @@ impl<const D: usize> Rule<D> for Bdf2 {
                 before.set(*node, core::array::from_fn(|d| velocity(*node, d) - 2.0 * memory[d]));
             }
         }
-        system.history.set(STEP, h);
+        system.history.set(STEP, if self.begins { 0.0 } else { h });
     }
 }

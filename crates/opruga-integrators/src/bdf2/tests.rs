@@ -8,7 +8,7 @@ use opruga_core::spec::Values;
 use opruga_core::system::System;
 
 fn rule() -> Implicit<Bdf2> {
-    Implicit::new(SPEC.kind, Bdf2, &Values::defaults(&SPEC, 2)).unwrap()
+    Implicit::new(SPEC.kind, Bdf2::default(), &Values::defaults(&SPEC, 2)).unwrap()
 }
 
 #[test]

@@ -390,6 +390,18 @@ impl<const D: usize> Linear<D> {
         self.constrained.constrain(filter.free, filter.projectors);
     }
 
+    /// Factors the constrained matrix, which has to be symmetric and positive definite.
+    pub(crate) fn factor_positive(&mut self, filter: &Filter<D>) -> Result<(), Indefinite> {
+        if self.is_unsymmetric {
+            return Err(Indefinite);
+        }
+        self.constrain(filter);
+        self.cholesky.update(&self.constrained)
+    }
+    /// Solves with that factor in place.
+    pub(crate) fn solve_positive(&self, x: &mut [f64]) {
+        self.cholesky.solve(x);
+    }
     /// Factors the constrained matrix whatever the signs of its eigenvalues.
     pub(crate) fn factor(&mut self, filter: &Filter<D>) -> Result<(), Indefinite> {
         self.constrain(filter);

@@ -52,6 +52,7 @@
 //! force along the normal that the direction itself brings about. Velocities are dealt with at the end of the step: what a node
 //! brings along the normal is lost or returned by the restitution, and friction takes µ times that change as well.
 
+mod answer;
 pub(crate) mod balance;
 pub(crate) mod contact;
 mod contact_derivatives;

@@ -43,6 +43,16 @@ pub(super) fn add_given(work: &mut Work8, before: &[f64; WIDTH]) {
     }
 }
 
+/// Adds the work of other bodies' pushes to W: it is in no account of the ledger yet, and contact enters what it loses.
+pub(super) fn add_pushes<const D: usize>(system: &mut System<D>, u1: &[f64]) {
+    let System { pushes, work, .. } = system;
+    for (node, force) in pushes.iter().flatten() {
+        for d in 0..D {
+            work.numerical[node % WIDTH] += force[d] * u1[node * D + d];
+        }
+    }
+}
+
 /// Takes v̄·J, before obstacles change velocities at the end of the step. What is out of balance is that of the stage.
 pub(super) fn take_impulses<const D: usize>(system: &mut System<D>, workspace: &mut Workspace<D>, balance: &Balance) {
     let Workspace { v0, v1, held, mass, residual, trial: change, .. } = workspace;

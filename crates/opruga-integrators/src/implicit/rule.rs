@@ -25,6 +25,11 @@ pub(crate) trait Rule<const D: usize>: Copy + core::fmt::Debug + Send + Sync + '
     fn calmed(self) -> Option<Self> {
         None
     }
+    /// The rule for a step in which other bodies push, or may push: one whose end is its stage and by whose velocity at the end the body
+    /// got there, so that bodies that come to rest on one another stay at rest.
+    fn pushed(self) -> Self {
+        self
+    }
     /// What it remembers from step to step.
     fn history(&self) -> Vec<Channel> {
         Vec::new()

@@ -16,6 +16,7 @@
 //!
 //! Slenderness (`slenderness`) chooses the linear solver of the real-time minimiser, and refuses nothing.
 
+use super::answer;
 use super::balance::{Balance, Solved};
 use super::contact::SMALL;
 use super::convergence::{accept_or_refuse, count, finish, refusal};
@@ -99,6 +100,21 @@ impl<R: Rule<D>, const D: usize> Integrator<D> for Implicit<R> {
     fn step(&self, system: &mut System<D>, h: f64) -> Result<(), StepError> {
         self.with_minimiser(|minimiser| self.step_by(minimiser, system, h))
     }
+    fn takes_pushes(&self) -> bool {
+        true
+    }
+    fn prepare_answer(&self, system: &mut System<D>) -> Result<bool, StepError> {
+        let mut workspace = system.cache.take::<Workspace<D>>();
+        let outcome = answer::prepare(system, &mut workspace);
+        system.cache.put(workspace);
+        outcome
+    }
+    fn answer(&self, system: &mut System<D>, vector: &mut [f64]) -> bool {
+        let workspace = system.cache.take::<Workspace<D>>();
+        let outcome = answer::displace(&workspace, vector);
+        system.cache.put(workspace);
+        outcome
+    }
 }
 
 impl<R> Implicit<R> {
@@ -172,7 +188,9 @@ impl<R: Rule<D>, const D: usize> Method<'_, R, D> {
                 solver.halved += 1;
                 solver.deepest = solver.deepest.max(u64::from(halvings) + 1);
                 self.advance(system, workspace, 0.5 * h, halvings + 1)?;
-                return self.advance(system, workspace, 0.5 * h, halvings + 1);
+                let outcome = self.advance(system, workspace, 0.5 * h, halvings + 1);
+                workspace.answer.last = None;
+                return outcome;
             }
         }
         outcome
@@ -189,6 +207,7 @@ impl<R: Rule<D>, const D: usize> Method<'_, R, D> {
         enter_end(system, workspace, &found)?;
         found.rule.remember(system, workspace, h);
         self.minimiser.remember(system, workspace, h);
+        workspace.answer.last = Some((found.balance, system.time));
         system.end_implicit(h);
         Ok(())
     }
@@ -196,8 +215,9 @@ impl<R: Rule<D>, const D: usize> Method<'_, R, D> {
     /// Finds the stage and the end of a step. The guards are asked in this order: contact, convergence, obstacles at the end of the
     /// step, energy of a minimiser that is not exact, energy of the rule. One that refuses says what makes the step instead.
     fn find_end(&self, system: &mut System<D>, workspace: &mut Workspace<D>, h: f64) -> Result<Found<R>, StepError> {
-        let in_contact = self.rule.in_contact();
-        let mut rule = in_contact.filter(|_| touches(system, workspace, h)).unwrap_or(self.rule);
+        let own = if system.pushes.is_some() { self.rule.pushed() } else { self.rule };
+        let in_contact = own.in_contact();
+        let mut rule = in_contact.filter(|_| touches(system, workspace, h)).unwrap_or(own);
         let exact = Newton(exactly(self.settings));
         let mut minimiser = self.minimiser;
         let mut energy = None;
@@ -273,6 +293,7 @@ fn enter_stage<R: Rule<D>, const D: usize>(
         system.evaluate_again(Workspace::<D>::STAGE, found.balance.time, found.balance.h, &mut workspace.force);
     }
     own_loss::add_given(&mut system.work, &entered);
+    own_loss::add_pushes(system, &workspace.u1);
     if system.inertia.is_some() {
         // Where held nodes are coupled, they have the velocity of the step to its end.
         let Workspace { v0, v1, .. } = &mut *workspace;

@@ -72,6 +72,9 @@ impl<const D: usize> Rule<D> for ImplicitMidpoint {
     fn calmed(self) -> Option<Self> {
         (self.0 == Theta::IN_CONTACT).then_some(ImplicitMidpoint(Theta::END))
     }
+    fn pushed(self) -> Self {
+        ImplicitMidpoint(Theta::END)
+    }
     fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification {
         // The mean velocity w obeys w (1 + θhc + θ²h²ω²) = v₀ − θhω² x₀, and v₁ = v₀ + (w − v₀)/θ.
         let (square, theta) = (omega * omega, self.0.value());

@@ -119,6 +119,9 @@ impl<const D: usize> Rule<D> for Newmark {
     fn calmed(self) -> Option<Self> {
         (self.theta == Some(Theta::IN_CONTACT)).then_some(Newmark { theta: Some(Theta::END), ..self })
     }
+    fn pushed(self) -> Self {
+        Newmark { theta: Some(Theta::END), ..self }
+    }
     fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification {
         let Newmark { alpha_m, alpha_f, beta, gamma, .. } = *self;
         let (square, theta) = (omega * omega, 1.0 - alpha_f);

@@ -154,7 +154,7 @@ fn gradient_descent_finds_the_stage_of_backward_euler() {
 }
 #[test]
 fn gradient_descent_finds_the_stage_of_bdf2() {
-    check(&bdf2::SPEC, Bdf2);
+    check(&bdf2::SPEC, Bdf2::default());
 }
 #[test]
 fn gradient_descent_finds_the_stage_of_the_implicit_midpoint_rule() {

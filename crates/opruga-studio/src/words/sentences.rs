@@ -9,11 +9,10 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
         "odabrani čvorovi ne drže nijednu cijelu ćeliju tijela; dopušteno: barem svi čvorovi jedne ćelije",
     ),
     (
-        "`{}` solves for the end of a step, and contact between bodies is known for explicit integrators so far; allowed: an \
-         explicit one, such as `symplectic_euler` or `verlet`; hint: or `contact.touch = false` in this body, which then passes \
-         through the others",
-        "`{}` traži kraj koraka, a dodir među tijelima zasad je poznat eksplicitnim integratorima; dopušteno: eksplicitan, kao \
-         `symplectic_euler` ili `verlet`; savjet: ili `contact.touch = false` u tom tijelu, koje tada prolazi kroz druga",
+        "`{}` finds a state at rest, where bodies do not touch one another yet; allowed: an integrator of motion, such as \
+         `backward_euler` or `verlet`; hint: or `contact.touch = false` in this body, which then passes through the others",
+        "`{}` nalazi stanje mirovanja, u kojem se tijela zasad ne dodiruju; dopušteno: integrator gibanja, kao \
+         `backward_euler` ili `verlet`; savjet: ili `contact.touch = false` u tom tijelu, koje tada prolazi kroz druga",
     ),
     (
         "`unfold` displaces bodies at random, into others too; allowed: `unfold = false` in a scene with `[contact]`",

@@ -7,7 +7,7 @@ use opruga_world::schema::{BODY_CONTACT, CONTACT, CONTACT_PAIR};
 use opruga_world::{ContactPhase, Options, Registry, World, WorldError};
 use std::sync::Arc;
 
-fn contact<const D: usize>(fields: &[(&str, Value)]) -> Option<ContactBlueprint> {
+pub(crate) fn contact<const D: usize>(fields: &[(&str, Value)]) -> Option<ContactBlueprint> {
     let mut values = Values::defaults(CONTACT.spec, D);
     for (name, value) in fields {
         values.set(CONTACT.spec, name, value.clone(), D).expect("a field");
@@ -15,13 +15,13 @@ fn contact<const D: usize>(fields: &[(&str, Value)]) -> Option<ContactBlueprint>
     Some(ContactBlueprint { values, pairs: Vec::new() })
 }
 
-fn model<const D: usize>(kind: &str, fields: &[(&str, f64)]) -> Values {
+pub(crate) fn model<const D: usize>(kind: &str, fields: &[(&str, f64)]) -> Values {
     let fields: Vec<(&str, Value)> = fields.iter().map(|(name, x)| (*name, Value::Number(*x))).collect();
     Registry::<D>::default().model_values(kind, &fields).expect("a model")
 }
 
 /// A scene without gravity, stepped by an explicit rule.
-fn scene<const D: usize>(rule: &str, bodies: Vec<BodyBlueprint<D>>) -> Blueprint<D> {
+pub(crate) fn scene<const D: usize>(rule: &str, bodies: Vec<BodyBlueprint<D>>) -> Blueprint<D> {
     let registry = Registry::<D>::default();
     let mut scene = Blueprint::new("contact", registry.integrator_values(rule, &[]).expect("a rule"));
     scene.bodies = bodies;
@@ -30,7 +30,7 @@ fn scene<const D: usize>(rule: &str, bodies: Vec<BodyBlueprint<D>>) -> Blueprint
 }
 
 /// Gas balls of the plane.
-fn ball(name: &str, vertices: u32, x: [f64; 2], v: [f64; 2]) -> BodyBlueprint<2> {
+pub(crate) fn ball(name: &str, vertices: u32, x: [f64; 2], v: [f64; 2]) -> BodyBlueprint<2> {
     let ring = Mesh::ring(0.5, vertices, [0.0; 2], 0.0).expect("a ring");
     let models = vec![
         model::<2>("mass_spring", &[("stiffness", 400.0), ("damping", 0.2)]),
@@ -39,12 +39,12 @@ fn ball(name: &str, vertices: u32, x: [f64; 2], v: [f64; 2]) -> BodyBlueprint<2>
     BodyBlueprint { translation: x, velocity: v, ..BodyBlueprint::new(name, ring, Mass::Total(1.0), models) }
 }
 
-fn world<const D: usize>(scene: &Blueprint<D>) -> World<D> {
+pub(crate) fn world<const D: usize>(scene: &Blueprint<D>) -> World<D> {
     World::new(scene.clone(), Options::default()).expect("a world")
 }
 
 /// How deep the deepest node of each body lies in another: by the even-odd rule, to the nearest side.
-fn deepest(world: &World<2>) -> f64 {
+pub(crate) fn deepest(world: &World<2>) -> f64 {
     let bodies: Vec<usize> = (0..world.blueprint().bodies.len()).collect();
     let outline = |b: usize| -> Vec<[[f64; 2]; 2]> {
         let facets = &world.blueprint().bodies[b].mesh.facets;
@@ -131,7 +131,7 @@ fn points_bounce_by_the_restitution() {
 
 /// Whether a point passes through an edge while all three move evenly: the area that they span is a quadratic function of time, and
 /// where it vanishes the point is on the line of the edge.
-fn passes(point: [[f64; 2]; 2], edge: [[[f64; 2]; 2]; 2]) -> bool {
+pub(crate) fn passes(point: [[f64; 2]; 2], edge: [[[f64; 2]; 2]; 2]) -> bool {
     let at = |x: &[[f64; 2]; 2], t: f64| -> [f64; 2] { core::array::from_fn(|d| x[0][d] + t * (x[1][d] - x[0][d])) };
     let cross = |a: [f64; 2], b: [f64; 2]| a[0] * b[1] - a[1] * b[0];
     let minus = |a: [f64; 2], b: [f64; 2]| [a[0] - b[0], a[1] - b[1]];
@@ -273,7 +273,10 @@ fn contact_has_the_same_bits() {
 #[test]
 fn what_contact_cannot_do_is_refused() {
     let bodies = || vec![ball("a", 12, [-1.0, 0.1], [2.0, 0.0]), ball("b", 12, [1.0, 0.0], [-1.0, 0.3])];
-    let mut implicit = scene("backward_euler", bodies());
+    let mut implicit = scene("equilibrium", bodies());
+    for body in &mut implicit.bodies {
+        body.pins.push(PinBlueprint { select: Selector::Nodes(vec![0, 1]), axes: [true; 2], motion: Vec::new() });
+    }
     let error = World::new(implicit.clone(), Options::default()).expect_err("refused");
     assert_eq!(error.code(), "contact.implicit");
     assert!(error.to_string().contains("body `a`") && error.to_string().contains("hint"), "{error}");

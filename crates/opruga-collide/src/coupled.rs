@@ -1,0 +1,221 @@
+//! Bodies whose points answer impulses together: those of integrators that solve for the end of a step.
+//!
+//! An impulse on one point moves all of them, Δv = Y p. Columns of Y are asked for where contacts need them.
+
+use crate::impulses::Row;
+use core::ops::Range;
+
+/// What says how the points of a body answer impulses.
+pub trait Respond<const D: usize> {
+    /// The mean velocities over the step that unit impulses along every axis at a point give all points of its body [1/kg]: of point q along
+    /// axis i by an impulse along axis d, `out[q][d][i]`. Bodies and their points are counted in the order in which they were added. Says
+    /// whether that is known.
+    fn respond(&mut self, body: usize, point: usize, out: &mut [[[f64; D]; D]]) -> bool;
+}
+
+/// Such bodies, and the columns that are known in the step.
+#[derive(Clone, Debug, Default)]
+pub struct Coupled<const D: usize> {
+    bodies: Vec<Body<D>>,
+    /// The body of every point; `NONE` where it answers by itself.
+    of_point: Vec<u32>,
+    /// Whether all points answer by themselves in this step, as the balance of forces and contact do not agree.
+    pub(crate) apart: bool,
+}
+
+#[derive(Clone, Debug)]
+struct Body<const D: usize> {
+    points: Range<usize>,
+    /// Which column belongs to a point; `NONE` where it is not known.
+    column: Vec<u32>,
+    /// The points whose columns are known, in their order.
+    known: Vec<u32>,
+    /// The columns, one after the other.
+    values: Vec<[[f64; D]; D]>,
+    /// The impulses on the points whose columns are known [N s].
+    impulses: Vec<[f64; D]>,
+}
+
+const NONE: u32 = u32::MAX;
+
+impl<const D: usize> Coupled<D> {
+    /// Adds a body that has these points.
+    pub fn add(&mut self, points: Range<usize>) {
+        self.of_point.resize(self.of_point.len().max(points.end), NONE);
+        self.of_point[points.clone()].fill(self.bodies.len() as u32);
+        self.bodies.push(Body {
+            column: vec![NONE; points.len()],
+            points,
+            known: Vec::new(),
+            values: Vec::new(),
+            impulses: Vec::new(),
+        });
+    }
+
+    /// The number of such bodies.
+    pub fn count(&self) -> usize {
+        self.bodies.len()
+    }
+
+    /// The points of one.
+    pub fn points_of(&self, body: usize) -> Range<usize> {
+        self.bodies[body].points.clone()
+    }
+
+    /// The body that a point belongs to.
+    #[inline]
+    pub(crate) fn body_of(&self, point: u32) -> Option<usize> {
+        let body = if self.apart { NONE } else { self.of_point.get(point as usize).copied().unwrap_or(NONE) };
+        (body != NONE).then_some(body as usize)
+    }
+
+    /// Whether a point belongs to such a body, whatever it does in this step.
+    pub(crate) fn has(&self, point: u32) -> bool {
+        self.of_point.get(point as usize).is_some_and(|body| *body != NONE)
+    }
+
+    /// Whether a row has any point that answers together with others.
+    pub(crate) fn holds(&self, row: &Row<D>) -> bool {
+        !self.bodies.is_empty() && (0..=D).any(|k| row.weights[k] != 0.0 && self.body_of(row.points[k]).is_some())
+    }
+
+    /// Forgets the columns of a body, as its matrix is another one.
+    pub fn forget(&mut self, body: usize) {
+        let body = &mut self.bodies[body];
+        body.column.fill(NONE);
+        body.known.clear();
+        body.values.clear();
+        body.impulses.clear();
+    }
+
+    /// Begins to add up impulses.
+    pub(crate) fn begin(&mut self) {
+        for body in &mut self.bodies {
+            body.impulses.fill([0.0; D]);
+        }
+    }
+
+    /// Asks for the columns of the points of a row that are not known; says whether all are known then.
+    pub(crate) fn need(&mut self, row: &Row<D>, respond: &mut dyn Respond<D>) -> bool {
+        for k in (0..=D).filter(|k| row.weights[*k] != 0.0) {
+            let Some(number) = self.body_of(row.points[k]) else { continue };
+            let body = &mut self.bodies[number];
+            let local = row.points[k] as usize - body.points.start;
+            if body.column[local] != NONE {
+                continue;
+            }
+            let first = body.values.len();
+            body.values.resize(first + body.points.len(), [[0.0; D]; D]);
+            if !respond.respond(number, local, &mut body.values[first..]) {
+                body.values.truncate(first);
+                return false;
+            }
+            body.column[local] = body.known.len() as u32;
+            body.known.push(row.points[k]);
+            body.impulses.push([0.0; D]);
+        }
+        true
+    }
+
+    /// The answer of point q to an impulse at point p of the same body, whose column is known.
+    fn entry(&self, body: usize, p: u32, q: u32) -> &[[f64; D]; D] {
+        let body = &self.bodies[body];
+        let column = body.column[p as usize - body.points.start] as usize;
+        &body.values[column * body.points.len() + q as usize - body.points.start]
+    }
+
+    /// Σ wₖ wₗ Yₖₗ over the points of a row: the velocity of its gap by a unit impulse along every axis.
+    pub(crate) fn mobility(&self, row: &Row<D>, inverse_mass: &[[f64; D]]) -> [[f64; D]; D] {
+        let mut out = [[0.0; D]; D];
+        for k in (0..=D).filter(|k| row.weights[*k] != 0.0) {
+            let p = row.points[k];
+            let Some(body) = self.body_of(p) else {
+                for d in 0..D {
+                    out[d][d] += row.weights[k] * row.weights[k] * inverse_mass[p as usize][d];
+                }
+                continue;
+            };
+            for l in (0..=D).filter(|l| row.weights[*l] != 0.0 && self.body_of(row.points[*l]) == Some(body)) {
+                let entry = self.entry(body, p, row.points[l]);
+                for d in 0..D {
+                    for i in 0..D {
+                        out[d][i] += row.weights[k] * row.weights[l] * entry[d][i];
+                    }
+                }
+            }
+        }
+        out
+    }
+
+    /// Gives the points of a row an impulse [N s]: the velocities of all points whose columns are known follow.
+    pub(crate) fn give(&mut self, row: &Row<D>, impulse: &[f64; D], inverse_mass: &[[f64; D]], v: &mut [[f64; D]]) {
+        for k in (0..=D).filter(|k| row.weights[*k] != 0.0) {
+            let p = row.points[k] as usize;
+            let own = impulse.map(|c| row.weights[k] * c);
+            let Some(body) = self.body_of(row.points[k]) else {
+                for d in 0..D {
+                    v[p][d] += own[d] * inverse_mass[p][d];
+                }
+                continue;
+            };
+            let Body { points, column, known, values, impulses } = &mut self.bodies[body];
+            let column = column[p - points.start] as usize;
+            let values = &values[column * points.len()..][..points.len()];
+            for d in 0..D {
+                impulses[column][d] += own[d];
+            }
+            for q in known.iter() {
+                let (v, entry) = (&mut v[*q as usize], &values[*q as usize - points.start]);
+                for d in 0..D {
+                    for i in 0..D {
+                        v[i] += own[d] * entry[d][i];
+                    }
+                }
+            }
+        }
+    }
+
+    /// The points that follow those of a row, beside these.
+    pub(crate) fn followers(&self, row: &Row<D>, mut visit: impl FnMut(u32)) {
+        for k in (0..=D).filter(|k| row.weights[*k] != 0.0) {
+            if let Some(body) = self.body_of(row.points[k]) {
+                self.bodies[body].known.iter().for_each(|p| visit(*p));
+            }
+        }
+    }
+
+    /// Lets the points whose columns are not known follow the impulses: `v` becomes what these make of the free velocities.
+    pub(crate) fn finish(&self, free: &[[f64; D]], v: &mut [[f64; D]], touched: &mut [bool]) {
+        for body in self.bodies.iter().filter(|_| !self.apart) {
+            if body.impulses.iter().all(|impulse| *impulse == [0.0; D]) {
+                continue;
+            }
+            for q in body.points.clone() {
+                let mut sum = free[q];
+                for (column, impulse) in body.impulses.iter().enumerate() {
+                    let entry = &body.values[column * body.points.len() + q - body.points.start];
+                    for d in 0..D {
+                        for i in 0..D {
+                            sum[i] += impulse[d] * entry[d][i];
+                        }
+                    }
+                }
+                v[q] = sum;
+                touched[q] = true;
+            }
+        }
+    }
+
+    /// The impulses on the points of a body [N s], where any is not zero.
+    pub fn impulses_on(&self, body: usize) -> impl Iterator<Item = (usize, [f64; D])> + '_ {
+        let Body { known, impulses, points, .. } = &self.bodies[body];
+        let on = known.iter().zip(impulses).filter(|(_, impulse)| !self.apart && **impulse != [0.0; D]);
+        on.map(|(p, impulse)| (*p as usize - points.start, *impulse))
+    }
+
+    /// Bytes on the heap.
+    pub(crate) fn heap_bytes(&self) -> usize {
+        let values: usize = self.bodies.iter().map(|body| body.values.capacity()).sum();
+        8 * D * D * values + 4 * self.of_point.capacity()
+    }
+}

@@ -1,0 +1,394 @@
+//! Bodies that solve for the end of a step, and what pushes them: contact and the balance of forces come to terms.
+//!
+//! ```text
+//! step      x₁(f): the end of a step in which the forces f = p/h act on the nodes, p the impulses of contact
+//! answer    x₁(f + Δf) ≈ x₁(f) + A⁻¹ Δf/θ, with the matrix A of the step
+//! contact   p from the gaps, the free motion x₁(f) − A⁻¹ f/θ and the answer
+//! ```
+//!
+//! Steps and contact take turns until they agree on the end of the step: Newton's method for f, whose matrix is made anew where it does not
+//! lead there. The forces of a substep are those of the one before at first, within a frame: bodies at rest on one another take one step.
+//!
+//! Source: M. Otaduy, R. Tamstorf, D. Steinemann, M. Gross, Implicit contact handling for deformable objects, Computer Graphics Forum 28 (2009)
+//! 559–568.
+
+use crate::island::Island;
+use crate::meeting::{Meeting, Substep};
+use opruga_collide::{Obstacles, Respond, Touching, Trouble};
+use opruga_core::system::Workspace;
+use opruga_math::{Lane, WIDTH};
+
+/// A body that takes pushes into the balance of forces.
+#[derive(Debug)]
+pub(crate) struct Pushed<const D: usize> {
+    island: usize,
+    /// Where its points lie in the columns of the island.
+    indices: Vec<u32>,
+    /// The impulses that its step was made with, by its points [N s].
+    applied: Vec<(usize, [f64; D])>,
+    /// By how much the last step missed where the impulses were to lead [m].
+    missed: f64,
+    /// Whether the answer to impulses belongs to this substep.
+    prepared: bool,
+}
+
+impl<const D: usize> Pushed<D> {
+    pub(crate) fn new(island: usize, indices: Vec<u32>) -> Self {
+        Pushed { island, indices, applied: Vec::new(), missed: f64::INFINITY, prepared: false }
+    }
+}
+
+/// Steps and contact agree where no point ends farther than this from where impulses were to lead it, relative to the thickness of surfaces:
+/// far below what counts as overlap.
+const AGREED: f64 = 1e-4;
+
+/// After so many rounds they agree within a hundredth of the thickness, which is what overlap begins with.
+const MANY_ROUNDS: usize = 6;
+const NEARLY: f64 = 1e-2;
+
+/// The most rounds. What has not come to terms by then changes who touches, or how obstacles hold nodes, in every round.
+const MOST_ROUNDS: usize = 12;
+
+/// The answer of a matrix is good enough while every round leaves at most this part of what was missed before.
+const GOOD: f64 = 0.25;
+
+/// The share of a change of impulses that is taken: less than all where changes do not get smaller, as of a body whose answer is another one for
+/// every push.
+#[derive(Clone, Copy, Debug)]
+struct Share {
+    part: f64,
+    missed: f64,
+}
+
+impl Default for Share {
+    fn default() -> Self {
+        Share { part: 1.0, missed: f64::INFINITY }
+    }
+}
+
+impl Share {
+    /// Notes what the last steps missed by [m].
+    fn note(&mut self, missed: f64) {
+        // A share of the change leaves the rest of it at least.
+        let falls = missed <= (1.0 - 0.5 * self.part) * self.missed;
+        self.part = if falls { (2.0 * self.part).smaller(1.0) } else { (0.5 * self.part).larger(LEAST_SHARE) };
+        self.missed = missed;
+    }
+
+    /// Impulses by point, between those that were found and those that were applied.
+    fn mixed<const D: usize>(
+        &self,
+        found: impl Iterator<Item = (usize, [f64; D])>,
+        applied: &[(usize, [f64; D])],
+    ) -> Vec<(usize, [f64; D])> {
+        if self.part == 1.0 {
+            return found.collect();
+        }
+        let scaled = |part: f64| move |(point, impulse): (usize, [f64; D])| (point, impulse.map(|c| part * c));
+        let mut all: Vec<_> =
+            found.map(scaled(self.part)).chain(applied.iter().copied().map(scaled(1.0 - self.part))).collect();
+        all.sort_by_key(|(point, _)| *point);
+        all.dedup_by(|next, kept| {
+            let same = next.0 == kept.0;
+            (0..D).filter(|_| same).for_each(|d| kept.1[d] += next.1[d]);
+            same
+        });
+        all
+    }
+}
+
+/// The least share.
+const LEAST_SHARE: f64 = 0.125;
+
+/// Asks bodies for their answers.
+struct Answers<'a, const D: usize> {
+    islands: &'a mut [Island<D>],
+    pushed: &'a mut [Pushed<D>],
+    workspace: &'a mut Workspace<D>,
+    h: f64,
+    vector: Vec<f64>,
+}
+
+impl<const D: usize> Answers<'_, D> {
+    /// Prepares a body for questions; says whether it answers.
+    fn prepare(&mut self, body: usize) -> bool {
+        let pushed = &mut self.pushed[body];
+        if !pushed.prepared {
+            let island = &mut self.islands[pushed.island];
+            island.system.exchange(self.workspace);
+            pushed.prepared = island.integrator.prepare_answer(&mut island.system).unwrap_or(false);
+            island.system.exchange(self.workspace);
+        }
+        pushed.prepared
+    }
+
+    /// The displacements of the end of the step by impulses on points of a body, node by node in `self.vector`; says whether it answers.
+    fn displace(&mut self, body: usize, impulses: impl Iterator<Item = (usize, [f64; D])>) -> bool {
+        if !self.prepare(body) {
+            return false;
+        }
+        let pushed = &self.pushed[body];
+        let island = &mut self.islands[pushed.island];
+        self.vector.clear();
+        self.vector.resize(island.system.nodes * D, 0.0);
+        for (point, impulse) in impulses {
+            let node = pushed.indices[point] as usize;
+            for d in 0..D {
+                self.vector[node * D + d] += impulse[d] / self.h;
+            }
+        }
+        island.integrator.answer(&mut island.system, &mut self.vector)
+    }
+}
+
+impl<const D: usize> Respond<D> for Answers<'_, D> {
+    fn respond(&mut self, body: usize, point: usize, out: &mut [[[f64; D]; D]]) -> bool {
+        for d in 0..D {
+            let mut impulse = [0.0; D];
+            impulse[d] = 1.0;
+            if !self.displace(body, std::iter::once((point, impulse))) {
+                return false;
+            }
+            for (out, index) in out.iter_mut().zip(&self.pushed[body].indices) {
+                for i in 0..D {
+                    out[d][i] = self.vector[*index as usize * D + i] / self.h;
+                }
+            }
+        }
+        true
+    }
+}
+
+impl<const D: usize> Meeting<D> {
+    /// Begins a frame: nothing of the last one is used.
+    pub(crate) fn begin(&mut self, islands: &mut [Island<D>]) {
+        self.touching.begin();
+        for pushed in &mut self.pushed {
+            pushed.applied.clear();
+            islands[pushed.island].system.pushes = None;
+        }
+    }
+
+    /// Keeps the states to which bodies go back within the substep.
+    pub(crate) fn mark(&mut self, islands: &mut [Island<D>]) {
+        for (body, pushed) in self.pushed.iter_mut().enumerate() {
+            let island = &mut islands[pushed.island];
+            island.mark();
+            (pushed.prepared, pushed.missed) = (false, f64::INFINITY);
+            self.touching.coupled.forget(body);
+            if pushed.applied.is_empty() {
+                island.system.pushes = None;
+            }
+            // Velocities are those of the body, not the mean ones of its last step.
+            for (p, index) in self.touching.coupled.points_of(body).zip(&pushed.indices) {
+                self.touching.before[1][p] = island.system.state.v.at(*index as usize);
+            }
+        }
+    }
+
+    /// Lets steps and contact take turns until they agree; says whether they do.
+    pub(crate) fn come_to_terms(
+        &mut self,
+        islands: &mut [Island<D>],
+        step: &Substep<'_, D>,
+        obstacles: Option<Obstacles<'_, D>>,
+        workspace: &mut Workspace<D>,
+    ) -> Result<bool, Trouble> {
+        let h = step.plan.h;
+        let thickness = self.touching.laws.largest_thickness()[0];
+        let mut share = Share::default();
+        for round in 0..=MOST_ROUNDS {
+            if round > 0 {
+                self.take(islands, step.time);
+            }
+            self.take_mean_velocities(h);
+            let Meeting { touching, pushed, .. } = &mut *self;
+            let mut answers = Answers { islands, pushed, workspace, h, vector: Vec::new() };
+            if !free_motion(touching, &mut answers) || !touching.find_impulses(h, obstacles, Some(&mut answers))? {
+                return Ok(false);
+            }
+            let enough = match round {
+                0..MANY_ROUNDS => AGREED * thickness,
+                MANY_ROUNDS..MOST_ROUNDS => NEARLY * thickness,
+                // Nothing passes in what the last step came to: what it misses is left to the next one.
+                _ => f64::INFINITY,
+            };
+            if !self.step_again(islands, step, workspace, enough, &mut share) {
+                if self.pushed.iter().all(|pushed| pushed.applied.is_empty()) {
+                    return Ok(true);
+                }
+                // Where they agree, they do so nearly: what they agree on must not pass either.
+                self.take(islands, step.time);
+                self.take_mean_velocities(h);
+                if !self.touching.passes(h) {
+                    return Ok(true);
+                }
+            }
+            if self.pushed.iter().any(|pushed| islands[pushed.island].outcome.is_err()) {
+                return Ok(false);
+            }
+        }
+        Ok(false)
+    }
+
+    /// Makes the step of bodies again that do not end where the impulses were to lead them; says whether there are any.
+    fn step_again(
+        &mut self,
+        islands: &mut [Island<D>],
+        step: &Substep<'_, D>,
+        workspace: &mut Workspace<D>,
+        enough: f64,
+        share: &mut Share,
+    ) -> bool {
+        let mut most: f64 = 0.0;
+        let missed: Vec<f64> = (0..self.pushed.len())
+            .map(|body| {
+                let Pushed { island, indices, .. } = &self.pushed[body];
+                let x = &islands[*island].system.state.x;
+                let ends: Vec<[f64; D]> = indices.iter().map(|k| x.at(*k as usize)).collect();
+                let missed = self.touching.missed_by(body, &ends);
+                most = missed.larger(most);
+                missed
+            })
+            .collect();
+        let as_before = (0..self.pushed.len()).all(|body| {
+            self.touching.coupled.impulses_on(body).next().is_some() != self.pushed[body].applied.is_empty()
+        });
+        if most <= enough && (as_before || enough == f64::INFINITY) {
+            return false;
+        }
+        share.note(most);
+        let mut begun = false;
+        // All whose impulses have changed: what one gives is what another one takes.
+        for ((body, pushed), missed) in self.pushed.iter_mut().enumerate().zip(missed) {
+            let impulses = share.mixed(self.touching.coupled.impulses_on(body), &pushed.applied);
+            if impulses == pushed.applied {
+                continue;
+            }
+            let island = &mut islands[pushed.island];
+            let forces = impulses
+                .iter()
+                .map(|(point, impulse)| (pushed.indices[*point] as usize, impulse.map(|c| c / step.plan.h)));
+            // The rule may be another one once it is pushed.
+            let is_first = island.system.pushes.is_none();
+            begun |= is_first;
+            island.system.pushes = Some(forces.collect());
+            pushed.applied = impulses;
+            island.rewind();
+            island.step_together(step.plan, step.number, workspace);
+            if is_first || missed > GOOD * pushed.missed {
+                pushed.prepared = false;
+                self.touching.coupled.forget(body);
+            }
+            pushed.missed = missed;
+        }
+        if begun {
+            *share = Share::default();
+        }
+        true
+    }
+
+    /// Lets contact change velocities after the steps, where steps and contact do not agree. Bodies that push only one another keep what they
+    /// have come to, which is near; where others answer by the impulses too, or a step failed, all go back to a step without pushes.
+    pub(crate) fn part(&mut self, islands: &mut [Island<D>], step: &Substep<'_, D>, workspace: &mut Workspace<D>) {
+        let failed = self.pushed.iter().any(|pushed| islands[pushed.island].outcome.is_err());
+        let back = failed || self.pushed.len() < self.bodies.len();
+        for (body, pushed) in self.pushed.iter_mut().enumerate() {
+            let island = &mut islands[pushed.island];
+            if pushed.applied.is_empty() && island.outcome.is_ok() {
+                continue;
+            }
+            if back {
+                island.system.pushes = Some(Vec::new());
+                island.rewind();
+                island.step_together(step.plan, step.number, workspace);
+            } else {
+                let first = self.touching.coupled.points_of(body).start;
+                for (point, impulse) in &pushed.applied {
+                    let (index, from) = (pushed.indices[*point] as usize, &self.touching.before[0][first + point]);
+                    let to = island.system.state.x.at(index);
+                    let lost: f64 = (0..D).map(|d| impulse[d] * (from[d] - to[d])).sum();
+                    island.system.work.contact[index % WIDTH] += lost / step.plan.h;
+                }
+            }
+            pushed.applied.clear();
+        }
+        self.touching.part_coupled();
+        self.take(islands, step.time);
+    }
+
+    /// Velocities of bodies that are pushed are the mean ones of the step.
+    fn take_mean_velocities(&mut self, h: f64) {
+        let Touching { coupled, before: [from, _], after: [x, v], .. } = &mut self.touching;
+        for p in (0..coupled.count()).flat_map(|body| coupled.points_of(body)) {
+            v[p] = std::array::from_fn(|d| (x[p][d] - from[p][d]) / h);
+        }
+    }
+
+    /// Ends a substep: gives what is left of impulses, and moves what overlap is taken apart by.
+    pub(crate) fn end_pushes(&mut self, islands: &mut [Island<D>], h: f64) {
+        // Others have answered by the impulses that were found last: what the step was made with differs from them by what is left.
+        let mixed = self.pushed.len() < self.bodies.len();
+        for (body, pushed) in self.pushed.iter().enumerate() {
+            let system = &mut islands[pushed.island].system;
+            let first = self.touching.coupled.points_of(body).start;
+            let found = self.touching.coupled.impulses_on(body);
+            let given = pushed.applied.iter().map(|(point, impulse)| (*point, *impulse, -1.0));
+            for (point, impulse, sign) in found.map(|(point, impulse)| (point, impulse, 1.0)).chain(given) {
+                let (p, index) = (first + point, pushed.indices[point] as usize);
+                // Contact has entered what was found, along the motion that was expected.
+                let mean = if sign > 0.0 { self.touching.velocity_found(p) } else { self.touching.after[1][p] };
+                let mut entered = 0.0;
+                for d in 0..D {
+                    entered += sign * impulse[d] * mean[d];
+                    if mixed {
+                        let v = &mut system.state.v.0[d][index];
+                        let change = sign * impulse[d] * self.touching.inverse_mass[p][d];
+                        entered -= sign * impulse[d] * (*v + 0.5 * change);
+                        *v += change;
+                    }
+                }
+                system.work.numerical[index % WIDTH] += entered;
+            }
+            for (p, index) in self.touching.coupled.points_of(body).zip(&pushed.indices) {
+                let index = *index as usize;
+                let moved = self.touching.moved_of(p);
+                if moved == [0.0; D] {
+                    continue;
+                }
+                let push = system.pushes.iter().flatten().find(|(place, _)| *place == index).map_or([0.0; D], |p| p.1);
+                for d in (0..D).filter(|d| self.touching.inverse_mass[p][*d] > 0.0) {
+                    let change = system.state.v.0[d][index] - self.touching.before[1][p][d];
+                    let force = change / (self.touching.inverse_mass[p][d] * h) - push[d];
+                    system.work.correction[index % WIDTH] -= force * moved[d];
+                    system.state.x.0[d][index] += moved[d];
+                    self.touching.after[0][p][d] = system.state.x.0[d][index];
+                }
+            }
+        }
+    }
+}
+
+/// Takes what pushes have added to the motion out of it, to first order; says whether bodies answer.
+fn free_motion<const D: usize>(touching: &mut Touching<D>, answers: &mut Answers<'_, D>) -> bool {
+    for body in 0..answers.pushed.len() {
+        let applied = std::mem::take(&mut answers.pushed[body].applied);
+        let answered = applied.is_empty() || answers.displace(body, applied.iter().copied());
+        answers.pushed[body].applied = applied;
+        if !answered {
+            return false;
+        }
+        if answers.pushed[body].applied.is_empty() {
+            continue;
+        }
+        let Touching { coupled, after: [x, v], .. } = &mut *touching;
+        for (p, index) in coupled.points_of(body).zip(&answers.pushed[body].indices) {
+            for d in 0..D {
+                let added = answers.vector[*index as usize * D + d];
+                x[p][d] -= added;
+                v[p][d] -= added / answers.h;
+            }
+        }
+    }
+    true
+}

@@ -1,0 +1,207 @@
+//! Contact of bodies whose integrators solve for the end of a step: it is part of the balance of forces.
+
+use crate::contact::{ball, contact, deepest, model, passes, scene, world};
+use opruga_core::spec::Value;
+use opruga_mesh::Mesh;
+use opruga_world::blueprint::*;
+use opruga_world::{Options, World};
+
+const RULES: [&str; 4] = ["backward_euler", "bdf2", "implicit_midpoint", "newmark"];
+
+/// A solid rectangle of triangles.
+fn block(name: &str, size: [f64; 2], cells: [u32; 2], x: [f64; 2], mass: f64, youngs_modulus: f64) -> BodyBlueprint<2> {
+    let mesh = Mesh::grid([0.0; 2], size, cells).expect("a grid");
+    let solid = vec![model::<2>("fem", &[("youngs_modulus", youngs_modulus), ("poissons_ratio", 0.3), ("damping", 1e-3)])];
+    BodyBlueprint { translation: x, ..BodyBlueprint::new(name, mesh, Mass::Total(mass), solid) }
+}
+
+fn heavy(rule: &str, bodies: Vec<BodyBlueprint<2>>, substeps: u32) -> Blueprint<2> {
+    let mut scene = scene(rule, bodies);
+    scene.surroundings.gravity = [0.0, -9.81];
+    scene.time = Time { seconds: 10.0, frame: 1.0 / 60.0, substeps };
+    scene
+}
+
+/// The force of bodies on a body [N].
+fn force_on(world: &mut World<2>, body: usize) -> [f64; 2] {
+    let mut sum = [0.0; 2];
+    for force in world.contact_forces(body) {
+        (0..2).for_each(|d| sum[d] += force[d]);
+    }
+    sum
+}
+
+/// A block that falls onto a held one comes to rest there; what holds it is its weight, at steps of a sixtieth of a second.
+#[test]
+fn blocks_come_to_rest_on_one_another_at_the_steps_of_a_game() {
+    for rule in RULES {
+        let mut below = block("below", [2.0, 0.5], [9, 3], [-0.5, -0.5], 2.0, 1e5);
+        below.pins.push(PinBlueprint { select: Selector::Side("bottom".into()), axes: [true; 2], motion: Vec::new() });
+        let bodies = vec![below, block("above", [1.0, 1.0], [4, 4], [0.03, 0.1], 1.0, 1e5)];
+        let mut scene = heavy(rule, bodies, 1);
+        scene.contact = contact::<2>(&[("friction", 0.4.into())]);
+        let mut world = world(&scene);
+        for _ in 0..180 {
+            world.frame().unwrap_or_else(|error| panic!("{rule}: {error}"));
+            assert_eq!(world.crossed_surfaces(), [], "{rule} at {} s", world.time());
+        }
+        let weight = force_on(&mut world, 1);
+        assert!((weight[1] - 9.81).abs() < 1e-3 && weight[0].abs() < 1e-3, "{rule}: {weight:?}");
+        let depth = deepest(&world);
+        let energy = world.energy();
+        assert!(depth == 0.0, "{rule}: {depth} m deep");
+        assert!(energy.kinetic < 1e-9, "{rule}: {energy:?}");
+        assert!(energy.closure < 1e-4, "{rule}: {energy:?}");
+    }
+}
+
+/// Free bodies under the same and under different rules: no momentum is made, nobody passes, and the ledger closes.
+#[test]
+fn bodies_of_all_rules_meet_and_keep_momentum() {
+    let rules = || RULES.into_iter().chain(["symplectic_euler"]);
+    for (first, second) in rules().flat_map(|first| rules().map(move |second| (first, second))) {
+        if first == second && first == "symplectic_euler" {
+            continue;
+        }
+        let registry = opruga_world::Registry::<2>::default();
+        let own = |rule: &str, body: BodyBlueprint<2>| BodyBlueprint {
+            integrator: Some(registry.integrator_values(rule, &[]).expect("a rule")),
+            ..body
+        };
+        let [a, b] = [([-1.2, 0.1], [2.0, 0.0]), ([1.0, 0.0], [-1.0, 0.3])];
+        let square = block("b", [1.0, 1.0], [3, 3], [b.0[0] - 0.5, b.0[1] - 0.5], 2.0, 3e3);
+        let bodies = vec![own(first, ball("a", 24, a.0, a.1)), own(second, BodyBlueprint { velocity: b.1, ..square })];
+        let mut scene = scene("symplectic_euler", bodies);
+        scene.time = Time { seconds: 2.0, frame: 1.0 / 60.0, substeps: 8 };
+        scene.contact = contact::<2>(&[("friction", 0.4.into())]);
+        let mut world = world(&scene);
+        let before = world.momentum();
+        let mut met = 0.0;
+        for _ in 0..60 {
+            world.frame().unwrap_or_else(|error| panic!("{first} {second}: {error}"));
+            assert_eq!(world.crossed_surfaces(), [], "{first} {second}");
+            let energy = world.energy();
+            met = energy.loss_contact + energy.loss_friction;
+            assert!(energy.closure < 0.02, "{first} {second}: {energy:?}");
+        }
+        let after = world.momentum();
+        for d in 0..2 {
+            let change = (after.linear.0[d] - before.linear.0[d]).abs();
+            assert!(change < 1e-6, "{first} {second}: {change} {before:?} {after:?}");
+        }
+        assert!(met > 1e-3, "{first} {second}: they met: {met}");
+        let mean = |body: usize| {
+            let nodes = world.node_count(body) as u32;
+            (0..nodes).map(|n| world.velocity(body, n)[0]).sum::<f64>() / f64::from(nodes)
+        };
+        let speed = mean(0) - mean(1);
+        assert!(speed < 0.0, "{first} {second}: they part: {speed}");
+    }
+}
+
+/// A small body that goes many times its size in a step meets a thin wall.
+#[test]
+fn fast_bodies_do_not_tunnel_through_bodies_of_implicit_rules() {
+    for speed in [1.0, 30.0, 300.0, 3000.0] {
+        for rule in RULES {
+            let wire = Mesh::<2>::line([0.0, -1.0], [0.0, 1.0], 40).expect("a wire");
+            let springs = vec![model::<2>("mass_spring", &[("stiffness", 2000.0)])];
+            let wall = BodyBlueprint::new("wall", wire, Mass::Total(5.0), springs.clone());
+            let dot = Mesh::<2>::line([-0.02, 0.0], [0.02, 0.015], 1).expect("a wire");
+            let dot = BodyBlueprint::new("dot", dot, Mass::Total(0.1), springs);
+            let dot = BodyBlueprint { translation: [-0.3, 0.013], velocity: [speed, 0.0], ..dot };
+            let mut scene = scene(rule, vec![wall, dot]);
+            scene.time.frame = 1.0 / 960.0;
+            scene.time.substeps = 1;
+            let mut world = world(&scene);
+            let all = |world: &World<2>| -> Vec<[f64; 2]> {
+                (0..41).map(|n| world.position(0, n)).chain((0..2).map(|n| world.position(1, n))).collect()
+            };
+            let mut before = all(&world);
+            for step in 0..(if speed < 2.0 { 480 } else { 64 }) {
+                world.frame().unwrap_or_else(|error| panic!("{rule} {speed}: {error}"));
+                assert_eq!(world.crossed_surfaces(), [], "{rule}, {speed} m/s, step {step}");
+                let after = all(&world);
+                let path = |n: usize| [before[n], after[n]];
+                for (point, edge) in (0..40).flat_map(|k| [41, 42].map(|point| (point, [k, k + 1]))) {
+                    assert!(!passes(path(point), edge.map(path)), "{rule}, {speed} m/s, step {step}: {point} {edge:?}");
+                }
+                before = after;
+            }
+        }
+    }
+}
+
+/// The same bits on any number of threads, and after going back.
+#[test]
+fn contact_of_implicit_rules_has_the_same_bits() {
+    let mut bodies = Vec::new();
+    for k in 0..6 {
+        let x = [1.05 * f64::from(k % 3), 1.1 * f64::from(k / 3)];
+        bodies.push(block(&format!("block[{k}]"), [1.0, 1.0], [3, 3], x, 1.0, 2e4));
+    }
+    let mut scene = heavy("backward_euler", bodies, 2);
+    scene.contact = contact::<2>(&[("friction", 0.3.into())]);
+    let fields = [("point", Value::Numbers(vec![0.0, -0.1])), ("normal", Value::Numbers(vec![0.1, 1.0]))];
+    scene.colliders.push(ColliderBlueprint::new::<2>("half_space", &fields).expect("a plane"));
+    let run = |threads: usize| {
+        let mut world = World::new(scene.clone(), Options { threads, ..Options::default() }).expect("a world");
+        (0..30).for_each(|_| world.frame().expect("a frame"));
+        let kept = world.snapshot();
+        (0..30).for_each(|_| world.frame().expect("a frame"));
+        let end = world.frame_hash();
+        world.restore(&kept).expect("the same scene");
+        (0..30).for_each(|_| world.frame().expect("a frame"));
+        assert_eq!(world.frame_hash(), end, "{threads}: after going back");
+        assert_eq!(world.crossed_surfaces(), []);
+        end
+    };
+    let one = run(1);
+    assert_eq!(run(3), one);
+}
+
+/// In space, and with all that may hold a body: an obstacle below, a pin aside, a sheet that folds onto itself, under exact steps and those of
+/// a budget.
+#[test]
+fn solids_and_sheets_of_space_rest_on_one_another() {
+    let registry = opruga_world::Registry::<3>::default();
+    for accuracy in ["exact", "real_time"] {
+        let rule = registry.integrator_values("backward_euler", &[("accuracy", accuracy.into())]).expect("a rule");
+        let solid = |name: &str, size: f64, x: [f64; 3], mass: f64| {
+            let mesh = Mesh::grid([0.0; 3], [size; 3], [2; 3]).expect("a grid");
+            let fem = vec![model::<3>("fem", &[("youngs_modulus", 5e4), ("poissons_ratio", 0.3)])];
+            BodyBlueprint { translation: x, ..BodyBlueprint::new(name, mesh, Mass::Total(mass), fem) }
+        };
+        let sheet = Mesh::sheet([-0.2, -0.2, 2.3], [[1.4, 0.0, 0.0], [0.0, 1.4, 0.0]], [6, 6]).expect("a sheet");
+        let cloth = vec![
+            model::<3>("mass_spring", &[("stiffness", 300.0), ("damping", 0.02)]),
+            model::<3>("bending", &[("stiffness", 1e-4)]),
+        ];
+        let bodies = vec![
+            solid("below", 1.0, [0.0, 0.0, 0.05], 1.0),
+            solid("above", 0.8, [0.12, 0.07, 1.1], 4.0),
+            BodyBlueprint::new("cloth", sheet, Mass::Total(0.1), cloth),
+        ];
+        let mut scene = scene("backward_euler", bodies);
+        scene.bodies.iter_mut().for_each(|body| body.integrator = Some(rule.clone()));
+        scene.surroundings.gravity = [0.0, 0.0, -9.81];
+        scene.time = Time { seconds: 3.0, frame: 1.0 / 60.0, substeps: 1 };
+        scene.contact = contact::<3>(&[("friction", 0.5.into())]);
+        let fields =
+            [("point", Value::Numbers(vec![0.0; 3])), ("normal", Value::Numbers(vec![0.0, 0.0, 1.0])), ("friction", 0.5.into())];
+        scene.colliders.push(ColliderBlueprint::new::<3>("half_space", &fields).expect("a plane"));
+        let mut world = world(&scene);
+        for _ in 0..150 {
+            world.frame().unwrap_or_else(|error| panic!("{accuracy}: {error}"));
+            assert_eq!(world.crossed_surfaces(), [], "{accuracy} at {} s", world.time());
+        }
+        let energy = world.energy();
+        assert!(energy.closure < 0.02, "{accuracy}: {energy:?}");
+        assert!(energy.kinetic < 1e-3, "{accuracy}: {energy:?}");
+        let lowest = |body: usize| {
+            (0..world.node_count(body) as u32).map(|n| world.position(body, n)[2]).fold(f64::INFINITY, f64::min)
+        };
+        assert!(lowest(1) > 0.9 && lowest(2) > 0.0, "{accuracy}: {} {}", lowest(1), lowest(2));
+        assert!(energy.in_motion < 20.0, "{accuracy}: no body gets more energy than its fall: {energy:?}");
+    }
+}
