@@ -161,12 +161,14 @@ impl<const D: usize> Respond<D> for Answers<'_, D> {
 
 impl<const D: usize> Meeting<D> {
     /// Begins a frame: nothing of the last one is used.
-    pub(crate) fn begin(&mut self, islands: &mut [Island<D>]) {
+    pub(crate) fn begin(&mut self) {
         self.touching.begin();
-        for pushed in &mut self.pushed {
-            pushed.applied.clear();
-            islands[pushed.island].system.pushes = None;
-        }
+        self.pushed.iter_mut().for_each(|pushed| pushed.applied.clear());
+    }
+
+    /// Ends a frame: what is asked of bodies between frames knows of no pushes.
+    pub(crate) fn end(&mut self, islands: &mut [Island<D>]) {
+        self.pushed.iter().for_each(|pushed| islands[pushed.island].system.pushes = None);
     }
 
     /// Keeps the states to which bodies go back within the substep.

@@ -20,9 +20,21 @@ pub(crate) fn frame<const D: usize>(
     workspaces: &[Mutex<Workspace<D>>],
     threaded: bool,
 ) -> Result<(), (Trouble, f64)> {
+    let outcome = step_through(islands, meeting, plan, workspaces, threaded);
+    meeting.end(islands);
+    outcome
+}
+
+fn step_through<const D: usize>(
+    islands: &mut [Island<D>],
+    meeting: &mut Meeting<D>,
+    plan: &FramePlan<'_, D>,
+    workspaces: &[Mutex<Workspace<D>>],
+    threaded: bool,
+) -> Result<(), (Trouble, f64)> {
     islands.iter_mut().for_each(|island| island.begin_together(plan));
     let contacts = plan.colliders.map(|colliders| Arc::clone(colliders).into_contacts());
-    meeting.begin(islands);
+    meeting.begin();
     meeting.take(islands, plan.start);
     for substep in 0..plan.substeps {
         meeting.set_out(islands);

@@ -76,7 +76,7 @@ pub(super) const CASES: &[Case] = &[
         expected: &[0.25, 0.5, 1.0],
         tolerance: 1e-9,
         check: Check::Everywhere,
-        measure: |lab, e| Ok(bounce(lab, e)?[0]),
+        measure: |lab, e| Ok(bounce(lab, e, "verlet")?[0]),
         ..BARS
     },
     Case {
@@ -88,7 +88,7 @@ pub(super) const CASES: &[Case] = &[
         expected: &[1.0, 0.9375, 0.75],
         tolerance: 1e-9,
         check: Check::Everywhere,
-        measure: |lab, e| Ok(bounce(lab, e)?[1]),
+        measure: |lab, e| Ok(bounce(lab, e, "verlet")?[1]),
         ..BARS
     },
     Case {
@@ -97,7 +97,7 @@ pub(super) const CASES: &[Case] = &[
         source: "exact: g (sin θ − μ cos θ) t²/2 (C. A. Coulomb)",
         expected: &[0.274_197_835_740_912_7],
         check: Check::Order(1.0),
-        measure: |lab, h| slide_down(lab, h, 0.49),
+        measure: |lab, h| slide_down(lab, h, 0.49, "symplectic_euler"),
         ..SLOPE
     },
     Case {
@@ -107,24 +107,84 @@ pub(super) const CASES: &[Case] = &[
         scale: Scale::Of(1.0),
         tolerance: 1e-4,
         check: Check::Everywhere,
-        measure: |lab, h| slide_down(lab, h, 0.505),
+        measure: |lab, h| slide_down(lab, h, 0.505, "symplectic_euler"),
         ..SLOPE
+    },
+    Case {
+        name: "bodies-bounce-implicit",
+        quantity: "as `bodies-bounce`, by backward Euler",
+        source: "exact: the restitution e (I. Newton)",
+        over: Over::Parameter("e"),
+        levels: &[0.25, 0.5, 1.0],
+        expected: &[0.25, 0.5, 1.0],
+        tolerance: 1e-6,
+        check: Check::Everywhere,
+        measure: |lab, e| Ok(bounce(lab, e, "backward_euler")?[0]),
+        ..BARS
+    },
+    Case {
+        name: "slope-way-on-body-implicit",
+        quantity: "as `slope-way-on-body`, by backward Euler",
+        source: "exact: g (sin θ − μ cos θ) t²/2 (C. A. Coulomb)",
+        levels: &[1.0 / 240.0, 1.0 / 480.0, 1.0 / 960.0],
+        expected: &[0.274_197_835_740_912_7],
+        check: Check::Order(1.0),
+        measure: |lab, h| slide_down(lab, h, 0.49, "backward_euler"),
+        ..SLOPE
+    },
+    Case {
+        name: "slope-stick-on-body-implicit",
+        quantity: "way of the same chain with μ = 0.505",
+        source: "exact: 0, tan θ < μ (C. A. Coulomb)",
+        levels: &[1.0 / 240.0, 1.0 / 480.0, 1.0 / 960.0],
+        scale: Scale::Of(1.0),
+        tolerance: 1e-4,
+        check: Check::Everywhere,
+        measure: |lab, h| slide_down(lab, h, 0.505, "backward_euler"),
+        ..SLOPE
+    },
+    Case {
+        name: "weight-on-body",
+        quantity: "force between a solid at rest and one that it stands on, by backward Euler at 1/60 s, over its weight",
+        source: "exact: 1 (I. Newton)",
+        over: Over::Parameter("mass of the upper over that of the lower"),
+        levels: &[1e-2, 1.0, 1e2],
+        expected: &[1.0],
+        tolerance: 1e-6,
+        check: Check::Everywhere,
+        measure: weight,
+        ..BARS
     },
 ];
 
-pub(super) const LEDGERS: &[Case] = &[Case {
-    name: "balls-meet-momentum",
-    family: Family::Ledgers,
-    quantity: "momentum of two balls after they have met with friction, over that before",
-    source: "exact: impulses of a pair have no sum",
-    over: Over::Cells("vertices of a ball"),
-    levels: &[24.0, 48.0, 96.0],
-    expected: &[1.0],
-    tolerance: 1e-12,
-    check: Check::Everywhere,
-    measure: balls,
-    ..BASE
-}];
+pub(super) const LEDGERS: &[Case] = &[
+    Case {
+        name: "balls-meet-momentum",
+        family: Family::Ledgers,
+        quantity: "momentum of two balls after they have met with friction, over that before",
+        source: "exact: impulses of a pair have no sum",
+        over: Over::Cells("vertices of a ball"),
+        levels: &[24.0, 48.0, 96.0],
+        expected: &[1.0],
+        tolerance: 1e-12,
+        check: Check::Everywhere,
+        measure: |lab, n| balls(lab, n, 64, "symplectic_euler"),
+        ..BASE
+    },
+    Case {
+        name: "balls-meet-momentum-implicit",
+        family: Family::Ledgers,
+        quantity: "as `balls-meet-momentum`, by backward Euler",
+        source: "exact: impulses of a pair have no sum",
+        over: Over::Cells("vertices of a ball"),
+        levels: &[24.0, 48.0],
+        expected: &[1.0],
+        tolerance: 1e-6,
+        check: Check::Everywhere,
+        measure: |lab, n| balls(lab, n, 4, "backward_euler"),
+        ..BASE
+    },
+];
 
 /// What becomes of two bars.
 struct Impact {
@@ -186,7 +246,7 @@ fn momentum(world: &World<2>, body: usize) -> f64 {
 }
 
 /// Two rods that meet flat at 4 m/s: their speed apart over that, and the loss over ½ m v² with m = ⅔ kg.
-fn bounce(lab: &Lab, restitution: f64) -> Result<[f64; 2], Trouble> {
+fn bounce(lab: &Lab, restitution: f64, rule: &str) -> Result<[f64; 2], Trouble> {
     let rod = |name: &str, x: f64, v: f64, mass: f64| {
         format!(
             "[[body]]\nname = \"{name}\"\nmass = {mass:?}\nvelocity = [{v:?}, 0]\n\
@@ -194,7 +254,7 @@ fn bounce(lab: &Lab, restitution: f64) -> Result<[f64; 2], Trouble> {
              models = [{{ kind = \"mass_spring\", stiffness = 100.0 }}]\n"
         )
     };
-    let scene = Scene::new(2, 1.0 / 60.0, 16, "verlet")
+    let scene = Scene::new(2, 1.0 / 60.0, 16, rule)
         .add(&format!("[contact]\nrestitution = {restitution:?}\nthickness = 0.01"))
         .add(&rod("first", -1.0, 3.0, 1.0))
         .add(&rod("second", 0.5, -1.0, 2.0));
@@ -207,10 +267,10 @@ fn bounce(lab: &Lab, restitution: f64) -> Result<[f64; 2], Trouble> {
 }
 
 /// The way of a chain down a line that is held, after 150 frames [m].
-fn slide_down(lab: &Lab, h: f64, friction: f64) -> Result<f64, Trouble> {
+fn slide_down(lab: &Lab, h: f64, friction: f64, rule: &str) -> Result<f64, Trouble> {
     let (frame, gap) = (1.0 / 60.0, 1e-3);
     let [x, y] = [gap / 5f64.sqrt(), 2.0 * gap / 5f64.sqrt()];
-    let scene = Scene::new(2, frame, (frame / h).round() as u32, "symplectic_euler").add(&format!(
+    let scene = Scene::new(2, frame, (frame / h).round() as u32, rule).add(&format!(
         "[world]\ngravity = [0.0, -9.81]\n[contact]\nfriction = {friction:?}\nthickness = {gap:?}\nself = false\n\
          [[body]]\nname = \"chain\"\nmass = 1\nshape = {{ kind = \"line\", from = [{x:?}, {y:?}], to = [{:?}, {:?}], segments = 10 }}\n\
          models = [{{ kind = \"mass_spring\", stiffness = 2000.0, damping = 2.0 }}]\n\
@@ -228,15 +288,39 @@ fn slide_down(lab: &Lab, h: f64, friction: f64) -> Result<f64, Trouble> {
     Ok((x[0] - start[0]).hypot(x[1] - start[1]))
 }
 
+/// The force between two blocks of solid after 5 s, over the weight of the upper one, which has so many times the mass of the lower one. The
+/// stiffness grows with the mass above: so the lower one is pressed by as much of its height.
+fn weight(lab: &Lab, ratio: f64) -> Result<f64, Trouble> {
+    let stiffness = 1e5 * if ratio > 1.0 { ratio } else { 1.0 };
+    let block = |name: &str, x: f64, y: f64, width: f64, mass: f64, more: &str| {
+        format!(
+            "[[body]]\nname = \"{name}\"\nmass = {mass:?}\nposition = [{x:?}, {y:?}]\n\
+             shape = {{ kind = \"grid\", size = [{width:?}, 1], cells = [{}, 4] }}\n\
+             models = [{{ kind = \"fem\", youngs_modulus = {stiffness:?}, poissons_ratio = 0.3, damping = 1e-2 }}]\n{more}\n",
+            (4.0 * width).round()
+        )
+    };
+    let scene = Scene::new(2, 1.0 / 60.0, 1, "backward_euler")
+        .add("[world]\ngravity = [0.0, -9.81]\n[contact]\nfriction = 0.5")
+        .add(&block("lower", -0.5, -1.0, 2.0, 1.0, "pin = [{ select = { side = \"bottom\" } }]"))
+        .add(&block("upper", 0.03, 0.01, 1.0, ratio, ""));
+    let mut world = lab.plane(scene)?;
+    for _ in 0..300 {
+        world.frame()?;
+    }
+    let force: f64 = world.contact_forces(1).iter().map(|force| force[1]).sum();
+    Ok(force / (9.81 * ratio))
+}
+
 /// The momentum of two balls of gas after they have met, over that before.
-fn balls(lab: &Lab, n: f64) -> Result<f64, Trouble> {
+fn balls(lab: &Lab, n: f64, substeps: u32, rule: &str) -> Result<f64, Trouble> {
     let ball = |name: &str, x: f64, y: f64, v: f64| {
         format!(
             "[[body]]\nname = \"{name}\"\nmass = 1\nvelocity = [{v:?}, 0.5]\nshape = {{ kind = \"ring\", radius = 0.5, vertices = {n}, center = [{x:?}, {y:?}] }}\n\
              models = [{{ kind = \"mass_spring\", stiffness = 400.0, damping = 0.2 }}, {{ kind = \"pressure\", nRT = 20.0 }}]\n"
         )
     };
-    let scene = Scene::new(2, 1.0 / 60.0, 64, "symplectic_euler")
+    let scene = Scene::new(2, 1.0 / 60.0, substeps, rule)
         .add("[contact]\nfriction = 0.5")
         .add(&ball("first", -0.7, 0.1, 3.0))
         .add(&ball("second", 0.7, 0.0, -1.0));

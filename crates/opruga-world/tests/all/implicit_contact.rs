@@ -11,7 +11,8 @@ const RULES: [&str; 4] = ["backward_euler", "bdf2", "implicit_midpoint", "newmar
 /// A solid rectangle of triangles.
 fn block(name: &str, size: [f64; 2], cells: [u32; 2], x: [f64; 2], mass: f64, youngs_modulus: f64) -> BodyBlueprint<2> {
     let mesh = Mesh::grid([0.0; 2], size, cells).expect("a grid");
-    let solid = vec![model::<2>("fem", &[("youngs_modulus", youngs_modulus), ("poissons_ratio", 0.3), ("damping", 1e-3)])];
+    let solid =
+        vec![model::<2>("fem", &[("youngs_modulus", youngs_modulus), ("poissons_ratio", 0.3), ("damping", 1e-3)])];
     BodyBlueprint { translation: x, ..BodyBlueprint::new(name, mesh, Mass::Total(mass), solid) }
 }
 
@@ -187,8 +188,11 @@ fn solids_and_sheets_of_space_rest_on_one_another() {
         scene.surroundings.gravity = [0.0, 0.0, -9.81];
         scene.time = Time { seconds: 3.0, frame: 1.0 / 60.0, substeps: 1 };
         scene.contact = contact::<3>(&[("friction", 0.5.into())]);
-        let fields =
-            [("point", Value::Numbers(vec![0.0; 3])), ("normal", Value::Numbers(vec![0.0, 0.0, 1.0])), ("friction", 0.5.into())];
+        let fields = [
+            ("point", Value::Numbers(vec![0.0; 3])),
+            ("normal", Value::Numbers(vec![0.0, 0.0, 1.0])),
+            ("friction", 0.5.into()),
+        ];
         scene.colliders.push(ColliderBlueprint::new::<3>("half_space", &fields).expect("a plane"));
         let mut world = world(&scene);
         for _ in 0..150 {

@@ -75,7 +75,7 @@ fn needles() -> Vec<(ColliderBlueprint, f64, [f64; 2])> {
 /// The ball lands on a needle with the middle of an edge: with contact the needle stays outside, and carries it.
 #[test]
 fn needles_stay_outside_of_a_coarse_ball() {
-    for rule in ["symplectic_euler", "verlet", "runge_kutta"] {
+    for rule in ["symplectic_euler", "verlet", "runge_kutta", "backward_euler", "newmark"] {
         for (needle, radius, tip) in needles() {
             let kind = needle.values.kind();
             let mut scene = scene(rule, ball([0.0, 0.6], [0.0; 2]), needle);
