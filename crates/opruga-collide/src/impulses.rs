@@ -3,6 +3,7 @@
 use crate::coupled::Coupled;
 use crate::gap::Gap;
 use crate::vector::{dot, length, scaled, subtract};
+use core::any::Any;
 use opruga_math::Lane;
 
 /// One contact: a lower bound of its normal velocity, and Coulomb friction.
@@ -339,18 +340,58 @@ impl<const D: usize> Turns<D> {
     }
 }
 
-/// Sweeps over the rows, to and fro, until the velocities stay: separately over rows that no point joins. Gives how many turns rows had.
-///
+/// What is solved for.
+pub(crate) struct Problem<'a, const D: usize> {
+    pub(crate) rows: &'a mut Vec<Row<D>>,
+    pub(crate) inverse_mass: &'a Vec<[f64; D]>,
+    pub(crate) coupled: &'a mut Coupled<D>,
+    pub(crate) v: &'a mut Vec<[f64; D]>,
+    pub(crate) turns: &'a mut Turns<D>,
+    /// The mean approach [m/s].
+    pub(crate) approach: f64,
+}
+
+impl<const D: usize> Problem<'_, D> {
+    /// The same problem where it is one of so many dimensions.
+    fn of<const E: usize>(&mut self) -> Option<Problem<'_, E>> {
+        fn cast<A: Any, B: Any>(one: &mut A) -> Option<&mut B> {
+            (one as &mut dyn Any).downcast_mut()
+        }
+        Some(Problem {
+            rows: cast(self.rows)?,
+            inverse_mass: (self.inverse_mass as &dyn Any).downcast_ref()?,
+            coupled: cast(self.coupled)?,
+            v: cast(self.v)?,
+            turns: cast(self.turns)?,
+            approach: self.approach,
+        })
+    }
+
+    /// Sweeps over the rows, to and fro, until the velocities stay: separately over rows that no point joins. Gives how many turns rows had.
+    ///
+    /// Not generic behind this call: the sweeps are compiled once, with this crate.
+    pub(crate) fn solve(mut self) -> usize {
+        if let Some(plane) = self.of::<2>() {
+            return solve_in_plane(plane);
+        }
+        self.of::<3>().map_or(0, solve_in_space)
+    }
+}
+
+#[inline(never)]
+fn solve_in_plane(problem: Problem<'_, 2>) -> usize {
+    solve(problem)
+}
+
+#[inline(never)]
+fn solve_in_space(problem: Problem<'_, 3>) -> usize {
+    solve(problem)
+}
+
 /// A row is passed over while nothing that it holds has changed since its last turn by more than the tolerance: so sweeps cost what is still
 /// on the move.
-pub(crate) fn solve<const D: usize>(
-    rows: &mut Vec<Row<D>>,
-    inverse_mass: &[[f64; D]],
-    coupled: &mut Coupled<D>,
-    v: &mut [[f64; D]],
-    turns: &mut Turns<D>,
-    approach: f64,
-) -> usize {
+fn solve<const D: usize>(problem: Problem<'_, D>) -> usize {
+    let Problem { rows, inverse_mass, coupled, v, turns, approach } = problem;
     turns.join(rows, coupled);
     let Turns { stamps, heads, now, starts, .. } = turns;
     let begin = *now;

