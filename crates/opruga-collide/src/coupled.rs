@@ -2,7 +2,6 @@
 //!
 //! An impulse on one point moves all of them, Δv = Y p. Columns of Y are asked for where contacts need them.
 
-use crate::impulses::Row;
 use core::ops::Range;
 
 /// What says how the points of a body answer impulses.
@@ -12,6 +11,9 @@ pub trait Respond<const D: usize> {
     /// whether that is known.
     fn respond(&mut self, body: usize, point: usize, out: &mut [[[f64; D]; D]]) -> bool;
 }
+
+/// The points of a contact and their weights, by which it moves and pushes them.
+pub(crate) type Weighted<'a> = (&'a [u32; 4], &'a [f64; 4]);
 
 /// Such bodies, and the columns that are known in the step.
 #[derive(Clone, Debug, Default)]
@@ -75,8 +77,8 @@ impl<const D: usize> Coupled<D> {
     }
 
     /// Whether a row has any point that answers together with others.
-    pub(crate) fn holds(&self, row: &Row<D>) -> bool {
-        !self.bodies.is_empty() && (0..=D).any(|k| row.weights[k] != 0.0 && self.body_of(row.points[k]).is_some())
+    pub(crate) fn holds(&self, (points, weights): Weighted<'_>) -> bool {
+        !self.bodies.is_empty() && (0..=D).any(|k| weights[k] != 0.0 && self.body_of(points[k]).is_some())
     }
 
     /// Forgets the columns of a body, as its matrix is another one.
@@ -96,11 +98,11 @@ impl<const D: usize> Coupled<D> {
     }
 
     /// Asks for the columns of the points of a row that are not known; says whether all are known then.
-    pub(crate) fn need(&mut self, row: &Row<D>, respond: &mut dyn Respond<D>) -> bool {
-        for k in (0..=D).filter(|k| row.weights[*k] != 0.0) {
-            let Some(number) = self.body_of(row.points[k]) else { continue };
+    pub(crate) fn need(&mut self, (points, weights): Weighted<'_>, respond: &mut dyn Respond<D>) -> bool {
+        for k in (0..=D).filter(|k| weights[*k] != 0.0) {
+            let Some(number) = self.body_of(points[k]) else { continue };
             let body = &mut self.bodies[number];
-            let local = row.points[k] as usize - body.points.start;
+            let local = points[k] as usize - body.points.start;
             if body.column[local] != NONE {
                 continue;
             }
@@ -111,7 +113,7 @@ impl<const D: usize> Coupled<D> {
                 return false;
             }
             body.column[local] = body.known.len() as u32;
-            body.known.push(row.points[k]);
+            body.known.push(points[k]);
             body.impulses.push([0.0; D]);
         }
         true
@@ -125,21 +127,21 @@ impl<const D: usize> Coupled<D> {
     }
 
     /// Σ wₖ wₗ Yₖₗ over the points of a row: the velocity of its gap by a unit impulse along every axis.
-    pub(crate) fn mobility(&self, row: &Row<D>, inverse_mass: &[[f64; D]]) -> [[f64; D]; D] {
+    pub(crate) fn mobility(&self, (points, weights): Weighted<'_>, inverse_mass: &[[f64; D]]) -> [[f64; D]; D] {
         let mut out = [[0.0; D]; D];
-        for k in (0..=D).filter(|k| row.weights[*k] != 0.0) {
-            let p = row.points[k];
+        for k in (0..=D).filter(|k| weights[*k] != 0.0) {
+            let p = points[k];
             let Some(body) = self.body_of(p) else {
                 for d in 0..D {
-                    out[d][d] += row.weights[k] * row.weights[k] * inverse_mass[p as usize][d];
+                    out[d][d] += weights[k] * weights[k] * inverse_mass[p as usize][d];
                 }
                 continue;
             };
-            for l in (0..=D).filter(|l| row.weights[*l] != 0.0 && self.body_of(row.points[*l]) == Some(body)) {
-                let entry = self.entry(body, p, row.points[l]);
+            for l in (0..=D).filter(|l| weights[*l] != 0.0 && self.body_of(points[*l]) == Some(body)) {
+                let entry = self.entry(body, p, points[l]);
                 for d in 0..D {
                     for i in 0..D {
-                        out[d][i] += row.weights[k] * row.weights[l] * entry[d][i];
+                        out[d][i] += weights[k] * weights[l] * entry[d][i];
                     }
                 }
             }
@@ -148,24 +150,30 @@ impl<const D: usize> Coupled<D> {
     }
 
     /// Gives the points of a row an impulse [N s]: the velocities of all points whose columns are known follow.
-    pub(crate) fn give(&mut self, row: &Row<D>, impulse: &[f64; D], inverse_mass: &[[f64; D]], v: &mut [[f64; D]]) {
-        for k in (0..=D).filter(|k| row.weights[*k] != 0.0) {
-            let p = row.points[k] as usize;
-            let own = impulse.map(|c| row.weights[k] * c);
-            let Some(body) = self.body_of(row.points[k]) else {
+    pub(crate) fn give(
+        &mut self,
+        (points, weights): Weighted<'_>,
+        impulse: &[f64; D],
+        inverse_mass: &[[f64; D]],
+        v: &mut [[f64; D]],
+    ) {
+        for k in (0..=D).filter(|k| weights[*k] != 0.0) {
+            let p = points[k] as usize;
+            let own = impulse.map(|c| weights[k] * c);
+            let Some(body) = self.body_of(points[k]) else {
                 for d in 0..D {
                     v[p][d] += own[d] * inverse_mass[p][d];
                 }
                 continue;
             };
-            let Body { points, column, known, values, impulses } = &mut self.bodies[body];
-            let column = column[p - points.start] as usize;
-            let values = &values[column * points.len()..][..points.len()];
+            let Body { points: range, column, known, values, impulses } = &mut self.bodies[body];
+            let column = column[p - range.start] as usize;
+            let values = &values[column * range.len()..][..range.len()];
             for d in 0..D {
                 impulses[column][d] += own[d];
             }
             for q in known.iter() {
-                let (v, entry) = (&mut v[*q as usize], &values[*q as usize - points.start]);
+                let (v, entry) = (&mut v[*q as usize], &values[*q as usize - range.start]);
                 for d in 0..D {
                     for i in 0..D {
                         v[i] += own[d] * entry[d][i];
@@ -176,9 +184,9 @@ impl<const D: usize> Coupled<D> {
     }
 
     /// The points that follow those of a row, beside these.
-    pub(crate) fn followers(&self, row: &Row<D>, mut visit: impl FnMut(u32)) {
-        for k in (0..=D).filter(|k| row.weights[*k] != 0.0) {
-            if let Some(body) = self.body_of(row.points[k]) {
+    pub(crate) fn followers(&self, (points, weights): Weighted<'_>, mut visit: impl FnMut(u32)) {
+        for k in (0..=D).filter(|k| weights[*k] != 0.0) {
+            if let Some(body) = self.body_of(points[k]) {
                 self.bodies[body].known.iter().for_each(|p| visit(*p));
             }
         }

@@ -71,7 +71,7 @@ impl<const D: usize> Row<D> {
 
     /// Works out what it weighs where points follow one another.
     pub(crate) fn weigh_coupled(&mut self, coupled: &Coupled<D>, inverse_mass: &[[f64; D]]) {
-        let mobility = coupled.mobility(self, inverse_mass);
+        let mobility = coupled.mobility((&self.points, &self.weights), inverse_mass);
         // Across the normal the largest row sum is at least what any direction has.
         let (mut along, mut across) = (0.0, 0.0);
         for (d, row) in mobility.iter().enumerate() {
@@ -92,7 +92,7 @@ impl<const D: usize> Row<D> {
         let new = (old + (self.target - un) * self.mass[0]).larger(0.0);
         let mut changed = ((new - old) / self.mass[0]).abs();
         if new != old {
-            coupled.give(self, &scaled(&self.normal, new - old), inverse_mass, v);
+            coupled.give((&self.points, &self.weights), &scaled(&self.normal, new - old), inverse_mass, v);
             self.normal_impulse = new;
         }
         if self.friction > 0.0 && (new > 0.0 || old > 0.0) {
@@ -113,7 +113,7 @@ impl<const D: usize> Row<D> {
             let change = subtract(&after, &self.friction_impulse);
             let largest = length(&change);
             if largest > 0.0 {
-                coupled.give(self, &change, inverse_mass, v);
+                coupled.give((&self.points, &self.weights), &change, inverse_mass, v);
                 self.friction_impulse = after;
                 changed = (largest / self.mass[1]).larger(changed);
             }
@@ -297,7 +297,7 @@ impl<const D: usize> Turns<D> {
             };
             points(row).for_each(&mut begin);
             if row.coupled {
-                coupled.followers(row, begin);
+                coupled.followers((&row.points, &row.weights), begin);
             }
         }
         for row in rows.iter() {
@@ -307,7 +307,7 @@ impl<const D: usize> Turns<D> {
                 self.join_points(first, p);
             }
             if row.coupled {
-                coupled.followers(row, |p| self.join_points(first, p));
+                coupled.followers((&row.points, &row.weights), |p| self.join_points(first, p));
             }
         }
         // Counted, summed up, and entered from behind.
@@ -419,7 +419,7 @@ fn solve<const D: usize>(problem: Problem<'_, D>) -> usize {
                     changed = true;
                     points[..=D].iter().for_each(|p| stamps[*p as usize] = *now);
                     if rows[k].coupled {
-                        coupled.followers(&rows[k], |p| stamps[p as usize] = *now);
+                        coupled.followers((&rows[k].points, &rows[k].weights), |p| stamps[p as usize] = *now);
                     }
                 }
                 *last = *now;

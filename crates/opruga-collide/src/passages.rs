@@ -115,7 +115,7 @@ impl<const D: usize> Touching<D> {
             let bodies = self.bodies_of(pair, with_facet);
             let law = *self.laws.of(bodies[0], bodies[1]);
             let mut row = self.row(&gap, &law, h, pair, with_facet);
-            if self.coupled.holds(&row) {
+            if self.coupled.holds((&row.points, &row.weights)) {
                 row.target += SPARE * law.thickness / h;
             }
             if row.mass[0] > 0.0 {

@@ -348,8 +348,11 @@ impl<const D: usize> Touching<D> {
             return true;
         }
         for row in &mut self.rows[first..] {
-            if self.coupled.holds(row) {
-                if !respond.as_mut().is_some_and(|respond| self.coupled.need(row, &mut **respond)) {
+            if self.coupled.holds((&row.points, &row.weights)) {
+                if !respond
+                    .as_mut()
+                    .is_some_and(|respond| self.coupled.need((&row.points, &row.weights), &mut **respond))
+                {
                     return false;
                 }
                 row.weigh_coupled(&self.coupled, &self.inverse_mass);
@@ -430,7 +433,7 @@ impl<const D: usize> Touching<D> {
                 (row.normal_impulse, row.friction_impulse) = (*along, *across);
                 let impulse = row.impulse();
                 if row.coupled {
-                    self.coupled.give(row, &impulse, &self.inverse_mass, &mut self.v);
+                    self.coupled.give((&row.points, &row.weights), &impulse, &self.inverse_mass, &mut self.v);
                 } else {
                     row.give(&impulse, &self.inverse_mass, &mut self.v);
                 }

@@ -46,9 +46,9 @@ impl<const D: usize> System<D> {
 
     /// Adds the forces of other bodies.
     fn add_pushes(&self, out: &mut Columns<D>) {
-        for (place, force) in self.pushes.iter().flatten() {
+        for (index, force) in self.pushes.iter().flatten() {
             for d in 0..D {
-                out.0[d][*place] += force[d];
+                out.0[d][*index] += force[d];
             }
         }
     }
@@ -73,9 +73,9 @@ impl<const D: usize> System<D> {
         let Some(pushes) = &self.pushes else { return 0.0 };
         let view = self.view(stage, self.time + time);
         let mut sum = 0.0;
-        for (place, force) in pushes {
+        for (index, force) in pushes {
             for d in 0..D {
-                sum += force[d] * view.x[d][*place];
+                sum += force[d] * view.x[d][*index];
             }
         }
         sum

@@ -3,7 +3,6 @@
 use crate::blueprint::Blueprint;
 use crate::contact_laws::{edges_of, laws};
 use crate::island::{FramePlan, Island};
-use crate::pushes::Pushed;
 use opruga_collide::{Colliders, Outline, Touching, Trouble};
 use opruga_core::contacts::Contacts;
 use opruga_core::system::Workspace;
@@ -30,6 +29,26 @@ pub(crate) struct Meeting<const D: usize> {
     pub(crate) outlines: Vec<(Outline<D>, usize)>,
     /// The bodies that take pushes into the balance of forces of their steps.
     pub(crate) pushed: Vec<Pushed<D>>,
+}
+
+/// A body that takes pushes into the balance of forces.
+#[derive(Debug)]
+pub(crate) struct Pushed<const D: usize> {
+    pub(crate) island: usize,
+    /// Where its points lie in the columns of the island.
+    pub(crate) indices: Vec<u32>,
+    /// The impulses that its step was made with, by its points [N s].
+    pub(crate) applied: Vec<(usize, [f64; D])>,
+    /// By how much the last step missed where the impulses were to lead [m].
+    pub(crate) missed: f64,
+    /// Whether the answer to impulses belongs to this substep.
+    pub(crate) prepared: bool,
+}
+
+impl<const D: usize> Pushed<D> {
+    pub(crate) fn new(island: usize, indices: Vec<u32>) -> Self {
+        Pushed { island, indices, applied: Vec::new(), missed: f64::INFINITY, prepared: false }
+    }
 }
 
 /// A substep that bodies have made without one another.

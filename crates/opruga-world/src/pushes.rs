@@ -13,30 +13,10 @@
 //! 559–568.
 
 use crate::island::Island;
-use crate::meeting::{Meeting, Substep};
+use crate::meeting::{Meeting, Pushed, Substep};
 use opruga_collide::{Obstacles, Respond, Touching, Trouble};
 use opruga_core::system::Workspace;
 use opruga_math::{Lane, WIDTH};
-
-/// A body that takes pushes into the balance of forces.
-#[derive(Debug)]
-pub(crate) struct Pushed<const D: usize> {
-    island: usize,
-    /// Where its points lie in the columns of the island.
-    indices: Vec<u32>,
-    /// The impulses that its step was made with, by its points [N s].
-    applied: Vec<(usize, [f64; D])>,
-    /// By how much the last step missed where the impulses were to lead [m].
-    missed: f64,
-    /// Whether the answer to impulses belongs to this substep.
-    prepared: bool,
-}
-
-impl<const D: usize> Pushed<D> {
-    pub(crate) fn new(island: usize, indices: Vec<u32>) -> Self {
-        Pushed { island, indices, applied: Vec::new(), missed: f64::INFINITY, prepared: false }
-    }
-}
 
 /// Steps and contact agree where no point ends farther than this from where impulses were to lead it, relative to the thickness of surfaces,
 /// in the rounds before the given one. Exact steps reach the first in two or three rounds, those of a budget the second; what changes who
@@ -352,7 +332,7 @@ impl<const D: usize> Meeting<D> {
                 if moved == [0.0; D] {
                     continue;
                 }
-                let push = system.pushes.iter().flatten().find(|(place, _)| *place == index).map_or([0.0; D], |p| p.1);
+                let push = system.pushes.iter().flatten().find(|(other, _)| *other == index).map_or([0.0; D], |p| p.1);
                 for d in (0..D).filter(|d| self.touching.inverse_mass[p][*d] > 0.0) {
                     let change = system.state.v.0[d][index] - self.touching.before[1][p][d];
                     let force = change / (self.touching.inverse_mass[p][d] * h) - push[d];

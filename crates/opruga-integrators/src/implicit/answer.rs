@@ -1,27 +1,12 @@
 //! How the end of a step answers to forces of other bodies: ∂x₁/∂f = (σM + βC + K)⁻¹/θ, in the directions that are free.
 
 use super::balance::Balance;
-use super::linear::{Filter, Linear, Mixture};
+use super::linear::{Filter, Mixture};
 use super::stage::evaluate;
 use super::workspace::Workspace;
 use opruga_core::error::StepError;
 use opruga_core::potential::Definiteness;
 use opruga_core::system::System;
-use opruga_solve::blocks::Block;
-
-/// The matrix of the last step, made for other right-hand sides.
-#[derive(Debug, Default)]
-pub(crate) struct Answer<const D: usize> {
-    /// The balance of the last step and the time at its start [s]; none where it was made in parts.
-    pub(crate) last: Option<(Balance, f64)>,
-    linear: Linear<D>,
-    /// Which directions are free in it, and by what part of the way its stage is before the end.
-    free: Vec<bool>,
-    projectors: Vec<Block<D>>,
-    theta: f64,
-    /// Whether the matrix is solved by factors that ask for no positive eigenvalues.
-    by_factors: bool,
-}
 
 /// Factors the matrix of the step that was made last; says whether there is one.
 ///

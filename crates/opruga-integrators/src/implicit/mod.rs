@@ -53,6 +53,7 @@
 //! brings along the normal is lost or returned by the restitution, and friction takes µ times that change as well.
 
 mod answer;
+mod answer_matrix;
 pub(crate) mod balance;
 pub(crate) mod contact;
 mod contact_derivatives;

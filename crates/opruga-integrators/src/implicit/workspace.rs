@@ -1,6 +1,6 @@
 //! The vectors that an implicit step works on.
 
-use super::answer::Answer;
+use super::answer_matrix::AnswerMatrix;
 use super::contact::Contacting;
 use super::impact::Struck;
 use super::linear::Linear;
@@ -58,7 +58,7 @@ pub(crate) struct Workspace<const D: usize> {
     pub(crate) memory: Vec<f64>,
     pub(crate) linear: Linear<D>,
     /// The matrix by which its end answers to other bodies.
-    pub(crate) answer: Answer<D>,
+    pub(crate) answer: AnswerMatrix<D>,
     /// Whether the real-time setting factors its matrix with a solver that is asked for, once that was found out.
     pub(crate) direct: Option<(Solver, bool)>,
     /// The matrix of the real-time setting.
@@ -102,7 +102,7 @@ impl<const D: usize> Default for Workspace<D> {
             free: Vec::new(),
             projectors: Vec::new(),
             linear: Linear::default(),
-            answer: Answer::default(),
+            answer: AnswerMatrix::default(),
             direct: None,
             reused: ReusedMatrix::default(),
             contacting: Contacting::default(),

@@ -1,0 +1,19 @@
+//! The matrix by which the end of a step answers to forces of other bodies.
+
+use super::balance::Balance;
+use super::linear::Linear;
+use opruga_solve::blocks::Block;
+
+/// The matrix of the last step, made for other right-hand sides.
+#[derive(Debug, Default)]
+pub(crate) struct AnswerMatrix<const D: usize> {
+    /// The balance of the last step and the time at its start [s]; none where it was made in parts.
+    pub(crate) last: Option<(Balance, f64)>,
+    pub(crate) linear: Linear<D>,
+    /// Which directions are free in it, and by what part of the way its stage is before the end.
+    pub(crate) free: Vec<bool>,
+    pub(crate) projectors: Vec<Block<D>>,
+    pub(crate) theta: f64,
+    /// Whether the matrix is solved by factors that ask for no positive eigenvalues.
+    pub(crate) by_factors: bool,
+}
