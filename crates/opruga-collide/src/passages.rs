@@ -114,10 +114,7 @@ impl<const D: usize> Touching<D> {
             let (pair, with_facet) = pair_of(id);
             let bodies = self.bodies_of(pair, with_facet);
             let law = *self.laws.of(bodies[0], bodies[1]);
-            let mut row = self.row(&gap, &law, h, pair, with_facet);
-            if self.coupled.holds((&row.points, &row.weights)) {
-                row.target += SPARE * law.thickness / h;
-            }
+            let row = self.row(&gap, &law, h, pair, with_facet);
             if row.mass[0] > 0.0 {
                 self.rows.push(row);
             }
@@ -187,10 +184,6 @@ impl<const D: usize> Touching<D> {
         Some(motion)
     }
 }
-
-/// By how much features stay apart that would pass, relative to the thickness, where bodies solve for the end of a step: steps and impulses
-/// agree on it to a thousandth of that. What touched to rounding would pass by what they disagree.
-const SPARE: f64 = 1e-3;
 
 /// The features of a key.
 fn pair_of(id: u64) -> ([u32; 2], bool) {

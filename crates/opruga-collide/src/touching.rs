@@ -238,7 +238,7 @@ impl<const D: usize> Touching<D> {
         self.counts.pairs += (self.rows.len() + self.watched.len()) as u64;
     }
 
-    /// Lets all points answer by themselves for the rest of the substep: contact and the balance of forces did not come to terms.
+    /// Lets all points answer by themselves for the rest of the substep: contact and the balance of forces do not agree.
     pub fn part_coupled(&mut self) {
         self.coupled.apart = true;
         self.passing.clear();
@@ -246,12 +246,12 @@ impl<const D: usize> Touching<D> {
     }
 
     /// How far the points of a body end from where the impulses were to lead them, at most [m].
-    pub fn missed_by(&self, body: usize, actual: &[[f64; D]]) -> f64 {
+    pub fn missed_by(&self, body: usize, actual: impl Iterator<Item = [f64; D]>) -> f64 {
         let points = self.coupled.points_of(body);
         let mut most: f64 = 0.0;
         for (p, x) in points.zip(actual) {
             let end = subtract(&self.end[p], &self.moved_of(p));
-            most = length(&subtract(x, &end)).larger(most);
+            most = length(&subtract(&x, &end)).larger(most);
         }
         most
     }

@@ -39,15 +39,13 @@ pub(crate) struct Pushed<const D: usize> {
     pub(crate) indices: Vec<u32>,
     /// The impulses that its step was made with, by its points [N s].
     pub(crate) applied: Vec<(usize, [f64; D])>,
-    /// By how much the last step missed where the impulses were to lead [m].
-    pub(crate) missed: f64,
     /// Whether the answer to impulses belongs to this substep.
     pub(crate) prepared: bool,
 }
 
 impl<const D: usize> Pushed<D> {
     pub(crate) fn new(island: usize, indices: Vec<u32>) -> Self {
-        Pushed { island, indices, applied: Vec::new(), missed: f64::INFINITY, prepared: false }
+        Pushed { island, indices, applied: Vec::new(), prepared: false }
     }
 }
 
@@ -220,7 +218,7 @@ impl<const D: usize> Meeting<D> {
         self.touching.begin_step();
         if self.pushed.is_empty() {
             self.touching.find_impulses(h, touch, None)?;
-        } else if !self.come_to_terms(islands, step, touch, workspace)? {
+        } else if !self.iterate_with_contact(islands, step, touch, workspace)? {
             self.part(islands, step, workspace);
             if islands.iter().any(|island| island.outcome.is_err()) {
                 return Ok(());

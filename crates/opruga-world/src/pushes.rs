@@ -1,4 +1,4 @@
-//! Bodies that solve for the end of a step, and what pushes them: contact and the balance of forces come to terms.
+//! Bodies that solve for the end of a step, and the forces of contact on them.
 //!
 //! ```text
 //! step      x₁(f): the end of a step in which the forces f = p/h act on the nodes, p the impulses of contact
@@ -6,8 +6,7 @@
 //! contact   p from the gaps, the free motion x₁(f) − A⁻¹ f/θ and the answer
 //! ```
 //!
-//! Steps and contact take turns until they agree on the end of the step: Newton's method for f, whose matrix is made anew where it does not
-//! lead there. The forces of a substep are those of the one before at first, within a frame: bodies at rest on one another take one step.
+//! Steps and contact are solved in turn until they agree on the end of the step: Newton's method for f. The forces of a substep are those of the one before at first, within a frame: bodies at rest on one another take one step.
 //!
 //! Source: M. Otaduy, R. Tamstorf, D. Steinemann, M. Gross, Implicit contact handling for deformable objects, Computer Graphics Forum 28 (2009)
 //! 559–568.
@@ -25,57 +24,6 @@ const AGREED: [(usize, f64); 3] = [(3, 1e-7), (6, 1e-4), (MOST_ROUNDS, 1e-2)];
 
 /// The most rounds.
 const MOST_ROUNDS: usize = 12;
-
-/// The answer of a matrix is good enough while every round leaves at most this part of what was missed before.
-const GOOD: f64 = 0.25;
-
-/// The share of a change of impulses that is taken: less than all where changes do not get smaller, as of a body whose answer is another one for
-/// every push.
-#[derive(Clone, Copy, Debug)]
-struct Share {
-    part: f64,
-    missed: f64,
-}
-
-impl Default for Share {
-    fn default() -> Self {
-        Share { part: 1.0, missed: f64::INFINITY }
-    }
-}
-
-impl Share {
-    /// Notes what the last steps missed by [m].
-    fn note(&mut self, missed: f64) {
-        // A share of the change leaves the rest of it at least.
-        let falls = missed <= (1.0 - 0.5 * self.part) * self.missed;
-        self.part = if falls { (2.0 * self.part).smaller(1.0) } else { (0.5 * self.part).larger(LEAST_SHARE) };
-        self.missed = missed;
-    }
-
-    /// Impulses by point, between those that were found and those that were applied.
-    fn mixed<const D: usize>(
-        &self,
-        found: impl Iterator<Item = (usize, [f64; D])>,
-        applied: &[(usize, [f64; D])],
-    ) -> Vec<(usize, [f64; D])> {
-        if self.part == 1.0 {
-            return found.collect();
-        }
-        let scaled = |part: f64| move |(point, impulse): (usize, [f64; D])| (point, impulse.map(|c| part * c));
-        let mut all: Vec<_> =
-            found.map(scaled(self.part)).chain(applied.iter().copied().map(scaled(1.0 - self.part))).collect();
-        all.sort_by_key(|(point, _)| *point);
-        all.dedup_by(|next, kept| {
-            let same = next.0 == kept.0;
-            (0..D).filter(|_| same).for_each(|d| kept.1[d] += next.1[d]);
-            same
-        });
-        all
-    }
-}
-
-/// The least share.
-const LEAST_SHARE: f64 = 0.125;
 
 /// Asks bodies for their answers.
 struct Answers<'a, const D: usize> {
@@ -153,7 +101,7 @@ impl<const D: usize> Meeting<D> {
         for (body, pushed) in self.pushed.iter_mut().enumerate() {
             let island = &mut islands[pushed.island];
             island.mark();
-            (pushed.prepared, pushed.missed) = (false, f64::INFINITY);
+            pushed.prepared = false;
             self.touching.coupled.forget(body);
             if pushed.applied.is_empty() {
                 island.system.pushes = None;
@@ -165,8 +113,8 @@ impl<const D: usize> Meeting<D> {
         }
     }
 
-    /// Lets steps and contact take turns until they agree; says whether they do.
-    pub(crate) fn come_to_terms(
+    /// Repeats steps and the solution of contact until both agree; says whether they do.
+    pub(crate) fn iterate_with_contact(
         &mut self,
         islands: &mut [Island<D>],
         step: &Substep<'_, D>,
@@ -175,7 +123,6 @@ impl<const D: usize> Meeting<D> {
     ) -> Result<bool, Trouble> {
         let h = step.plan.h;
         let thickness = self.touching.laws.largest_thickness()[0];
-        let mut share = Share::default();
         for round in 0..=MOST_ROUNDS {
             if round > 0 {
                 self.take(islands, step.time);
@@ -189,7 +136,7 @@ impl<const D: usize> Meeting<D> {
             // In the end nothing passes in what the last step came to: what it misses is left to the next one.
             let agreed = AGREED.iter().find(|(before, _)| round < *before);
             let enough = agreed.map_or(f64::INFINITY, |(_, part)| part * thickness);
-            if !self.step_again(islands, step, workspace, enough, &mut share) {
+            if !self.step_again(islands, step, workspace, enough) {
                 if self.pushed.iter().all(|pushed| pushed.applied.is_empty()) {
                     return Ok(true);
                 }
@@ -214,30 +161,21 @@ impl<const D: usize> Meeting<D> {
         step: &Substep<'_, D>,
         workspace: &mut Workspace<D>,
         enough: f64,
-        share: &mut Share,
     ) -> bool {
         let mut most: f64 = 0.0;
-        let missed: Vec<f64> = (0..self.pushed.len())
-            .map(|body| {
-                let Pushed { island, indices, .. } = &self.pushed[body];
-                let x = &islands[*island].system.state.x;
-                let ends: Vec<[f64; D]> = indices.iter().map(|k| x.at(*k as usize)).collect();
-                let missed = self.touching.missed_by(body, &ends);
-                most = missed.larger(most);
-                missed
-            })
-            .collect();
+        for (body, Pushed { island, indices, .. }) in self.pushed.iter().enumerate() {
+            let x = &islands[*island].system.state.x;
+            most = self.touching.missed_by(body, indices.iter().map(|k| x.at(*k as usize))).larger(most);
+        }
         let as_before = (0..self.pushed.len()).all(|body| {
             self.touching.coupled.impulses_on(body).next().is_some() != self.pushed[body].applied.is_empty()
         });
         if most <= enough && (as_before || enough == f64::INFINITY) {
             return false;
         }
-        share.note(most);
-        let mut begun = false;
         // All whose impulses have changed: what one gives is what another one takes.
-        for ((body, pushed), missed) in self.pushed.iter_mut().enumerate().zip(missed) {
-            let impulses = share.mixed(self.touching.coupled.impulses_on(body), &pushed.applied);
+        for (body, pushed) in self.pushed.iter_mut().enumerate() {
+            let impulses: Vec<_> = self.touching.coupled.impulses_on(body).collect();
             if impulses == pushed.applied {
                 continue;
             }
@@ -245,21 +183,12 @@ impl<const D: usize> Meeting<D> {
             let forces = impulses
                 .iter()
                 .map(|(point, impulse)| (pushed.indices[*point] as usize, impulse.map(|c| c / step.plan.h)));
-            // The rule may be another one once it is pushed.
-            let is_first = island.system.pushes.is_none();
-            begun |= is_first;
             island.system.pushes = Some(forces.collect());
             pushed.applied = impulses;
             island.rewind();
             island.step_together(step.plan, step.number, workspace);
-            if is_first || missed > GOOD * pushed.missed {
-                pushed.prepared = false;
-                self.touching.coupled.forget(body);
-            }
-            pushed.missed = missed;
-        }
-        if begun {
-            *share = Share::default();
+            pushed.prepared = false;
+            self.touching.coupled.forget(body);
         }
         true
     }

@@ -150,17 +150,21 @@ pub(crate) fn passes(point: [[f64; 2]; 2], edge: [[[f64; 2]; 2]; 2]) -> bool {
     })
 }
 
+/// A thin wire, and a small one that comes to it at a speed [m/s].
+pub(crate) fn wall_and_dot(speed: f64) -> Vec<BodyBlueprint<2>> {
+    let wire = Mesh::<2>::line([0.0, -1.0], [0.0, 1.0], 40).expect("a wire");
+    let springs = vec![model::<2>("mass_spring", &[("stiffness", 2000.0)])];
+    let wall = BodyBlueprint::new("wall", wire, Mass::Total(5.0), springs.clone());
+    let dot = Mesh::<2>::line([-0.02, 0.0], [0.02, 0.015], 1).expect("a wire");
+    let dot = BodyBlueprint::new("dot", dot, Mass::Total(0.1), springs);
+    vec![wall, BodyBlueprint { translation: [-0.3, 0.013], velocity: [speed, 0.0], ..dot }]
+}
+
 /// Nothing passes through a thin wire, at up to sixteen edges in a step; between two steps all points move evenly.
 #[test]
 fn fast_bodies_do_not_tunnel() {
     for speed in [1.0, 30.0, 300.0, 3000.0] {
-        let wire = Mesh::<2>::line([0.0, -1.0], [0.0, 1.0], 40).expect("a wire");
-        let springs = vec![model::<2>("mass_spring", &[("stiffness", 2000.0)])];
-        let wall = BodyBlueprint::new("wall", wire, Mass::Total(5.0), springs.clone());
-        let dot = Mesh::<2>::line([-0.02, 0.0], [0.02, 0.015], 1).expect("a wire");
-        let dot = BodyBlueprint::new("dot", dot, Mass::Total(0.1), springs);
-        let dot = BodyBlueprint { translation: [-0.3, 0.013], velocity: [speed, 0.0], ..dot };
-        let mut scene = scene("symplectic_euler", vec![wall, dot]);
+        let mut scene = scene("symplectic_euler", wall_and_dot(speed));
         scene.time.frame = 1.0 / 3840.0;
         scene.time.substeps = 1;
         let mut world = world(&scene);

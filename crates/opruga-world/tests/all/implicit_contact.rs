@@ -1,6 +1,6 @@
 //! Contact of bodies whose integrators solve for the end of a step: it is part of the balance of forces.
 
-use crate::contact::{ball, contact, deepest, model, passes, scene, world};
+use crate::contact::{ball, contact, deepest, model, passes, scene, wall_and_dot, world};
 use opruga_core::spec::Value;
 use opruga_math::Lane;
 use opruga_mesh::Mesh;
@@ -106,13 +106,7 @@ fn bodies_of_all_rules_meet_and_keep_momentum() {
 fn fast_bodies_do_not_tunnel_through_bodies_of_implicit_rules() {
     for speed in [1.0, 30.0, 300.0, 3000.0] {
         for rule in RULES {
-            let wire = Mesh::<2>::line([0.0, -1.0], [0.0, 1.0], 40).expect("a wire");
-            let springs = vec![model::<2>("mass_spring", &[("stiffness", 2000.0)])];
-            let wall = BodyBlueprint::new("wall", wire, Mass::Total(5.0), springs.clone());
-            let dot = Mesh::<2>::line([-0.02, 0.0], [0.02, 0.015], 1).expect("a wire");
-            let dot = BodyBlueprint::new("dot", dot, Mass::Total(0.1), springs);
-            let dot = BodyBlueprint { translation: [-0.3, 0.013], velocity: [speed, 0.0], ..dot };
-            let mut scene = scene(rule, vec![wall, dot]);
+            let mut scene = scene(rule, wall_and_dot(speed));
             scene.time.frame = 1.0 / 960.0;
             scene.time.substeps = 1;
             let mut world = world(&scene);
