@@ -61,19 +61,30 @@ impl Dense {
         self.numbers.heap_bytes()
     }
     /// y = A x of a symmetric matrix, for vectors one after the other of [`Dense::padded`] numbers each: every number is read from
-    /// memory once for four of them.
+    /// memory once for eight of them.
     pub fn multiply(&self, simd: Simd, x: &[f64], y: &mut [f64]) {
         let length = self.padded();
         if length == 0 {
             return;
         }
-        let most = 4 * length;
-        for (x, y) in x.chunks(most).zip(y.chunks_mut(most)) {
-            match x.len() / length {
-                4 => simd.run(Product::<4> { matrix: self, x, y }),
-                3 => simd.run(Product::<3> { matrix: self, x, y }),
-                2 => simd.run(Product::<2> { matrix: self, x, y }),
-                _ => simd.run(Product::<1> { matrix: self, x, y }),
+        // Half of the lanes and more would stay empty.
+        match x.len() / length {
+            1 => return simd.run(Product::<1> { matrix: self, x, y }),
+            2 => return simd.run(Product::<2> { matrix: self, x, y }),
+            3 => return simd.run(Product::<3> { matrix: self, x, y }),
+            4 => return simd.run(Product::<4> { matrix: self, x, y }),
+            _ => {}
+        }
+        let (mut side_by_side, mut products) = (Column::zeros(WIDTH * length), Column::zeros(WIDTH * length));
+        for (x, y) in x.chunks(WIDTH * length).zip(y.chunks_mut(WIDTH * length)) {
+            side_by_side.fill(0.0);
+            products.fill(0.0);
+            for (n, x) in x.chunks_exact(length).enumerate() {
+                side_by_side.chunks_exact_mut(WIDTH).zip(x).for_each(|(to, x)| to[n] = *x);
+            }
+            simd.run(Products { matrix: self, x: &side_by_side, y: &mut products });
+            for (n, y) in y.chunks_exact_mut(length).enumerate() {
+                products.chunks_exact(WIDTH).zip(y).for_each(|(from, y)| *y = from[n]);
             }
         }
     }
@@ -90,7 +101,7 @@ fn at(row: usize, column: usize) -> usize {
     (i * (i + 1) / 2 + j) * SIDE * SIDE + (row % SIDE) * SIDE + column % SIDE
 }
 
-/// The product with N vectors: every number is read once.
+/// The product with few vectors: lanes are columns.
 struct Product<'a, const N: usize> {
     matrix: &'a Dense,
     x: &'a [f64],
@@ -174,6 +185,78 @@ fn along_columns<P: Pack, const N: usize>(tile: &[f64], x: [&[f64]; N]) -> [[P; 
         }
     }
     packs
+}
+
+/// The product with up to eight vectors: lanes are vectors, whose numbers lie side by side.
+struct Products<'a> {
+    matrix: &'a Dense,
+    x: &'a [f64],
+    y: &'a mut [f64],
+}
+
+/// Rows of a tile that are summed together: their x and their sums stay in registers.
+const ROWS: usize = 4;
+
+impl Work for Products<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<P: Pack>(self) {
+        const EIGHT_SIDES: usize = SIDE * WIDTH;
+        let Products { matrix, x, y } = self;
+        for i in 0..matrix.padded() / SIDE {
+            let own = &x[i * EIGHT_SIDES..][..EIGHT_SIDES];
+            for j in 0..=i {
+                let (before, rest) = y.split_at_mut(i * EIGHT_SIDES);
+                let rows = &mut rest[..EIGHT_SIDES];
+                let other = &x[j * EIGHT_SIDES..][..EIGHT_SIDES];
+                let tile = matrix.tile(i, j);
+                if i == j {
+                    once::<P>(tile, other, rows);
+                } else {
+                    twice::<P>(tile, own, other, rows, &mut before[j * EIGHT_SIDES..][..EIGHT_SIDES]);
+                }
+            }
+        }
+    }
+}
+
+/// Adds T x to a tile on the diagonal.
+#[inline(always)]
+fn once<P: Pack>(tile: &[f64], x: &[f64], y: &mut [f64]) {
+    for (row, y) in tile.chunks_exact(SIDE).zip(y.chunks_exact_mut(WIDTH)) {
+        let mut sum = P::load(y);
+        for (entry, x) in row.iter().zip(x.chunks_exact(WIDTH)) {
+            sum += P::splat(*entry) * P::load(x);
+        }
+        sum.store(y);
+    }
+}
+
+/// Adds T x of the columns to the rows, and Tᵀ x of the rows to the columns.
+#[inline(always)]
+fn twice<P: Pack>(tile: &[f64], of_rows: &[f64], of_columns: &[f64], rows: &mut [f64], columns: &mut [f64]) {
+    const BLOCK: usize = ROWS * WIDTH;
+    for (entries, (x, y)) in
+        tile.chunks_exact(ROWS * SIDE).zip(of_rows.chunks_exact(BLOCK).zip(rows.chunks_exact_mut(BLOCK)))
+    {
+        let (mut own, mut sums) = ([P::zero(); ROWS], [P::zero(); ROWS]);
+        for r in 0..ROWS {
+            (own[r], sums[r]) = (P::load(&x[r * WIDTH..]), P::load(&y[r * WIDTH..]));
+        }
+        for (k, (x, y)) in of_columns.chunks_exact(WIDTH).zip(columns.chunks_exact_mut(WIDTH)).enumerate() {
+            let other = P::load(x);
+            let mut column = P::load(y);
+            for r in 0..ROWS {
+                let entry = P::splat(entries[r * SIDE + k]);
+                sums[r] += entry * other;
+                column += entry * own[r];
+            }
+            column.store(y);
+        }
+        for r in 0..ROWS {
+            sums[r].store(&mut y[r * WIDTH..]);
+        }
+    }
 }
 
 #[cfg(test)]

@@ -214,6 +214,9 @@ pub struct Properties {
     pub begins_tiles: bool,
     /// Whether `prepare` reads all that forces depend on, so that nodes of one stencil may move one after the other.
     pub forces_in_prepare: bool,
+    /// Whether nodes push only one another: in every state forces have no sum and no moment about any point, and turn with the body. Where a
+    /// model does not say so, whoever needs to know measures it.
+    pub acts_between_nodes: Option<bool>,
 }
 
 impl Properties {
@@ -228,6 +231,7 @@ impl Properties {
             shares_threads: false,
             begins_tiles: false,
             forces_in_prepare: false,
+            acts_between_nodes: None,
         }
     }
 }

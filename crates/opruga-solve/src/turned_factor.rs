@@ -104,6 +104,11 @@ impl TurnedFactor {
     }
 }
 
+/// Whether a block is a multiple of the unit matrix.
+fn is_isotropic<const D: usize>(block: &Block<D>) -> bool {
+    (0..D).all(|i| (0..D).all(|j| block[i][j] == if i == j { block[0][0] } else { 0.0 }))
+}
+
 /// The bits of all that the factor is made of, where that is the same in every frame.
 fn unturned<const D: usize>(matrix: &BlockMatrix<D>, positive: bool) -> Option<Vec<u64>> {
     let [only] = matrix.beside() else { return None };
@@ -118,9 +123,8 @@ fn unturned<const D: usize>(matrix: &BlockMatrix<D>, positive: bool) -> Option<V
     for row in 0..matrix.rows() {
         let range = matrix.row(row);
         for (column, block) in matrix.column[range.clone()].iter().zip(&matrix.values[range]) {
-            let even = (0..D).all(|i| (0..D).all(|j| block[i][j] == if i == j { block[0][0] } else { 0.0 }));
             let zero = block.iter().flatten().all(|x| *x == 0.0);
-            if *column as usize == row && even {
+            if *column as usize == row && is_isotropic(block) {
                 out.push(block[0][0].to_bits());
             } else if !zero {
                 return None;
@@ -135,7 +139,10 @@ fn in_frame<const D: usize>(matrix: &BlockMatrix<D>, frame: &Block<D>) -> Vec<f6
     let size = matrix.rows() * D;
     let mut out = vec![0.0; size * size];
     let transposed: Block<D> = core::array::from_fn(|i| core::array::from_fn(|j| frame[j][i]));
-    let turned = |block: &Block<D>| product(&transposed, &product(block, frame));
+    // What is the same in every frame stays so to the bit: a factor that is kept while the body turns is the one that would be made anew.
+    let turned = |block: &Block<D>| {
+        if is_isotropic(block) { *block } else { product(&transposed, &product(block, frame)) }
+    };
     let mut add = |a: usize, b: usize, block: &Block<D>| {
         for j in 0..D {
             for i in 0..D {

@@ -283,6 +283,13 @@ pub enum LoadKind<const D: usize> {
     Pressure(f64),
     /// A force per volume at rest, spread over the cells all of whose nodes are selected by their shape functions [N/m³].
     BodyForce([f64; D]),
+    /// A force of one size on every selected node, towards a point that stays where it is.
+    Central {
+        /// Its size [N]; negative: away from the point.
+        value: f64,
+        /// The point [m].
+        center: [f64; D],
+    },
 }
 
 /// Something done to a body from time `at` to time `until`.

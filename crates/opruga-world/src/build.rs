@@ -5,7 +5,7 @@ use crate::carried::{BodyHistory, BodyState};
 use crate::contact_laws;
 use crate::error::WorldError;
 use crate::island::Island;
-use crate::loads::{FollowerPressure, NodeForces};
+use crate::loads::{CentralForces, FollowerPressure, NodeForces};
 use crate::masses::{densities, node_masses};
 use crate::plausible;
 use crate::registry::Registry;
@@ -407,6 +407,11 @@ impl<const D: usize> Builder<'_, D> {
                     for node in &nodes {
                         entries.insert(layout.place(*node as usize, lane), force);
                     }
+                }
+                LoadKind::Central { value, center } => {
+                    let places = nodes.iter().map(|node| layout.place(*node as usize, lane)).collect();
+                    system.add(Box::new(CentralForces { places, value, center, curve: load.curve.clone() }));
+                    continue;
                 }
                 LoadKind::Traction(traction) => {
                     for (node, share) in body.mesh.boundary_shares(&nodes) {

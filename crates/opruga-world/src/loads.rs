@@ -58,6 +58,63 @@ impl<const D: usize> Potential<D> for NodeForces<D> {
 
 impl<const D: usize> Observe<D> for NodeForces<D> {}
 
+/// Forces of one size towards a point that stays where it is, with a factor over time: F = s (c − x)/|c − x|.
+///
+/// At the point itself the force has no direction: there is none.
+#[derive(Debug)]
+pub(crate) struct CentralForces<const D: usize> {
+    pub(crate) places: Vec<usize>,
+    /// s [N].
+    pub(crate) value: f64,
+    /// c [m].
+    pub(crate) center: [f64; D],
+    pub(crate) curve: Vec<Vec<f64>>,
+}
+
+impl<const D: usize> CentralForces<D> {
+    /// The unit vector from a place to the point, and their distance [m].
+    fn direction(&self, view: &View<D>, place: usize) -> Option<([f64; D], f64)> {
+        let x = view.position(place);
+        let arm: [f64; D] = core::array::from_fn(|d| self.center[d] - x[d]);
+        let distance = arm.iter().fold(0.0, |length, a| libm::hypot(length, *a));
+        (distance > 0.0).then(|| (arm.map(|a| a / distance), distance))
+    }
+}
+
+impl<const D: usize> Potential<D> for CentralForces<D> {
+    fn properties(&self) -> Properties {
+        Properties { account: Account::User, ..Properties::new("central force", USER) }
+    }
+    fn add_force(&self, _simd: Simd, view: &View<D>, _scratch: &[f64], tile: &mut Tile<D>) {
+        let size = self.value * factor(&self.curve, view.time);
+        for &place in &self.places {
+            if tile.range.contains(&place)
+                && let Some((direction, _)) = self.direction(view, place)
+            {
+                push(tile, view, place, direction.map(|n| size * n));
+            }
+        }
+    }
+    /// −∂F/∂x = s/r (1 − n nᵀ).
+    fn hessian(&self, view: &View<D>, _scratch: &[f64], keep: Definiteness, sink: &mut dyn Sink<D>) {
+        let size = self.value * factor(&self.curve, view.time);
+        if size < 0.0 && keep != Definiteness::Exact {
+            return;
+        }
+        for place in &self.places {
+            if let Some((n, distance)) = self.direction(view, *place) {
+                let mut block = isotropic(size / distance);
+                for i in 0..D {
+                    (0..D).for_each(|j| block[i][j] -= size / distance * n[i] * n[j]);
+                }
+                sink.block(*place, *place, block);
+            }
+        }
+    }
+}
+
+impl<const D: usize> Observe<D> for CentralForces<D> {}
+
 /// A pressure on sides of cells along their present inner normal, with a factor over time: F_a = −p ∫ Nₐ dA, integrated
 /// without error by the shape functions Nₐ of the sides.
 #[derive(Debug)]

@@ -368,9 +368,12 @@ fn load<const D: usize>(load: &LoadBlueprint<D>, bodies: &[&BodyBlueprint<D>]) -
     let body = body_of(load.body, bodies)?;
     let value = match load.kind {
         LoadKind::Force(value) | LoadKind::Traction(value) | LoadKind::BodyForce(value) => value.to_vec(),
-        LoadKind::Pressure(value) => vec![value],
+        LoadKind::Pressure(value) | LoadKind::Central { value, .. } => vec![value],
     };
     range::<D>(&Allowed::Numbers, "value", Value::Numbers(value))?;
+    if let LoadKind::Central { center, .. } = load.kind {
+        range::<D>(&Allowed::Vector, "center", Value::Numbers(center.to_vec()))?;
+    }
     if !load.curve.is_empty() {
         range::<D>(&Allowed::Curve, "curve", Value::Rows(load.curve.clone()))?;
     }

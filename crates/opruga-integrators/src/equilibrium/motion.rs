@@ -66,12 +66,16 @@ impl<const D: usize> Sink<D> for Projection<'_> {
         self.largest = sizes.fold(self.largest, |most, x| if x > most { x } else { most });
     }
     fn low_rank(&mut self, c: f64, u: &[(usize, [f64; D])]) {
-        for (a, x) in u {
-            for (b, y) in u {
-                let block = core::array::from_fn(|i| core::array::from_fn(|j| c * x[i] * y[j]));
-                Sink::<D>::block(self, *a, *b, block);
-            }
+        let n = self.motions.len();
+        let along = |motion: &Vec<f64>| -> f64 {
+            u.iter().map(|(node, x)| (0..D).map(|d| motion[node * D + d] * x[d]).sum::<f64>()).sum()
+        };
+        let sums: Vec<f64> = self.motions.iter().map(along).collect();
+        for p in 0..n {
+            (0..n).for_each(|q| self.out[p * n + q] += c * sums[p] * sums[q]);
         }
+        let squares = u.iter().flat_map(|(_, x)| x).map(|x| (c * x * x).abs());
+        self.largest = squares.fold(self.largest, |most, x| if x > most { x } else { most });
     }
     fn dense(&mut self, part: &DensePart<'_, D>) {
         let n = self.motions.len();

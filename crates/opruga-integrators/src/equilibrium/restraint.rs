@@ -91,7 +91,11 @@ const ALIKE: f64 = 1e-6;
 /// Whether a model resists motions of a body as a whole: forces between nodes do not, since they move and turn with these. A turn is
 /// looked at twice: the forces of a linear law do not follow a large one, and derivatives that leave something out resist a small one.
 fn ties_to_space<const D: usize>(system: &System<D>, member: &Member<D>) -> bool {
-    if !member.potential.properties().views.hessian {
+    let properties = member.potential.properties();
+    if let Some(between) = properties.acts_between_nodes {
+        return !between;
+    }
+    if !properties.views.hessian {
         return false;
     }
     let (x, rest) = (&system.state.x, Columns::zeros(system.places()));
@@ -120,10 +124,11 @@ fn ties_to_space<const D: usize>(system: &System<D>, member: &Member<D>) -> bool
 /// Whether a model only pushes nodes against one another, at rest and in motion: then its forces and their moments sum to zero over a
 /// body, since its energy does not change where that moves or turns as a whole.
 pub(crate) fn acts_between_nodes<const D: usize>(system: &System<D>, member: &Member<D>) -> bool {
-    if member.potential.properties().account == Account::User
-        || !member.potential.properties().views.hessian
-        || ties_to_space(system, member)
-    {
+    let properties = member.potential.properties();
+    if let Some(between) = properties.acts_between_nodes {
+        return between;
+    }
+    if properties.account == Account::User || !properties.views.hessian || ties_to_space(system, member) {
         return false;
     }
     let (x, rest) = (&system.state.x, Columns::zeros(system.places()));

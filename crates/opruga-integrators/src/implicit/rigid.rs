@@ -20,7 +20,7 @@ use super::rigid_motion::{Motion, Sum, along, arm, unheld};
 use crate::equilibrium::pieces::pieces;
 use crate::equilibrium::restraint::{acts_between_nodes, add_forces_of};
 use opruga_core::inertia::Inertia;
-use opruga_core::potential::{Definiteness, Sink};
+use opruga_core::potential::{Definiteness, DensePart, Sink};
 use opruga_core::system::{Member, System};
 use opruga_solve::blocks::{Block, times};
 use opruga_solve::dense::inverse;
@@ -365,6 +365,21 @@ impl<const D: usize> Sink<D> for Resistance<'_, D> {
             for q in 0..MOST {
                 out[p][q][0] += self.factor * c * sums[p] * sums[q];
                 out[p][q][1] += self.factor * (c * sizes[p] * sizes[q]).abs();
+            }
+        }
+    }
+    fn dense(&mut self, part: &DensePart<'_, D>) {
+        let Some(first) = part.indices.first() else { return };
+        let out = &mut self.of[self.owner[*first as usize]];
+        for q in 0..MOST {
+            let pulled = part.product(|index| self.displacements[index * MOST + q]);
+            for (index, pulled) in part.indices.iter().zip(&pulled) {
+                for p in 0..MOST {
+                    let displacement = &self.displacements[*index as usize * MOST + p];
+                    out[p][q][0] += self.factor * along(displacement, pulled);
+                    let size: f64 = (0..D).map(|d| (displacement[d] * pulled[d]).abs()).sum();
+                    out[p][q][1] += self.factor.abs() * size;
+                }
             }
         }
     }

@@ -37,11 +37,14 @@ pub(crate) fn loads<const D: usize>(reader: &mut Reader<'_>, root: &Node, bodies
         let kind = match values.kind() {
             "force" => LoadKind::Force(values.vector("value")),
             "traction" => LoadKind::Traction(values.vector("value")),
+            "central_force" => {
+                LoadKind::Central { value: values.number("value").unwrap_or(0.0), center: values.vector("center") }
+            }
             "body_force" => LoadKind::BodyForce(values.vector("value")),
             _ => LoadKind::Pressure(values.number("value").unwrap_or(0.0)),
         };
         let there = match kind {
-            LoadKind::Force(_) => true,
+            LoadKind::Force(_) | LoadKind::Central { .. } => true,
             LoadKind::BodyForce(_) => parts::hold_cells(reader, node, &path, bodies, &targets),
             LoadKind::Traction(_) | LoadKind::Pressure(_) => parts::hold_sides(reader, node, &path, bodies, &targets),
         };

@@ -188,7 +188,7 @@ mod tests {
     #[test]
     #[ignore = "a sweep: cargo test -- --ignored whole_sweep"]
     fn rings_in_a_row_and_in_one_another_are_placed_however_many_whole_sweep() {
-        are_placed(60_000);
+        are_placed(30_000);
     }
 
     fn are_placed(n: u32) {

@@ -194,6 +194,7 @@ impl<const D: usize> Potential<D> for BoundaryElement<D> {
         Properties {
             scratch_len: self.forces_len() + self.layout.stride() * self.of_body(),
             forces_in_prepare: true,
+            acts_between_nodes: Some(!self.exterior),
             ..Properties::new(SPEC.kind, views)
         }
     }

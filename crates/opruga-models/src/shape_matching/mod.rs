@@ -150,6 +150,7 @@ impl<const D: usize> Potential<D> for Matching<D> {
             scratch_len: self.scratch_len(),
             begins_tiles: true,
             forces_in_prepare: true,
+            acts_between_nodes: is_gradient.then_some(true),
             ..Properties::new(SPEC.kind, views)
         }
     }

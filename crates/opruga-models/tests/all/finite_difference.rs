@@ -328,3 +328,40 @@ fn cells_under_affine_motion_have_the_stress_of_finite_elements() {
     let f = [[1.1, 0.2, 0.1], [-0.1, 0.9, 0.05], [0.0, 0.1, 1.2]];
     compare(&block, f, None, &opruga_models::fem::FemModel);
 }
+
+/// The energy of a body whose neighbours move to and fro along an axis, by 1e-3 of a cell, and of one that a wave as long as the body moves.
+#[allow(clippy::disallowed_methods, reason = "the start of a test")]
+fn energies<const D: usize>(mesh: &Mesh<D>, thin: bool, axis: usize) -> [f64; 2] {
+    const CELL: f64 = 0.2;
+    let solid = values!(finite_difference, youngs_modulus: 1e4);
+    let values = if thin { values!(finite_difference, youngs_modulus: 1e4, thickness: 0.05) } else { solid };
+    let parts: [Part<D>; 1] = [(&FiniteDifference, values)];
+    [true, false].map(|checkerboard| {
+        let mut body = system(mesh, &parts);
+        for (node, at) in mesh.positions.iter().enumerate() {
+            let mut x = *at;
+            let number: f64 = at.iter().map(|x| (x / CELL).round()).sum();
+            let wave = |along: f64| (std::f64::consts::PI * along).cos();
+            x[axis] += 1e-3 * CELL * if checkerboard { wave(number) } else { wave(at.iter().sum()) };
+            body.state.x.set(node, x);
+        }
+        crate::support::energy(&mut body)
+    })
+}
+
+/// Staggered differences see what differences over two cells are blind to.
+#[test]
+fn a_checkerboard_takes_more_energy_than_a_long_wave() {
+    let solid = Mesh::<3>::grid([0.0; 3], [1.0, 0.8, 0.6], [5, 4, 3]).unwrap();
+    let plate = Mesh::<2>::grid([0.0; 2], [1.0, 0.8], [5, 4]).unwrap();
+    let cloth = Mesh::sheet([0.0; 3], [[1.0, 0.0, 0.0], [0.0, 0.8, 0.0]], [5, 4]).unwrap();
+    let line = Mesh::<2>::line([0.0; 2], [1.0, 0.0], 5).unwrap();
+    let mut all: Vec<(&str, usize, [f64; 2])> = Vec::new();
+    all.extend((0..3).map(|axis| ("solid", axis, energies(&solid, false, axis))));
+    all.extend((0..2).map(|axis| ("solid of the plane", axis, energies(&plate, false, axis))));
+    all.extend((0..3).map(|axis| ("sheet", axis, energies(&cloth, true, axis))));
+    all.extend((0..2).map(|axis| ("curve", axis, energies(&line, true, axis))));
+    for (name, axis, [checkerboard, wave]) in all {
+        assert!(checkerboard > 5.0 * wave, "{name} along {axis}: {checkerboard} J, {wave} J");
+    }
+}

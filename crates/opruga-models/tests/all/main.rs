@@ -19,6 +19,7 @@ mod fem_membrane;
 mod fem_refusals;
 mod finite_difference;
 mod finite_volume;
+mod invariance;
 mod shape_matching;
 #[path = "support/sparse.rs"]
 mod sparse;

@@ -132,6 +132,14 @@ pub(super) const PRESSURE: &[Case] = &[
         measure: ring_buckles_under_dead_load,
         ..RING
     },
+    Case {
+        name: "finite-difference-ring-buckles-centred-load",
+        quantity: "load towards the middle of the circle at which a ring of EI = 1 N m², R = 1 m, loses its roundness",
+        source: "J. Singer, C. D. Babcock 1970: 4.5EI/R³ for a load that stays directed towards the middle",
+        expected: &[4.5],
+        measure: ring_buckles_under_centred_load,
+        ..RING
+    },
 ];
 
 pub(super) const DYNAMICS: &[Case] = &[
@@ -251,41 +259,57 @@ fn ring(n: f64, pins: &str) -> String {
     )
 }
 
-fn ring_buckles(lab: &Lab, n: f64) -> Result<f64, Trouble> {
+/// The pressure on a ring with pins at which its lowest frequency is zero.
+fn ring_loses_its_roundness(lab: &Lab, n: f64, pins: &str, load: impl Fn(f64) -> String) -> Result<f64, Trouble> {
     critical([1.0, 2.0], |pressure| {
-        let load = format!("[[load]]\nkind = \"pressure\"\nbody = \"ring\"\nvalue = {pressure:?}");
-        let text = ring(n, &super::pressure::ring_pins(n as u32)) + &load;
-        let mut world = lab.plane(Scene::statics(2, 1e-8).add(&text))?;
+        let mut world = lab.plane(Scene::statics(2, 1e-8).add(&(ring(n, pins) + &load(pressure))))?;
         world.frame()?;
         Ok(world.modes(0, 1)?.first().ok_or("no modes")?.square)
     })
 }
 
-/// Forces on the nodes that keep their direction, those of a pressure of the round ring; without pins along the circle it would turn
-/// around under any.
-fn ring_buckles_under_dead_load(lab: &Lab, n: f64) -> Result<f64, Trouble> {
+fn ring_buckles(lab: &Lab, n: f64) -> Result<f64, Trouble> {
+    ring_loses_its_roundness(lab, n, &super::pressure::ring_pins(n as u32), |pressure| {
+        format!("[[load]]\nkind = \"pressure\"\nbody = \"ring\"\nvalue = {pressure:?}")
+    })
+}
+
+/// Pins along the circle at four points of the axes: the ring cannot turn around, and its oval motion has none there.
+fn tangential_pins(n: f64) -> String {
     let count = n as u32;
-    let pins = format!(
+    format!(
         "pin = [{{ select = {{ nodes = [0, {}] }}, axes = \"y\" }}, {{ select = {{ nodes = [{}, {}] }}, axes = \"x\" }}]",
         count / 2,
         count / 4,
         3 * (count / 4)
-    );
-    critical([1.0, 2.0], |pressure| {
-        let mut text = ring(n, &pins);
-        // Half of each of two edges of 2 sin π/n along their normals.
-        let force = -pressure * (TAU / n).sin();
-        for node in 0..count {
+    )
+}
+
+/// Half of a pressure on each of two edges of 2 sin π/n along their normals.
+fn node_force(n: f64, pressure: f64) -> f64 {
+    pressure * (TAU / n).sin()
+}
+
+/// Forces on the nodes that keep their direction, those of a pressure of the round ring.
+fn ring_buckles_under_dead_load(lab: &Lab, n: f64) -> Result<f64, Trouble> {
+    ring_loses_its_roundness(lab, n, &tangential_pins(n), |pressure| {
+        let force = -node_force(n, pressure);
+        let load = |node: u32| {
             let angle = TAU * f64::from(node) / n;
-            text += &format!(
+            format!(
                 "[[load]]\nkind = \"force\"\nbody = \"ring\"\nselect = {{ node = {node} }}\nvalue = [{:?}, {:?}]\n",
                 force * angle.cos(),
                 force * angle.sin()
-            );
-        }
-        let mut world = lab.plane(Scene::statics(2, 1e-8).add(&text))?;
-        world.frame()?;
-        Ok(world.modes(0, 1)?.first().ok_or("no modes")?.square)
+            )
+        };
+        (0..n as u32).map(load).collect()
+    })
+}
+
+fn ring_buckles_under_centred_load(lab: &Lab, n: f64) -> Result<f64, Trouble> {
+    ring_loses_its_roundness(lab, n, &tangential_pins(n), |pressure| {
+        let force = node_force(n, pressure);
+        format!("[[load]]\nkind = \"central_force\"\nbody = \"ring\"\nvalue = {force:?}\ncenter = [0.0, 0.0]")
     })
 }
 

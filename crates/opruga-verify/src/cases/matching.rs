@@ -30,7 +30,7 @@ const RIGID: Case = Case {
     quantity: "ω/√κ of the fastest rigid motion of a block that is one cluster",
     source: "exact: 0; ω² is rounded by 1e-16 κ",
     expected: &[0.0],
-    tolerance: 1e-7,
+    tolerance: 1e-9,
     ..SQUARE
 };
 

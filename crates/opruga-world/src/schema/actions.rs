@@ -38,6 +38,25 @@ pub const LOADS: &[Section] = &[
     },
     Section {
         spec: &section(
+            "central_force",
+            "A force of one size on every selected node, towards a point that stays where it is",
+            "A node at the point itself feels none.",
+            &[
+                Field::new(
+                    "value",
+                    Allowed::ANY,
+                    "N",
+                    Default::Required,
+                    "The force on every node; negative: away from the point.",
+                ),
+                Field::new("center", Allowed::Vector, "m", Default::Required, "The point, the same for all copies."),
+                CURVE,
+            ],
+        ),
+        children: LOAD_CHILDREN,
+    },
+    Section {
+        spec: &section(
             "traction",
             "A force per area of the boundary at rest",
             "It is spread over the facets of the boundary all of whose nodes are selected.",

@@ -95,6 +95,32 @@ fn a_ring_breathes_at_its_frequency() {
     }
 }
 
+/// Nodes of 1 kg on a circle of 1 m about a point that each is drawn to with m ω² r = 4π² N go around it in 1 s, as a force that kept its
+/// direction would not let them. Halving the step divides the error by four.
+#[test]
+fn a_central_force_keeps_its_size_and_turns_with_its_node() {
+    let error = |substeps: u32, integrator: &str| {
+        let mut world = built(plane(&format!(
+            "{}[[body]]\nname = \"ring\"\nmass = 8\nangular_velocity = {:?}\n\
+             shape = {{ kind = \"ring\", radius = 1.0, vertices = 8, center = [3, 1] }}\nmodels = []\n\
+             [[load]]\nkind = \"central_force\"\nbody = \"ring\"\nvalue = {:?}\ncenter = [3, 1]\n",
+            head(0.05, substeps, 0.0, integrator),
+            std::f64::consts::TAU,
+            std::f64::consts::TAU.powi(2),
+        )));
+        frames(&mut world, 20);
+        let apart = |k: u32| {
+            let (x, angle) = (world.position(0, k), std::f64::consts::TAU * f64::from(k) / 8.0);
+            (x[0] - 3.0 - angle.cos()).hypot(x[1] - 1.0 - angle.sin())
+        };
+        (0..8).map(apart).fold(0.0, f64::max)
+    };
+    for integrator in ["verlet", "newmark"] {
+        let (coarse, fine) = (error(20, integrator), error(40, integrator));
+        assert!(fine < 1e-3 && (coarse / fine - 4.0).abs() < 0.05, "{integrator}: {coarse} {fine}");
+    }
+}
+
 /// P V = nRT and P V^γ = P₀ V₀^γ at every frame of a ball that falls on the floor and is squeezed.
 #[test]
 fn gas_keeps_its_law_in_a_bouncing_ball() {

@@ -281,6 +281,22 @@ fn an_interrupted_run_ends_like_a_whole_one() {
     }
 }
 
+/// A body of boundary elements that turns while it falls onto a floor: its factor is kept in a frame.
+#[test]
+fn an_interrupted_run_of_boundary_elements_ends_like_a_whole_one() {
+    for rule in ["backward_euler", "bdf2", "implicit_midpoint", "newmark"] {
+        let text = format!(
+            "format = \"opruga-1\"\ndimension = 2\n[time]\nseconds = 1\nframe = 0.016666666666666666\nsubsteps = 1\n\
+             [integrator]\nkind = \"{rule}\"\n[world]\ngravity = [0, -9.81]\n[[body]]\nname = \"b\"\nmass = 1\nangular_velocity = 3\n\
+             shape = {{ kind = \"ring\", radius = 0.5, vertices = 24, center = [0, 1] }}\n\
+             models = [{{ kind = \"boundary_element\", youngs_modulus = 2000.0 }}]\n\
+             [[collider]]\nkind = \"half_space\"\npoint = [0, 0]\nnormal = [0, 1]\nfriction = 0.3\n"
+        );
+        let AnyBlueprint::Plane(scene) = read(&text).expect("a sound scene") else { panic!("a scene of the plane") };
+        interrupted(&scene, rule, &[1, 13, 30], 45);
+    }
+}
+
 /// The balloons under a linear map of space that keeps lengths.
 fn balloons(map: MapOfSpace, mirror: bool) -> Blueprint<3> {
     let mut scene = space(opruga::scenes::find("balloons").expect("a scene"));

@@ -126,9 +126,11 @@ fn the_replay_of_every_scene_has_the_hash_of_its_run() {
 }
 
 fn is_replayed<const D: usize>(name: &str, blueprint: &Blueprint<D>) {
-    // A state in three, so that some frames are computed; large scenes take a while.
+    // A state in three, so that some frames are computed; scenes whose frames take long have one.
     let nodes: usize = blueprint.bodies.iter().map(|body| body.mesh.nodes()).sum();
-    let frames = if nodes * blueprint.time.substeps as usize > 300_000 { 1 } else { 4 };
+    let work = nodes * blueprint.time.substeps as usize;
+    let most = if blueprint.contact.is_some() { 10_000 } else { 100_000 };
+    let frames = if work > most { 1 } else { 4 };
     let path = file(&format!("scene-{name}"));
     let new = || World::new(blueprint.clone(), Options::default()).unwrap_or_else(|error| panic!("{name}: {error}"));
     let mut run = new();
