@@ -328,6 +328,10 @@ pub trait Observe<const D: usize> {
     fn counts(&self, _memory: &[f64]) -> Vec<Count> {
         Vec::new()
     }
+    /// How often the shapes of its bodies are such that a user should know of it: in a state, and kept by none.
+    fn shape_counts(&self, _view: &View<D>) -> Vec<Count> {
+        Vec::new()
+    }
     /// Whether what it was built of has the same bits on every processor: not where a library factored a matrix.
     fn same_bits_everywhere(&self) -> bool {
         true

@@ -25,6 +25,7 @@ pub const MESSAGES: &[&[opruga_math::message::Variant]] = &[
     shape_matching::MatchingWarning::VARIANTS,
     finite_volume::Refusal::VARIANTS,
     finite_difference::FiniteDifferenceError::VARIANTS,
+    finite_difference::FiniteDifferenceWarning::VARIANTS,
     pressure::PressureWarning::VARIANTS,
 ];
 

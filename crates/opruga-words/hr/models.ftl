@@ -43,6 +43,8 @@ run-no_thickness-NoThickness = ćelija { $cell } u t = { $time } s nema pozitivn
 model-not_a_grid-NotAGrid = tijelo nije pravilna rešetka; dopušteno: line, ring, polyline, sheet i rešetka četverokuta ili heksaedara
 model-not_rectangular-NotRectangular = ćelija { $cell } odstupa od pravokutnika za { $deviation } svojeg razmaka; dopušteno: najviše 1e-6
 model-uneven_grid-Uneven = ćelija { $cell } ima razmak od { $spacing } m, a ćelija 0 od { $first } m; dopušteno: jednaki razmaci
+finite_difference-folded-Folded = rubovi krivulje ili plohe kraći su od 0.58 svoje duljine u mirovanju, gdje njihov zakon popušta, ili su presavijeni na susjedne, brojeno u zadnjem stanju: mogu tako ostati
+    .hint = manja opterećenja, ili kraći koraci prije nego što se presavije; opruge (`mass_spring`) opiru se svakom stiskanju
 model-no_thickness-NoThickness = krivulja ili ploha treba `thickness`; dopušteno: > 0 m
 model-solid_thickness-SolidThickness = `thickness` pripada krivuljama i plohama; puno tijelo je nema
 model-torsion_of_surface-TorsionOfSurface = `torsion` pripada krivuljama (`line`, `ring`, `polyline`); ploha ili puno tijelo opire se vlastitom smicanju

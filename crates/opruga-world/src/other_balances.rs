@@ -16,6 +16,7 @@
 use crate::pin_ways::ways;
 use crate::warnings::{Warning, WorldWarning};
 use crate::world::World;
+use opruga_core::potential::Properties;
 use opruga_core::spec::Role;
 use opruga_core::state::{Columns, Layout, View};
 use opruga_core::system::{Stage, System};
@@ -64,7 +65,7 @@ impl<const D: usize> World<D> {
     /// [`World::other_balances`]. For the end of a run, since shapes are looked at anew by every call.
     pub fn warnings_at_the_end(&self) -> Vec<Warning> {
         let shapes = self.inverted_cells().into_iter().chain(self.other_balances());
-        self.warnings().into_iter().chain(shapes).collect()
+        self.warnings().into_iter().chain(self.odd_shapes()).chain(shapes).collect()
     }
 
     /// A warning (`cells.other_balance`) of bodies of finite elements that are nearly at rest and hold more energy than the
@@ -121,8 +122,13 @@ impl<const D: usize> World<D> {
         Some(Warning::new(warning, count))
     }
 
-    /// Whether a body is of finite elements all of which turn: small strain has one shape that holds nothing, and no other balance.
+    /// Whether a body is of finite elements all of which turn, or of a model that says that it turns: small strain has one shape that holds
+    /// nothing, and no other balance.
     fn is_judged(&self, body: usize) -> bool {
+        let system = &self.islands[self.place[body].0].system;
+        if system.members.iter().any(|member| member.potential.properties().acts_between_nodes == Some(true)) {
+            return true;
+        }
         let mut solids =
             self.blueprint.bodies[body].models.iter().filter(|model| model.spec().has_role(Role::OwnsCells)).peekable();
         solids.peek().is_some() && solids.all(|model| model.text("material") != Some("linear"))
@@ -167,14 +173,15 @@ impl<const D: usize> World<D> {
     }
 }
 
-/// The energies of the finite elements of the bodies of a system [J], and the forces of these on all nodes at rest [N]; none where
+/// The energies of the finite elements and of such models of the bodies of a system [J], and the forces of these on all nodes at rest [N]; none where
 /// they have no meaning.
 fn elastic<const D: usize>(system: &System<D>, time: f64) -> Option<([f64; WIDTH], Columns<D>)> {
     let still = Columns::<D>::zeros(system.places());
     let mut forces = Columns::<D>::zeros(system.places());
     let view = View { v: still.slices(), threads: 1, ..system.view(Stage::Current, time) };
     let mut energies = [0.0; WIDTH];
-    for member in system.members.iter().filter(|member| member.potential.properties().name == "fem") {
+    let is_asked = |properties: Properties| properties.name == "fem" || properties.acts_between_nodes == Some(true);
+    for member in system.members.iter().filter(|member| is_asked(member.potential.properties())) {
         let mut scratch = Column::zeros(member.potential.properties().scratch_len);
         member.potential.prepare(system.simd, &view, &member.memory, &mut scratch).ok()?;
         let energy = member.potential.energy(system.simd, &view, &scratch);

@@ -10,7 +10,7 @@ use crate::world::{World, lock};
 use opruga_core::potential::{CellState, Count, Potential, Reading};
 use opruga_core::stability::Stability;
 use opruga_core::state::View;
-use opruga_core::system::{SolverWork, Stage, System};
+use opruga_core::system::{Member, SolverWork, Stage, System};
 
 impl<const D: usize> World<D> {
     /// The energy ledger of the last frame.
@@ -250,19 +250,25 @@ impl<const D: usize> World<D> {
         if let Some((unloaded, part, body)) = self.load_left() {
             add(WorldWarning::LoadLeft { body, part }, unloaded);
         }
+        out.extend(self.counted(|_, member| member.potential.counts(&member.memory)));
+        out
+    }
+    /// What models find odd about the shapes of their bodies in the present state.
+    pub(crate) fn odd_shapes(&self) -> Vec<Warning> {
+        self.counted(|system, member| member.potential.shape_counts(&system.view(Stage::Current, system.time)))
+    }
+    /// Counts of all models, those of one thing together.
+    fn counted(&self, of: impl Fn(&System<D>, &Member<D>) -> Vec<Count>) -> Vec<Warning> {
         let mut counts: Vec<Count> = Vec::new();
         for island in &self.islands {
-            for member in &island.system.members {
-                for new in member.potential.counts(&member.memory) {
-                    match counts.iter_mut().find(|known| known.what == new.what) {
-                        Some(known) => known.count += new.count,
-                        None => counts.push(new),
-                    }
+            for new in island.system.members.iter().flat_map(|member| of(&island.system, member)) {
+                match counts.iter_mut().find(|known| known.what == new.what) {
+                    Some(known) => known.count += new.count,
+                    None => counts.push(new),
                 }
             }
         }
-        out.extend(counts.into_iter().filter(|new| new.count > 0).map(|new| Warning::new(new.what, new.count)));
-        out
+        counts.into_iter().filter(|new| new.count > 0).map(|new| Warning::new(new.what, new.count)).collect()
     }
     /// How many laws of force of the program act on a body.
     pub(crate) fn laws_on(&self, body: usize) -> u64 {

@@ -135,6 +135,9 @@ impl<const D: usize> Observe<D> for Timed<D> {
     fn counts(&self, memory: &[f64]) -> Vec<Count> {
         self.inner.counts(memory)
     }
+    fn shape_counts(&self, view: &View<D>) -> Vec<Count> {
+        self.inner.shape_counts(view)
+    }
     fn heap_bytes(&self) -> usize {
         self.inner.heap_bytes()
     }

@@ -25,6 +25,7 @@
 
 mod along;
 mod curve;
+mod folds;
 mod grid;
 mod plate;
 mod solid;
@@ -37,11 +38,12 @@ use crate::bending::hinge::{self, Hinge};
 use crate::vectors::{cross, dot, in_space, minus};
 use along::Along;
 use curve::{Bend, Stretch};
+use folds::Folds;
 use grid::{Grid, HEXAHEDRON, QUADRILATERAL, spacings};
 use opruga_core::error::BuildError;
 use opruga_core::memory::{Counts, Need};
 use opruga_core::potential::{
-    CellState, Definiteness, Ingredients, Model, Observe, Potential, Properties, Sink, Views,
+    CellState, Count, Definiteness, Ingredients, Model, Observe, Potential, Properties, Sink, Views,
 };
 use opruga_core::spec::{Spec, Values};
 use opruga_core::state::{Layout, Parameter, View};
@@ -96,6 +98,18 @@ opruga_math::messages! {
     }
 }
 
+opruga_math::messages! {
+    /// What deserves attention in curves and surfaces.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum FiniteDifferenceWarning {
+        /// Edges are crushed or folded.
+        "finite_difference.folded"
+        #[error("edges of a curve or a surface are shorter than 0.58 of their length at rest, where their law gives way, or fold back on their neighbours, counted in the last state: they may stay so")]
+        #[hint("lower loads, or shorter steps before it folds; springs (`mass_spring`) resist any compression")]
+        Folded {},
+    }
+}
+
 use FiniteDifferenceError as Refusal;
 
 impl From<FiniteDifferenceError> for BuildError {
@@ -118,6 +132,8 @@ struct FiniteDifference<const D: usize> {
     damped: bool,
     /// The cells of a solid, and the elastic numbers of each body.
     solid: Option<(Cells<D>, Vec<Elastic>)>,
+    /// The edges of a curve or a surface.
+    folds: Option<Folds>,
 }
 
 /// The elastic numbers of one body.
@@ -210,6 +226,14 @@ impl<const D: usize> FiniteDifference<D> {
             Grid::Curve { edges, .. } => plan.along(edges),
             _ => None,
         };
+        let edges: Option<Vec<[u32; 2]>> = match &grid {
+            Grid::Curve { edges, .. } => Some(edges.clone()),
+            Grid::Surface { cells, .. } => {
+                Some(cells.iter().flat_map(|cell| [0, 1, 2, 3].map(|k| [cell[k], cell[(k + 1) % 4]])).collect())
+            }
+            Grid::Plane { .. } | Grid::Space { .. } => None,
+        };
+        let folds = edges.map(|edges| Folds::new(&ingredients.mesh.positions, edges));
         let (parts, cells) = match grid {
             Grid::Curve { edges, nodes } => (plan.curve(&edges, &nodes)?, None),
             Grid::Surface { cells, inner, edge } => (plan.surface(&cells, &inner, &edge)?, None),
@@ -217,7 +241,7 @@ impl<const D: usize> FiniteDifference<D> {
             Grid::Space { cells } => plan.space(&cells)?,
         };
         let solid = cells.map(|cells| (cells, plan.elastic));
-        Ok(FiniteDifference { parts, along, damped, solid })
+        Ok(FiniteDifference { parts, along, damped, solid, folds })
     }
 }
 
@@ -467,9 +491,13 @@ impl<const D: usize> Observe<D> for FiniteDifference<D> {
         let Some((cells, elastic)) = &self.solid else { return Vec::new() };
         cells.states(view, body, &elastic[body.min(elastic.len() - 1)])
     }
+    fn shape_counts(&self, view: &View<D>) -> Vec<Count> {
+        self.folds.iter().map(|folds| folds.found(view)).collect()
+    }
     fn heap_bytes(&self) -> usize {
+        let folds = self.folds.as_ref().map_or(0, Folds::heap_bytes);
         let cells = self.solid.as_ref().map_or(0, |(cells, _)| cells.heap_bytes());
         let along = self.along.as_ref().map_or(0, Along::heap_bytes);
-        self.parts.iter().map(|part| part.heap_bytes()).sum::<usize>() + cells + along
+        self.parts.iter().map(|part| part.heap_bytes()).sum::<usize>() + cells + along + folds
     }
 }

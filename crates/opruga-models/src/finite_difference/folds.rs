@@ -1,0 +1,76 @@
+//! What is odd about the shape of a curve or a surface: edges that its law does not push back, and folds.
+
+use super::FiniteDifferenceWarning;
+use opruga_core::potential::Count;
+use opruga_core::state::View;
+
+/// Below this square of its stretch the force of an edge falls, as St. Venant and Kirchhoff's law softens.
+const TURNING_POINT: f64 = 1.0 / 3.0;
+
+/// Edges of one line at rest have directions whose cosine is at least this; those that fold back have one below its negative.
+const IN_LINE: f64 = 0.5;
+
+/// The edges of a curve or a surface, and nodes between two edges of one line.
+#[derive(Debug)]
+pub(super) struct Folds {
+    /// Two nodes and the square of their distance at rest [m²].
+    edges: Vec<([u32; 2], f64)>,
+    between: Vec<[u32; 3]>,
+}
+
+fn minus<const D: usize>(a: &[f64; D], b: &[f64; D]) -> [f64; D] {
+    core::array::from_fn(|d| a[d] - b[d])
+}
+fn dot<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
+    (0..D).map(|d| a[d] * b[d]).sum()
+}
+/// The cosine between the directions from a to b and from b to c; not a number where two coincide.
+fn cosine<const D: usize>([a, b, c]: [[f64; D]; 3]) -> f64 {
+    let (first, second) = (minus(&b, &a), minus(&c, &b));
+    dot(&first, &second) / (dot(&first, &first) * dot(&second, &second)).sqrt()
+}
+
+impl Folds {
+    pub(super) fn new<const D: usize>(positions: &[[f64; D]], mut edges: Vec<[u32; 2]>) -> Folds {
+        edges.iter_mut().for_each(|edge| edge.sort_unstable());
+        edges.sort_unstable();
+        edges.dedup();
+        let at = |node: u32| positions[node as usize];
+        let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); positions.len()];
+        for [a, b] in &edges {
+            neighbours[*a as usize].push(*b);
+            neighbours[*b as usize].push(*a);
+        }
+        let mut between = Vec::new();
+        for (node, around) in (0u32..).zip(&neighbours) {
+            for (k, a) in around.iter().enumerate() {
+                let in_line = |c: &&u32| cosine([at(*a), at(node), at(**c)]) >= IN_LINE;
+                between.extend(around[k + 1..].iter().filter(in_line).map(|c| [*a, node, *c]));
+            }
+        }
+        let square = |[a, b]: [u32; 2]| {
+            let arm = minus(&at(a), &at(b));
+            ([a, b], dot(&arm, &arm))
+        };
+        Folds { edges: edges.into_iter().map(square).collect(), between }
+    }
+
+    /// How many edges of all bodies are compressed beyond the turning point of the law or fold back.
+    pub(super) fn found<const D: usize>(&self, view: &View<D>) -> Count {
+        let mut count = 0;
+        for body in 0..view.layout.stride() {
+            let at = |node: u32| view.position(view.layout.place(node as usize, body));
+            let short = self.edges.iter().filter(|([a, b], rest)| {
+                let arm = minus(&at(*a), &at(*b));
+                dot(&arm, &arm) < TURNING_POINT * rest
+            });
+            count += short.count();
+            count += self.between.iter().filter(|nodes| cosine(nodes.map(at)) < -IN_LINE).count();
+        }
+        Count { what: FiniteDifferenceWarning::Folded {}.into(), count: count as u64 }
+    }
+
+    pub(super) fn heap_bytes(&self) -> usize {
+        size_of_val(&*self.edges) + size_of_val(&*self.between)
+    }
+}
