@@ -409,8 +409,8 @@ impl<const D: usize> Builder<'_, D> {
                     }
                 }
                 LoadKind::Central { value, center } => {
-                    let places = nodes.iter().map(|node| layout.place(*node as usize, lane)).collect();
-                    system.add(Box::new(CentralForces { places, value, center, curve: load.curve.clone() }));
+                    let indices = nodes.iter().map(|node| layout.place(*node as usize, lane)).collect();
+                    system.add(Box::new(CentralForces { indices, value, center, curve: load.curve.clone() }));
                     continue;
                 }
                 LoadKind::Traction(traction) => {

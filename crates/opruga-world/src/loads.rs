@@ -63,7 +63,7 @@ impl<const D: usize> Observe<D> for NodeForces<D> {}
 /// At the point itself the force has no direction: there is none.
 #[derive(Debug)]
 pub(crate) struct CentralForces<const D: usize> {
-    pub(crate) places: Vec<usize>,
+    pub(crate) indices: Vec<usize>,
     /// s [N].
     pub(crate) value: f64,
     /// c [m].
@@ -72,9 +72,9 @@ pub(crate) struct CentralForces<const D: usize> {
 }
 
 impl<const D: usize> CentralForces<D> {
-    /// The unit vector from a place to the point, and their distance [m].
-    fn direction(&self, view: &View<D>, place: usize) -> Option<([f64; D], f64)> {
-        let x = view.position(place);
+    /// The unit vector from a node to the point, and their distance [m].
+    fn direction(&self, view: &View<D>, index: usize) -> Option<([f64; D], f64)> {
+        let x = view.position(index);
         let arm: [f64; D] = core::array::from_fn(|d| self.center[d] - x[d]);
         let distance = arm.iter().fold(0.0, |length, a| libm::hypot(length, *a));
         (distance > 0.0).then(|| (arm.map(|a| a / distance), distance))
@@ -87,11 +87,11 @@ impl<const D: usize> Potential<D> for CentralForces<D> {
     }
     fn add_force(&self, _simd: Simd, view: &View<D>, _scratch: &[f64], tile: &mut Tile<D>) {
         let size = self.value * factor(&self.curve, view.time);
-        for &place in &self.places {
-            if tile.range.contains(&place)
-                && let Some((direction, _)) = self.direction(view, place)
+        for &index in &self.indices {
+            if tile.range.contains(&index)
+                && let Some((direction, _)) = self.direction(view, index)
             {
-                push(tile, view, place, direction.map(|n| size * n));
+                push(tile, view, index, direction.map(|n| size * n));
             }
         }
     }
@@ -101,13 +101,13 @@ impl<const D: usize> Potential<D> for CentralForces<D> {
         if size < 0.0 && keep != Definiteness::Exact {
             return;
         }
-        for place in &self.places {
-            if let Some((n, distance)) = self.direction(view, *place) {
+        for index in &self.indices {
+            if let Some((n, distance)) = self.direction(view, *index) {
                 let mut block = isotropic(size / distance);
                 for i in 0..D {
                     (0..D).for_each(|j| block[i][j] -= size / distance * n[i] * n[j]);
                 }
-                sink.block(*place, *place, block);
+                sink.block(*index, *index, block);
             }
         }
     }

@@ -65,7 +65,7 @@ impl<const D: usize> World<D> {
     /// [`World::other_balances`]. For the end of a run, since shapes are looked at anew by every call.
     pub fn warnings_at_the_end(&self) -> Vec<Warning> {
         let shapes = self.inverted_cells().into_iter().chain(self.other_balances());
-        self.warnings().into_iter().chain(self.odd_shapes()).chain(shapes).collect()
+        self.warnings().into_iter().chain(self.shape_warnings()).chain(shapes).collect()
     }
 
     /// A warning (`cells.other_balance`) of bodies of finite elements that are nearly at rest and hold more energy than the

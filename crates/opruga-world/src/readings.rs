@@ -254,7 +254,7 @@ impl<const D: usize> World<D> {
         out
     }
     /// What models find odd about the shapes of their bodies in the present state.
-    pub(crate) fn odd_shapes(&self) -> Vec<Warning> {
+    pub(crate) fn shape_warnings(&self) -> Vec<Warning> {
         self.counted(|system, member| member.potential.shape_counts(&system.view(Stage::Current, system.time)))
     }
     /// Counts of all models, those of one thing together.
