@@ -42,9 +42,13 @@ struct Body {
     law: Constants,
 }
 
-/// Numbers of a body in the scratch beside x, y, u and g: its frame, λ, U, and whether they are known.
+/// Numbers of a state in the scratch beside x, y, u and g: its frame, λ, U, and when it was asked for last, counted in states; 0: never.
 const NUMBERS: usize = 32;
-const KNOWN: usize = NUMBERS - 1;
+const ASKED: usize = NUMBERS - 1;
+
+/// States that are kept. A step goes to and fro between where it began, where it has come to, and where the motion as a whole is balanced; a
+/// product with K takes most of its time.
+const STATES: usize = 3;
 
 impl<const D: usize> BoundaryElement<D> {
     pub(super) fn new(ingredients: &Ingredients<D>) -> Result<BoundaryElement<D>, BuildError> {
@@ -127,12 +131,17 @@ impl<const D: usize> BoundaryElement<D> {
     fn forces_len(&self) -> usize {
         D * self.layout.places(self.rest.weights.len())
     }
-    fn of_body(&self) -> usize {
+    /// Numbers of a state, and of all states of a body.
+    fn of_state(&self) -> usize {
         4 * self.column + NUMBERS
     }
+    fn of_body(&self) -> usize {
+        STATES * self.of_state()
+    }
+    /// The state of a body that was asked for last.
     fn known<'a>(&self, scratch: &'a [f64], body: usize) -> Known<'a, D> {
-        let own = &scratch[self.forces_len() + body * self.of_body()..][..self.of_body()];
-        let (_, own) = own.split_at(self.column);
+        let states = &scratch[self.forces_len() + body * self.of_body()..][..self.of_body()];
+        let (_, own) = states[last_asked(states, self.of_state()) * self.of_state()..].split_at(self.column);
         let (y, own) = own.split_at(self.column);
         let (u, own) = own.split_at(self.column);
         let (g, numbers) = own.split_at(self.column);
@@ -146,22 +155,47 @@ impl<const D: usize> BoundaryElement<D> {
         Known { frame, multiplier, energy: next(), y, u, g }
     }
     fn prepare_body(&self, simd: Simd, view: &View<D>, body: usize, scratch: &mut [f64]) {
-        let (forces, own) = scratch.split_at_mut(self.forces_len());
-        let own = &mut own[body * self.of_body()..][..self.of_body()];
-        let (x, own) = own.split_at_mut(self.column);
+        let states = &mut scratch[self.forces_len() + body * self.of_body()..][..self.of_body()];
+        let (length, index) = (self.of_state(), |node: usize| view.layout.place(node, body));
+        let last = states[last_asked(states, length) * length..][self.numbers() + ASKED];
+        let is_this = |state: &[f64]| {
+            let mut nodes = state.chunks_exact(D).enumerate().take(self.rest.weights.len());
+            let same = |(node, x): (usize, &[f64])| {
+                view.position(index(node)).iter().zip(x).all(|(now, x)| now.to_bits() == x.to_bits())
+            };
+            state[self.numbers() + ASKED] > 0.0 && nodes.all(same)
+        };
+        let found = states.chunks_exact(length).position(is_this);
+        let number = found.unwrap_or_else(|| {
+            let asked = |number: &usize| states[number * length + self.numbers() + ASKED];
+            (0..STATES).min_by(|a, b| asked(a).total_cmp(&asked(b))).unwrap_or(0)
+        });
+        let state = &mut states[number * length..][..length];
+        if found.is_none() {
+            self.compute(simd, view, body, state);
+        }
+        state[self.numbers() + ASKED] = last + 1.0;
+        let Known { frame, multiplier, g, .. } = self.known(scratch, body);
+        let forces: Vec<[f64; D]> =
+            (0..self.rest.weights.len()).map(|node| self.rest.force(&frame, &multiplier, node, g)).collect();
+        let indices = self.forces_len() / D;
+        for (node, force) in forces.iter().enumerate() {
+            (0..D).for_each(|d| scratch[d * indices + index(node)] = force[d]);
+        }
+    }
+    /// Where the numbers of a state begin.
+    fn numbers(&self) -> usize {
+        4 * self.column
+    }
+    /// Works out a state.
+    fn compute(&self, simd: Simd, view: &View<D>, body: usize, state: &mut [f64]) {
+        let (x, own) = state.split_at_mut(self.column);
         let (y, own) = own.split_at_mut(self.column);
         let (u, own) = own.split_at_mut(self.column);
         let (g, numbers) = own.split_at_mut(self.column);
         let index = |node: usize| view.layout.place(node, body);
-        // A step asks for the same state up to four times, and a product with K takes most of its time.
-        let mut known = numbers[KNOWN] == 1.0;
         for (node, x) in x.chunks_exact_mut(D).enumerate().take(self.rest.weights.len()) {
-            let now = view.position(index(node));
-            known &= (0..D).all(|d| x[d].to_bits() == now[d].to_bits());
-            x.copy_from_slice(&now);
-        }
-        if known {
-            return;
+            x.copy_from_slice(&view.position(index(node)));
         }
         let frame = if self.exterior {
             for (node, rest) in self.rest.positions.iter().enumerate() {
@@ -175,17 +209,17 @@ impl<const D: usize> BoundaryElement<D> {
         };
         self.body(body).product(simd, u, g);
         let multiplier = if self.exterior { [0.0; 3] } else { self.rest.multiplier(&frame, y, g) };
-        let indices = self.forces_len() / D;
-        for node in 0..self.rest.weights.len() {
-            let force = self.rest.force(&frame, &multiplier, node, g);
-            (0..D).for_each(|d| forces[d * indices + index(node)] = force[d]);
-        }
         let energy = 0.5 * opruga_solve::dot(u, g);
         let all = frame.rotation.iter().flatten().chain(frame.stretch.iter().flatten());
         let all = all.chain(frame.follows.iter().flatten()).chain(&multiplier).chain([&energy]);
         numbers.iter_mut().zip(all).for_each(|(to, x)| *to = *x);
-        numbers[KNOWN] = 1.0;
     }
+}
+
+/// The number of the state that was asked for last.
+fn last_asked(states: &[f64], length: usize) -> usize {
+    let asked = |number: &usize| states[number * length + length - NUMBERS + ASKED];
+    (0..STATES).max_by(|a, b| asked(a).total_cmp(&asked(b))).unwrap_or(0)
 }
 
 impl<const D: usize> Potential<D> for BoundaryElement<D> {
