@@ -60,9 +60,10 @@ impl<const D: usize> Observe<D> for NodeForces<D> {}
 
 /// Forces of one size towards a point that stays where it is, with a factor over time: F = s (c − x)/|c − x|.
 ///
-/// At the point itself the force has no direction: there is none.
+/// A node at the point itself feels no force, because no direction leads there.
 #[derive(Debug)]
 pub(crate) struct CentralForces<const D: usize> {
+    /// Where the nodes lie, rising.
     pub(crate) indices: Vec<usize>,
     /// s [N].
     pub(crate) value: f64,
@@ -87,10 +88,10 @@ impl<const D: usize> Potential<D> for CentralForces<D> {
     }
     fn add_force(&self, _simd: Simd, view: &View<D>, _scratch: &[f64], tile: &mut Tile<D>) {
         let size = self.value * factor(&self.curve, view.time);
-        for &index in &self.indices {
-            if tile.range.contains(&index)
-                && let Some((direction, _)) = self.direction(view, index)
-            {
+        let first = self.indices.partition_point(|index| *index < tile.range.start);
+        let last = self.indices.partition_point(|index| *index < tile.range.end);
+        for &index in &self.indices[first..last] {
+            if let Some((direction, _)) = self.direction(view, index) {
                 push(tile, view, index, direction.map(|n| size * n));
             }
         }

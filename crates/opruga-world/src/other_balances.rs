@@ -122,16 +122,14 @@ impl<const D: usize> World<D> {
         Some(Warning::new(warning, count))
     }
 
-    /// Whether a body is of finite elements all of which turn, or of a model that says that it turns: small strain has one shape that holds
+    /// Whether a body has finite elements or a model whose forces turn with it, and no law of small strain: that has one shape that holds
     /// nothing, and no other balance.
     fn is_judged(&self, body: usize) -> bool {
-        let system = &self.islands[self.place[body].0].system;
-        if system.members.iter().any(|member| member.potential.properties().acts_between_nodes == Some(true)) {
-            return true;
-        }
-        let mut solids =
-            self.blueprint.bodies[body].models.iter().filter(|model| model.spec().has_role(Role::OwnsCells)).peekable();
-        solids.peek().is_some() && solids.all(|model| model.text("material") != Some("linear"))
+        let models = self.blueprint.bodies[body].models.iter();
+        let mut solids = models.filter(|model| model.spec().has_role(Role::OwnsCells)).peekable();
+        let members = &self.islands[self.place[body].0].system.members;
+        let turns = members.iter().any(|member| member.potential.properties().acts_between_nodes == Some(true));
+        (turns || solids.peek().is_some()) && solids.all(|model| model.text("material") != Some("linear"))
     }
 
     fn nodes_of(&self, body: usize, forces: &Columns<D>) -> Vec<Node> {
@@ -173,8 +171,8 @@ impl<const D: usize> World<D> {
     }
 }
 
-/// The energies of the finite elements and of such models of the bodies of a system [J], and the forces of these on all nodes at rest [N]; none where
-/// they have no meaning.
+/// The energies of the models of a system by which its bodies are judged [J], and the forces of these on all nodes at rest [N]; none where they
+/// have no meaning.
 fn elastic<const D: usize>(system: &System<D>, time: f64) -> Option<([f64; WIDTH], Columns<D>)> {
     let still = Columns::<D>::zeros(system.places());
     let mut forces = Columns::<D>::zeros(system.places());

@@ -304,3 +304,18 @@ fn comes_back(body: &Body, rule: &str, (what, spoil): &Spoil) -> Option<String> 
         format!("{name} {dimension}D under {rule}, {what}: off by {}", off(&*world, *dimension, &rest, &edges))
     })
 }
+
+/// A bent curve is none that its law does not push back.
+#[test]
+fn a_folded_and_a_crushed_curve_are_reported_and_a_bent_one_is_not() {
+    let text = "format = \"opruga-1\"\ndimension = 2\n[time]\nseconds = 1\nframe = 0.01\nsubsteps = 1\n[integrator]\nkind = \"verlet\"\n\
+                [[body]]\nname = \"b\"\nnode_mass = 1\nshape = { kind = \"line\", from = [0, 0], to = [3, 0], segments = 3 }\n\
+                models = [{ kind = \"finite_difference\", youngs_modulus = 200, thickness = 0.1 }]\n";
+    // Edges fold back where they turn by more than 120°, and give way below 0.577 of their length.
+    for (end, count) in [([2.0, 1.0], 0), ([1.0, 0.1], 1), ([2.57, 0.0], 1), ([2.59, 0.0], 0)] {
+        let mut world = read(text).unwrap_or_else(|e| panic!("{}", e[0])).build(Options::default()).expect("a world");
+        world.place_node(0, 3, [end[0], end[1], 0.0], [0.0; 3]).expect("a node");
+        let found = world.warnings_at_the_end().into_iter().find(|warning| warning.code == "finite_difference.folded");
+        assert_eq!(found.map_or(0, |warning| warning.count), count, "{end:?}");
+    }
+}
