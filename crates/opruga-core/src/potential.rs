@@ -214,8 +214,8 @@ pub struct Properties {
     pub begins_tiles: bool,
     /// Whether `prepare` reads all that forces depend on, so that nodes of one stencil may move one after the other.
     pub forces_in_prepare: bool,
-    /// Whether nodes push only one another: in every state forces have no sum and no moment about any point, and turn with the body. Where a
-    /// model does not say so, whoever needs to know measures it.
+    /// Whether nodes push only one another: forces have no sum and no moment about any point, and turn with the body. The conformance suite
+    /// checks the sums. None where a model does not say: then the integrators measure it in every step.
     pub acts_between_nodes: Option<bool>,
 }
 
@@ -328,7 +328,7 @@ pub trait Observe<const D: usize> {
     fn counts(&self, _memory: &[f64]) -> Vec<Count> {
         Vec::new()
     }
-    /// How often the shapes of its bodies are such that a user should know of it: in a state, and kept by none.
+    /// What deserves attention in the shapes of its bodies in a state, counted by every call: the memory keeps none of it.
     fn shape_counts(&self, _view: &View<D>) -> Vec<Count> {
         Vec::new()
     }

@@ -47,7 +47,7 @@ const NUMBERS: usize = 32;
 const ASKED: usize = NUMBERS - 1;
 
 /// States that are kept. A step goes to and fro between where it began, where it has come to, and where the motion as a whole is balanced; a
-/// product with K takes most of its time.
+/// product with K takes most of its time. One state gives the same results, and takes a free body up to a fifth longer.
 const STATES: usize = 3;
 
 impl<const D: usize> BoundaryElement<D> {

@@ -7,7 +7,8 @@ use opruga_core::state::View;
 /// Below this square of its stretch the force of an edge falls, as St. Venant and Kirchhoff's law softens.
 const TURNING_POINT: f64 = 1.0 / 3.0;
 
-/// Edges of one line at rest have directions whose cosine is at least this; those that fold back have one below its negative.
+/// The cosine of 60°. Edges that turn by less at rest are of one line; those that then turn by more than 120° fold back. A smooth curve of six
+/// edges and more stays below.
 const IN_LINE: f64 = 0.5;
 
 /// The edges of a curve or a surface, and nodes between two edges of one line.
