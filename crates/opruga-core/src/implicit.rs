@@ -28,6 +28,19 @@ impl<const D: usize> System<D> {
         self.gather_forces(stage, time, weight, out);
     }
 
+    /// Lets some models alone look at a state, by their numbers, as [`System::evaluate`] lets all of them.
+    ///
+    /// # Errors
+    /// [`StepError`] where a model refuses the state.
+    pub fn prepare_some(&mut self, which: &[usize], stage: Stage, time: f64) -> Result<(), StepError> {
+        let view = view(&self.state, self.nodes, self.layout, stage, self.time + time, self.threads);
+        for number in which {
+            let member = &mut self.members[*number];
+            member.potential.prepare(self.simd, &view, &member.memory, &mut member.scratch)?;
+        }
+        Ok(())
+    }
+
     fn gather_forces(&mut self, stage: Stage, time: f64, weight: f64, out: &mut Columns<D>) {
         let limited = self.work.limited_forces;
         for tile in 0..self.plan.len() {

@@ -6,6 +6,7 @@ pub mod break_off;
 pub mod check;
 pub mod contacts;
 pub mod dense;
+mod dense_part;
 pub mod error;
 pub mod history;
 mod implicit;

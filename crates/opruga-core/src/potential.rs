@@ -1,6 +1,6 @@
 //! What a model is to an integrator: forces, energy and second derivatives, and nothing about how it steps.
 
-use crate::dense::Dense;
+pub use crate::dense_part::{DensePart, Following, mixed};
 use crate::error::{BuildError, StepError};
 use crate::memory::{Counts, Need};
 use crate::spec::{Spec, Values};
@@ -12,7 +12,6 @@ use opruga_math::message::AnyMessage;
 use opruga_math::{Simd, WIDTH};
 use opruga_mesh::Mesh;
 use std::borrow::Cow;
-use std::sync::Arc;
 
 /// Which questions a model answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -116,54 +115,6 @@ pub trait StencilPacks<const D: usize>: Sync {
     fn deliver(&self, rows: &Range<usize>, to: &mut dyn FnMut(usize, &StencilPack<'_>));
 }
 
-/// A dense symmetric matrix that turns with its body: c 𝓡 K 𝓡ᵀ on a list of nodes, where 𝓡 turns every node by R.
-#[derive(Clone, Copy, Debug)]
-pub struct DensePart<'a, const D: usize> {
-    /// The factor c.
-    pub factor: f64,
-    /// The rotation R, by rows.
-    pub frame: &'a [[f64; D]; D],
-    /// The indices of the nodes that K knows, in its order; every one once.
-    pub indices: &'a [u32],
-    /// K, D rows a node.
-    pub matrix: &'a Arc<Dense>,
-}
-
-impl<const D: usize> DensePart<'_, D> {
-    /// A x at the places of this part, given what x is at each place; node by node.
-    pub fn product(&self, x: impl Fn(usize) -> [f64; D]) -> Vec<[f64; D]> {
-        let length = self.matrix.padded();
-        let mut turned = vec![0.0; 2 * length];
-        let (own, out) = turned.split_at_mut(length);
-        for (to, place) in own.chunks_exact_mut(D).zip(self.indices) {
-            let x = x(*place as usize);
-            for j in 0..D {
-                to[j] = (0..D).map(|i| self.frame[i][j] * x[i]).sum();
-            }
-        }
-        self.matrix.multiply(Simd::best(), own, out);
-        let back =
-            |g: &[f64]| core::array::from_fn(|i| self.factor * (0..D).map(|j| self.frame[i][j] * g[j]).sum::<f64>());
-        out.chunks_exact(D).take(self.indices.len()).map(back).collect()
-    }
-    /// The block of two of its nodes, by their numbers in the list.
-    pub fn block(&self, a: usize, b: usize) -> [[f64; D]; D] {
-        let mut half = [[0.0; D]; D];
-        let mut out = [[0.0; D]; D];
-        for i in 0..D {
-            for j in 0..D {
-                half[i][j] = (0..D).map(|k| self.frame[i][k] * self.matrix.at(a * D + k, b * D + j)).sum();
-            }
-        }
-        for i in 0..D {
-            for j in 0..D {
-                out[i][j] = self.factor * (0..D).map(|k| half[i][k] * self.frame[j][k]).sum::<f64>();
-            }
-        }
-        out
-    }
-}
-
 /// Where a model delivers its Hessian.
 pub trait Sink<const D: usize> {
     /// Adds the block ∂²U/∂xₐ∂x_b for two places of the same body.
@@ -177,6 +128,9 @@ pub trait Sink<const D: usize> {
             for (b, column) in part.indices.iter().enumerate() {
                 self.block(*row as usize, *column as usize, part.block(a, b));
             }
+        }
+        for (c, u) in part.parts_of_rank_one() {
+            self.low_rank(c, &u);
         }
     }
     /// Adds the matrices of some stencils: stencil by stencil, all blocks row by row.

@@ -1,17 +1,19 @@
 //! Dense parts beside a sparse matrix, as they were delivered, and what factors both.
 
 use crate::blocks::{Block, times};
+use crate::matrix::RankOne;
 use opruga_core::dense::Dense;
-use opruga_core::potential::DensePart;
+use opruga_core::potential::{DensePart, Following};
 use std::sync::Arc;
 
-/// c 𝓡 K 𝓡ᵀ on some nodes, between projectors where directions are held.
+/// A dense part on some nodes, between projectors where directions are held.
 #[derive(Clone, Debug)]
 pub(crate) struct Beside<const D: usize> {
     pub(crate) factor: f64,
     pub(crate) frame: Block<D>,
     pub(crate) indices: Vec<u32>,
     pub(crate) matrix: Arc<Dense>,
+    pub(crate) following: Option<Following>,
     /// By the numbers of nodes in the list.
     pub(crate) pinned: Vec<(u32, Block<D>)>,
 }
@@ -23,11 +25,18 @@ impl<const D: usize> Beside<D> {
             frame: *part.frame,
             indices: part.indices.to_vec(),
             matrix: Arc::clone(part.matrix),
+            following: part.following.cloned(),
             pinned: Vec::new(),
         }
     }
     pub(crate) fn part(&self) -> DensePart<'_, D> {
-        DensePart { factor: self.factor, frame: &self.frame, indices: &self.indices, matrix: &self.matrix }
+        DensePart {
+            factor: self.factor,
+            frame: &self.frame,
+            indices: &self.indices,
+            matrix: &self.matrix,
+            following: self.following.as_ref(),
+        }
     }
     /// The mean of the diagonal entries of a node in its list.
     pub(crate) fn size_at(&self, number: usize) -> f64 {
@@ -53,12 +62,27 @@ impl<const D: usize> Beside<D> {
             (0..D).for_each(|d| y[*index as usize][d] += value[d]);
         }
     }
-    /// Holds directions: those of nodes that are not free, by their projectors.
-    pub(crate) fn constrain(&mut self, free: &[bool], projectors: &[Block<D>]) {
+    /// What a frame that follows adds, as parts of rank one.
+    pub(crate) fn parts_of_rank_one(&self) -> Vec<RankOne<D>> {
+        let part = |(factor, entries): (f64, Vec<(usize, [f64; D])>)| {
+            let entries = entries.into_iter().map(|(index, entry)| (index as u32, entry)).collect();
+            RankOne { factor, entries }
+        };
+        self.part().parts_of_rank_one().into_iter().map(part).collect()
+    }
+    /// Holds directions: those of nodes that are not free, by their projectors. The frame of a body that is held follows by parts of rank
+    /// one, which are given.
+    pub(crate) fn constrain(&mut self, free: &[bool], projectors: &[Block<D>]) -> Vec<RankOne<D>> {
         self.pinned.clear();
         for (number, index) in self.indices.iter().enumerate().filter(|(_, index)| !free[**index as usize]) {
             self.pinned.push((number as u32, projectors[*index as usize]));
         }
+        if self.pinned.is_empty() {
+            return Vec::new();
+        }
+        let parts = self.parts_of_rank_one();
+        self.following = None;
+        parts
     }
     /// The number of a node in its list.
     pub(crate) fn number_of(&self, node: usize) -> Option<usize> {

@@ -59,13 +59,19 @@ impl Cholesky {
         Ok(())
     }
 
-    fn take<const D: usize>(&mut self, matrix: &BlockMatrix<D>, right: Option<&mut [f64]>) -> Result<(), Indefinite> {
+    fn take<const D: usize>(
+        &mut self,
+        matrix: &BlockMatrix<D>,
+        mut right: Option<&mut [f64]>,
+    ) -> Result<(), Indefinite> {
         self.factored = false;
         self.is_turned = matrix.has_dense();
         if self.is_turned {
             self.turned.update(matrix, true)?;
-            let turned = &self.turned;
-            self.parts.update(matrix, true, right, |sides| turned.solve(&mut sides.collect::<Vec<_>>()))?;
+            self.parts = Woodbury::default();
+            if !self.turned.follow(matrix, right.as_deref_mut())? {
+                self.turned.update_parts(&mut self.parts, matrix, true, right)?;
+            }
             self.factored = true;
             return Ok(());
         }
@@ -73,7 +79,7 @@ impl Cholesky {
         self.factor(anew)?;
         let Some(symbolic) = &self.symbolic else { return Err(Indefinite) };
         let (values, stack) = (&self.values, &self.stack);
-        self.parts.update(matrix, true, right, |sides| {
+        self.parts.update(matrix.rows() * D, matrix.rank_one().iter(), true, right, |sides| {
             sides.for_each(|x| solve(symbolic, values, stack, x));
         })?;
         self.factored = true;
@@ -119,7 +125,7 @@ impl Cholesky {
     /// Solves A x = b in place.
     pub fn solve(&self, x: &mut [f64]) {
         if self.is_turned && self.factored {
-            self.turned.solve(&mut [&mut *x]);
+            self.turned.solve(x);
             return self.parts.correct(x);
         }
         let Some(symbolic) = self.symbolic.as_ref().filter(|_| self.factored) else { return };

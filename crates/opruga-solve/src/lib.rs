@@ -12,6 +12,7 @@ pub mod dense;
 pub mod dense_system;
 pub mod eigen;
 mod filled;
+mod following;
 mod landing;
 mod lu;
 mod matrix;

@@ -60,13 +60,13 @@ impl Factors {
         if matrix.has_dense() {
             let mut turned = TurnedFactor::default();
             turned.update(matrix, false)?;
-            self.parts.update(matrix, false, None, |sides| turned.solve(&mut sides.collect::<Vec<_>>()))?;
+            turned.update_parts(&mut self.parts, matrix, false, None)?;
             self.turned = Some(turned);
             return Ok(());
         }
         let anew = self.scalars.take(matrix, false);
         let factors = self.factored(anew)?;
-        self.parts.update(matrix, false, None, |sides| {
+        self.parts.update(matrix.rows() * D, matrix.rank_one().iter(), false, None, |sides| {
             sides.for_each(|x| solve(&factors, is_symmetric, x));
         })?;
         self.factors = Some(factors);
@@ -89,7 +89,7 @@ impl Factors {
     /// Solves A x = b in place; says whether every number that comes out is finite.
     pub fn solve(&self, x: &mut [f64]) -> bool {
         if let Some(turned) = &self.turned {
-            turned.solve(&mut [&mut *x]);
+            turned.solve(x);
             self.parts.correct(x);
             return x.iter().all(|x| x.is_finite());
         }

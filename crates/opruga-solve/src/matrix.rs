@@ -321,15 +321,15 @@ impl<const D: usize> BlockMatrix<D> {
                 self.values[at] = block;
             }
         }
+        for part in &mut self.beside {
+            self.rank_one.extend(part.constrain(free, projectors));
+        }
         for part in &mut self.rank_one {
             for (node, u) in &mut part.entries {
                 if !free[*node as usize] {
                     *u = times(&projectors[*node as usize], u);
                 }
             }
-        }
-        for part in &mut self.beside {
-            part.constrain(free, projectors);
         }
     }
 

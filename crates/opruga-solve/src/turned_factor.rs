@@ -3,7 +3,9 @@
 use crate::Indefinite;
 use crate::blocks::{Block, nodes, nodes_mut, product};
 use crate::dense_system::{DenseCholesky, DenseFactors};
+use crate::following::{FollowingFrame, SolvedBase};
 use crate::matrix::BlockMatrix;
+use crate::woodbury::Woodbury;
 use core::ops::Range;
 use opruga_core::dense::Dense;
 use opruga_math::Simd;
@@ -23,6 +25,9 @@ pub(crate) struct TurnedFactor {
     /// What the factor was made of, where that does not turn; and the matrix itself, which keeps its address.
     made_of: Vec<u64>,
     matrix: Option<Arc<Dense>>,
+    /// What a frame that follows its nodes adds, and the solutions for what it follows at rest, which are kept with the inverse.
+    following: Option<FollowingFrame>,
+    solved_base: Option<SolvedBase>,
 }
 
 enum Solver {
@@ -47,7 +52,7 @@ impl TurnedFactor {
         if let [only] = parts {
             frame = only.frame;
         }
-        self.dimensions = D;
+        (self.dimensions, self.following) = (D, None);
         self.frame = frame.iter().flatten().copied().collect();
         let made_of = unturned(matrix, positive);
         let known = made_of.is_some() && made_of.as_ref() == Some(&self.made_of) && self.solver.is_some();
@@ -55,7 +60,7 @@ impl TurnedFactor {
         if known && same {
             return Ok(());
         }
-        self.solver = None;
+        (self.solver, self.solved_base) = (None, None);
         let numbers = in_frame(matrix, &frame);
         self.size = matrix.rows() * D;
         self.solver = Some(if positive {
@@ -68,15 +73,72 @@ impl TurnedFactor {
         self.made_of = made_of.unwrap_or_default();
         Ok(())
     }
-    /// Replaces right-hand sides by the solutions.
-    pub(crate) fn solve(&self, sides: &mut [&mut [f64]]) {
+    /// Takes a frame that follows its nodes, where the inverse is at hand and nothing else is of rank one; says whether it did.
+    /// `right` becomes the solution.
+    pub(crate) fn follow<const D: usize>(
+        &mut self,
+        matrix: &BlockMatrix<D>,
+        right: Option<&mut [f64]>,
+    ) -> Result<bool, Indefinite> {
+        let (Some(Solver::Inverse(inverse)), [part], []) = (&self.solver, matrix.beside(), matrix.rank_one()) else {
+            return Ok(false);
+        };
+        let in_order = part.indices.iter().enumerate().all(|(number, index)| number == *index as usize);
+        let Some(following) = part.following.as_ref().filter(|_| in_order && part.indices.len() == matrix.rows())
+        else {
+            return Ok(false);
+        };
+        let mut masses = vec![0.0; inverse.padded()];
+        for (node, masses) in masses.chunks_exact_mut(D).enumerate().take(matrix.rows()) {
+            masses.fill(matrix.diagonal_block(node)[0][0]);
+        }
+        let solve = |sides: &mut [f64]| {
+            let right = sides.to_vec();
+            inverse.multiply(Simd::best(), &right, sides);
+        };
+        let base = match self.solved_base.take() {
+            Some(base) if base.is_of(following) => base,
+            _ => SolvedBase::new(following, &solve),
+        };
+        let mut side = right.as_ref().map(|right| self.in_frame(right, masses.len()));
+        let frame = FollowingFrame::new(following, part.factor, &masses, &base, side.as_deref_mut(), &solve)?;
+        if let (Some(right), Some(side)) = (right, side) {
+            right.copy_from_slice(&side[..right.len()]);
+            self.turn(right, true);
+        }
+        (self.following, self.solved_base) = (Some(frame), Some(base));
+        Ok(true)
+    }
+    /// Takes all parts of rank one: those of a frame that follows, and others.
+    pub(crate) fn update_parts<const D: usize>(
+        &self,
+        parts: &mut Woodbury,
+        matrix: &BlockMatrix<D>,
+        positive: bool,
+        right: Option<&mut [f64]>,
+    ) -> Result<(), Indefinite> {
+        let of_frames: Vec<_> = matrix.beside().iter().flat_map(|part| part.parts_of_rank_one()).collect();
+        let all = matrix.rank_one().iter().chain(&of_frames);
+        parts.update(matrix.rows() * D, all, positive, right, |sides| self.solve_all(&mut sides.collect::<Vec<_>>()))
+    }
+    /// Replaces a right-hand side by the solution: with a frame that follows, and without parts of rank one.
+    pub(crate) fn solve(&self, side: &mut [f64]) {
+        let (Some(following), Some(Solver::Inverse(inverse))) = (&self.following, &self.solver) else {
+            return self.solve_all(&mut [side]);
+        };
+        let right = self.in_frame(side, inverse.padded());
+        let along = following.along(&right);
+        let mut solved = vec![0.0; right.len()];
+        inverse.multiply(Simd::best(), &right, &mut solved);
+        following.correct(&along, &mut solved);
+        side.copy_from_slice(&solved[..side.len()]);
+        self.turn(side, true);
+    }
+    /// Replaces right-hand sides by the solutions without parts of rank one.
+    fn solve_all(&self, sides: &mut [&mut [f64]]) {
         let inverse = if let Some(Solver::Inverse(inverse)) = &self.solver { Some(inverse) } else { None };
         let length = inverse.map_or(self.size, Dense::padded);
-        let mut all = vec![0.0; length * sides.len()];
-        for (side, own) in sides.iter_mut().zip(all.chunks_exact_mut(length)) {
-            self.turn(side, false);
-            own[..side.len()].copy_from_slice(side);
-        }
+        let mut all: Vec<f64> = sides.iter().flat_map(|side| self.in_frame(side, length)).collect();
         match &self.solver {
             Some(Solver::Inverse(inverse)) => {
                 let right = all.clone();
@@ -90,6 +152,13 @@ impl TurnedFactor {
             side.copy_from_slice(&own[..side.len()]);
             self.turn(side, true);
         }
+    }
+    /// A vector in the frame, filled up to a length.
+    fn in_frame(&self, side: &[f64], length: usize) -> Vec<f64> {
+        let mut out = vec![0.0; length];
+        out[..side.len()].copy_from_slice(side);
+        self.turn(&mut out[..side.len()], false);
+        out
     }
     /// Into the frame, or back.
     fn turn(&self, b: &mut [f64], back: bool) {

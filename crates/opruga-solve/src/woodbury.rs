@@ -1,6 +1,6 @@
 //! Parts of rank one beside a factored matrix.
 
-use crate::matrix::BlockMatrix;
+use crate::matrix::RankOne;
 use crate::{Indefinite, dense, dot};
 
 /// (S + U C Uᵀ)⁻¹ b = S⁻¹ b − S⁻¹ U (C⁻¹ + Uᵀ S⁻¹ U)⁻¹ Uᵀ S⁻¹ b (Woodbury 1950).
@@ -14,20 +14,22 @@ pub(crate) struct Woodbury {
 }
 
 impl Woodbury {
-    /// Takes the parts of rank one of a matrix whose S is factored. `right` is another right-hand side, which S⁻¹ is applied to as well.
-    pub(crate) fn update<const D: usize>(
+    /// Takes the parts of rank one of a matrix of `size` rows whose S is factored. `right` is another right-hand side, which S⁻¹ is applied
+    /// to as well.
+    pub(crate) fn update<'a, const D: usize>(
         &mut self,
-        matrix: &BlockMatrix<D>,
+        size: usize,
+        parts: impl Iterator<Item = &'a RankOne<D>>,
         positive: bool,
         right: Option<&mut [f64]>,
         solve: impl Fn(&mut dyn Iterator<Item = &mut [f64]>),
     ) -> Result<(), Indefinite> {
-        let parts: Vec<_> = matrix.rank_one().iter().filter(|part| part.factor != 0.0).collect();
+        let parts: Vec<_> = parts.filter(|part| part.factor != 0.0).collect();
         let n = parts.len();
         self.directions.resize(n, Vec::new());
         self.solved.resize(n, Vec::new());
         for (k, part) in parts.iter().enumerate() {
-            self.directions[k].resize(matrix.rows() * D, 0.0);
+            self.directions[k].resize(size, 0.0);
             part.write(&mut self.directions[k]);
             self.solved[k].clone_from(&self.directions[k]);
         }

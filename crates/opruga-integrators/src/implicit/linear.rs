@@ -158,6 +158,9 @@ impl<const D: usize> Sink<D> for DiagonalSink<'_, D> {
         for (number, place) in part.indices.iter().enumerate() {
             Sink::<D>::block(self, *place as usize, *place as usize, part.block(number, number));
         }
+        for (c, u) in part.parts_of_rank_one() {
+            self.low_rank(c, &u);
+        }
     }
 }
 

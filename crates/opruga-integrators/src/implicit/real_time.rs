@@ -145,11 +145,11 @@ impl Task<'_> {
     }
 
     /// Makes the matrix of the reference shape, which was evaluated last.
-    fn make<const D: usize>(&self, system: &System<D>, workspace: &mut Workspace<D>) {
+    fn make<const D: usize>(&self, system: &System<D>, workspace: &mut Workspace<D>, is_new: bool) {
         let Some(reference) = system.history.vectors(REFERENCE) else { return };
         let Workspace { reused, linear, mass, .. } = workspace;
         let mixture = self.mixture(system, mass);
-        reused.make(linear, &mixture, raised(system.history.get(MATRIX)), reference);
+        reused.make(linear, &mixture, raised(system.history.get(MATRIX)), reference, is_new);
     }
 
     /// Makes the matrix of the present shape, which becomes the reference.
@@ -161,7 +161,7 @@ impl Task<'_> {
         for (own, column) in reference.0.iter_mut().zip(&state.work[0][0].0) {
             own[..*nodes].copy_from_slice(&column[..*nodes]);
         }
-        self.make(system, workspace);
+        self.make(system, workspace, true);
     }
 
     /// Makes the matrix of the reference shape that the state remembers, if it is not at hand; none where there is none.
@@ -182,7 +182,7 @@ impl Task<'_> {
                 }
             }
             system.evaluate(Workspace::<D>::STAGE, self.balance.time, 0.0, &mut workspace.force)?;
-            self.make(system, workspace);
+            self.make(system, workspace, false);
         }
         Ok(true)
     }
@@ -213,7 +213,7 @@ impl Task<'_> {
         wanted_forces(system.threads, &mixture, linear, contacting, residual, displacements, [trial, &mut *right]);
         let filter = Filter { free, projectors };
         each_block(system.threads, D, [&mut *right], |first, [right]| filter.apply_from(first / D, right));
-        reused.hold(system.threads, linear, &filter, self.direct)?;
+        reused.hold(system.threads, linear, &filter, self.direct, right)?;
         Ok(reused.begin(system, right))
     }
 

@@ -25,6 +25,11 @@ pub(crate) struct ReusedMatrix<const D: usize> {
     projectors: Vec<Block<D>>,
     packed: Packed<D>,
     cholesky: Cholesky,
+    /// Whether it was made in the shape of the iteration and not solved with yet: then one pass through a dense factor serves the right-hand
+    /// side as well. A matrix that is made again, where a run is taken up, was solved with before: its solutions must have the same bits.
+    is_new: bool,
+    /// The solution for the right-hand side at hand, where it is known.
+    solution: Option<Vec<f64>>,
 }
 
 impl<const D: usize> Default for ReusedMatrix<D> {
@@ -40,6 +45,8 @@ impl<const D: usize> Default for ReusedMatrix<D> {
             projectors: Vec::new(),
             packed: Packed::default(),
             cholesky: Cholesky::default(),
+            is_new: false,
+            solution: None,
         }
     }
 }
@@ -53,14 +60,21 @@ impl<const D: usize> ReusedMatrix<D> {
             && self.reference.0.iter().zip(&reference.0).all(|(a, b)| a.get(..nodes) == b.get(..nodes))
     }
 
-    /// Makes the matrix in the shape that was evaluated last, which is `reference`.
-    pub(crate) fn make(&mut self, linear: &mut Linear<D>, mixture: &Mixture<D>, raised: f64, reference: &Columns<D>) {
+    /// Makes the matrix in the shape that was evaluated last, which is `reference`; `is_new` says whether that is the shape of the iteration.
+    pub(crate) fn make(
+        &mut self,
+        linear: &mut Linear<D>,
+        mixture: &Mixture<D>,
+        raised: f64,
+        reference: &Columns<D>,
+        is_new: bool,
+    ) {
         linear.assemble(mixture);
         if raised > 0.0 {
             linear.raise(raised);
         }
         self.packed.take(linear.full(), mixture.system.threads);
-        (self.there, self.ready) = (true, false);
+        (self.there, self.ready, self.is_new) = (true, false, is_new);
         (self.sigma, self.beta, self.raised) = (mixture.sigma, mixture.beta, raised);
         for (own, column) in self.reference.0.iter_mut().zip(&reference.0) {
             own.grow(column.len());
@@ -68,14 +82,16 @@ impl<const D: usize> ReusedMatrix<D> {
         }
     }
 
-    /// Makes it ready to be solved with in the free directions.
+    /// Makes it ready to be solved with in the free directions, for this right-hand side first.
     pub(crate) fn hold(
         &mut self,
         threads: usize,
         linear: &mut Linear<D>,
         filter: &Filter<D>,
         direct: bool,
+        right: &[f64],
     ) -> Result<(), Indefinite> {
+        self.solution = None;
         let same = self.ready && self.free == filter.free;
         let held = |node: usize| filter.free[node] || self.projectors[node] == filter.projectors[node];
         if same && (0..filter.free.len()).all(held) {
@@ -85,7 +101,13 @@ impl<const D: usize> ReusedMatrix<D> {
         self.packed.hold(threads, linear.full(), filter.free, filter.projectors)?;
         if direct {
             linear.constrain(filter);
-            self.cholesky.update(linear.constrained())?;
+            if core::mem::take(&mut self.is_new) {
+                let mut solution = right.to_vec();
+                self.cholesky.update_and_solve(linear.constrained(), &mut solution)?;
+                self.solution = Some(solution);
+            } else {
+                self.cholesky.update(linear.constrained())?;
+            }
         }
         refill(&mut self.free, filter.free);
         refill(&mut self.projectors, filter.projectors);
@@ -121,8 +143,13 @@ impl<const D: usize> ReusedMatrix<D> {
             return Err(Indefinite);
         }
         let outcome = if direct {
-            out.copy_from_slice(right);
-            self.cholesky.solve(out);
+            match self.solution.take() {
+                Some(solution) => out.copy_from_slice(&solution),
+                None => {
+                    out.copy_from_slice(right);
+                    self.cholesky.solve(out);
+                }
+            }
             (1, false)
         } else {
             let reached = self.packed.solve(system.simd, system.threads, goal, most, out)?;

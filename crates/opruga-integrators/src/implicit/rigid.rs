@@ -164,7 +164,7 @@ impl<const D: usize> Rigid<D> {
     }
 
     /// The models that act from outside.
-    fn outer<'a>(&'a self, system: &'a System<D>) -> impl Iterator<Item = (usize, &'a Member<D>)> {
+    pub(super) fn outer<'a>(&'a self, system: &'a System<D>) -> impl Iterator<Item = (usize, &'a Member<D>)> {
         system
             .members
             .iter()

@@ -68,8 +68,9 @@ fn balance_with<const D: usize>(
     least: f64,
 ) -> Result<Option<f64>, StepError> {
     rigid.find(&stage(system, workspace, balance, settings));
+    let outer: Vec<usize> = rigid.outer(system).map(|(number, _)| number).collect();
     let mut left = sums(rigid, system, workspace, balance, settings);
-    let mut moved: f64 = 0.0;
+    let (mut moved, mut tried, mut balanced): (f64, bool, bool) = (0.0, false, true);
     for _ in 0..MOST_MOVES {
         let shares: Vec<f64> = rigid.shares(&left).iter().map(|share| -share).collect();
         rigid.finite_displacements(&workspace.x0, &workspace.u, &shares, &mut workspace.step);
@@ -84,18 +85,18 @@ fn balance_with<const D: usize>(
         for (u, step) in workspace.u.iter_mut().zip(&workspace.step) {
             *u += step;
         }
-        evaluate(system, workspace, balance, false)?;
+        // Sums need nothing of the models that only push nodes against one another, which may take long.
+        tried = true;
+        Workspace::show(system, &workspace.x0, &workspace.u, &workspace.z, balance.beta);
+        system.prepare_some(&outer, Workspace::<D>::STAGE, balance.time)?;
         let next = sums(rigid, system, workspace, balance, settings);
         let [before, now] = [&left, &next].map(|sums| sums.iter().map(|x| x * x).sum::<f64>());
         let falls = now < before;
         if !falls {
             workspace.u.copy_from_slice(&workspace.trial);
-            evaluate(system, workspace, balance, false)?;
             // What is no more than the tolerance may stay, if nothing makes it less.
             let allowed = (EPSILON * size).larger(least).larger(settings.tolerance * workspace.extent);
-            if moved == 0.0 && displacement > allowed {
-                return Ok(None);
-            }
+            balanced = moved != 0.0 || displacement <= allowed;
             break;
         }
         moved += displacement;
@@ -103,6 +104,12 @@ fn balance_with<const D: usize>(
         if now > 0.25 * before {
             break;
         }
+    }
+    if tried {
+        evaluate(system, workspace, balance, false)?;
+    }
+    if !balanced {
+        return Ok(None);
     }
     note(rigid, system, workspace, balance, settings, size);
     Ok(Some(moved))

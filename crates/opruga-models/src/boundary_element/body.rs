@@ -26,6 +26,8 @@ pub struct BoundaryElement<const D: usize> {
     bodies: Vec<Body>,
     /// Places of the vertices of each body.
     indices: Vec<Vec<u32>>,
+    /// What the frame follows at rest ([`Rest::follows`]).
+    follows: Arc<Vec<f64>>,
     /// Numbers of a column.
     column: usize,
     turned: usize,
@@ -71,12 +73,14 @@ impl<const D: usize> BoundaryElement<D> {
         } else {
             Rest::new(&positions, &shares)
         };
+        let column = bodies[0].stiffness.matrix.padded();
         Ok(BoundaryElement {
             layout,
+            follows: Arc::new(rest.follows(column)),
             rest,
             skin: Skin::new(&surface, ingredients.thickness),
             exterior,
-            column: bodies[0].stiffness.matrix.padded(),
+            column,
             bodies,
             indices: (0..layout.stride()).map(index).collect(),
             turned: surface.turned,
@@ -257,39 +261,18 @@ impl<const D: usize> Potential<D> for BoundaryElement<D> {
     fn hessian(&self, _view: &View<D>, scratch: &[f64], keep: Definiteness, sink: &mut dyn Sink<D>) {
         for (number, indices) in self.indices.iter().enumerate() {
             let (body, known) = (self.body(number), self.known(scratch, number));
+            let following = (!self.exterior).then(|| {
+                let state = [known.y, known.g];
+                self.rest.following(&known.frame, &known.multiplier, state, keep, &self.follows, body.strength)
+            });
             sink.dense(&DensePart {
                 factor: body.strength,
                 frame: &known.frame.rotation,
                 indices,
                 matrix: &body.stiffness.matrix,
+                following: following.as_ref(),
             });
-            if self.exterior {
-                continue;
-            }
-            let product = |x: &[f64], y: &mut [f64]| body.product(Simd::best(), x, y);
-            let parts = self.rest.parts(&known.frame, &known.multiplier, [known.y, known.g], keep, product);
-            for [follows, along] in &parts {
-                add_pair(indices, follows, along, sink);
-            }
         }
-    }
-}
-
-/// Adds j zᵀ + z jᵀ as ½ (a j + z/a)(…)ᵀ − ½ (a j − z/a)(…)ᵀ with vectors of one size.
-fn add_pair<const D: usize>(indices: &[u32], j: &[[f64; D]], z: &[[f64; D]], sink: &mut dyn Sink<D>) {
-    let size = |v: &[[f64; D]]| v.iter().flatten().map(|x| x * x).sum::<f64>().sqrt();
-    let ratio = size(z) / size(j);
-    if !(ratio > 0.0 && ratio.is_finite()) {
-        return;
-    }
-    let a = ratio.sqrt();
-    for sign in [1.0, -1.0] {
-        let entries: Vec<(usize, [f64; D])> = indices
-            .iter()
-            .zip(j.iter().zip(z))
-            .map(|(index, (j, z))| (*index as usize, core::array::from_fn(|d| a * j[d] + sign * z[d] / a)))
-            .collect();
-        sink.low_rank(0.5 * sign, &entries);
     }
 }
 

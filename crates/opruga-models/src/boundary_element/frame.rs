@@ -5,22 +5,23 @@
 //!
 //! U = ½ uᵀ g,  f = −R (g − w λ × X),  G λ = τ = Σ y × g,  G = (tr B) 1 − B,  B = Rᵀ A.
 //!
-//! R follows a displacement R d by the spin θ = G⁻¹ J d with J d = Σ w X × d; so f is the exact gradient of U, and Σ y × f = τ − G λ = 0.
-//! The second derivatives are R K Rᵀ and 2 (in the plane) or 6 parts of rank one,
+//! R follows a displacement R d by the spin θ = G⁻¹ Σ w X × d; so f is the exact gradient of U, and Σ y × f = τ − G λ = 0. The second
+//! derivatives are
 //!
 //! δ²U = dᵀK d + 2 θ·Z d + θᵀ S θ,
 //! θ·Z d = −(θ × y)ᵀ K d − θ·Σ d × g + Σ w (θ·λ X·d − X·θ λ·d),
 //! θᵀ S θ = (θ × y)ᵀ K (θ × y) + Σ (g·θ y·θ − g·y θ·θ) + λ·(θ × B θ),
 //!
-//! which vanish at rest. Without the parts of g and λ the sum is that of K (d − θ × y), which is never negative.
+//! or (d − θ × y)ᵀ K (d − θ × y) and the parts of g and λ, which vanish at rest ([`Following`]). Without these the sum is never negative.
 //!
 //! Why not the R that makes U least: K knows strains and no rotation, so U(R) is of fourth order in a rotation from rest, and any
 //! uniform expansion 1 + e of the plane has U = 0 in the frame turned by arccos 1/(1 + e). A body in that frame would not resist
 //! expansion (docs/boundary-elements.md, "The frame").
 
-use opruga_core::potential::Definiteness;
+use opruga_core::potential::{Definiteness, Following};
 use opruga_math::rotation::nearest_rotation;
 use opruga_math::{matrix, symmetric};
+use std::sync::Arc;
 
 /// Less than this part of what a body has at rest, and its rotation is not determined: then it does not follow.
 const UNDETERMINED: f64 = 1e-12;
@@ -141,62 +142,60 @@ impl<const D: usize> Rest<D> {
         core::array::from_fn(|i| -(0..D).map(|j| frame.rotation[i][j] * pulled[j]).sum::<f64>())
     }
 
-    /// The second derivatives beside R K Rᵀ: pairs (j, z) of vectors in space that add j zᵀ + z jᵀ. `product` multiplies with K.
-    pub(super) fn parts(
+    /// J without the inverse of G, w e × X for each axis: vectors of `length` numbers, one after the other.
+    pub(super) fn follows(&self, length: usize) -> Vec<f64> {
+        let mut out = vec![0.0; axes::<D>().len() * length];
+        for (k, out) in axes::<D>().zip(out.chunks_exact_mut(length)) {
+            for ((to, x), w) in out.chunks_exact_mut(D).zip(&self.positions).zip(&self.weights) {
+                let spin = cross(&axis(k), &lift::<D>(x));
+                (0..D).for_each(|d| to[d] = w * spin[d]);
+            }
+        }
+        out
+    }
+
+    /// How the frame follows displacements, as the second derivatives have it. `factor` is what K is multiplied with; without `Exact` the
+    /// parts of forces are left out.
+    pub(super) fn following(
         &self,
         frame: &Frame<D>,
         multiplier: &Vector,
         [y, g]: [&[f64]; 2],
         keep: Definiteness,
-        mut product: impl FnMut(&[f64], &mut [f64]),
-    ) -> Vec<[Vec<[f64; D]>; 2]> {
-        let count = self.weights.len();
-        let length = y.len();
-        let exact = keep == Definiteness::Exact;
-        // One way through K for all axes.
-        let first = axes::<D>().start;
-        let mut all = vec![0.0; 2 * axes::<D>().len() * length];
-        let (turns, pulls) = all.split_at_mut(axes::<D>().len() * length);
-        for (k, turned) in axes::<D>().zip(turns.chunks_exact_mut(length)) {
-            for vertex in 0..count {
-                let spin = cross(&axis(k), &lift::<D>(&y[vertex * D..]));
-                turned[vertex * D..][..D].copy_from_slice(&spin[..D]);
+        base: &Arc<Vec<f64>>,
+        factor: f64,
+    ) -> Following {
+        let (first, axes) = (axes::<D>().start, axes::<D>());
+        let length = base.len() / axes.len();
+        let mut out = Following { base: Arc::clone(base), ..Following::default() };
+        for (k, row) in axes.clone().zip(&mut out.mix) {
+            for (l, entry) in axes.clone().zip(row) {
+                *entry = frame.follows[k][l];
             }
         }
-        product(turns, pulls);
-        let turned = |k: usize| &turns[(k - first) * length..][..length];
-        let pulled = |k: usize| &pulls[(k - first) * length..][..length];
-        // S: how U depends on the spin.
+        let follows = out.follows(length);
+        (out.spins, out.forces) = (vec![0.0; base.len()], vec![0.0; base.len()]);
         let mut s = [[0.0; 3]; 3];
-        for k in axes::<D>() {
-            for l in axes::<D>() {
-                s[k][l] = opruga_solve::dot(turned(k), pulled(l));
-            }
-        }
-        if exact {
+        if keep == Definiteness::Exact {
             self.add_stress(frame, multiplier, [y, g], &mut s);
         }
-        let mut out = Vec::new();
-        for k in axes::<D>() {
-            let (mut follows, mut along) = (Vec::with_capacity(count), Vec::with_capacity(count));
-            for vertex in 0..count {
-                let (w, x) = (self.weights[vertex], lift::<D>(&self.positions[vertex]));
-                let spin = |k: usize| cross(&frame.follows[k], &x).map(|c| w * c);
-                let mut z: Vector = core::array::from_fn(|d| {
-                    let own = if d < D { -pulled(k)[vertex * D + d] } else { 0.0 };
-                    own + 0.5 * axes::<D>().map(|l| s[k][l] * spin(l)[d]).sum::<f64>()
-                });
-                if exact {
-                    let stress = cross(&lift::<D>(&g[vertex * D..]), &axis(k));
-                    (0..3).for_each(|d| z[d] += w * (multiplier[k] * x[d] - x[k] * multiplier[d]) - stress[d]);
-                }
-                let turn = |v: &Vector| -> [f64; D] {
-                    core::array::from_fn(|i| (0..D).map(|j| frame.rotation[i][j] * v[j]).sum())
-                };
-                follows.push(turn(&spin(k)));
-                along.push(turn(&z));
+        for k in axes.clone() {
+            let range = (k - first) * length..(k - first + 1) * length;
+            for (vertex, spin) in out.spins[range.clone()].chunks_exact_mut(D).enumerate().take(self.weights.len()) {
+                spin.copy_from_slice(&cross(&axis(k), &lift::<D>(&y[vertex * D..]))[..D]);
             }
-            out.push([follows, along]);
+            if keep != Definiteness::Exact {
+                continue;
+            }
+            for (vertex, force) in out.forces[range].chunks_exact_mut(D).enumerate().take(self.weights.len()) {
+                let (w, x) = (self.weights[vertex], lift::<D>(&self.positions[vertex]));
+                let pulled = cross(&lift::<D>(&g[vertex * D..]), &axis(k));
+                for (d, force) in force.iter_mut().enumerate() {
+                    let turned = axes.clone().map(|l| s[k][l] * follows[(l - first) * length + vertex * D + d]);
+                    let own = w * (multiplier[k] * x[d] - x[k] * multiplier[d]) - pulled[d];
+                    *force = (0.5 * turned.sum::<f64>() + own) / factor;
+                }
+            }
         }
         out
     }
