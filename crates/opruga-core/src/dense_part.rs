@@ -21,6 +21,9 @@ pub struct DensePart<'a, const D: usize> {
     pub following: Option<&'a Following>,
 }
 
+/// A part c u uᵀ of rank one: c, and the entries of u by the indices of nodes.
+pub type RankOnePart<const D: usize> = (f64, Vec<(usize, [f64; D])>);
+
 /// How a frame follows displacements d, seen from the frame: by the spin θ = Jᵀ d about each axis, which displaces nodes by V θ. What is
 /// left, d − V θ, strains the body. Vectors have [`Dense::padded`] numbers each and stand one after the other, one for each axis.
 #[derive(Clone, Debug, Default)]
@@ -119,7 +122,7 @@ impl<const D: usize> DensePart<'_, D> {
     ///
     /// Tᵀ K T + J Qᵀ + Q Jᵀ = K + J Zᵀ + Z Jᵀ with Z = Q − K V + ½ J VᵀK V, and j zᵀ + z jᵀ is ½ (a j + z/a)(…)ᵀ − ½ (a j − z/a)(…)ᵀ;
     /// a gives both vectors one size.
-    pub fn parts_of_rank_one(&self) -> Vec<(f64, Vec<(usize, [f64; D])>)> {
+    pub fn parts_of_rank_one(&self) -> Vec<RankOnePart<D>> {
         let Some(following) = self.following else { return Vec::new() };
         let (length, Following { spins, forces, .. }) = (self.matrix.padded(), following);
         let follows = following.follows(length);

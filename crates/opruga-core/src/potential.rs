@@ -1,6 +1,6 @@
 //! What a model is to an integrator: forces, energy and second derivatives, and nothing about how it steps.
 
-pub use crate::dense_part::{DensePart, Following, mixed};
+pub use crate::dense_part::{DensePart, Following, RankOnePart, mixed};
 use crate::error::{BuildError, StepError};
 use crate::memory::{Counts, Need};
 use crate::spec::{Spec, Values};

@@ -1,9 +1,9 @@
 //! Dense parts beside a sparse matrix, as they were delivered, and what factors both.
 
 use crate::blocks::{Block, times};
-use crate::matrix::RankOne;
+use crate::rank_one::RankOne;
 use opruga_core::dense::Dense;
-use opruga_core::potential::{DensePart, Following};
+use opruga_core::potential::{DensePart, Following, RankOnePart};
 use std::sync::Arc;
 
 /// A dense part on some nodes, between projectors where directions are held.
@@ -64,7 +64,7 @@ impl<const D: usize> Beside<D> {
     }
     /// What a frame that follows adds, as parts of rank one.
     pub(crate) fn parts_of_rank_one(&self) -> Vec<RankOne<D>> {
-        let part = |(factor, entries): (f64, Vec<(usize, [f64; D])>)| {
+        let part = |(factor, entries): RankOnePart<D>| {
             let entries = entries.into_iter().map(|(index, entry)| (index as u32, entry)).collect();
             RankOne { factor, entries }
         };

@@ -19,6 +19,7 @@ mod matrix;
 mod one_model;
 pub mod packed;
 mod preconditioner;
+mod rank_one;
 mod scalars;
 mod turned_factor;
 mod woodbury;

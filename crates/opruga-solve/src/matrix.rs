@@ -4,6 +4,7 @@ use crate::blocks::{Block, isotropic, nodes, nodes_mut, product, times};
 
 use crate::beside::Beside;
 use crate::landing::{Landing, is_known};
+use crate::rank_one::RankOne;
 use opruga_core::potential::{DensePart, Sink, StencilPack, StencilPacks};
 use opruga_core::threads::each_part;
 use opruga_math::{Simd, WIDTH};
@@ -69,13 +70,6 @@ impl Script {
         self.pack_places.clear();
         self.pack_slots.clear();
     }
-}
-
-/// c·u uᵀ.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct RankOne<const D: usize> {
-    pub(crate) factor: f64,
-    pub(crate) entries: Vec<(u32, [f64; D])>,
 }
 
 /// How far ahead a call is looked for that comes out of turn.
@@ -360,25 +354,6 @@ impl<const D: usize> BlockMatrix<D> {
     }
     pub(crate) fn rank_one(&self) -> &[RankOne<D>] {
         &self.rank_one
-    }
-}
-
-impl<const D: usize> RankOne<D> {
-    pub(crate) fn along(&self, x: &[[f64; D]]) -> f64 {
-        let mut sums = [0.0; opruga_math::WIDTH];
-        for (k, (node, u)) in self.entries.iter().enumerate() {
-            for d in 0..D {
-                sums[k % opruga_math::WIDTH] += u[d] * x[*node as usize][d];
-            }
-        }
-        opruga_math::sum_in_fixed_order(&sums)
-    }
-    /// u as a long vector.
-    pub(crate) fn write(&self, out: &mut [f64]) {
-        out.fill(0.0);
-        for (node, u) in &self.entries {
-            nodes_mut::<D>(out)[*node as usize] = *u;
-        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Parts of rank one beside a factored matrix.
 
-use crate::matrix::RankOne;
+use crate::rank_one::RankOne;
 use crate::{Indefinite, dense, dot};
 
 /// (S + U C Uᵀ)⁻¹ b = S⁻¹ b − S⁻¹ U (C⁻¹ + Uᵀ S⁻¹ U)⁻¹ Uᵀ S⁻¹ b (Woodbury 1950).

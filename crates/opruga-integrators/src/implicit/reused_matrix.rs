@@ -28,8 +28,9 @@ pub(crate) struct ReusedMatrix<const D: usize> {
     /// Whether it was made in the shape of the iteration and not solved with yet: then one pass through a dense factor serves the right-hand
     /// side as well. A matrix that is made again, where a run is taken up, was solved with before: its solutions must have the same bits.
     is_new: bool,
-    /// The solution for the right-hand side at hand, where it is known.
-    solution: Option<Vec<f64>>,
+    /// The solution for the right-hand side at hand, and whether it is known.
+    solution: Vec<f64>,
+    is_solved: bool,
 }
 
 impl<const D: usize> Default for ReusedMatrix<D> {
@@ -46,7 +47,8 @@ impl<const D: usize> Default for ReusedMatrix<D> {
             packed: Packed::default(),
             cholesky: Cholesky::default(),
             is_new: false,
-            solution: None,
+            solution: Vec::new(),
+            is_solved: false,
         }
     }
 }
@@ -91,7 +93,7 @@ impl<const D: usize> ReusedMatrix<D> {
         direct: bool,
         right: &[f64],
     ) -> Result<(), Indefinite> {
-        self.solution = None;
+        self.is_solved = false;
         let same = self.ready && self.free == filter.free;
         let held = |node: usize| filter.free[node] || self.projectors[node] == filter.projectors[node];
         if same && (0..filter.free.len()).all(held) {
@@ -102,9 +104,9 @@ impl<const D: usize> ReusedMatrix<D> {
         if direct {
             linear.constrain(filter);
             if core::mem::take(&mut self.is_new) {
-                let mut solution = right.to_vec();
-                self.cholesky.update_and_solve(linear.constrained(), &mut solution)?;
-                self.solution = Some(solution);
+                refill(&mut self.solution, right);
+                self.cholesky.update_and_solve(linear.constrained(), &mut self.solution)?;
+                self.is_solved = true;
             } else {
                 self.cholesky.update(linear.constrained())?;
             }
@@ -143,12 +145,11 @@ impl<const D: usize> ReusedMatrix<D> {
             return Err(Indefinite);
         }
         let outcome = if direct {
-            match self.solution.take() {
-                Some(solution) => out.copy_from_slice(&solution),
-                None => {
-                    out.copy_from_slice(right);
-                    self.cholesky.solve(out);
-                }
+            if core::mem::take(&mut self.is_solved) {
+                out.copy_from_slice(&self.solution);
+            } else {
+                out.copy_from_slice(right);
+                self.cholesky.solve(out);
             }
             (1, false)
         } else {
