@@ -2,6 +2,7 @@
 //!
 //! An impulse on one point moves all of them, Δv = Y p. Columns of Y are asked for where contacts need them.
 
+use crate::vector::scaled;
 use core::ops::Range;
 
 /// What says how the points of a body answer impulses.
@@ -152,6 +153,24 @@ impl<const D: usize> Coupled<D> {
     /// Gives the points of a row an impulse [N s]: the velocities of all points whose columns are known follow.
     pub(crate) fn give(
         &mut self,
+        weighted: Weighted<'_>,
+        impulse: &[f64; D],
+        inverse_mass: &[[f64; D]],
+        v: &mut [[f64; D]],
+    ) {
+        self.add_answer(weighted, impulse, inverse_mass, v);
+        let (points, weights) = weighted;
+        for k in (0..=D).filter(|k| weights[*k] != 0.0) {
+            let Some(body) = self.body_of(points[k]) else { continue };
+            let Body { points: range, column, impulses, .. } = &mut self.bodies[body];
+            let sum = &mut impulses[column[points[k] as usize - range.start] as usize];
+            (0..D).for_each(|d| sum[d] += weights[k] * impulse[d]);
+        }
+    }
+
+    /// Adds the velocities that an impulse on the points of a row gives, without taking note of it.
+    pub(crate) fn add_answer(
+        &self,
         (points, weights): Weighted<'_>,
         impulse: &[f64; D],
         inverse_mass: &[[f64; D]],
@@ -159,20 +178,16 @@ impl<const D: usize> Coupled<D> {
     ) {
         for k in (0..=D).filter(|k| weights[*k] != 0.0) {
             let p = points[k] as usize;
-            let own = impulse.map(|c| weights[k] * c);
+            let own = scaled(impulse, weights[k]);
             let Some(body) = self.body_of(points[k]) else {
                 for d in 0..D {
                     v[p][d] += own[d] * inverse_mass[p][d];
                 }
                 continue;
             };
-            let Body { points: range, column, known, values, impulses } = &mut self.bodies[body];
-            let column = column[p - range.start] as usize;
-            let values = &values[column * range.len()..][..range.len()];
-            for d in 0..D {
-                impulses[column][d] += own[d];
-            }
-            for q in known.iter() {
+            let Body { points: range, column, known, values, .. } = &self.bodies[body];
+            let values = &values[column[p - range.start] as usize * range.len()..][..range.len()];
+            for q in known {
                 let (v, entry) = (&mut v[*q as usize], &values[*q as usize - range.start]);
                 for d in 0..D {
                     for i in 0..D {

@@ -1,7 +1,7 @@
 //! Pairs that would pass through one another within a step, whatever was solved for: found on the final motion.
 
 use crate::gap::Gap;
-use crate::impulses::Row;
+use crate::row::Row;
 use crate::rows::{impact, key, meeting_time};
 use crate::touching::{Touching, Trouble};
 use crate::vector::dot;

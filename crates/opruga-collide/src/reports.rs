@@ -1,6 +1,6 @@
 //! What contact did to bodies, pair by pair: for programs that ask.
 
-use crate::impulses::Row;
+use crate::row::Row;
 use crate::surface::Surface;
 
 /// What contact did to two bodies, or to a body and itself, summed over substeps.

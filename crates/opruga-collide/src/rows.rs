@@ -2,8 +2,8 @@
 
 use crate::ccd::{edge_meets_edge, vertex_meets_facet};
 use crate::gap::Gap;
-use crate::impulses::Row;
 use crate::law::PairLaw;
+use crate::row::Row;
 use crate::surface::Surface;
 use crate::touching::Touching;
 use crate::vector::{dot, subtract};

@@ -3,10 +3,11 @@
 use crate::candidates::Candidates;
 use crate::coupled::{Coupled, Respond};
 use crate::gap::Gap;
-use crate::impulses::{Problem, Row, Turns, part};
+use crate::impulses::{Problem, Turns, part};
 use crate::law::Laws;
 use crate::reach::Reach;
 use crate::reports::{self, Report};
+use crate::row::Row;
 use crate::surface::Surface;
 use crate::vector::{dot, length, subtract};
 use crate::zones::Zones;

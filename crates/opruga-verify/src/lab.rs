@@ -62,7 +62,12 @@ impl Scene {
     }
 
     /// A body of a mesh, with what else it says on lines of their own.
-    pub(crate) fn body<const D: usize>(mut self, mesh: &Mesh<D>, rest: &str) -> Result<Scene, Trouble> {
+    pub(crate) fn body<const D: usize>(self, mesh: &Mesh<D>, rest: &str) -> Result<Scene, Trouble> {
+        self.named("body", mesh, rest)
+    }
+
+    /// The same of a body with a name.
+    pub(crate) fn named<const D: usize>(mut self, body: &str, mesh: &Mesh<D>, rest: &str) -> Result<Scene, Trouble> {
         let written = opruga::io::meshes::write(mesh, "vtk").map_err(|e| e.to_string())?;
         let name = format!("mesh-{}.vtk", self.files.len());
         let bytes = written.files.into_iter().next().ok_or("no file of the mesh")?.1;
@@ -70,7 +75,7 @@ impl Scene {
         // Meshes of linear cells are meant as they are.
         let linear = !mesh.cells.triangles.is_empty() || !mesh.cells.tetrahedra.is_empty();
         let rest = if linear { format!("order = 1\n{rest}") } else { rest.to_string() };
-        Ok(self.add(&format!("[[body]]\nname = \"body\"\nshape = {{ kind = \"mesh\", file = \"{name}\" }}\n{rest}")))
+        Ok(self.add(&format!("[[body]]\nname = \"{body}\"\nshape = {{ kind = \"mesh\", file = \"{name}\" }}\n{rest}")))
     }
 }
 

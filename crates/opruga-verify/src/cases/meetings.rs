@@ -1,6 +1,7 @@
 //! Bodies that meet one another: impacts of bars, friction of one body on another, momentum.
 
 use super::BASE;
+use super::pressed::weight;
 use crate::case::{Case, Check, Family, Over, Scale};
 use crate::lab::{Lab, Scene, Trouble};
 use opruga::World;
@@ -152,7 +153,7 @@ pub(super) const CASES: &[Case] = &[
         expected: &[1.0],
         tolerance: 1e-6,
         check: Check::Everywhere,
-        measure: weight,
+        measure: |lab, ratio| weight(lab, ratio, 1.0),
         ..BARS
     },
 ];
@@ -286,30 +287,6 @@ fn slide_down(lab: &Lab, h: f64, friction: f64, rule: &str) -> Result<f64, Troub
     }
     let x = world.position(0, 3);
     Ok((x[0] - start[0]).hypot(x[1] - start[1]))
-}
-
-/// The force between two blocks of solid after 5 s, over the weight of the upper one, which has so many times the mass of the lower one. The
-/// stiffness grows with the mass above: so the lower one is pressed by as much of its height.
-fn weight(lab: &Lab, ratio: f64) -> Result<f64, Trouble> {
-    let stiffness = 1e5 * if ratio > 1.0 { ratio } else { 1.0 };
-    let block = |name: &str, x: f64, y: f64, width: f64, mass: f64, more: &str| {
-        format!(
-            "[[body]]\nname = \"{name}\"\nmass = {mass:?}\nposition = [{x:?}, {y:?}]\n\
-             shape = {{ kind = \"grid\", size = [{width:?}, 1], cells = [{}, 4] }}\n\
-             models = [{{ kind = \"fem\", youngs_modulus = {stiffness:?}, poissons_ratio = 0.3, damping = 1e-2 }}]\n{more}\n",
-            (4.0 * width).round()
-        )
-    };
-    let scene = Scene::new(2, 1.0 / 60.0, 1, "backward_euler")
-        .add("[world]\ngravity = [0.0, -9.81]\n[contact]\nfriction = 0.5")
-        .add(&block("lower", -0.5, -1.0, 2.0, 1.0, "pin = [{ select = { side = \"bottom\" } }]"))
-        .add(&block("upper", 0.03, 0.01, 1.0, ratio, ""));
-    let mut world = lab.plane(scene)?;
-    for _ in 0..300 {
-        world.frame()?;
-    }
-    let force: f64 = world.contact_forces(1).iter().map(|force| force[1]).sum();
-    Ok(force / (9.81 * ratio))
 }
 
 /// The momentum of two balls of gas after they have met, over that before.

@@ -1,0 +1,220 @@
+//! Bodies that press on one another at rest: patches, Hertz's contact, stacks.
+
+use super::BASE;
+use crate::bodies::{Cells, mapped, nodes};
+use crate::case::{Case, Check, Over, Scale};
+use crate::lab::{Lab, Scene, Trouble};
+use opruga::World;
+use opruga::mesh::Mesh;
+use std::cell::Cell;
+
+const PATCH: Case = Case {
+    quantity: "largest difference of the pressure on a node from the one that presses two blocks of meshes that do not match, over it",
+    source: "exact: uniform pressure (R. L. Taylor, P. Papadopoulos 1991, contact patch test)",
+    over: Over::Cells("cells along a side of the lower block; one more of the upper"),
+    levels: &[2.0, 3.0, 4.0],
+    expected: &[0.0],
+    scale: Scale::Of(1.0),
+    tolerance: 1e-6,
+    check: Check::Everywhere,
+    ..BASE
+};
+
+const STACK: Case = Case {
+    quantity: "force between a solid at rest and one that it stands on, by backward Euler at 1/60 s, over its weight",
+    source: "exact: 1 (I. Newton)",
+    expected: &[1.0],
+    tolerance: 1e-6,
+    check: Check::Everywhere,
+    ..BASE
+};
+
+pub(super) const CASES: &[Case] = &[
+    Case { name: "contact-patch-triangles", measure: |lab, n| patch::<2>(lab, n, Cells::Linear), ..PATCH },
+    Case { name: "contact-patch-quadrilaterals", measure: |lab, n| patch::<2>(lab, n, Cells::Boxes), ..PATCH },
+    Case { name: "contact-patch-tetrahedra", measure: |lab, n| patch::<3>(lab, n, Cells::Linear), ..PATCH },
+    Case {
+        name: "hertz-line",
+        quantity: "half width of the contact of a cylinder of 1 m with a plane, over that of Hertz at the same force, plane strain",
+        source: "closed form: √(4 F R/(π E*)), E* = E/(1 − ν²) (H. Hertz 1882)",
+        over: Over::Cells("cells along half of the width"),
+        levels: &[16.0, 32.0, 64.0],
+        expected: &[1.0],
+        measure: hertz_line,
+        ..BASE
+    },
+    Case {
+        name: "weight-on-body-masses",
+        over: Over::Parameter("mass of the upper over that of the lower"),
+        levels: &[1e-4, 1e4],
+        measure: |lab, ratio| weight(lab, ratio, 1.0),
+        ..STACK
+    },
+    Case {
+        name: "weight-on-body-stiffness",
+        over: Over::Parameter("stiffness of the upper over that of the lower"),
+        levels: &[1e-4, 1e4],
+        measure: |lab, ratio| weight(lab, 1.0, ratio),
+        ..STACK
+    },
+];
+
+/// Equal cells of a block with its lowest corner at a height, the inner nodes of which are moved by up to an eighth of a cell.
+fn block<const D: usize>(n: u32, cells: Cells, height: f64) -> Result<Mesh<D>, Trouble> {
+    let random = Cell::new(11u64);
+    mapped([n; D], cells, |x| {
+        let inside = x.iter().all(|c| (1e-9..1.0 - 1e-9).contains(c));
+        let mut out = x;
+        for c in &mut out {
+            random.set(random.get().wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407));
+            let by = 0.25 / f64::from(n) * ((random.get() >> 11) as f64 / (1u64 << 53) as f64 - 0.5);
+            *c += if inside { by } else { 0.0 };
+        }
+        out[1] += height;
+        out
+    })
+}
+
+/// Rows for `pin = [ … ]`: nodes that fulfil a condition, pinned along an axis.
+fn pinned<const D: usize>(mesh: &Mesh<D>, axis: usize, which: impl Fn(&[f64; D]) -> bool) -> String {
+    format!("{{ select = {{ nodes = {:?} }}, axes = \"{}\" }}", nodes(mesh, which), ["x", "y", "z"][axis])
+}
+
+/// The sides of a block slide on walls.
+fn walls<const D: usize>(mesh: &Mesh<D>) -> Vec<String> {
+    let side = |c: f64| c.abs() < 1e-9 || (c - 1.0).abs() < 1e-9;
+    (0..D).filter(|d| *d != 1).map(|d| pinned(mesh, d, |x| side(x[d]))).collect()
+}
+
+fn solid(law: &str, pins: &[String]) -> String {
+    format!(
+        "mass = 1000.0\nmodels = [{{ kind = \"fem\", youngs_modulus = 1e6, poissons_ratio = 0.3{law} }}]\npin = [{}]\n",
+        pins.join(",\n  ")
+    )
+}
+
+/// The area (in the plane the length) of the boundary at a height that belongs to each node.
+fn shares<const D: usize>(mesh: &Mesh<D>, height: f64) -> Vec<f64> {
+    let mut out = vec![0.0; mesh.positions.len()];
+    for facet in &mesh.facets {
+        let corners: Vec<[f64; D]> = facet.iter().map(|node| mesh.positions[*node as usize]).collect();
+        if corners.iter().any(|x| (x[1] - height).abs() > 1e-9) {
+            continue;
+        }
+        let edge = |k: usize, d: usize| corners[k][d] - corners[0][d];
+        let measure = if D == 2 {
+            edge(1, 0).abs()
+        } else {
+            0.5 * (edge(1, 0) * edge(2, D - 1) - edge(2, 0) * edge(1, D - 1)).abs()
+        };
+        facet.iter().for_each(|node| out[*node as usize] += measure / D as f64);
+    }
+    out
+}
+
+/// Two blocks without friction, the upper one pressed by 1 kPa: at rest after steps of 0.1 s by backward Euler, which damps all.
+fn patch<const D: usize>(lab: &Lab, n: f64, cells: Cells) -> Result<f64, Trouble>
+where
+    Lab: Worlds<D>,
+{
+    let (gap, pressure) = (1e-3, 1e3);
+    let (lower, upper) = (block::<D>(n as u32, cells, 0.0)?, block::<D>(n as u32 + 1, cells, 1.0 + gap)?);
+    let bottom = pinned(&lower, 1, |x| x[1].abs() < 1e-9);
+    let mut value = vec!["0.0".to_string(); D];
+    value[1] = format!("{:?}", -pressure);
+    let top = nodes(&upper, |x| (x[1] - 2.0 - gap).abs() < 1e-9);
+    let scene = Scene::new(D, 0.1, 1, "backward_euler")
+        .add(&format!("[contact]\nthickness = {gap:?}\nself = false"))
+        .named("lower", &lower, &solid("", &[walls(&lower), vec![bottom]].concat()))?
+        .named("upper", &upper, &solid("", &walls(&upper)))?
+        .add(&format!(
+            "[[load]]\nkind = \"traction\"\nbody = \"upper\"\nvalue = [{}]\nselect = {{ nodes = {top:?} }}",
+            value.join(", ")
+        ));
+    let mut world = lab.world(scene)?;
+    for _ in 0..60 {
+        world.frame()?;
+    }
+    let forces = world.contact_forces(1);
+    let mut worst: f64 = 0.0;
+    for (force, share) in forces.iter().zip(shares(&upper, 1.0 + gap)).filter(|(_, share)| *share > 0.0) {
+        worst = worst.max((force[1] / share / pressure - 1.0).abs());
+    }
+    Ok(worst)
+}
+
+/// Worlds of a dimension.
+trait Worlds<const D: usize> {
+    fn world(&self, scene: Scene) -> Result<World<D>, Trouble>;
+}
+
+impl Worlds<2> for Lab {
+    fn world(&self, scene: Scene) -> Result<World<2>, Trouble> {
+        self.plane(scene)
+    }
+}
+
+impl Worlds<3> for Lab {
+    fn world(&self, scene: Scene) -> Result<World<3>, Trouble> {
+        self.space(scene)
+    }
+}
+
+/// The part of a cylinder of 1 m about the origin where x is positive and below `width`, from its lowest line up to the middle: cells are small
+/// near that line.
+fn lens(n: u32, width: f64) -> Result<Mesh<2>, Trouble> {
+    mapped([n; 2], Cells::Boxes, |[s, t]| {
+        let x = width * s * s;
+        [x, -(1.0 - x * x).sqrt() * (1.0 - t * t)]
+    })
+}
+
+/// Half of a cylinder that is pressed onto a plane by 1 cm. The pressure of Hertz has ∫ p x² = F a²/4.
+fn hertz_line(lab: &Lab, n: f64) -> Result<f64, Trouble> {
+    let mesh = lens(n as u32, 0.85)?;
+    let top = nodes(&mesh, |x| x[1].abs() < 1e-9);
+    let pins = format!(
+        "pin = [{}, {{ select = {{ nodes = {top:?} }}, motion = [[0, 0, 0], [1, 0, -0.01]] }}]",
+        pinned(&mesh, 0, |x| x[0].abs() < 1e-9)
+    );
+    let scene =
+        Scene::statics(2, 1e-9).add("[[collider]]\nkind = \"half_space\"\npoint = [0, -1]\nnormal = [0, 1]").body(
+            &mesh,
+            &format!("mass = 1.0\nmodels = [{{ kind = \"fem\", youngs_modulus = 1e6, poissons_ratio = 0.3 }}]\n{pins}"),
+        )?;
+    let mut world = lab.plane(scene)?;
+    world.frame()?;
+    let (mut force, mut moment) = (0.0, 0.0);
+    for (node, push) in world.contact_forces(0).iter().enumerate() {
+        let x = world.position(0, node as u32)[0];
+        force += push[1];
+        moment += push[1] * x * x;
+    }
+    let young = 1e6 / (1.0 - 0.3 * 0.3);
+    Ok(2.0 * (moment / force).sqrt() / (4.0 * 2.0 * force / (std::f64::consts::PI * young)).sqrt())
+}
+
+/// The force between two blocks of solid after 5 s, over the weight of the upper one, which has so many times the mass and the stiffness of
+/// the lower one. The stiffness of both grows with the mass above: so the lower one is pressed by as much of its height.
+pub(super) fn weight(lab: &Lab, masses: f64, stiffness: f64) -> Result<f64, Trouble> {
+    let base = 1e5 * masses.max(1.0);
+    let block = |name: &str, x: f64, y: f64, width: f64, mass: f64, young: f64, more: &str| {
+        format!(
+            "[[body]]\nname = \"{name}\"\nmass = {mass:?}\nposition = [{x:?}, {y:?}]\n\
+             shape = {{ kind = \"grid\", size = [{width:?}, 1], cells = [{}, 4] }}\n\
+             models = [{{ kind = \"fem\", youngs_modulus = {young:?}, poissons_ratio = 0.3, damping = 1e-2 }}]\n{more}\n",
+            (4.0 * width).round()
+        )
+    };
+    let (below, above) = (base * (1.0 / stiffness).max(1.0), base * stiffness.max(1.0));
+    let scene = Scene::new(2, 1.0 / 60.0, 1, "backward_euler")
+        .add("[world]\ngravity = [0.0, -9.81]\n[contact]\nfriction = 0.5")
+        .add(&block("lower", -0.5, -1.0, 2.0, 1.0, below, "pin = [{ select = { side = \"bottom\" } }]"))
+        .add(&block("upper", 0.03, 0.01, 1.0, masses, above, ""));
+    let mut world = lab.plane(scene)?;
+    for _ in 0..300 {
+        world.frame()?;
+    }
+    let force: f64 = world.contact_forces(1).iter().map(|force| force[1]).sum();
+    Ok(force / (9.81 * masses))
+}
