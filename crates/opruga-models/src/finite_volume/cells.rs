@@ -4,7 +4,7 @@ use super::cell::{Cell, dual_faces, inverse, side, volume};
 use super::refusals::Refusal;
 use core::marker::PhantomData;
 use opruga_core::state::Layout;
-use opruga_math::{Column, WIDTH};
+use opruga_math::{Column, WIDTH, fetch_early};
 
 /// det ∂X/∂ξ below this fraction of the cube (square) of the longest edge is no volume.
 const NO_VOLUME: f64 = 1e-12;
@@ -21,17 +21,14 @@ pub(super) struct Cells<C, const D: usize, const N: usize> {
     pub(super) nodes: Vec<u32>,
     /// ∂ξ/∂X [1/m] at every point, row by row; of a simplex ∇Nₐ of all corners but the first. The last pack is filled up with the last cell.
     pub(super) inverse: Column,
-    /// Of a simplex the area vectors around all corners but the first, Wₐ; else those of the dual faces [m², in the plane times the
-    /// thickness]. What fills up the last pack has none.
+    /// The area vectors of the dual faces [m², in the plane times the thickness]; empty for simplices, whose Wₐ = −V ∇Nₐ. What fills up the
+    /// last pack has none, and no volume.
     pub(super) areas: Column,
     /// Volume [m³].
     pub(super) volume: Column,
 }
 
 impl<C: Cell<D, N>, const D: usize, const N: usize> Cells<C, D, N> {
-    /// Area vectors of a cell.
-    pub(super) const AREAS: usize = if C::SIMPLEX { D } else { C::POINTS };
-
     pub(super) fn new(
         layout: Layout,
         list: &[[u32; N]],
@@ -48,7 +45,7 @@ impl<C: Cell<D, N>, const D: usize, const N: usize> Cells<C, D, N> {
             list: list.to_vec(),
             nodes: vec![0; packs * N * WIDTH],
             inverse: column(C::POINTS * D * D),
-            areas: column(Self::AREAS * D),
+            areas: if C::SIMPLEX { Column::zeros(0) } else { column(C::POINTS * D) },
             volume: column(1),
         };
         for pack in 0..packs {
@@ -88,34 +85,38 @@ impl<C: Cell<D, N>, const D: usize, const N: usize> Cells<C, D, N> {
                 self.inverse[((pack * C::POINTS + q) * D * D + k) * WIDTH + lane] = inverse[k / D][k % D];
             }
         }
-        let mut areas = faces.clone();
         if C::SIMPLEX {
-            // Around a corner, all dual faces of the cell: Wₐ, and by the theorem of the divergence ∇Nₐ = −Wₐ/V.
-            let around = |a: usize| {
-                let mut sum = [0.0; D];
-                for (&[i, j], face) in C::EDGES.iter().zip(&faces) {
-                    let sign = f64::from(u8::from(i == a)) - f64::from(u8::from(j == a));
-                    for d in 0..D {
-                        sum[d] += sign * face[d];
-                    }
-                }
-                sum
-            };
-            areas = (1..=D).map(around).collect();
-            for (a, area) in areas.iter().enumerate() {
+            // Around a corner, the sum of all dual faces of the cell is Wₐ, and by the divergence theorem ∇Nₐ = −Wₐ/V.
+            for a in 1..=D {
                 for d in 0..D {
-                    self.inverse[(pack * D * D + a * D + d) * WIDTH + lane] = -area[d] / measure;
+                    let mut around = 0.0;
+                    for (&[i, j], face) in C::EDGES.iter().zip(&faces) {
+                        around += (f64::from(u8::from(i == a)) - f64::from(u8::from(j == a))) * face[d];
+                    }
+                    self.inverse[(pack * D * D + (a - 1) * D + d) * WIDTH + lane] = -around / measure;
                 }
             }
+            return Ok(());
         }
-        for (k, area) in areas.iter().enumerate() {
+        for (k, face) in faces.iter().enumerate() {
             for d in 0..D {
-                self.areas[((pack * Self::AREAS + k) * D + d) * WIDTH + lane] = depth * area[d];
+                self.areas[((pack * C::POINTS + k) * D + d) * WIDTH + lane] = depth * face[d];
             }
         }
         Ok(())
     }
 
+    /// Asks the memory for what a pass reads of a pack of one body: more than a cache holds goes by in each.
+    #[inline(always)]
+    pub(super) fn fetch(&self, pack: usize) {
+        if self.layout == Layout::Single {
+            let of = |each: usize| pack * each * WIDTH..(pack + 1) * each * WIDTH;
+            fetch_early(&self.nodes, of(N));
+            fetch_early(&self.inverse, of(C::POINTS * D * D));
+            fetch_early(&self.areas, of(C::POINTS * D));
+            fetch_early(&self.volume, of(1));
+        }
+    }
     pub(super) fn packs(&self) -> usize {
         self.nodes.len() / (N * WIDTH)
     }

@@ -58,6 +58,25 @@ fn corners<R: Register, C: Cell<D, N>, const D: usize, const N: usize>(
     out
 }
 
+/// The area vector k of a cell, of lanes of a pack [m²]: of a simplex Wₐ around the corner k + 1, else that of a dual face.
+#[inline(always)]
+fn area<R: Register, C: Cell<D, N>, const D: usize, const N: usize>(
+    cells: &Cells<C, D, N>,
+    pack: usize,
+    k: usize,
+    offset: usize,
+) -> [R; D] {
+    let read = |column: &[f64], row: usize| -> [R; D] {
+        core::array::from_fn(|j| R::load(&column[(row * D + j) * WIDTH + offset..]))
+    };
+    if C::SIMPLEX {
+        let volume = R::load(&cells.volume[pack * WIDTH + offset..]);
+        read(&cells.inverse, pack * D + k).map(|slope| -(volume * slope))
+    } else {
+        read(&cells.areas, pack * C::POINTS + k)
+    }
+}
+
 /// F of a group, D² packs for every pack of points.
 pub(super) struct Gradients<'a, C, const D: usize, const N: usize> {
     pub(super) cells: &'a Cells<C, D, N>,
@@ -96,19 +115,22 @@ impl<C: Cell<D, N>, const D: usize, const N: usize> Work for Gradients<'_, C, D,
     }
 }
 
-/// Adds the tractions P S of a group to the forces on the corners of its cells, `[pack][corner][axis][lane]`.
+/// Adds the tractions P S of a group to the forces on nodes: rows of nodes of one body, columns of packs of eight.
 pub(super) struct Tractions<'a, C, const D: usize, const N: usize> {
     pub(super) cells: &'a Cells<C, D, N>,
     pub(super) group: Group,
     pub(super) stress: &'a [f64],
-    pub(super) corners: &'a mut [f64],
+    pub(super) forces: &'a mut [f64],
 }
 impl<C: Cell<D, N>, const D: usize, const N: usize> Work for Tractions<'_, C, D, N> {
     type Output = ();
     #[inline(always)]
     fn run<P: Pack>(self) {
         let cells = self.cells;
-        for (number, pack) in self.group.packs.clone().enumerate() {
+        for pack in self.group.packs.clone() {
+            // The law reads no cells, so the memory has time to bring those of the next group.
+            cells.fetch(pack + self.group.packs.len());
+            let mut corners = [[P::zero(); D]; N];
             for part in 0..P::PARTS {
                 let offset = part * P::Part::NUMBERS;
                 let mut force = [[P::Part::zero(); D]; N];
@@ -117,11 +139,11 @@ impl<C: Cell<D, N>, const D: usize, const N: usize> Work for Tractions<'_, C, D,
                     let stress: Matrix<P::Part, D> = read_matrix(&self.stress[at..], part);
                     let areas = if C::SIMPLEX { 0..D } else { q..q + 1 };
                     for k in areas {
+                        let area = area::<P::Part, C, D, N>(cells, pack, k, offset);
                         for i in 0..D {
                             let mut traction = P::Part::zero();
                             for j in 0..D {
-                                let area = ((pack * Cells::<C, D, N>::AREAS + k) * D + j) * WIDTH + offset;
-                                traction += stress[i][j] * P::Part::load(&cells.areas[area..]);
+                                traction += stress[i][j] * area[j];
                             }
                             // What acts on the part of one node acts against that of the other; the first corner has what the others leave.
                             let [to, from] = if C::SIMPLEX { [k + 1, 0] } else { C::EDGES[q] };
@@ -132,57 +154,48 @@ impl<C: Cell<D, N>, const D: usize, const N: usize> Work for Tractions<'_, C, D,
                 }
                 for a in 0..N {
                     for d in 0..D {
-                        let to = &mut self.corners[((number * N + a) * D + d) * WIDTH + offset..];
-                        (P::Part::load(to) + force[a][d]).store(to);
+                        corners[a][d].set_part(part, force[a][d]);
                     }
                 }
             }
+            scatter(cells, pack, &corners, self.forces);
         }
     }
 }
 
-/// Adds the forces on corners to those on nodes, cell by cell, so that one body and eight bodies add in the same order: rows of nodes
-/// of one body, columns of packs of eight.
-pub(super) struct Scatter<'a, C, const D: usize, const N: usize> {
-    pub(super) cells: &'a Cells<C, D, N>,
-    pub(super) packs: Range<usize>,
-    pub(super) corners: &'a [f64],
-    pub(super) forces: &'a mut [f64],
-}
-impl<C: Cell<D, N>, const D: usize, const N: usize> Work for Scatter<'_, C, D, N> {
-    type Output = ();
-    #[inline(always)]
-    fn run<P: Pack>(self) {
-        for (number, pack) in self.packs.clone().enumerate() {
-            let nodes = &self.cells.nodes[pack * N * WIDTH..(pack + 1) * N * WIDTH];
-            let corners = &self.corners[number * N * D * WIDTH..(number + 1) * N * D * WIDTH];
-            if self.cells.layout == Layout::Batch {
-                for a in 0..N {
-                    for d in 0..D {
-                        let to = &mut self.forces[(nodes[a * WIDTH] as usize * D + d) * WIDTH..];
-                        (P::load(to) + P::load(&corners[(a * D + d) * WIDTH..])).store(to);
-                    }
-                }
-                continue;
+/// Adds the forces on corners of a pack to those on nodes, cell by cell, so that one body and eight bodies add in the same order.
+#[inline(always)]
+fn scatter<P: Pack, C: Cell<D, N>, const D: usize, const N: usize>(
+    cells: &Cells<C, D, N>,
+    pack: usize,
+    corners: &[[P; D]; N],
+    forces: &mut [f64],
+) {
+    let nodes = &cells.nodes[pack * N * WIDTH..(pack + 1) * N * WIDTH];
+    if cells.layout == Layout::Batch {
+        for a in 0..N {
+            for d in 0..D {
+                let to = &mut forces[(nodes[a * WIDTH] as usize * D + d) * WIDTH..];
+                (P::load(to) + corners[a][d]).store(to);
             }
-            let mut rows = [[0.0; ROW * WIDTH]; N];
-            for a in 0..N {
-                for part in 0..P::PARTS {
-                    let offset = part * P::Part::NUMBERS;
-                    let mut row = [P::Part::zero(); ROW];
-                    for d in 0..D {
-                        row[d] = P::Part::load(&corners[(a * D + d) * WIDTH + offset..]);
-                    }
-                    P::Part::store_rows(row, &mut rows[a][offset * ROW..]);
-                }
+        }
+        return;
+    }
+    let mut rows = [[[0.0; ROW]; WIDTH]; N];
+    for a in 0..N {
+        for part in 0..P::PARTS {
+            let mut row = [P::Part::zero(); ROW];
+            for d in 0..D {
+                row[d] = corners[a][d].part(part);
             }
-            for lane in 0..WIDTH {
-                for a in 0..N {
-                    let to = &mut self.forces[nodes[a * WIDTH + lane] as usize * ROW..][..ROW];
-                    for d in 0..ROW {
-                        to[d] += rows[a][lane * ROW + d];
-                    }
-                }
+            P::Part::store_rows(row, rows[a][part * P::Part::NUMBERS..].as_flattened_mut());
+        }
+    }
+    for lane in 0..WIDTH {
+        for a in 0..N {
+            let to = &mut forces[nodes[a * WIDTH + lane] as usize * ROW..][..ROW];
+            for d in 0..ROW {
+                to[d] += rows[a][lane][d];
             }
         }
     }
@@ -218,16 +231,15 @@ impl<C: Cell<D, N>, const D: usize, const N: usize> Work for Contract<'_, C, D, 
                 let areas = if C::SIMPLEX { 0..D } else { q..q + 1 };
                 for k in areas {
                     // S pulled through the tangent: Sⱼ ∂Pᵢⱼ/∂Fₖₗ.
+                    let area = area::<P::Part, C, D, N>(cells, pack, k, offset);
                     let mut pulled = [[[P::Part::zero(); D]; D]; D];
                     for i in 0..D {
                         for j in 0..D {
-                            let area = ((pack * Cells::<C, D, N>::AREAS + k) * D + j) * WIDTH + offset;
-                            let area = P::Part::load(&cells.areas[area..]);
                             let row: Matrix<P::Part, D> =
                                 read_matrix(&self.tangent[at + (i * D + j) * D * D * WIDTH..], part);
                             for m in 0..D {
                                 for l in 0..D {
-                                    pulled[i][m][l] += area * row[m][l];
+                                    pulled[i][m][l] += area[j] * row[m][l];
                                 }
                             }
                         }

@@ -2,7 +2,7 @@
 
 use super::cell::Cell;
 use super::cells::Cells;
-use super::kernels::{Contract, Gradients, Group, Positions, Scatter, Tractions};
+use super::kernels::{Contract, Gradients, Group, Positions, Tractions};
 use super::refusals::Refusal;
 use crate::materials::law::Law;
 use crate::materials::points::{MOST_PACKS, PARAMETERS, Points, Room};
@@ -53,18 +53,20 @@ pub(super) trait Part<const D: usize>: Send + Sync + Debug {
     fn heap_bytes(&self) -> usize;
 }
 
-/// Axes of the corners of all packs of a group: of eight packs of tetrahedra.
-const MOST_CORNERS: usize = 8 * 4 * 3;
+/// The most points of a cell, those of a hexahedron: a law is asked for half of them at a time.
+const MOST_POINTS: usize = 12;
 
-/// Packs that a law is asked for together, and the points of each.
+/// Points of a pack that a law is asked for together.
+const fn points_together<C: Cell<D, N>, const D: usize, const N: usize>() -> usize {
+    if C::POINTS > MOST_PACKS { C::POINTS / 2 } else { C::POINTS }
+}
+
+/// Packs whose tractions are added together: as many as there is room for.
 fn groups<C: Cell<D, N>, const D: usize, const N: usize>(packs: usize) -> impl Iterator<Item = Group> {
-    // Twelve points of a hexahedron in two halves; cells with fewer by as many packs as there is room for.
-    let points = if C::POINTS > MOST_PACKS { C::POINTS / 2 } else { C::POINTS };
-    let together = (8 / points).max(1);
-    (0..packs).step_by(together).flat_map(move |first| {
-        let packs = first..(first + together).min(packs);
-        (0..C::POINTS).step_by(points).map(move |q| Group { packs: packs.clone(), points: q..q + points })
-    })
+    let together = (8 / C::POINTS).max(1);
+    (0..packs)
+        .step_by(together)
+        .map(move |first| Group { packs: first..(first + together).min(packs), points: 0..C::POINTS })
 }
 
 impl<C: Cell<D, N>, const D: usize, const N: usize> Part<D> for Cells<C, D, N> {
@@ -79,27 +81,24 @@ impl<C: Cell<D, N>, const D: usize, const N: usize> Part<D> for Cells<C, D, N> {
     ) -> Result<(), Refusal> {
         let positions = Positions { rows, columns: view.x };
         let mut gradient = Room([0.0; MOST_PACKS * 9 * WIDTH]);
-        let mut stress = Room([0.0; MOST_PACKS * 9 * WIDTH]);
+        let mut stress = Room([0.0; MOST_POINTS * 9 * WIDTH]);
         let mut density = Room([0.0; MOST_PACKS * WIDTH]);
-        // Forces on the corners of the packs of a group; those of the second half of a pack's points come on top.
-        let mut corners = Room([0.0; MOST_CORNERS * WIDTH]);
+        let points = points_together::<C, D, N>();
         for group in groups::<C, D, N>(self.packs()) {
-            if group.points.start == 0 {
-                corners.0[..group.packs.len() * N * D * WIDTH].fill(0.0);
+            for q in (0..C::POINTS).step_by(points) {
+                let part = Group { points: q..q + points, ..group.clone() };
+                let (of, stress) = (part.len(), &mut stress.0[q * D * D * WIDTH..]);
+                simd.run(Gradients { cells: self, group: part, positions, out: &mut gradient.0 });
+                matter.law.stress(simd, matter.points(of, &gradient.0), &mut density.0, stress);
+                if matter.may_refuse()
+                    && let Some(at) = density.0[..of * WIDTH].iter().position(|psi| psi.is_nan())
+                    && let Some((cell, _)) = self.item(group.packs.start + at / WIDTH / points, at % WIDTH)
+                    && gradient.0.iter().all(|f| f.is_finite())
+                {
+                    return Err(Refusal::NoThickness { cell: self.first + cell, time: view.time });
+                }
             }
-            simd.run(Gradients { cells: self, group: group.clone(), positions, out: &mut gradient.0 });
-            matter.law.stress(simd, matter.points(group.len(), &gradient.0), &mut density.0, &mut stress.0);
-            if matter.may_refuse()
-                && let Some(at) = density.0[..group.len() * WIDTH].iter().position(|psi| psi.is_nan())
-                && let Some((cell, _)) = self.item(group.packs.start + at / WIDTH / group.points.len(), at % WIDTH)
-                && gradient.0.iter().all(|f| f.is_finite())
-            {
-                return Err(Refusal::NoThickness { cell: self.first + cell, time: view.time });
-            }
-            simd.run(Tractions { cells: self, group: group.clone(), stress: &stress.0, corners: &mut corners.0 });
-            if group.points.end == C::POINTS {
-                simd.run(Scatter { cells: self, packs: group.packs.clone(), corners: &corners.0, forces });
-            }
+            simd.run(Tractions { cells: self, group: group.clone(), stress: &stress.0, forces });
             if C::SIMPLEX {
                 for (number, pack) in group.packs.enumerate() {
                     let slot = if self.layout == Layout::Single { 0 } else { pack % WIDTH };
@@ -118,7 +117,7 @@ impl<C: Cell<D, N>, const D: usize, const N: usize> Part<D> for Cells<C, D, N> {
         let mut tangent = vec![0.0; MOST_PACKS * 81 * WIDTH];
         let mut blocks = vec![0.0; N * N * D * D * WIDTH];
         let stride = self.layout.stride() as u32;
-        let points = if C::POINTS > MOST_PACKS { C::POINTS / 2 } else { C::POINTS };
+        let points = points_together::<C, D, N>();
         for pack in 0..self.packs() {
             blocks.fill(0.0);
             for q in (0..C::POINTS).step_by(points) {
@@ -159,7 +158,7 @@ impl<C: Cell<D, N>, const D: usize, const N: usize> Part<D> for Cells<C, D, N> {
         let mut stress = Room([0.0; MOST_PACKS * 9 * WIDTH]);
         let mut density = Room([0.0; MOST_PACKS * WIDTH]);
         let mut across = Room([1.0; MOST_PACKS * WIDTH]);
-        let points = if C::POINTS > MOST_PACKS { C::POINTS / 2 } else { C::POINTS };
+        let points = points_together::<C, D, N>();
         for pack in 0..self.packs() {
             let mut sums = [([[0.0; 3]; 3], 0.0, f64::INFINITY); WIDTH];
             for q in (0..C::POINTS).step_by(points) {
