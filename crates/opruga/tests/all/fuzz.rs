@@ -50,6 +50,14 @@ fn survives(text: &str, overrides: Vec<(String, String)>) {
     }
 }
 
+/// The text of a scene, without contact: bodies that explode meet in every step, which takes seconds.
+fn text_of(name: &str) -> String {
+    let text = scenes::find(name).expect("a scene");
+    let Some((before, section)) = text.split_once("[contact]") else { return text.to_string() };
+    let after = section.find("\n[").map_or("", |next| &section[next + 1..]);
+    format!("{before}{after}")
+}
+
 /// Scenes small enough for the limits above.
 const SCENES: [&str; 14] = [
     "ball",
@@ -96,7 +104,7 @@ proptest! {
 
     #[test]
     fn scenes_with_other_numbers(scene in 0..SCENES.len(), changes in proptest::collection::vec((any::<u16>(), 0..NUMBERS.len()), 1..4)) {
-        let mut text = scenes::find(SCENES[scene]).expect("a scene").to_string();
+        let mut text = text_of(SCENES[scene]);
         for (place, number) in changes {
             let places = numbers(&text);
             let (from, to) = places[usize::from(place) % places.len()];
@@ -107,7 +115,7 @@ proptest! {
 
     #[test]
     fn scenes_with_lines_lost_or_doubled(scene in 0..SCENES.len(), changes in proptest::collection::vec((any::<u16>(), any::<u16>(), 0..3u8), 1..4)) {
-        let text = scenes::find(SCENES[scene]).expect("a scene");
+        let text = text_of(SCENES[scene]);
         let mut lines: Vec<&str> = text.lines().collect();
         for (from, to, how) in changes {
             let (from, to) = (usize::from(from) % lines.len(), usize::from(to) % lines.len());
@@ -139,7 +147,7 @@ fn with_other_integrators_and_models(stride: usize) {
     let rules = &known.integrators;
     let under = |rule: usize| vec![("integrator.kind".to_string(), rules[rule % rules.len()].kind.to_string())];
     for (k, scene) in SCENES.iter().enumerate() {
-        let text = scenes::find(scene).expect("a scene");
+        let text = &text_of(scene);
         for rule in (0..rules.len()).filter(|rule| (k + rule) % stride == 0) {
             survives(text, under(rule));
         }
