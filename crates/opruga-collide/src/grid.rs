@@ -28,6 +28,9 @@ struct Level<const D: usize> {
     count: usize,
 }
 
+/// The last cell along an axis: whatever is beyond lies in it.
+const FARTHEST: f64 = 1e15;
+
 /// The most levels: cells of the last one hold whatever is left.
 const LEVELS: usize = 24;
 
@@ -43,7 +46,7 @@ impl<const D: usize> Level<D> {
     fn cell_of(&self, origin: &[f64; 3], x: &[f64; D]) -> [i64; D] {
         // Rounded towards zero and corrected: rounding down is a call of a function.
         core::array::from_fn(|d| {
-            let at = (x[d] - origin[d]) * self.per_metre;
+            let at = ((x[d] - origin[d]) * self.per_metre).larger(-FARTHEST).smaller(FARTHEST);
             let cell = at as i64;
             cell - i64::from(cell as f64 > at)
         })

@@ -58,6 +58,7 @@
 // Units stand in brackets, [m], which rustdoc takes for links.
 #![allow(rustdoc::broken_intra_doc_links)]
 
+mod barrier;
 mod bounds;
 mod candidates;
 mod ccd;
@@ -94,6 +95,7 @@ mod touching;
 mod vector;
 mod zones;
 
+pub use barrier::{Barrier, Pressed, Rubbing};
 pub use candidates::Candidates;
 pub use ccd::{edge_meets_edge, vertex_meets_facet};
 pub use closest::{closest_of_segments, closest_on_facet, closest_on_segment, facet_normal};

@@ -55,12 +55,12 @@ impl<const D: usize> Reach<D> {
     }
 
     /// Sets the boxes for which candidates are looked for: half a margin [m] beyond those of the step, and for fast points as far as they
-    /// go in some more steps.
-    pub(crate) fn widen(&mut self, margin: f64) {
+    /// go in so many more steps.
+    pub(crate) fn widen(&mut self, margin: f64, steps: f64) {
         self.covered = true;
         self.found_in.clone_from(&self.swept);
         for ([low, high], push) in self.found_in.iter_mut().zip(&self.push) {
-            let more = (0.5 * margin).larger(STEPS * push);
+            let more = (0.5 * margin).larger(steps * push);
             for d in 0..D {
                 low[d] -= more;
                 high[d] += more;
@@ -126,6 +126,3 @@ pub(crate) fn around<const D: usize, const N: usize>(boxes: &[Bounds<D>], points
     }
     out
 }
-
-/// For how many steps candidates of fast points are looked for at once. A search costs about as much as the gaps of eight steps.
-const STEPS: f64 = 8.0;

@@ -31,6 +31,9 @@ pub(crate) struct Row<const D: usize> {
     pub(crate) coupled: bool,
 }
 
+/// The part of its own mobility below which a pair cannot move: a body of so many nodes as one is a thousand times as mobile.
+const IMMOBILE: f64 = 1e-12;
+
 impl<const D: usize> Row<D> {
     pub(crate) fn new(id: u64, gap: &Gap<D>, thickness: f64, friction: f64, inverse_mass: &[[f64; D]]) -> Row<D> {
         let mut row = Row {
@@ -71,14 +74,17 @@ impl<const D: usize> Row<D> {
     /// Works out what it weighs where points follow one another.
     pub(crate) fn weigh_coupled(&mut self, coupled: &Coupled<D>, inverse_mass: &[[f64; D]]) {
         let mobility = coupled.mobility((&self.points, &self.weights), inverse_mass);
+        self.weigh(inverse_mass);
+        let free = self.mass.map(|mass| if mass > 0.0 { 1.0 / mass } else { 0.0 });
         // Across the normal the largest row sum is at least what any direction has.
         let (mut along, mut across) = (0.0, 0.0);
         for (d, row) in mobility.iter().enumerate() {
             along += self.normal[d] * dot(row, &self.normal);
             across = row.iter().map(|c| c.abs()).sum::<f64>().larger(across);
         }
-        let inverse = |k: f64| if k > 0.0 { 1.0 / k } else { 0.0 };
-        (self.mass, self.coupled) = ([inverse(along), inverse(across)], true);
+        // What obstacles or pins hold answers by rounding alone.
+        let inverse = |k: f64, free: f64| if k > IMMOBILE * free { 1.0 / k } else { 0.0 };
+        (self.mass, self.coupled) = ([inverse(along, free[0]), inverse(across, free[1])], true);
     }
 
     /// The friction impulse that stops the sliding of velocity u, as far as the normal impulse allows [N s].

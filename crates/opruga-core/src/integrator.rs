@@ -3,6 +3,7 @@
 use crate::error::{BuildError, StepError};
 use crate::history::{Channel, History};
 use crate::memory::Counts;
+use crate::open_step::OpenStep;
 use crate::potential::{Reading, Views};
 use crate::spec::{Spec, Values};
 use crate::system::System;
@@ -92,6 +93,14 @@ pub trait Integrator<const D: usize>: Send + Sync + Debug {
     /// coordinates of one node after the other. Says whether it could.
     fn answer(&self, _system: &mut System<D>, _vector: &mut [f64]) -> bool {
         false
+    }
+    /// Begins a substep of h [s] whose end is searched for together with the ends of other bodies; none where the rule does not solve for
+    /// its end.
+    ///
+    /// # Errors
+    /// [`StepError`] where a model refuses the start.
+    fn open(&self, _system: &mut System<D>, _h: f64) -> Option<Result<Box<dyn OpenStep<D>>, StepError>> {
+        None
     }
 }
 

@@ -129,7 +129,9 @@ fn path_of(error: &WorldError) -> String {
         WorldError::Step { body, .. } | WorldError::Diverged { body, .. } | WorldError::NotConverged { body, .. } => {
             format!("body.{}", body.split('[').next().unwrap_or(body))
         }
-        WorldError::LedThrough { first, .. } => format!("body.{}", first.split('[').next().unwrap_or(first)),
+        WorldError::Meet { first, .. } | WorldError::LedThrough { first, .. } => {
+            format!("body.{}", first.split('[').next().unwrap_or(first))
+        }
         WorldError::Path { path, .. } => body(path).unwrap_or_default(),
         WorldError::Snapshot(_)
         | WorldError::Overflow { .. }

@@ -1,10 +1,13 @@
 //! What `[contact]` and the bodies say of contact, as the laws of pairs of bodies.
 
+use crate::barrier_search::Kept;
 use crate::blueprint::{Blueprint, BodyBlueprint, ContactBlueprint};
 use opruga_collide::{Laws, PairLaw};
 use opruga_core::error::BuildError;
 use opruga_core::integrator::Integrator;
 use opruga_core::spec::{Value, Values};
+use opruga_math::Lane;
+use opruga_math::words::number;
 use opruga_mesh::Mesh;
 
 /// The distance of surfaces in contact where the scene is silent, relative to the mean edge: small beside every facet, and many times what
@@ -22,14 +25,25 @@ impl<const D: usize> BodyBlueprint<D> {
     }
 }
 
-/// The lengths of the edges of a surface at rest [m], added up, and their number.
-pub(crate) fn edges_of<const D: usize>(mesh: &Mesh<D>) -> (f64, usize) {
-    let (mut sum, mut count) = (0.0, 0);
+/// The edges of a surface at rest.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Edges {
+    /// Their lengths, added up [m], and their number.
+    pub(crate) sum: f64,
+    pub(crate) count: usize,
+    /// The least length [m].
+    pub(crate) shortest: f64,
+}
+
+/// The lengths of the edges of a surface at rest.
+pub(crate) fn edges_of<const D: usize>(mesh: &Mesh<D>) -> Edges {
+    let (mut sum, mut count, mut shortest) = (0.0, 0, f64::INFINITY);
     let mut add = |a: u32, b: u32| {
         let (a, b) = (&mesh.positions[a as usize], &mesh.positions[b as usize]);
         let square: f64 = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum();
         sum += square.sqrt();
         count += 1;
+        shortest = if square.sqrt() < shortest { square.sqrt() } else { shortest };
     };
     for facet in &mesh.facets {
         (0..if D == 2 { 1 } else { D }).for_each(|k| add(facet[k], facet[(k + 1) % D]));
@@ -38,7 +52,7 @@ pub(crate) fn edges_of<const D: usize>(mesh: &Mesh<D>) -> (f64, usize) {
         (0..3).for_each(|k| add(sheet[k], sheet[(k + 1) % 3]));
     }
     mesh.wires.iter().for_each(|[a, b]| add(*a, *b));
-    (sum, count)
+    Edges { sum, count, shortest }
 }
 
 /// What bodies of one class have in common.
@@ -66,8 +80,8 @@ pub(crate) fn laws<const D: usize>(
         let own = body.contact.as_ref();
         let number_of = |name: &str| own.and_then(|own| own.number(name)).or_else(|| values.number(name));
         let edge = || match edges_of(&body.mesh) {
-            (_, 0) => mean_edge,
-            (sum, count) => sum / count as f64,
+            Edges { count: 0, .. } => mean_edge,
+            Edges { sum, count, .. } => sum / count as f64,
         };
         let itself = match own.and_then(|own| own.get("self")) {
             Some(Value::Boolean(own)) => *own,
@@ -118,15 +132,27 @@ pub(crate) fn laws<const D: usize>(
     }
 }
 
+/// The reach of a barrier where the scene is silent, relative to the mean edge and at most to the shortest: small beside every facet.
+const REACH_OF_EDGE: f64 = 0.02;
+const REACH_OF_SHORTEST: f64 = 0.5;
+
+/// The barrier of a scene that asks for one.
+pub(crate) fn barrier_of<const D: usize>(contact: &ContactBlueprint, mean_edge: f64, shortest: f64) -> Option<Kept<D>> {
+    let own = (REACH_OF_EDGE * mean_edge).smaller(REACH_OF_SHORTEST * shortest);
+    is_barrier(contact).then(|| Kept::new(contact.values.number("reach").unwrap_or(own)))
+}
+
+fn is_barrier(contact: &ContactBlueprint) -> bool {
+    contact.values.text("response") == Some("barrier")
+}
+
 /// Refuses a body that contact cannot step.
 pub(crate) fn check<const D: usize>(
     scene: &Blueprint<D>,
     body: &BodyBlueprint<D>,
     integrator: &dyn Integrator<D>,
 ) -> Result<(), BuildError> {
-    if scene.contact.is_none() {
-        return Ok(());
-    }
+    let Some(contact) = &scene.contact else { return Ok(()) };
     if body.touches() && integrator.is_static() {
         let message = format!(
             "`{}` finds a state at rest, where bodies do not touch one another yet; allowed: an integrator of motion, such as \
@@ -134,6 +160,24 @@ pub(crate) fn check<const D: usize>(
             integrator.name()
         );
         return Err(BuildError::new("contact", "contact.implicit", message));
+    }
+    if body.touches() && is_barrier(contact) && !integrator.takes_pushes() {
+        let message = format!(
+            "`{}` does not solve for the end of a step, which a barrier needs; allowed: an implicit integrator, such as `backward_euler`; \
+             hint: or `response = \"constraint\"`, which takes every integrator",
+            integrator.name()
+        );
+        return Err(BuildError::new("contact", "contact.barrier", message));
+    }
+    let shortest = edges_of(&body.mesh).shortest;
+    if let Some(reach) = contact.values.number("reach").filter(|reach| is_barrier(contact) && *reach >= shortest) {
+        let message = format!(
+            "the reach is {} m and the shortest edge of the body {} m, so its own features would push one another at rest; allowed: less than \
+             that edge",
+            number(reach),
+            number(shortest)
+        );
+        return Err(BuildError::new("contact.reach", "contact.reach", message));
     }
     if scene.surroundings.unfold {
         let message = "`unfold` displaces bodies at random, into others too; allowed: `unfold = false` in a scene with `[contact]`";

@@ -108,6 +108,21 @@ pub enum WorldError {
         /// The time of the last good frame [s].
         last: f64,
     },
+    /// Surfaces meet that a barrier keeps apart.
+    #[error(
+        "the surfaces of `{first}` and {} meet at t = {} s, where a barrier needs a gap; the world is at its last good frame; hint: bodies that begin \
+         apart, a smaller `thickness`, or `response = \"constraint\"`",
+        if first == second { "itself".into() } else { format!("`{second}`") },
+        number(*time)
+    )]
+    Meet {
+        /// One body.
+        first: String,
+        /// The other one, the same, or an obstacle.
+        second: String,
+        /// The time at the end of the substep [s].
+        time: f64,
+    },
     /// Pins and obstacles lead bodies through one another.
     #[error(
         "pins and obstacles lead `{first}` through {} at t = {} s; the world is at its last good frame; hint: another path of what \
@@ -150,6 +165,7 @@ impl WorldError {
             WorldError::NotConverged { .. } => "run.not_converged",
             WorldError::Overflow { .. } => "run.overflow",
             WorldError::TooManyContacts { .. } => "limit.contacts",
+            WorldError::Meet { .. } => "contact.surfaces_meet",
             WorldError::LedThrough { .. } => "contact.led_through",
             WorldError::BrokenOff => "run.broken_off",
             WorldError::Path { .. } => "path.unknown",

@@ -389,10 +389,22 @@ impl<const D: usize> Island<D> {
             self.integrator.step(&mut self.system, plan.h)
         });
         self.system.exchange(workspace);
-        if self.outcome.is_err() {
-            self.restore();
-            self.system.work = Work8::default();
+        if let Err(error) = self.outcome.clone() {
+            self.refuse(error);
         }
+    }
+
+    /// Begins a substep that others make with it.
+    pub(crate) fn begin_as_one(&mut self, plan: &FramePlan<D>, substep: u32) {
+        self.outcome = Ok(());
+        self.set_out(plan, substep);
+    }
+
+    /// Refuses a substep that others make with it.
+    pub(crate) fn refuse(&mut self, error: StepError) {
+        self.outcome = Err(error);
+        self.restore();
+        self.system.work = Work8::default();
     }
 
     /// Keeps the state after a substep where that is one to look at.

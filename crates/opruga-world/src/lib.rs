@@ -4,6 +4,8 @@ mod any_command;
 mod any_scene;
 mod any_world;
 mod at_start;
+mod barrier;
+mod barrier_search;
 pub mod blueprint;
 mod body_bytes;
 mod body_view;

@@ -1,12 +1,12 @@
 //! The surfaces of all bodies that may touch, beside the islands that hold their nodes.
 
 use crate::blueprint::Blueprint;
-use crate::contact_laws::{edges_of, laws};
+use crate::contact_laws::{barrier_of, edges_of, laws};
 use crate::island::{FramePlan, Island};
 use opruga_collide::{Colliders, Outline, Touching, Trouble};
 use opruga_core::contacts::Contacts;
 use opruga_core::system::Workspace;
-use opruga_math::WIDTH;
+use opruga_math::{Lane, WIDTH};
 use std::sync::Arc;
 
 /// The margin of the search for candidates, relative to the mean edge: half of that is what points go between two searches, a quarter of
@@ -29,6 +29,8 @@ pub(crate) struct Meeting<const D: usize> {
     pub(crate) outlines: Vec<(Outline<D>, usize)>,
     /// The bodies that take pushes into the balance of forces of their steps.
     pub(crate) pushed: Vec<Pushed<D>>,
+    /// What keeps them apart instead of impulses, if the scene says so.
+    pub(crate) barrier: Option<crate::barrier_search::Kept<D>>,
 }
 
 /// A body that takes pushes into the balance of forces.
@@ -88,7 +90,7 @@ impl<const D: usize> Meeting<D> {
         let mut touching = Touching::<D>::default();
         let (mut columns, mut points, mut bodies) = (vec![Vec::new(); islands.len()], Vec::new(), Vec::new());
         let mut pushed = Vec::new();
-        let (mut length, mut edges) = (0.0, 0);
+        let (mut length, mut edges, mut shortest) = (0.0, 0, f64::INFINITY);
         // In the order of the bodies: results depend on no batches.
         let mut seats: Vec<(usize, usize, usize)> = Vec::new();
         for (number, island) in islands.iter().enumerate() {
@@ -100,8 +102,9 @@ impl<const D: usize> Meeting<D> {
             if !blueprint.touches() {
                 continue;
             }
-            let (more, count) = edges_of(&blueprint.mesh);
-            (length, edges) = (length + more, edges + count);
+            let own = edges_of(&blueprint.mesh);
+            (length, edges) = (length + own.sum, edges + own.count);
+            shortest = own.shortest.smaller(shortest);
             let first = touching.surface.points() as u32;
             let nodes = touching.surface.add(&blueprint.mesh, bodies.len() as u32);
             bodies.push(body);
@@ -136,7 +139,22 @@ impl<const D: usize> Meeting<D> {
         for columns in touching.before.iter_mut().chain(&mut touching.after) {
             columns.resize(touching.inverse_mass.len(), [0.0; D]);
         }
-        touching.may_touch().then_some(Meeting { touching, made_for, columns, points, bodies, outlines, pushed })
+        let barrier = barrier_of(contact, mean_edge, shortest);
+        touching.may_touch().then_some(Meeting {
+            touching,
+            made_for,
+            columns,
+            points,
+            bodies,
+            outlines,
+            pushed,
+            barrier,
+        })
+    }
+
+    /// Whether an island makes its substeps as one with others that a barrier keeps apart.
+    pub(crate) fn steps_as_one(&self, island: usize) -> bool {
+        self.barrier.is_some() && self.pushed.iter().any(|pushed| pushed.island == island)
     }
 
     /// Whether it was made for these islands and obstacles.
@@ -156,14 +174,7 @@ impl<const D: usize> Meeting<D> {
 
     /// Takes positions and velocities at a time [s], after the free motion or at the beginning of a frame.
     pub(crate) fn take(&mut self, islands: &[Island<D>], time: f64) {
-        let [x, v] = &mut self.touching.after;
-        for (outline, first) in &self.outlines {
-            let points = *first..*first + outline.mesh.positions.len();
-            if let Some(colliders) = &self.made_for.colliders {
-                let state = [&mut x[points.clone()], &mut v[points]];
-                colliders.move_points(outline.collider, time, &outline.mesh.positions, state);
-            }
-        }
+        self.move_outlines(time);
         let [x, v] = &mut self.touching.after;
         for (island, bodies) in islands.iter().zip(&self.columns) {
             let state = &island.system.state;
@@ -175,6 +186,18 @@ impl<const D: usize> Meeting<D> {
                         v[*first as usize + k][d] = from_v[*index as usize];
                     }
                 }
+            }
+        }
+    }
+
+    /// Takes corners of obstacles to where they are at a time [s].
+    pub(crate) fn move_outlines(&mut self, time: f64) {
+        let [x, v] = &mut self.touching.after;
+        for (outline, first) in &self.outlines {
+            let points = *first..*first + outline.mesh.positions.len();
+            if let Some(colliders) = &self.made_for.colliders {
+                let state = [&mut x[points.clone()], &mut v[points]];
+                colliders.move_points(outline.collider, time, &outline.mesh.positions, state);
             }
         }
     }

@@ -88,6 +88,7 @@ impl<const D: usize> Meeting<D> {
     /// Begins a frame: nothing of the last one is used.
     pub(crate) fn begin(&mut self) {
         self.touching.begin();
+        self.barrier.iter_mut().for_each(|kept| kept.begin());
         self.pushed.iter_mut().for_each(|pushed| pushed.applied.clear());
     }
 
@@ -137,7 +138,10 @@ impl<const D: usize> Meeting<D> {
             let agreed = AGREED.iter().find(|(before, _)| round < *before);
             let enough = agreed.map_or(f64::INFINITY, |(_, part)| part * thickness);
             if !self.step_again(islands, step, workspace, enough) {
-                if self.pushed.iter().all(|pushed| pushed.applied.is_empty()) {
+                let nobody_pushes = (0..self.pushed.len()).all(|body| {
+                    self.pushed[body].applied.is_empty() && self.touching.coupled.impulses_on(body).next().is_none()
+                });
+                if nobody_pushes {
                     return Ok(true);
                 }
                 // Where they agree, they do so nearly: what they agree on must not pass either.

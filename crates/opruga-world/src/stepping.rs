@@ -32,6 +32,7 @@ impl<const D: usize> World<D> {
         if self.blueprint.contact.is_some() && self.meeting.as_ref().is_none_or(|meeting| !meeting.is_for(&made_for)) {
             self.meeting = Meeting::of(&self.blueprint, &self.islands, made_for).map(Box::new);
         }
+        self.refuse_what_meets()?;
         let islands = &mut self.islands;
         let workspaces = &mut self.workspaces;
         // One small body has nothing to share: waking threads for it would cost more than its frame.
@@ -120,6 +121,16 @@ impl<const D: usize> World<D> {
         self.take_away_what_is_far()
     }
 
+    /// Refuses surfaces that cross, which a barrier would keep so.
+    fn refuse_what_meets(&self) -> Result<(), WorldError> {
+        if self.meeting.as_ref().is_none_or(|meeting| meeting.barrier.is_none()) {
+            return Ok(());
+        }
+        let Some(crossed) = self.crossed_surfaces().first().copied() else { return Ok(()) };
+        let [first, second] = crossed.bodies.map(|body| self.blueprint.bodies[body].name.clone());
+        Err(WorldError::Meet { first, second, time: self.time() })
+    }
+
     /// Why bodies that touch could not go through a frame.
     fn trouble(&self, trouble: Trouble, time: f64) -> WorldError {
         let meeting = self.meeting.as_ref();
@@ -127,6 +138,12 @@ impl<const D: usize> World<D> {
             Trouble::TooMany { found } => {
                 let most = meeting.map_or(0, |meeting| meeting.touching.most);
                 WorldError::TooManyContacts { found, most, last: self.time() }
+            }
+            Trouble::Meet { mut bodies } => {
+                bodies.sort_unstable();
+                let name =
+                    |number: u32| meeting.map_or(String::new(), |meeting| meeting.name_of(number, &self.blueprint));
+                WorldError::Meet { first: name(bodies[0]), second: name(bodies[1]), time }
             }
             Trouble::LedThrough { mut bodies } => {
                 // Obstacles have the highest numbers: a body is named first.

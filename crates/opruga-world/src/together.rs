@@ -6,6 +6,7 @@ use crate::world::lock;
 use opruga_collide::Trouble;
 use opruga_core::system::Workspace;
 use opruga_core::threads::together;
+use opruga_math::Lane;
 use rayon::prelude::*;
 use std::sync::{Arc, Mutex};
 
@@ -38,18 +39,24 @@ fn step_through<const D: usize>(
     meeting.take(islands, plan.start);
     for substep in 0..plan.substeps {
         meeting.set_out(islands);
-        step_freely(islands, plan, substep, workspaces, threaded);
+        let time = plan.start + f64::from(substep + 1) * plan.h;
+        let step = Substep { plan, number: substep, time, obstacles: contacts.as_deref() };
+        meeting.step_with_barrier(islands, &step).map_err(|trouble| (trouble, time))?;
+        step_freely(islands, meeting, plan, substep, workspaces, threaded);
         if islands.iter().any(|island| island.outcome.is_err()) {
             return Ok(());
         }
-        let time = plan.start + f64::from(substep + 1) * plan.h;
         meeting.take(islands, time);
-        if !meeting.touching.after.iter().flatten().flatten().all(|c| c.is_finite()) {
+        // What leaves the range in which positions keep their digits ends the frame: contact would look at every pair of it.
+        let range = islands.iter().fold(f64::INFINITY, |least, island| island.range.smaller(least));
+        let [x, v] = &meeting.touching.after;
+        if !x.iter().flatten().all(|c| c.abs() <= range) || !v.iter().flatten().all(|c| c.is_finite()) {
             islands.iter_mut().for_each(|island| island.end_together(plan));
             return Ok(());
         }
-        let step = Substep { plan, number: substep, time, obstacles: contacts.as_deref() };
-        meeting.resolve(islands, &step, &mut lock(&workspaces[0])).map_err(|trouble| (trouble, time))?;
+        if meeting.barrier.is_none() {
+            meeting.resolve(islands, &step, &mut lock(&workspaces[0])).map_err(|trouble| (trouble, time))?;
+        }
         if islands.iter().any(|island| island.outcome.is_err()) {
             return Ok(());
         }
@@ -59,25 +66,30 @@ fn step_through<const D: usize>(
     Ok(())
 }
 
-/// One substep without contact between bodies.
+/// One substep without contact between bodies, of those that did not make it together.
 fn step_freely<const D: usize>(
     islands: &mut [Island<D>],
+    meeting: &Meeting<D>,
     plan: &FramePlan<'_, D>,
     substep: u32,
     workspaces: &[Mutex<Workspace<D>>],
     threaded: bool,
 ) {
+    let alone = |(number, _): &(usize, &mut Island<D>)| !meeting.steps_as_one(*number);
     if !threaded {
-        islands.iter_mut().for_each(|island| island.step_together(plan, substep, &mut lock(&workspaces[0])));
+        let own = islands.iter_mut().enumerate().filter(alone);
+        own.for_each(|(_, island)| island.step_together(plan, substep, &mut lock(&workspaces[0])));
         return;
     }
     let (threads, count) = (rayon::current_num_threads(), islands.len());
-    for island in islands.iter_mut().filter(|island| island.is_shared_by(threads, count)) {
+    let shared = islands.iter_mut().enumerate().filter(alone).map(|(_, island)| island);
+    for island in shared.filter(|island| island.is_shared_by(threads, count)) {
         island.system.threads = threads;
         together(threads, || island.step_together(plan, substep, &mut lock(&workspaces[0])));
         island.system.threads = 1;
     }
-    islands.par_iter_mut().filter(|island| !island.is_shared_by(threads, count)).for_each(|island| {
+    let own = islands.par_iter_mut().enumerate().filter(alone).map(|(_, island)| island);
+    own.filter(|island| !island.is_shared_by(threads, count)).for_each(|island| {
         let thread = rayon::current_thread_index().unwrap_or(0);
         island.step_together(plan, substep, &mut lock(&workspaces[thread]));
     });

@@ -1,5 +1,6 @@
 //! Every test of this crate that needs no process of its own, in one program: it is linked once.
 
+mod barrier;
 mod common;
 mod facets;
 mod friction;

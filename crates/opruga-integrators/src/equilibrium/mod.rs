@@ -41,12 +41,13 @@ mod tests;
 
 use crate::implicit::balance::{Balance, Solved};
 use crate::implicit::convergence::report;
+use crate::implicit::ends::commit;
 use crate::implicit::linear::has_symmetric_matrix;
 use crate::implicit::memory;
 use crate::implicit::minimiser::Minimiser;
 use crate::implicit::newton::Newton;
 use crate::implicit::settings::{Otherwise, Settings, Solver, fields};
-use crate::implicit::step::{MOST_HALVINGS, commit};
+use crate::implicit::step::MOST_HALVINGS;
 use crate::implicit::step_limit::{leaves_nodes_inside, lift_out};
 use crate::implicit::workspace::Workspace;
 use opruga_core::error::{BuildError, StepError};

@@ -131,7 +131,7 @@ pub(super) fn slope_along<const D: usize>(workspace: &mut Workspace<D>) -> f64 {
 }
 
 /// The work along the step of friction, and of the constraints by the forces that they are expected to take.
-fn given_along<const D: usize>(workspace: &mut Workspace<D>) -> f64 {
+pub(super) fn given_along<const D: usize>(workspace: &mut Workspace<D>) -> f64 {
     // r − friction in the directions that are held.
     let Workspace { right, reaction, contacting, free, projectors, step, .. } = workspace;
     right.copy_from_slice(reaction);

@@ -20,27 +20,27 @@ use super::answer;
 use super::balance::{Balance, Solved};
 use super::contact::SMALL;
 use super::convergence::{accept_or_refuse, count, finish, refusal};
+use super::ends::{Found, commit, end, enter_end, enter_stage, open_ledger};
 use super::energy;
 use super::fallback::{RealTime, exactly};
 use super::growth;
 use super::holding;
-use super::impact::Ending;
 use super::memory;
 use super::minimiser::Minimiser;
 use super::newton::Newton;
-use super::own_loss::{self, given};
+use super::open;
 use super::rule::Rule;
 use super::settings::{Otherwise, Settings};
-use super::workspace::{Workspace, write};
+use super::workspace::Workspace;
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::history::Channel;
 use opruga_core::integrator::{Amplification, Integrator};
 use opruga_core::memory::Counts;
+use opruga_core::open_step::OpenStep;
 use opruga_core::potential::Views;
 use opruga_core::spec::Values;
-use opruga_core::system::{Stage, System, Work8};
+use opruga_core::system::System;
 use opruga_core::threads::each_block;
-use opruga_math::WIDTH;
 use opruga_solve::blocks::nodes;
 
 /// An implicit rule as an integrator.
@@ -115,6 +115,9 @@ impl<R: Rule<D>, const D: usize> Integrator<D> for Implicit<R> {
         system.cache.put(workspace);
         outcome
     }
+    fn open(&self, system: &mut System<D>, h: f64) -> Option<Result<Box<dyn OpenStep<D>>, StepError>> {
+        Some(open::open(self.rule, self.settings, system, h))
+    }
 }
 
 impl<R> Implicit<R> {
@@ -145,20 +148,6 @@ struct Method<'a, R, const D: usize> {
     rule: R,
     settings: &'a Settings,
     minimiser: &'a dyn Minimiser<D>,
-}
-
-/// A stage that has passed the guards, and the rule by which it was found.
-#[derive(Clone, Copy, Debug)]
-struct Found<R> {
-    rule: R,
-    balance: Balance,
-    solved: Solved,
-}
-
-/// The ledger before a step, and after what is entered at its start.
-struct Ledger {
-    before: Work8,
-    begun: Work8,
 }
 
 impl<R: Rule<D>, const D: usize> Method<'_, R, D> {
@@ -260,74 +249,6 @@ impl<R: Rule<D>, const D: usize> Method<'_, R, D> {
     }
 }
 
-/// Takes the state at the start of a step, and enters the works of rules that go by the mean of start and end.
-fn open_ledger<R: Rule<D>, const D: usize>(
-    system: &mut System<D>,
-    workspace: &mut Workspace<D>,
-    h: f64,
-) -> Result<Ledger, StepError> {
-    system.begin_implicit();
-    workspace.load(system);
-    let before = system.work;
-    if R::TRAPEZOID {
-        system.evaluate(Stage::Current, 0.0, 0.5 * h, &mut workspace.force)?;
-    }
-    own_loss::add_given(&mut system.work, &given(&before));
-    Ok(Ledger { before, begun: system.work })
-}
-
-/// Enters the works of rules that go by the stage, which was evaluated last, and those of coupled masses.
-fn enter_stage<R: Rule<D>, const D: usize>(
-    system: &mut System<D>,
-    workspace: &mut Workspace<D>,
-    found: &Found<R>,
-    ledger: &Ledger,
-) {
-    let by_stage = !found.rule.is_trapezoid();
-    if R::TRAPEZOID && by_stage {
-        take_back(&mut system.work, &ledger.begun, &ledger.before);
-    }
-    let entered = given(&system.work);
-    if by_stage {
-        // Damping, loads and pins by the forces of the stage.
-        system.evaluate_again(Workspace::<D>::STAGE, found.balance.time, found.balance.h, &mut workspace.force);
-    }
-    own_loss::add_given(&mut system.work, &entered);
-    own_loss::add_pushes(system, &workspace.u1);
-    if system.inertia.is_some() {
-        // Where held nodes are coupled, they have the velocity of the step to its end.
-        let Workspace { v0, v1, .. } = &mut *workspace;
-        system.held_axes(&mut |node, d| v1[node * D + d] = v0[node * D + d]);
-        holding::enter_work(system, v0, v1);
-    }
-}
-
-/// Enters the works at the end of a step of rules that go by the mean of start and end.
-fn enter_end<R: Rule<D>, const D: usize>(
-    system: &mut System<D>,
-    workspace: &mut Workspace<D>,
-    found: &Found<R>,
-) -> Result<(), StepError> {
-    if found.rule.is_trapezoid() {
-        let h = found.balance.h;
-        system.hold(Stage::Current, h);
-        let entered = given(&system.work);
-        system.evaluate(Stage::Current, h, 0.5 * h, &mut workspace.force)?;
-        own_loss::add_given(&mut system.work, &entered);
-    }
-    Ok(())
-}
-
-/// Takes out of a ledger what was entered between two moments.
-fn take_back(work: &mut Work8, after: &Work8, before: &Work8) {
-    for lane in 0..WIDTH {
-        work.user[lane] -= after.user[lane] - before.user[lane];
-        work.gas[lane] -= after.gas[lane] - before.gas[lane];
-        work.damping[lane] -= after.damping[lane] - before.damping[lane];
-        work.numerical[lane] -= after.numerical[lane] - before.numerical[lane];
-    }
-}
-
 /// Finds the stage of a rule, from the motion of the last step on.
 fn find_stage<R: Rule<D>, const D: usize>(
     rule: R,
@@ -352,29 +273,6 @@ fn find_stage<R: Rule<D>, const D: usize>(
     Ok((balance, solved))
 }
 
-/// Works out the end of a step: displacement and velocity, with what obstacles do to them.
-fn end<R: Rule<D>, const D: usize>(
-    rule: R,
-    system: &mut System<D>,
-    workspace: &mut Workspace<D>,
-    balance: &Balance,
-    h: f64,
-) {
-    rule.end(system, workspace, balance, h);
-    own_loss::take_impulses(system, workspace, balance);
-    workspace.struck.clear();
-    if system.contacts.is_none() {
-        return;
-    }
-    for k in 0..workspace.memory.len() {
-        workspace.memory[k] = rule.remembered(workspace, k, h);
-    }
-    let Workspace { contacting, mass, residual, x0, v0, u1, v1, memory, struck, extent, .. } = workspace;
-    contacting.expel(system, x0, u1, residual, h, *extent);
-    let ending = Ending { mass, reaction: residual, x0, v0, balance, extent: *extent };
-    contacting.end(system, &ending, v1, memory, struck);
-}
-
 /// Whether any node would be on an obstacle at the end of the step, or in it, by its velocity alone.
 fn touches<const D: usize>(system: &System<D>, workspace: &Workspace<D>, h: f64) -> bool {
     let Some(obstacles) = &system.contacts else { return false };
@@ -385,11 +283,4 @@ fn touches<const D: usize>(system: &System<D>, workspace: &Workspace<D>, h: f64)
         obstacles.touch(from, &to, system.time + h, h, reach, &mut |touch| near |= touch.gap <= touch.rounding + reach);
         near
     })
-}
-
-/// Writes the end of the step into the state.
-pub(crate) fn commit<const D: usize>(system: &mut System<D>, workspace: &Workspace<D>) {
-    let (places, nodes, threads) = (system.places(), system.nodes, system.threads);
-    let state = [&mut system.state.x, &mut system.state.v];
-    write(places, nodes, threads, state, |k| [workspace.x0[k] + workspace.u1[k], workspace.v1[k]]);
 }

@@ -109,7 +109,7 @@ impl Titles {
                 (*place, source.message) = (self.in_text(place), self.in_text(&source.message));
                 source.about = source.about.take().map(|message| self.in_message(&message));
             }
-            WorldError::LedThrough { first, second, .. } => {
+            WorldError::Meet { first, second, .. } | WorldError::LedThrough { first, second, .. } => {
                 (*first, *second) = (self.of(first).to_string(), self.of(second).to_string());
             }
             WorldError::Path { path, message } => {

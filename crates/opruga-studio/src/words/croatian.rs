@@ -393,7 +393,13 @@ pub(super) const FIELDS: &[(&str, &str, &str)] = &[
     (
         "contact.*.response",
         "odziv",
-        "Kako se održava dodir: `constraint` impulsima koji parovima daju da se dodirnu, i ništa više.",
+        "Kako se održava dodir: `constraint` impulsima koji parovima daju da se dodirnu, i ništa više; `barrier` silama koje bez granice rastu kad se \
+         razmak zatvara, uz implicitne integratore.",
+    ),
+    (
+        "contact.*.reach",
+        "doseg",
+        "Razmak povrh debljine na kojem barijera počinje gurati. Kad se ne navede, pedeseti dio srednjeg brida svih ploha, a najviše polovica najkraćeg.",
     ),
     // Obstacles.
     ("obstacle.*.restitution", "restitucija", "Omjer normalnih brzina nakon sudara i prije njega."),
@@ -533,6 +539,7 @@ pub(super) const FIELDS: &[(&str, &str, &str)] = &[
 /// Words that parameters may take, and their names.
 pub(super) const CHOICES: &[(&str, &str)] = &[
     ("constraint", "ograničenje"),
+    ("barrier", "barijera"),
     ("accept", "prihvati"),
     ("adiabatic", "adijabatski"),
     ("all", "svi"),

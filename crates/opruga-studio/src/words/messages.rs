@@ -304,6 +304,12 @@ impl Language {
                  t = {} s\nSvijet je na zadnjoj dobroj sličici; pomaže veći `most_pairs` u `[contact]` ili grublje plohe",
                 number(*last)
             ),
+            WorldError::Meet { first, second, time } => format!(
+                "Plohe `{first}` i {} dodiruju se u t = {} s, a barijera treba razmak\n\
+                 Svijet je na zadnjoj dobroj sličici; pomažu tijela koja počinju odvojena, manji `thickness`, ili `response = \"constraint\"`",
+                if first == second { "njega samog".into() } else { format!("`{second}`") },
+                number(*time)
+            ),
             WorldError::LedThrough { first, second, time } => format!(
                 "Učvršćenja i prepreke vode `{first}` kroz {} u t = {} s\n\
                  Svijet je na zadnjoj dobroj sličici; pomaže drugi put onoga što ih vodi, ili `touch = false` za taj par",

@@ -15,6 +15,35 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
          `backward_euler` ili `verlet`; savjet: ili `contact.touch = false` u tom tijelu, koje tada prolazi kroz druga",
     ),
     (
+        "`{}` does not solve for the end of a step, which a barrier needs; allowed: an implicit integrator, such as `backward_euler`; hint: or \
+         `response = \"constraint\"`, which takes every integrator",
+        "`{}` ne rješava za kraj koraka, što barijera treba; dopušteno: implicitni integrator, kao `backward_euler`; savjet: ili \
+         `response = \"constraint\"`, koji prima svaki integrator",
+    ),
+    (
+        "the reach is {} m and the shortest edge of the body {} m, so its own features would push one another at rest; allowed: less than that \
+         edge",
+        "doseg je {} m, a najkraći brid tijela {} m, pa bi se njegovi vlastiti dijelovi gurali u mirovanju; dopušteno: manje od tog brida",
+    ),
+    (
+        "cell {} turns inside out (volume ratio {}), where a barrier keeps bodies apart; hint: a material that resists that, such as \
+         `neo_hookean`, or smaller steps",
+        "ćelija {} izvrće se (omjer obujma {}), a barijera drži tijela odvojena; savjet: materijal koji se tome opire, kao `neo_hookean`, ili \
+         kraći koraci",
+    ),
+    (
+        "bodies that a barrier keeps apart have no common end of the step after {} iterations; hint: smaller steps, or more `iterations`",
+        "tijela koja barijera drži odvojena nemaju zajednički kraj koraka nakon {} iteracija; savjet: kraći koraci ili više `iterations`",
+    ),
+    (
+        "obstacles push nodes through others that a barrier keeps apart; hint: smaller steps, or finer surfaces",
+        "prepreke guraju čvorove kroz druge, a barijera ih drži odvojene; savjet: kraći koraci ili finije plohe",
+    ),
+    (
+        "the matrix of a step with a barrier has no factor; hint: smaller steps, or another material",
+        "matrica koraka s barijerom nema faktor; savjet: kraći koraci ili drugi materijal",
+    ),
+    (
         "`unfold` displaces bodies at random, into others too; allowed: `unfold = false` in a scene with `[contact]`",
         "`unfold` pomiče tijela nasumce, i u druga; dopušteno: `unfold = false` u prizoru s `[contact]`",
     ),

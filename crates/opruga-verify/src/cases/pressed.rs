@@ -20,6 +20,14 @@ const PATCH: Case = Case {
     ..BASE
 };
 
+const BARRIER: Case = Case {
+    over: Over::Parameter("reach of the barrier [m]"),
+    levels: &[2e-5, 1e-5, 5e-6],
+    tolerance: 0.01,
+    check: Check::Order(1.0),
+    ..PATCH
+};
+
 const STACK: Case = Case {
     quantity: "force between a solid at rest and one that it stands on, by backward Euler at 1/60 s, over its weight",
     source: "exact: 1 (I. Newton)",
@@ -30,9 +38,27 @@ const STACK: Case = Case {
 };
 
 pub(super) const CASES: &[Case] = &[
-    Case { name: "contact-patch-triangles", measure: |lab, n| patch::<2>(lab, n, Cells::Linear), ..PATCH },
-    Case { name: "contact-patch-quadrilaterals", measure: |lab, n| patch::<2>(lab, n, Cells::Boxes), ..PATCH },
-    Case { name: "contact-patch-tetrahedra", measure: |lab, n| patch::<3>(lab, n, Cells::Linear), ..PATCH },
+    Case { name: "contact-patch-triangles", measure: |lab, n| pressures::<2>(lab, n, Cells::Linear), ..PATCH },
+    Case { name: "contact-patch-quadrilaterals", measure: |lab, n| pressures::<2>(lab, n, Cells::Boxes), ..PATCH },
+    Case { name: "contact-patch-tetrahedra", measure: |lab, n| pressures::<3>(lab, n, Cells::Linear), ..PATCH },
+    Case {
+        name: "contact-patch-barrier",
+        measure: |lab, reach| Ok(patch::<2>(lab, 3.0, Cells::Linear, Some(reach))?.worst),
+        ..BARRIER
+    },
+    Case {
+        name: "barrier-reaches-constraint",
+        quantity: "height of a block that presses on another one, by a barrier less by a constraint",
+        source: "the limit of no reach: the constraint",
+        unit: "m",
+        // What the pressure takes from the height of each.
+        scale: Scale::Of(1e-3),
+        measure: |lab, reach| {
+            let by = |reach| Ok::<f64, Trouble>(patch::<2>(lab, 3.0, Cells::Linear, reach)?.height);
+            Ok(by(Some(reach))? - by(None)?)
+        },
+        ..BARRIER
+    },
     Case {
         name: "hertz-line",
         quantity: "half width of the contact of a cylinder of 1 m with a plane, over that of Hertz at the same force, plane strain",
@@ -47,14 +73,21 @@ pub(super) const CASES: &[Case] = &[
         name: "weight-on-body-masses",
         over: Over::Parameter("mass of the upper over that of the lower"),
         levels: &[1e-4, 1e4],
-        measure: |lab, ratio| weight(lab, ratio, 1.0),
+        measure: |lab, ratio| weight(lab, "", ratio, 1.0),
+        ..STACK
+    },
+    Case {
+        name: "weight-on-body-barrier",
+        over: Over::Parameter("mass of the upper over that of the lower"),
+        levels: &[0.01, 1.0, 100.0],
+        measure: |lab, ratio| weight(lab, "response = \"barrier\"\n", ratio, 1.0),
         ..STACK
     },
     Case {
         name: "weight-on-body-stiffness",
         over: Over::Parameter("stiffness of the upper over that of the lower"),
         levels: &[1e-4, 1e4],
-        measure: |lab, ratio| weight(lab, 1.0, ratio),
+        measure: |lab, ratio| weight(lab, "", 1.0, ratio),
         ..STACK
     },
 ];
@@ -112,19 +145,38 @@ fn shares<const D: usize>(mesh: &Mesh<D>, height: f64) -> Vec<f64> {
     out
 }
 
-/// Two blocks without friction, the upper one pressed by 1 kPa: at rest after steps of 0.1 s by backward Euler, which damps all.
-fn patch<const D: usize>(lab: &Lab, n: f64, cells: Cells) -> Result<f64, Trouble>
+/// The same by a constraint.
+fn pressures<const D: usize>(lab: &Lab, n: f64, cells: Cells) -> Result<f64, Trouble>
 where
     Lab: Worlds<D>,
 {
-    let (gap, pressure) = (1e-3, 1e3);
+    Ok(patch(lab, n, cells, None)?.worst)
+}
+
+/// What became of two blocks.
+struct Patch {
+    /// The largest difference of the pressure on a node, over it.
+    worst: f64,
+    /// The mean height of the nodes on top [m].
+    height: f64,
+}
+
+/// Two blocks without friction, the upper one pressed by 1 kPa: at rest after steps of 0.1 s by backward Euler, which damps all. By a barrier of
+/// a reach [m], beyond which they begin, or by a constraint.
+fn patch<const D: usize>(lab: &Lab, n: f64, cells: Cells, reach: Option<f64>) -> Result<Patch, Trouble>
+where
+    Lab: Worlds<D>,
+{
+    let (thickness, pressure) = (1e-3, 1e3);
+    let gap = thickness + reach.unwrap_or(0.0);
+    let barrier = reach.map_or(String::new(), |reach| format!("response = \"barrier\"\nreach = {reach:?}\n"));
     let (lower, upper) = (block::<D>(n as u32, cells, 0.0)?, block::<D>(n as u32 + 1, cells, 1.0 + gap)?);
     let bottom = pinned(&lower, 1, |x| x[1].abs() < 1e-9);
     let mut value = vec!["0.0".to_string(); D];
     value[1] = format!("{:?}", -pressure);
     let top = nodes(&upper, |x| (x[1] - 2.0 - gap).abs() < 1e-9);
     let scene = Scene::new(D, 0.1, 1, "backward_euler")
-        .add(&format!("[contact]\nthickness = {gap:?}\nself = false"))
+        .add(&format!("[contact]\nthickness = {thickness:?}\nself = false\n{barrier}"))
         .named("lower", &lower, &solid("", &[walls(&lower), vec![bottom]].concat()))?
         .named("upper", &upper, &solid("", &walls(&upper)))?
         .add(&format!(
@@ -140,7 +192,8 @@ where
     for (force, share) in forces.iter().zip(shares(&upper, 1.0 + gap)).filter(|(_, share)| *share > 0.0) {
         worst = worst.max((force[1] / share / pressure - 1.0).abs());
     }
-    Ok(worst)
+    let height = top.iter().map(|node| world.position(1, *node)[1]).sum::<f64>() / top.len() as f64;
+    Ok(Patch { worst, height })
 }
 
 /// Worlds of a dimension.
@@ -196,7 +249,7 @@ fn hertz_line(lab: &Lab, n: f64) -> Result<f64, Trouble> {
 
 /// The force between two blocks of solid after 5 s, over the weight of the upper one, which has so many times the mass and the stiffness of
 /// the lower one. The stiffness of both grows with the mass above: so the lower one is pressed by as much of its height.
-pub(super) fn weight(lab: &Lab, masses: f64, stiffness: f64) -> Result<f64, Trouble> {
+pub(super) fn weight(lab: &Lab, contact: &str, masses: f64, stiffness: f64) -> Result<f64, Trouble> {
     let base = 1e5 * masses.max(1.0);
     let block = |name: &str, x: f64, y: f64, width: f64, mass: f64, young: f64, more: &str| {
         format!(
@@ -208,7 +261,7 @@ pub(super) fn weight(lab: &Lab, masses: f64, stiffness: f64) -> Result<f64, Trou
     };
     let (below, above) = (base * (1.0 / stiffness).max(1.0), base * stiffness.max(1.0));
     let scene = Scene::new(2, 1.0 / 60.0, 1, "backward_euler")
-        .add("[world]\ngravity = [0.0, -9.81]\n[contact]\nfriction = 0.5")
+        .add(&format!("[world]\ngravity = [0.0, -9.81]\n[contact]\nfriction = 0.5\n{contact}"))
         .add(&block("lower", -0.5, -1.0, 2.0, 1.0, below, "pin = [{ select = { side = \"bottom\" } }]"))
         .add(&block("upper", 0.03, 0.01, 1.0, masses, above, ""));
     let mut world = lab.plane(scene)?;

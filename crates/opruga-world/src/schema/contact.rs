@@ -1,7 +1,7 @@
 //! `[contact]`, `[[contact.pair]]`, and what a body says of its own contact.
 
 use super::{Child, Holds, Section, child, section};
-use opruga_core::spec::{Allowed, Bound, Default, Field};
+use opruga_core::spec::{Allowed, Bound, Condition, Default, Field};
 
 const FRICTION: &str = "Coulomb's coefficient µ, for sticking and sliding alike; of two bodies the mean of theirs.";
 const RESTITUTION: &str =
@@ -19,11 +19,21 @@ pub const CONTACT: Section = Section {
         &[
             Field::new(
                 "response",
-                Allowed::Choice(&["constraint"]),
+                Allowed::Choice(&["constraint", "barrier"]),
                 "",
                 Default::Text("constraint"),
-                "How contact is kept: `constraint` by impulses that let pairs come to touch and no further.",
+                "How contact is kept: `constraint` by impulses that let pairs come to touch and no further; `barrier` by forces that grow without \
+                 bound as a gap closes, under implicit integrators.",
             ),
+            Field::new(
+                "reach",
+                Allowed::POSITIVE,
+                "m",
+                Default::Absent,
+                "The gap, beyond the thickness, at which the barrier begins to push. Where the scene is silent it is a fiftieth of the mean edge of all \
+                 surfaces, and at most half of the shortest.",
+            )
+            .applies(&[Condition::Word("response", &["barrier"])]),
             Field::new("friction", Allowed::NOT_NEGATIVE, "", Default::Number(0.0), FRICTION),
             Field::new("restitution", Allowed::FRACTION, "", Default::Number(0.0), RESTITUTION),
             Field::new(

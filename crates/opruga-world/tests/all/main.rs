@@ -3,6 +3,7 @@
 mod acting;
 mod any_world;
 mod ball;
+mod barrier;
 mod blueprints_of_programs;
 mod common;
 mod consistent_mass;

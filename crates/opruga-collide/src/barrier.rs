@@ -1,0 +1,364 @@
+//! A barrier that keeps surfaces apart: its energy, forces and second derivatives, pair by pair.
+//!
+//! ```text
+//! B = Σ κ m b(g),   b(g) = −(g − r)² ln(g/r) for g < r, else 0
+//! ```
+//!
+//! g [m] is the distance of a vertex and a facet, or of two edges, less their thickness, and r the reach. b has two continuous derivatives and
+//! grows without bound as g falls to zero. m fades pairs of nearly parallel edges out, whose closest points jump. κ [N/m] is the stiffness of
+//! the bodies themselves at the pair, so nobody is asked for one.
+//!
+//! Second derivatives are those of b alone, κ m b″ ∇g ∇gᵀ: they have no negative eigenvalues, and what bends the distance is left to the next
+//! iteration.
+//!
+//! Friction of a pair that presses with N = −κ m b′ belongs to its slip s in the step, across the normal:
+//!
+//! ```text
+//! t = λ + k s,   D = |t|²/(2 k) where |t| ≤ µ N, else µ N |t|/k − (µ N)²/(2 k)
+//! ```
+//!
+//! Its force −∂D/∂s is at most µ N. λ is found by repetition, λ ← the force: so what sticks does not slip (method of multipliers).
+//!
+//! Sources: M. Li and others, Incremental potential contact, ACM Trans. Graph. 39 (2020), equations 6 and 24; M. Li, D. M. Kaufman, C. Jiang,
+//! Codimensional incremental potential contact (2021), for the thickness; P. Alart, A. Curnier, A mixed formulation for frictional contact
+//! problems prone to Newton like solution methods (1991), for the multipliers.
+
+use crate::candidates::Candidates;
+use crate::closest::{closest_of_segments, closest_on_facet};
+use crate::gap::Gap;
+use crate::law::Laws;
+use crate::reports;
+use crate::row::Row;
+use crate::rows::{key, meeting_time};
+use crate::surface::Surface;
+use crate::touching::{Touching, Trouble};
+use crate::vector::{add, dot, length, scaled, subtract};
+use opruga_math::Lane;
+
+/// The part of its gap that a pair keeps in one iteration, at least: the value of the source (2020, section 5).
+const KEPT: f64 = 0.1;
+
+/// Gaps below this part of the reach are too small for what presses.
+const CLOSE: f64 = 0.01;
+
+/// How nearly parallel edges fade out: the square of the sine of their angle, as in the source (2020, section 5.3).
+const PARALLEL: f64 = 1e-3;
+
+/// Stiffness of sticking, relative to that of the pair: the rounds that multipliers take go by its ratio to how bodies answer.
+const STICKING: f64 = 10.0;
+
+/// A pair within reach of the barrier.
+#[derive(Clone, Copy, Debug)]
+pub struct Pressed<const D: usize> {
+    /// Its features: pairs ascend by it.
+    pub id: u64,
+    /// Its points; those that are none repeat the first.
+    pub points: [u32; 4],
+    /// ∇g = wᵢ n of its points.
+    pub weights: [f64; 4],
+    /// From the second feature to the first.
+    pub normal: [f64; D],
+    /// g [m].
+    pub gap: f64,
+    /// The energy [J].
+    pub energy: f64,
+    /// −κ m b′ [N] and κ m b″ [N/m].
+    pub force: f64,
+    /// See `force`.
+    pub curvature: f64,
+    /// κ b ∂m/∂x of its points [N]: zero but for nearly parallel edges.
+    pub fading: [[f64; D]; 4],
+    /// κ [N/m].
+    pub stiffness: f64,
+    /// µ.
+    pub friction: f64,
+}
+
+/// Friction of a pair.
+#[derive(Clone, Copy, Debug)]
+pub struct Rubbing<const D: usize> {
+    /// The pair: its features, points, weights and normal.
+    pub id: u64,
+    /// Its points.
+    pub points: [u32; 4],
+    /// wᵢ.
+    pub weights: [f64; 4],
+    /// n.
+    pub normal: [f64; D],
+    /// µ N [N].
+    pub most: f64,
+    /// k [N/m].
+    pub stiffness: f64,
+    /// λ [N].
+    pub multiplier: [f64; D],
+}
+
+impl<const D: usize> Pressed<D> {
+    /// The friction of the pair, with a multiplier across its normal.
+    pub fn rubbing(&self, multiplier: [f64; D]) -> Rubbing<D> {
+        let Pressed { id, points, weights, normal, .. } = *self;
+        let across = subtract(&multiplier, &scaled(&normal, dot(&multiplier, &normal)));
+        let (size, most) = (length(&across), self.friction * self.force);
+        let multiplier = if size > most { scaled(&across, most / size) } else { across };
+        Rubbing { id, points, weights, normal, most, stiffness: STICKING * self.stiffness, multiplier }
+    }
+}
+
+impl<const D: usize> Rubbing<D> {
+    /// The slip of the displacements of the points since the start of the step [m].
+    pub fn slip(&self, moved: &[[f64; D]]) -> [f64; D] {
+        let mut sum = [0.0; D];
+        for (p, w) in self.points.iter().zip(&self.weights) {
+            sum = add(&sum, &scaled(&moved[*p as usize], *w));
+        }
+        subtract(&sum, &scaled(&self.normal, dot(&sum, &self.normal)))
+    }
+    /// t and its size [N].
+    fn pull(&self, slip: &[f64; D]) -> ([f64; D], f64) {
+        let pull = add(&self.multiplier, &scaled(slip, self.stiffness));
+        (pull, length(&pull))
+    }
+    /// The energy [J].
+    pub fn energy(&self, slip: &[f64; D]) -> f64 {
+        let (_, size) = self.pull(slip);
+        let inverse = 0.5 / self.stiffness;
+        if size <= self.most { size * size * inverse } else { self.most * (2.0 * size - self.most) * inverse }
+    }
+    /// −∂D/∂s [N].
+    pub fn force(&self, slip: &[f64; D]) -> [f64; D] {
+        let (pull, size) = self.pull(slip);
+        scaled(&pull, -if size > self.most { self.most / size } else { 1.0 })
+    }
+    /// ∂²D/∂s² as what it is along t and across t and the normal [N/m], with the direction of t.
+    fn curvature(&self, slip: &[f64; D]) -> ([f64; D], [f64; 2]) {
+        let (pull, size) = self.pull(slip);
+        if size <= self.most {
+            return ([0.0; D], [self.stiffness; 2]);
+        }
+        (scaled(&pull, 1.0 / size), [0.0, self.stiffness * self.most / size])
+    }
+    /// ∂²D/∂s² times a relative motion of the pair.
+    pub fn stiffen(&self, slip: &[f64; D], motion: &[f64; D]) -> [f64; D] {
+        let across = subtract(motion, &scaled(&self.normal, dot(motion, &self.normal)));
+        let (direction, [along, aside]) = self.curvature(slip);
+        add(&scaled(&across, aside), &scaled(&direction, (along - aside) * dot(&across, &direction)))
+    }
+}
+
+/// The barrier of the surfaces of a scene.
+#[derive(Clone, Debug, Default)]
+pub struct Barrier<const D: usize> {
+    /// The reach r [m].
+    reach: f64,
+    /// How much every point gives way: 1/k of its body there [m/N]; 0 where it is led.
+    pub softness: Vec<f64>,
+    /// By how much κ is raised in the step at hand.
+    pub raised: f64,
+    candidates: Candidates<D>,
+    boxes: Vec<[[f64; D]; 2]>,
+}
+
+impl<const D: usize> Barrier<D> {
+    /// A barrier of a reach [m].
+    pub fn new(reach: f64) -> Barrier<D> {
+        Barrier { reach, raised: 1.0, ..Barrier::default() }
+    }
+
+    /// Raises κ where the smallest gap is below a hundredth of the reach and has become smaller than before; gives that gap [m]. A correction
+    /// moves such a pair by a part of its gap alone.
+    ///
+    /// # Source
+    /// Li and others 2020, algorithm 1, line 14.
+    pub fn adapt(&mut self, pressed: &[Pressed<D>], before: f64) -> f64 {
+        let least = pressed.iter().fold(f64::INFINITY, |least, pair| pair.gap.smaller(least));
+        if least < CLOSE * self.reach && least < before {
+            self.raised *= 2.0;
+        }
+        least
+    }
+
+    /// Looks for all pairs that may come within reach while the points go straight from x to y [m].
+    ///
+    /// # Errors
+    /// [`Trouble::TooMany`] above a limit.
+    pub fn look(
+        &mut self,
+        surface: &Surface<D>,
+        laws: &Laws,
+        [x, y]: [&[[f64; D]]; 2],
+        most: usize,
+    ) -> Result<(), Trouble> {
+        self.boxes.clear();
+        self.boxes.extend(x.iter().zip(y).map(|(x, y)| {
+            let at = |choose: fn(f64, f64) -> f64| core::array::from_fn(|d| choose(x[d], y[d]));
+            [at(|a, b| a.smaller(b)), at(|a, b| a.larger(b))]
+        }));
+        let distances = laws.largest_thickness().map(|thickness| thickness + self.reach);
+        if self.candidates.find(surface, &self.boxes, distances, most, |a, b| laws.meet(a, b)) {
+            Ok(())
+        } else {
+            Err(Trouble::TooMany { found: self.candidates.len() })
+        }
+    }
+
+    /// The pairs that were found: features, and whether they are a vertex and a facet.
+    fn pairs(&self) -> impl Iterator<Item = ([u32; 2], bool)> + '_ {
+        let Candidates { vertex_facet, edge_edge, .. } = &self.candidates;
+        vertex_facet.iter().map(|pair| (*pair, true)).chain(edge_edge.iter().map(|pair| (*pair, false)))
+    }
+
+    /// The closest points of a pair.
+    fn closest(&self, surface: &Surface<D>, x: &[[f64; D]], [a, b]: [u32; 2], with_facet: bool) -> Pair<D> {
+        let (mut points, mut weights) = ([a; 4], [0.0; 4]);
+        if with_facet {
+            let corners = surface.facets[b as usize];
+            let at = closest_on_facet(&x[a as usize], &corners.map(|p| x[p as usize]));
+            weights[0] = 1.0;
+            for k in 0..D {
+                (points[k + 1], weights[k + 1]) = (corners[k], -at[k]);
+            }
+        } else {
+            let [first, second] = [a, b].map(|edge| surface.edges[edge as usize]);
+            let [s, t] = closest_of_segments(&first.map(|p| x[p as usize]), &second.map(|p| x[p as usize]));
+            points = [first[0], first[1], second[0], second[1]];
+            weights = [1.0 - s, s, t - 1.0, -t];
+        }
+        let mut between = [0.0; D];
+        for (p, w) in points.iter().zip(&weights) {
+            between = add(&between, &scaled(&x[*p as usize], *w));
+        }
+        Pair { points, weights, between }
+    }
+
+    /// The first body of a pair, and the second.
+    fn bodies(surface: &Surface<D>, pair: &Pair<D>, with_facet: bool) -> [u32; 2] {
+        [pair.points[0], pair.points[if with_facet { 1 } else { 2 }]].map(|p| surface.body[p as usize])
+    }
+
+    /// The pairs within reach with the points at x [m].
+    ///
+    /// # Errors
+    /// [`Trouble::Meet`] where a pair is not apart.
+    pub fn press(
+        &self,
+        surface: &Surface<D>,
+        laws: &Laws,
+        x: &[[f64; D]],
+        out: &mut Vec<Pressed<D>>,
+    ) -> Result<(), Trouble> {
+        out.clear();
+        for (features, with_facet) in self.pairs() {
+            let pair = self.closest(surface, x, features, with_facet);
+            let [a, b] = Self::bodies(surface, &pair, with_facet);
+            let law = laws.of(a, b);
+            let square = dot(&pair.between, &pair.between);
+            let within = law.thickness + self.reach;
+            if square >= within * within {
+                continue;
+            }
+            let distance = square.sqrt();
+            let gap = distance - law.thickness;
+            let stiffness = self.stiffness(&pair.points, with_facet);
+            if stiffness == 0.0 {
+                // Pins lead both.
+                continue;
+            }
+            if gap <= 0.0 || gap.is_nan() {
+                return Err(Trouble::Meet { bodies: [a, b] });
+            }
+            let (share, fade) = if with_facet { (1.0, None) } else { fading(x, &pair.points) };
+            let (apart, logarithm) = (gap - self.reach, Lane::ln(gap / self.reach));
+            let energy = -stiffness * apart * apart * logarithm;
+            let slope = 2.0 * apart * logarithm + apart * apart / gap;
+            let curvature = -2.0 * logarithm - 4.0 * apart / gap + apart * apart / (gap * gap);
+            out.push(Pressed {
+                id: key(features, with_facet),
+                points: pair.points,
+                weights: pair.weights,
+                normal: scaled(&pair.between, 1.0 / distance),
+                gap,
+                energy: share * energy,
+                force: share * stiffness * slope,
+                curvature: share * stiffness * curvature,
+                fading: fade.map_or([[0.0; D]; 4], |fade: [[f64; D]; 4]| fade.map(|f| scaled(&f, energy))),
+                stiffness,
+                friction: law.friction,
+            });
+        }
+        Ok(())
+    }
+
+    /// κ of a pair: both features one behind the other, each as soft as its points in the mean.
+    fn stiffness(&self, points: &[u32; 4], with_facet: bool) -> f64 {
+        let mean =
+            |points: &[u32]| points.iter().map(|p| self.softness[*p as usize]).sum::<f64>() / points.len() as f64;
+        let first = if with_facet { 1 } else { 2 };
+        let softness = mean(&points[..first]) + mean(&points[first..=D]);
+        if softness > 0.0 { self.raised / softness } else { 0.0 }
+    }
+
+    /// The part of the way from x to y that all pairs may go, each keeping a tenth of its gap; 1 where nothing is in the way.
+    pub fn free_part(&self, surface: &Surface<D>, laws: &Laws, [x, y]: [&[[f64; D]]; 2]) -> f64 {
+        let mut part: f64 = 1.0;
+        for (features, with_facet) in self.pairs() {
+            let pair = self.closest(surface, x, features, with_facet);
+            let [a, b] = Self::bodies(surface, &pair, with_facet);
+            let thickness = laws.of(a, b).thickness;
+            let gap = length(&pair.between) - thickness;
+            if self.stiffness(&pair.points, with_facet) == 0.0 {
+                continue;
+            }
+            if let Some(time) = meeting_time(surface, [x, y], thickness + KEPT * gap, features, with_facet) {
+                part = time.smaller(part);
+            }
+        }
+        part
+    }
+}
+
+impl<const D: usize> Touching<D> {
+    /// Takes what the barrier did in a step of h [s], for those who ask for contacts: pairs and their friction [N], where the points end.
+    pub fn take_pressed(&mut self, h: f64, pairs: impl Iterator<Item = (Pressed<D>, [f64; D])>) {
+        self.rows.clear();
+        for (pair, friction) in pairs {
+            let gap = Gap { points: pair.points, weights: pair.weights, gap: pair.gap, normal: pair.normal };
+            let mut row = Row::new(pair.id, &gap, 0.0, pair.friction, &self.inverse_mass);
+            (row.normal_impulse, row.friction_impulse) = (pair.force * h, scaled(&friction, h));
+            self.rows.push(row);
+        }
+        self.counts.steps += 1;
+        self.counts.contacts += self.rows.len() as u64;
+        if self.report {
+            reports::add(&mut self.reports, &self.rows, &self.surface, &self.after[0]);
+        }
+    }
+}
+
+/// Two features at their closest points.
+struct Pair<const D: usize> {
+    points: [u32; 4],
+    weights: [f64; 4],
+    /// From the second feature to the first [m].
+    between: [f64; D],
+}
+
+/// m of two edges, and its derivatives by their points where they are nearly parallel.
+fn fading<const D: usize>(x: &[[f64; D]], points: &[u32; 4]) -> (f64, Option<[[f64; D]; 4]>) {
+    let at = points.map(|p| x[p as usize]);
+    let (u, v) = (subtract(&at[1], &at[0]), subtract(&at[3], &at[2]));
+    let (uu, vv, uv) = (dot(&u, &u), dot(&v, &v), dot(&u, &v));
+    // sin² of their angle, which knows no lengths.
+    let sine = (uu * vv - uv * uv) / (uu * vv);
+    if sine >= PARALLEL {
+        return (1.0, None);
+    }
+    let part = sine / PARALLEL;
+    let slope = (2.0 - 2.0 * part) / PARALLEL;
+    // ∂ sin²/∂u = −2 uv/(uu vv) (v − u uv/uu).
+    let by = |u: &[f64; D], v: &[f64; D], uu: f64, vv: f64| {
+        scaled(&subtract(v, &scaled(u, uv / uu)), -2.0 * slope * uv / (uu * vv))
+    };
+    let (by_u, by_v) = (by(&u, &v, uu, vv), by(&v, &u, vv, uu));
+    let less = |a: &[f64; D]| scaled(a, -1.0);
+    (part * (2.0 - part), Some([less(&by_u), by_u, less(&by_v), by_v]))
+}

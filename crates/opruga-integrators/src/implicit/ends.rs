@@ -1,0 +1,124 @@
+//! The beginning and the end of a step: its ledger, and the state that it leaves.
+
+use super::balance::{Balance, Solved};
+use super::holding;
+use super::impact::Ending;
+use super::own_loss::{self, given};
+use super::rule::Rule;
+use super::workspace::{Workspace, write};
+use opruga_core::error::StepError;
+use opruga_core::system::{Stage, System, Work8};
+use opruga_math::WIDTH;
+
+/// A stage that has passed the guards, and the rule by which it was found.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Found<R> {
+    pub(super) rule: R,
+    pub(super) balance: Balance,
+    pub(super) solved: Solved,
+}
+
+/// The ledger before a step, and after what is entered at its start.
+#[derive(Clone, Copy)]
+pub(super) struct Ledger {
+    pub(super) before: Work8,
+    pub(super) begun: Work8,
+}
+
+/// Takes the state at the start of a step, and enters the works of rules that go by the mean of start and end.
+pub(super) fn open_ledger<R: Rule<D>, const D: usize>(
+    system: &mut System<D>,
+    workspace: &mut Workspace<D>,
+    h: f64,
+) -> Result<Ledger, StepError> {
+    system.begin_implicit();
+    workspace.load(system);
+    let before = system.work;
+    if R::TRAPEZOID {
+        system.evaluate(Stage::Current, 0.0, 0.5 * h, &mut workspace.force)?;
+    }
+    own_loss::add_given(&mut system.work, &given(&before));
+    Ok(Ledger { before, begun: system.work })
+}
+
+/// Enters the works of rules that go by the stage, which was evaluated last, and those of coupled masses.
+pub(super) fn enter_stage<R: Rule<D>, const D: usize>(
+    system: &mut System<D>,
+    workspace: &mut Workspace<D>,
+    found: &Found<R>,
+    ledger: &Ledger,
+) {
+    let by_stage = !found.rule.is_trapezoid();
+    if R::TRAPEZOID && by_stage {
+        take_back(&mut system.work, &ledger.begun, &ledger.before);
+    }
+    let entered = given(&system.work);
+    if by_stage {
+        // Damping, loads and pins by the forces of the stage.
+        system.evaluate_again(Workspace::<D>::STAGE, found.balance.time, found.balance.h, &mut workspace.force);
+    }
+    own_loss::add_given(&mut system.work, &entered);
+    own_loss::add_pushes(system, &workspace.u1);
+    if system.inertia.is_some() {
+        // Where held nodes are coupled, they have the velocity of the step to its end.
+        let Workspace { v0, v1, .. } = &mut *workspace;
+        system.held_axes(&mut |node, d| v1[node * D + d] = v0[node * D + d]);
+        holding::enter_work(system, v0, v1);
+    }
+}
+
+/// Enters the works at the end of a step of rules that go by the mean of start and end.
+pub(super) fn enter_end<R: Rule<D>, const D: usize>(
+    system: &mut System<D>,
+    workspace: &mut Workspace<D>,
+    found: &Found<R>,
+) -> Result<(), StepError> {
+    if found.rule.is_trapezoid() {
+        let h = found.balance.h;
+        system.hold(Stage::Current, h);
+        let entered = given(&system.work);
+        system.evaluate(Stage::Current, h, 0.5 * h, &mut workspace.force)?;
+        own_loss::add_given(&mut system.work, &entered);
+    }
+    Ok(())
+}
+
+/// Takes out of a ledger what was entered between two moments.
+fn take_back(work: &mut Work8, after: &Work8, before: &Work8) {
+    for lane in 0..WIDTH {
+        work.user[lane] -= after.user[lane] - before.user[lane];
+        work.gas[lane] -= after.gas[lane] - before.gas[lane];
+        work.damping[lane] -= after.damping[lane] - before.damping[lane];
+        work.numerical[lane] -= after.numerical[lane] - before.numerical[lane];
+    }
+}
+
+/// Works out the end of a step: displacement and velocity, with what obstacles do to them.
+pub(super) fn end<R: Rule<D>, const D: usize>(
+    rule: R,
+    system: &mut System<D>,
+    workspace: &mut Workspace<D>,
+    balance: &Balance,
+    h: f64,
+) {
+    rule.end(system, workspace, balance, h);
+    own_loss::take_impulses(system, workspace, balance);
+    workspace.struck.clear();
+    if system.contacts.is_none() {
+        return;
+    }
+    for k in 0..workspace.memory.len() {
+        workspace.memory[k] = rule.remembered(workspace, k, h);
+    }
+    let Workspace { contacting, mass, residual, x0, v0, u1, v1, memory, struck, extent, .. } = workspace;
+    contacting.expel(system, x0, u1, residual, h, *extent);
+    let ending = Ending { mass, reaction: residual, x0, v0, balance, extent: *extent };
+    contacting.end(system, &ending, v1, memory, struck);
+}
+
+/// Writes the end of the step into the state.
+pub(crate) fn commit<const D: usize>(system: &mut System<D>, workspace: &Workspace<D>) {
+    let (places, nodes, threads) = (system.places(), system.nodes, system.threads);
+    let state = [&mut system.state.x, &mut system.state.v];
+    write(places, nodes, threads, state, |k| [workspace.x0[k] + workspace.u1[k], workspace.v1[k]]);
+}

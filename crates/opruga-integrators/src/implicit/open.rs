@@ -1,0 +1,212 @@
+//! A step of a rule whose end is searched for together with the ends of other bodies.
+
+use super::balance::{Balance, Solved};
+use super::contact_query::ContactQuery;
+use super::convergence::{count, finish};
+use super::direction::Keep;
+use super::ends::{Found, Ledger, commit, end, enter_end, enter_stage, open_ledger};
+use super::holding;
+use super::line_search::given_along;
+use super::linear::{Filter, Mixture};
+use super::rule::Rule;
+use super::settings::Settings;
+use super::stage::{evaluate, judge, look, mixture, potential, rounding_of_models};
+use super::workspace::Workspace;
+use opruga_core::error::StepError;
+use opruga_core::open_step::OpenStep;
+use opruga_core::potential::Definiteness;
+use opruga_core::system::System;
+use opruga_solve::blocks::isotropic;
+
+/// A step that has begun.
+struct Open<R, const D: usize> {
+    rule: R,
+    settings: Settings,
+    workspace: Box<Workspace<D>>,
+    balance: Balance,
+    ledger: Ledger,
+    /// Whether forces were evaluated at the trial last.
+    tried: bool,
+}
+
+/// What a matrix is made of, one after the other until it is positive definite.
+const KEEPS: [Keep; 5] = [Keep::Exact, Keep::Clamped, Keep::Raised(1e-8), Keep::Raised(1e-4), Keep::Raised(1e-2)];
+
+/// Begins a step of h [s] with nothing moved.
+///
+/// # Errors
+/// [`StepError`] where a model refuses the start.
+pub(super) fn open<R: Rule<D>, const D: usize>(
+    rule: R,
+    settings: Settings,
+    system: &mut System<D>,
+    h: f64,
+) -> Result<Box<dyn OpenStep<D>>, StepError> {
+    let mut workspace = system.cache.take::<Workspace<D>>();
+    let rule = rule.pushed();
+    let rule = rule.in_contact().unwrap_or(rule);
+    // What is reused from step to step belongs to searches of the body alone.
+    workspace.answer.last = None;
+    holding::take_hold(system, &mut workspace.kick, h);
+    let ledger = open_ledger::<R, D>(system, &mut workspace, h)?;
+    workspace.contacting.clear(system.nodes);
+    let balance = rule.begin(system, &mut workspace, h);
+    workspace.hold(system, balance.theta, h);
+    workspace.u.fill(0.0);
+    workspace.step.fill(0.0);
+    workspace.reaction.fill(0.0);
+    workspace.linear.begin();
+    workspace.friction.begin(if system.contacts.is_some() { system.nodes } else { 0 });
+    let mut open = Open { rule, settings, workspace, balance, ledger, tried: false };
+    evaluate(system, &mut open.workspace, &balance, false)?;
+    Ok(Box::new(open))
+}
+
+impl<R: Rule<D>, const D: usize> Open<R, D> {
+    /// The matrix is always there: what acts between bodies is solved for with its factor.
+    fn mixture<'a>(&'a self, system: &'a System<D>, keep: Definiteness) -> Mixture<'a, D> {
+        let mixture = mixture(system, &self.workspace.mass, &self.balance, keep, &self.settings);
+        Mixture { matrix_free: false, ..mixture }
+    }
+}
+
+impl<R: Rule<D>, const D: usize> OpenStep<D> for Open<R, D> {
+    fn displacement(&self) -> &[f64] {
+        &self.workspace.u
+    }
+    fn correction(&mut self) -> &mut [f64] {
+        &mut self.workspace.step
+    }
+    fn evaluate(&mut self, system: &mut System<D>, part: f64) -> Result<(), StepError> {
+        let Workspace { trial, u, step, .. } = &mut *self.workspace;
+        for (trial, (u, step)) in trial.iter_mut().zip(u.iter().zip(step)) {
+            *trial = u + part * *step;
+        }
+        self.tried = true;
+        evaluate(system, &mut self.workspace, &self.balance, true)
+    }
+    fn potential(&self, system: &System<D>) -> Option<[f64; 2]> {
+        if system.is_damped() {
+            return None;
+        }
+        potential(system, &self.workspace, &self.balance, self.tried).map(|(energy, size)| [energy, size])
+    }
+    fn rounding(&self, system: &System<D>) -> f64 {
+        rounding_of_models(system)
+    }
+    fn residual(&self) -> &[f64] {
+        &self.workspace.residual
+    }
+    fn advance(&mut self, part: f64) {
+        let Workspace { u, step, .. } = &mut *self.workspace;
+        u.iter_mut().zip(step).for_each(|(u, step)| *u += part * *step);
+    }
+    fn look(&mut self, system: &System<D>) -> bool {
+        let changed = look(system, &mut self.workspace, &self.balance, true);
+        let Workspace { contacting, u, held, x0, free, projectors, prescribed, .. } = &mut *self.workspace;
+        contacting.hold(u, self.balance.theta, held, x0, free, projectors, prescribed);
+        changed
+    }
+    fn factor(&mut self, system: &System<D>, exact: bool) -> bool {
+        let mut linear = std::mem::take(&mut self.workspace.linear);
+        let mut factored = false;
+        for keep in KEEPS.into_iter().skip(usize::from(!exact)) {
+            let mixture = self.mixture(system, keep.definiteness());
+            linear.assemble(&mixture);
+            let Workspace { contacting, x0, u, extent, free, projectors, .. } = &*self.workspace;
+            let query = ContactQuery::new(system, &self.balance, x0, u, *extent);
+            contacting
+                .derivatives(&query, keep != Keep::Exact, &mut |node, block| linear.add_block(&mixture, node, &block));
+            if let Keep::Raised(part) = keep {
+                linear.raise(part);
+            }
+            factored = linear.factor_positive(&Filter { free, projectors }).is_ok();
+            if factored {
+                break;
+            }
+        }
+        self.workspace.linear = linear;
+        factored
+    }
+    fn stiffness(&self, system: &System<D>, node: usize) -> f64 {
+        let pinned = !self.workspace.free[node] && self.workspace.projectors[node] == isotropic(0.0);
+        if pinned {
+            0.0
+        } else {
+            self.workspace.linear.size_at(&self.mixture(system, Definiteness::Clamped), node) / D as f64
+        }
+    }
+    fn prescribed(&self) -> &[f64] {
+        &self.workspace.prescribed
+    }
+    fn right_side(&mut self, system: &System<D>, forces: &[f64], out: &mut [f64]) {
+        self.multiply(system, &self.workspace.prescribed, out);
+        let Workspace { contacting, residual, .. } = &*self.workspace;
+        for (out, (r, force)) in out.iter_mut().zip(residual.iter().zip(forces)) {
+            *out += r + force;
+        }
+        contacting.subtract_friction(out);
+        out.iter_mut().for_each(|out| *out = -*out);
+        self.filter(out);
+    }
+    fn multiply(&self, system: &System<D>, x: &[f64], y: &mut [f64]) {
+        self.workspace.linear.multiply(&self.mixture(system, Definiteness::Clamped), x, y);
+    }
+    fn filter(&self, x: &mut [f64]) {
+        Filter { free: &self.workspace.free, projectors: &self.workspace.projectors }.apply(x);
+    }
+    fn solve(&self, x: &mut [f64]) {
+        self.workspace.linear.solve_positive(x);
+    }
+    fn follow(&mut self, system: &System<D>, forces: &[f64], tolerance: f64, out: &mut [f64]) -> bool {
+        if !self.workspace.contacting.any() {
+            self.workspace.reaction.fill(0.0);
+            return false;
+        }
+        self.multiply(system, &self.workspace.step, out);
+        let Workspace { reaction, residual, contacting, friction, .. } = &mut *self.workspace;
+        for (k, reaction) in reaction.iter_mut().enumerate() {
+            *reaction = out[k] + residual[k] + forces[k];
+        }
+        let changed = contacting.follow(reaction, friction, tolerance, out);
+        if changed {
+            self.filter(out);
+        }
+        changed
+    }
+    fn given(&mut self) -> f64 {
+        given_along(&mut self.workspace)
+    }
+    fn judge(&mut self, system: &System<D>) -> bool {
+        if system.contacts.is_none() {
+            return false;
+        }
+        let settings = Settings { solver: super::settings::Solver::Auto, ..self.settings };
+        let verdict = judge(system, &mut self.workspace, &self.balance, &settings, settings.tolerance, true);
+        verdict.anew || verdict.unsettled
+    }
+    fn goal(&self) -> f64 {
+        self.settings.tolerance * self.workspace.extent
+    }
+    fn most_iterations(&self) -> (u32, bool) {
+        let accepts = self.settings.real_time || self.settings.otherwise == super::settings::Otherwise::Accept;
+        (self.settings.iterations, accepts)
+    }
+    fn close(mut self: Box<Self>, system: &mut System<D>, iterations: u32) -> Result<(), StepError> {
+        let Open { rule, balance, ledger, .. } = *self;
+        let workspace = &mut *self.workspace;
+        let solved = Solved { iterations, converged: true, ..Solved::default() };
+        evaluate(system, workspace, &balance, false)?;
+        count(system, &solved);
+        end(rule, system, workspace, &balance, balance.h);
+        finish(system, workspace);
+        let found = Found { rule, balance, solved };
+        enter_stage(system, workspace, &found, &ledger);
+        commit(system, workspace);
+        enter_end(system, workspace, &found)?;
+        rule.remember(system, workspace, balance.h);
+        system.end_implicit(balance.h);
+        system.cache.put(self.workspace);
+        Ok(())
+    }
+}

@@ -1,0 +1,190 @@
+//! Bodies that a barrier keeps apart: a substep of all that solve for its end.
+//!
+//! Each begins its step, the common end is searched for ([`Search`]), and each ends its step with the forces of the others.
+
+use crate::barrier_search::{Kept, Opened, Refused, Search, scaled};
+use crate::island::Island;
+use crate::meeting::{Meeting, Substep};
+use opruga_collide::{Pressed, Touching, Trouble};
+use opruga_core::error::StepError;
+use opruga_core::system::{Stage, System, Workspace};
+use opruga_math::WIDTH;
+use opruga_math::words::number;
+use opruga_solve::Directions;
+
+impl<const D: usize> Meeting<D> {
+    /// Makes a substep of all bodies that the barrier keeps apart. Where one of them fails in it, its outcome says so.
+    pub(crate) fn step_with_barrier(
+        &mut self,
+        islands: &mut [Island<D>],
+        step: &Substep<'_, D>,
+    ) -> Result<(), Trouble> {
+        let Some(mut kept) = self.barrier.take() else { return Ok(()) };
+        let outcome = self.search_with_barrier(islands, step, &mut kept);
+        self.barrier = Some(kept);
+        match outcome {
+            Ok(()) => Ok(()),
+            Err(Refused::Trouble(trouble)) => Err(trouble),
+            Err(Refused::Step(error)) => {
+                for pushed in &self.pushed {
+                    islands[pushed.island].refuse(error.clone());
+                }
+                Ok(())
+            }
+        }
+    }
+
+    fn search_with_barrier(
+        &mut self,
+        islands: &mut [Island<D>],
+        step: &Substep<'_, D>,
+        kept: &mut Kept<D>,
+    ) -> Result<(), Refused> {
+        kept.workspaces.resize_with(self.pushed.len(), Workspace::default);
+        for (pushed, workspace) in self.pushed.iter().zip(&mut kept.workspaces) {
+            islands[pushed.island].system.exchange(workspace);
+        }
+        let outcome = self.find_common_end(islands, step, kept);
+        for (pushed, workspace) in self.pushed.iter().zip(&mut kept.workspaces) {
+            islands[pushed.island].system.exchange(workspace);
+        }
+        outcome
+    }
+
+    fn find_common_end(
+        &mut self,
+        islands: &mut [Island<D>],
+        step: &Substep<'_, D>,
+        kept: &mut Kept<D>,
+    ) -> Result<(), Refused> {
+        let (h, points) = (step.plan.h, self.touching.inverse_mass.len());
+        let (mut opened, mut coordinates, mut first) = (Vec::new(), vec![None; points], 0);
+        for (body, pushed) in self.pushed.iter().enumerate() {
+            let island = &mut islands[pushed.island];
+            island.system.pushes = Some(Vec::new());
+            island.begin_as_one(step.plan, step.number);
+            // Bodies whose integrator does not solve for the end of a step are refused before the run.
+            let Some(begun) = island.integrator.open(&mut island.system, h) else { continue };
+            for (p, index) in self.touching.coupled.points_of(body).zip(&pushed.indices) {
+                coordinates[p] = Some((opened.len(), first + *index as usize * D));
+            }
+            opened.push(Opened { island: pushed.island, first, step: begun? });
+            first += island.system.nodes * D;
+        }
+        let x = self.touching.before[0].clone();
+        self.move_outlines(step.time);
+        let ahead = (0..points).map(|p| match coordinates[p] {
+            Some(_) => [0.0; D],
+            None => std::array::from_fn(|d| self.touching.after[0][p][d] - x[p][d]),
+        });
+        let mut search = Search {
+            ahead: ahead.collect(),
+            islands,
+            touching: &mut self.touching,
+            barrier: &mut kept.barrier,
+            opened,
+            coordinates,
+            moved: vec![[0.0; D]; points],
+            trial: x.clone(),
+            x,
+            pressed: Vec::new(),
+            rubbing: Vec::new(),
+            directions: Directions::default(),
+            length: first,
+            iterations: 0,
+            stretch: 1.0,
+        };
+        search.find_softness()?;
+        search.find_end(std::mem::take(&mut kept.multipliers))?;
+        kept.multipliers = search.multipliers();
+        kept.iterations += u64::from(search.iterations);
+        search.close(h)?;
+        Ok(())
+    }
+}
+
+impl<const D: usize> Search<'_, D> {
+    /// Ends the steps of all bodies, with the forces that they exert on one another.
+    fn close(self, h: f64) -> Result<(), Refused> {
+        let Search { islands, touching, barrier, opened, coordinates, moved, x, pressed, rubbing, iterations, .. } =
+            self;
+        let mut forces = vec![[0.0; D]; x.len()];
+        let mut losses = vec![[0.0; 2]; x.len()];
+        let mut enter = |points: &[u32; 4], weights: &[f64; 4], force: &[f64; D], account: usize| {
+            for (p, w) in points.iter().map(|p| *p as usize).zip(weights) {
+                for d in 0..D {
+                    forces[p][d] += w * force[d];
+                    losses[p][account] -= w * force[d] * moved[p][d];
+                }
+            }
+        };
+        let friction_of = |pair: &Pressed<D>| {
+            let found = rubbing.binary_search_by_key(&pair.id, |rub| rub.id);
+            found.map_or([0.0; D], |k| rubbing[k].force(&rubbing[k].slip(&moved)))
+        };
+        for pair in &pressed {
+            enter(&pair.points, &pair.weights, &scaled(&pair.normal, pair.force), 0);
+            for (k, fading) in pair.fading.iter().enumerate() {
+                let mut one = [0.0; 4];
+                one[k] = 1.0;
+                enter(&pair.points, &one, &scaled(fading, -1.0), 0);
+            }
+        }
+        for rub in &rubbing {
+            enter(&rub.points, &rub.weights, &rub.force(&rub.slip(&moved)), 1);
+        }
+        touching.after[0].copy_from_slice(&x);
+        touching.take_pressed(h, pressed.iter().map(|pair| (*pair, friction_of(pair))));
+        for (body, Opened { island, first, step }) in opened.into_iter().enumerate() {
+            let system = &mut islands[island].system;
+            let mut pushes = Vec::new();
+            for (p, of_point) in coordinates.iter().enumerate() {
+                let Some((of, at)) = *of_point else { continue };
+                if of != body || forces[p] == [0.0; D] {
+                    continue;
+                }
+                let node = (at - first) / D;
+                pushes.push((node, forces[p]));
+                system.work.contact[node % WIDTH] += losses[p][0];
+                system.work.friction[node % WIDTH] += losses[p][1];
+            }
+            pushes.sort_by_key(|(node, _)| *node);
+            system.pushes = Some(pushes);
+            step.close(system, iterations)?;
+            refuse_inverted_cells(system)?;
+            // Obstacles put nodes onto their surface after the search: nobody may go through another one there either.
+            for (p, of_point) in coordinates.iter().enumerate() {
+                if let Some((_, at)) = of_point.filter(|(of, _)| *of == body) {
+                    touching.after[0][p] = system.state.x.at((at - first) / D);
+                }
+            }
+        }
+        let Touching { surface, laws, most, after: [end, _], .. } = &*touching;
+        barrier.look(surface, laws, [&x, end], *most)?;
+        if barrier.free_part(surface, laws, [&x, end]) < 1.0 {
+            let message = "obstacles push nodes through others that a barrier keeps apart; hint: smaller steps, or finer surfaces";
+            return Err(StepError::Model { model: "contact", message: message.into() }.into());
+        }
+        Ok(())
+    }
+}
+
+/// Refuses a body with cells inside out: in such a one nothing is apart.
+fn refuse_inverted_cells<const D: usize>(system: &System<D>) -> Result<(), StepError> {
+    let view = system.view(Stage::Current, system.time);
+    for member in &system.members {
+        let cells = member.potential.cell_states(&view, 0);
+        if let Some(cell) =
+            cells.iter().find(|cell| cell.smallest_volume_ratio <= 0.0 || cell.smallest_volume_ratio.is_nan())
+        {
+            let message = format!(
+                "cell {} turns inside out (volume ratio {}), where a barrier keeps bodies apart; hint: a material that resists that, such as \
+                 `neo_hookean`, or smaller steps",
+                cell.cell,
+                number(cell.smallest_volume_ratio)
+            );
+            return Err(StepError::Model { model: member.potential.properties().name, message });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,538 @@
+//! Bodies that a barrier keeps apart: one balance for all that solve for the end of a substep.
+//!
+//! ```text
+//! Σ Φ(u) + B(x₀ + u) + D(u) → min    Φ of each body, B the barrier, D friction at given normal forces
+//! ```
+//!
+//! Newton's method: a direction from the matrices of the bodies, each with its factor, and the second derivatives of B and D as short vectors
+//! beside them (conjugate gradients); no step goes farther than pairs may go without meeting, and the sum falls. So surfaces that are apart
+//! at the start of a substep are so at its end. Multipliers of friction and the normal forces that it goes by are found in rounds around that.
+//!
+//! Source: M. Li and others, Incremental potential contact, ACM Trans. Graph. 39 (2020), algorithm 1.
+
+use crate::island::Island;
+use opruga_collide::{Barrier, Pressed, Rubbing, Touching, Trouble};
+use opruga_core::error::StepError;
+use opruga_core::open_step::OpenStep;
+use opruga_core::system::Workspace;
+use opruga_math::Lane;
+use opruga_solve::{Directions, Preconditioner, conjugate_gradients, dot};
+
+/// The part of its right-hand side that the linear solver may leave, in the first iteration; it falls with what is out of balance.
+const LEFT: f64 = 1e-2;
+
+/// The least part: beyond it directions are rounding.
+const LEAST_LEFT: f64 = 1e-9;
+
+/// Products of conjugate gradients at most: every pair that presses hard takes about one.
+const MOST_PRODUCTS: u32 = 2000;
+
+/// The part of the slope that may be left after a correction.
+const SLOPE_LEFT: f64 = 0.8;
+
+/// A correction whose end is steeper than this part of its beginning lets the next one go twice as far, up to so many times its length: a matrix
+/// without negative eigenvalues is too stiff where bodies buckle. Without it, a square of springs that buckles on landing takes more than 100 iterations
+/// (`bodies_that_buckle_find_an_end`).
+const STEEP: f64 = 0.3;
+const LONGEST_STRETCH: f64 = 16.0;
+
+/// Halvings of a correction at most.
+const MOST_HALVINGS: u32 = 40;
+
+/// Rounds of friction at most, and the part of itself by which its force still changes where they end.
+const MOST_ROUNDS: u32 = 30;
+const SETTLED: f64 = 1e-3;
+
+/// Energies that differ by less than this part of their terms are the same.
+const ROUNDING: f64 = 1e-12;
+
+/// What a scene keeps for its barrier.
+#[derive(Debug, Default)]
+pub(crate) struct Kept<const D: usize> {
+    pub(crate) barrier: Barrier<D>,
+    /// Friction of the substep before, within a frame; ascending.
+    pub(crate) multipliers: Vec<(u64, [f64; D])>,
+    pub(crate) workspaces: Vec<Workspace<D>>,
+    /// Newton's iterations so far.
+    pub(crate) iterations: u64,
+}
+
+impl<const D: usize> Kept<D> {
+    pub(crate) fn new(reach: f64) -> Self {
+        Kept { barrier: Barrier::new(reach), ..Kept::default() }
+    }
+
+    /// Begins a frame: nothing of the last one is used.
+    pub(crate) fn begin(&mut self) {
+        self.multipliers.clear();
+    }
+}
+
+/// Where a substep ends for all bodies.
+pub(crate) enum Refused {
+    Step(StepError),
+    Trouble(Trouble),
+}
+impl From<StepError> for Refused {
+    fn from(error: StepError) -> Self {
+        Refused::Step(error)
+    }
+}
+impl From<Trouble> for Refused {
+    fn from(trouble: Trouble) -> Self {
+        Refused::Trouble(trouble)
+    }
+}
+
+/// A body whose step has begun, and where its coordinates begin in long vectors.
+pub(crate) struct Opened<const D: usize> {
+    pub(crate) island: usize,
+    pub(crate) first: usize,
+    pub(crate) step: Box<dyn OpenStep<D>>,
+}
+
+/// The search for the common end of a substep.
+pub(crate) struct Search<'a, const D: usize> {
+    pub(crate) islands: &'a mut [Island<D>],
+    pub(crate) touching: &'a mut Touching<D>,
+    pub(crate) barrier: &'a mut Barrier<D>,
+    pub(crate) opened: Vec<Opened<D>>,
+    /// The body and the first coordinate of every point of the surfaces; none of obstacles.
+    pub(crate) coordinates: Vec<Option<(usize, usize)>>,
+    /// Displacements of all points since the start, and where they are.
+    pub(crate) moved: Vec<[f64; D]>,
+    pub(crate) x: Vec<[f64; D]>,
+    pub(crate) trial: Vec<[f64; D]>,
+    /// How far obstacles still have to go [m].
+    pub(crate) ahead: Vec<[f64; D]>,
+    pub(crate) pressed: Vec<Pressed<D>>,
+    pub(crate) rubbing: Vec<Rubbing<D>>,
+    pub(crate) directions: Directions,
+    pub(crate) length: usize,
+    pub(crate) iterations: u32,
+    /// By how much the next correction is lengthened.
+    pub(crate) stretch: f64,
+}
+
+/// Adds a vector of a pair to those of its points.
+fn scatter<const D: usize>(
+    coordinates: &[Option<(usize, usize)>],
+    points: &[u32; 4],
+    weights: &[f64; 4],
+    force: &[f64; D],
+    to: &mut [f64],
+) {
+    for (p, w) in points.iter().zip(weights).filter(|(_, w)| **w != 0.0) {
+        if let Some((_, at)) = coordinates[*p as usize] {
+            (0..D).for_each(|d| to[at + d] += w * force[d]);
+        }
+    }
+}
+
+/// Σ wᵢ aᵢ of the points of a pair.
+fn gather<const D: usize>(
+    coordinates: &[Option<(usize, usize)>],
+    points: &[u32; 4],
+    weights: &[f64; 4],
+    from: &[f64],
+) -> [f64; D] {
+    let mut sum = [0.0; D];
+    for (p, w) in points.iter().zip(weights).filter(|(_, w)| **w != 0.0) {
+        if let Some((_, at)) = coordinates[*p as usize] {
+            (0..D).for_each(|d| sum[d] += w * from[at + d]);
+        }
+    }
+    sum
+}
+
+/// The factors of all bodies, one beside the other.
+struct Factors<'a, const D: usize>(&'a [Opened<D>]);
+
+impl<const D: usize> Preconditioner for Factors<'_, D> {
+    fn apply(&self, r: &[f64], z: &mut [f64]) {
+        z.copy_from_slice(r);
+        for Opened { first, step, .. } in self.0 {
+            step.solve(&mut z[*first..first + step.displacement().len()]);
+        }
+    }
+}
+
+impl<const D: usize> Search<'_, D> {
+    /// How much the points give way, by the matrices at the start of the step.
+    pub(crate) fn find_softness(&mut self) -> Result<(), Refused> {
+        self.barrier.raised = 1.0;
+        self.barrier.softness.clear();
+        self.barrier.softness.resize(self.coordinates.len(), 0.0);
+        for Opened { island, step, .. } in &mut self.opened {
+            step.look(&self.islands[*island].system);
+        }
+        self.factor(false)?;
+        for (p, of_point) in self.coordinates.iter().enumerate() {
+            let Some((body, at)) = *of_point else { continue };
+            let Opened { island, first, step } = &self.opened[body];
+            let stiffness = step.stiffness(&self.islands[*island].system, (at - first) / D);
+            self.barrier.softness[p] = if stiffness > 0.0 { 1.0 / stiffness } else { 0.0 };
+        }
+        Ok(())
+    }
+
+    /// Takes the derivatives of all bodies, and factors them.
+    fn factor(&mut self, exact: bool) -> Result<(), Refused> {
+        let islands = &self.islands;
+        let refused = self.opened.iter_mut().position(|open| !open.step.factor(&islands[open.island].system, exact));
+        refused.map_or(Ok(()), |body| Err(self.not_definite(body)))
+    }
+
+    fn not_definite(&self, body: usize) -> Refused {
+        let name = self.opened.get(body).map_or("", |open| self.islands[open.island].integrator.name());
+        let message =
+            "the matrix of a step with a barrier has no factor; hint: smaller steps, or another material".to_string();
+        StepError::Model { model: name, message }.into()
+    }
+
+    /// Finds the common end, friction included.
+    pub(crate) fn find_end(&mut self, multipliers: Vec<(u64, [f64; D])>) -> Result<(), Refused> {
+        self.press(true)?;
+        self.rub(&multipliers);
+        for _ in 0..MOST_ROUNDS {
+            self.find_minimum()?;
+            // The normal forces that friction goes by, and its multipliers, are those of what was found.
+            let multipliers = self.multipliers();
+            let before = std::mem::take(&mut self.rubbing);
+            self.rub(&multipliers);
+            if self.is_settled(&before) {
+                self.rubbing = before;
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// What friction acts against on every pair [N], by the features of the pairs.
+    pub(crate) fn multipliers(&self) -> Vec<(u64, [f64; D])> {
+        self.rubbing.iter().map(|rub| (rub.id, scaled(&rub.force(&rub.slip(&self.moved)), -1.0))).collect()
+    }
+
+    /// Lets pairs rub that press, with multipliers where they are known.
+    fn rub(&mut self, multipliers: &[(u64, [f64; D])]) {
+        let known =
+            |id: u64| multipliers.binary_search_by_key(&id, |(id, _)| *id).map_or([0.0; D], |k| multipliers[k].1);
+        let rubs = self.pressed.iter().filter(|pair| pair.friction > 0.0 && pair.force > 0.0);
+        self.rubbing = rubs.map(|pair| pair.rubbing(known(pair.id))).collect();
+    }
+
+    /// Whether friction is what it was in the search that has just ended.
+    fn is_settled(&self, before: &[Rubbing<D>]) -> bool {
+        let (mut most, mut changed): (f64, f64) = (0.0, 0.0);
+        for rub in &self.rubbing {
+            let force = rub.force(&rub.slip(&self.moved));
+            let old = before
+                .binary_search_by_key(&rub.id, |rub| rub.id)
+                .map_or([0.0; D], |k| before[k].force(&before[k].slip(&self.moved)));
+            most = rub.most.larger(most);
+            changed = (0..D).map(|d| (force[d] - old[d]).abs()).sum::<f64>().larger(changed);
+        }
+        changed <= SETTLED * most
+    }
+
+    /// Newton's method at given friction.
+    fn find_minimum(&mut self) -> Result<(), Refused> {
+        let (mut first_norm, mut counted, mut least) = (0.0, 0, f64::INFINITY);
+        self.stretch = 1.0;
+        loop {
+            let (most, accepts) = self
+                .opened
+                .iter()
+                .map(|open| open.step.most_iterations())
+                .fold((0, true), |(most, all), (iterations, accepts)| (most.max(iterations), all && accepts));
+            if counted >= most {
+                return if accepts { Ok(()) } else { Err(self.no_end(counted)) };
+            }
+            (counted, self.iterations) = (counted + 1, self.iterations + 1);
+            let mut changed = false;
+            for Opened { island, step, .. } in &mut self.opened {
+                let system = &self.islands[*island].system;
+                system.go_on()?;
+                changed |= step.look(system);
+            }
+            // Exact derivatives near the minimum; where these lead nowhere, those without negative eigenvalues.
+            let mut slope = None;
+            for exact in [true, false] {
+                if slope.is_none() {
+                    self.factor(exact)?;
+                    slope = self.find_direction(&mut first_norm);
+                }
+            }
+            let Some(slope) = slope else { return Err(self.not_definite(0)) };
+            let part = self.go(slope)?;
+            let raised = self.barrier.raised;
+            least = self.barrier.adapt(&self.pressed, least);
+            if self.barrier.raised > raised {
+                self.press(false)?;
+                changed = true;
+            }
+            for Opened { island, step, .. } in &mut self.opened {
+                changed |= step.judge(&self.islands[*island].system);
+            }
+            let small = self.opened.iter_mut().all(|open| {
+                let goal = open.step.goal();
+                open.step.correction().iter().all(|c| c.abs() <= goal)
+            });
+            if small && !changed {
+                return Ok(());
+            }
+            if part == 0.0 && !changed {
+                return if accepts { Ok(()) } else { Err(self.no_end(counted)) };
+            }
+        }
+    }
+
+    fn no_end(&self, iterations: u32) -> Refused {
+        let name = self.opened.first().map_or("", |open| self.islands[open.island].integrator.name());
+        let message = format!(
+            "bodies that a barrier keeps apart have no common end of the step after {iterations} iterations; hint: smaller steps, or more `iterations`"
+        );
+        StepError::Model { model: name, message }.into()
+    }
+
+    /// ∂(B + D)/∂u [N].
+    fn gradient(&self) -> Vec<f64> {
+        let mut out = vec![0.0; self.length];
+        for pair in &self.pressed {
+            scatter(&self.coordinates, &pair.points, &pair.weights, &scaled(&pair.normal, -pair.force), &mut out);
+            for (p, fading) in pair.points.iter().zip(&pair.fading) {
+                if let Some((_, at)) = self.coordinates[*p as usize] {
+                    (0..D).for_each(|d| out[at + d] += fading[d]);
+                }
+            }
+        }
+        for rub in &self.rubbing {
+            let force = rub.force(&rub.slip(&self.moved));
+            scatter(&self.coordinates, &rub.points, &rub.weights, &scaled(&force, -1.0), &mut out);
+        }
+        out
+    }
+
+    /// y += ∂²(B + D)/∂u² x, where `motion` gives what points of obstacles do.
+    fn stiffen(&self, x: &[f64], obstacles: Option<&[[f64; D]]>, y: &mut [f64]) {
+        let relative = |points: &[u32; 4], weights: &[f64; 4]| {
+            let mut motion: [f64; D] = gather(&self.coordinates, points, weights, x);
+            if let Some(ahead) = obstacles {
+                for (p, w) in points.iter().zip(weights) {
+                    (0..D).for_each(|d| motion[d] += w * ahead[*p as usize][d]);
+                }
+            }
+            motion
+        };
+        for pair in &self.pressed {
+            let motion = relative(&pair.points, &pair.weights);
+            let along: f64 = (0..D).map(|d| motion[d] * pair.normal[d]).sum();
+            scatter(&self.coordinates, &pair.points, &pair.weights, &scaled(&pair.normal, pair.curvature * along), y);
+        }
+        for rub in &self.rubbing {
+            let motion = relative(&rub.points, &rub.weights);
+            let force = rub.stiffen(&rub.slip(&self.moved), &motion);
+            scatter(&self.coordinates, &rub.points, &rub.weights, &force, y);
+        }
+    }
+
+    /// Finds the correction of all bodies; gives the slope of the sum along it, if it leads downhill.
+    fn find_direction(&mut self, first_norm: &mut f64) -> Option<f64> {
+        let gradient = self.gradient();
+        let mut prescribed = vec![0.0; self.length];
+        for open in &self.opened {
+            prescribed[open.range()].copy_from_slice(open.step.prescribed());
+        }
+        let mut forces = gradient.clone();
+        self.stiffen(&prescribed, Some(&self.ahead), &mut forces);
+        let mut right = vec![0.0; self.length];
+        for open in &mut self.opened {
+            let range = open.range();
+            open.step.right_side(&self.islands[open.island].system, &forces[range.clone()], &mut right[range]);
+        }
+        let norm = dot(&right, &right).sqrt();
+        *first_norm = norm.larger(*first_norm);
+        let share = if *first_norm > 0.0 { (norm / *first_norm).larger(1e-9) } else { 1.0 };
+        let mut step = self.solve(&right, (LEFT * share).larger(LEAST_LEFT))?;
+        for _ in 0..MOST_ROUNDS {
+            let mut whole: Vec<f64> = step.iter().zip(&prescribed).map(|(s, p)| self.stretch * s + p).collect();
+            for open in &mut self.opened {
+                let range = open.range();
+                open.step.correction().copy_from_slice(&whole[range]);
+            }
+            // What holds nodes takes the forces between bodies too.
+            let mut between = gradient.clone();
+            self.stiffen(&whole, Some(&self.ahead), &mut between);
+            let mut changed = false;
+            whole.fill(0.0);
+            for open in &mut self.opened {
+                let range = open.range();
+                let system = &self.islands[open.island].system;
+                let follows =
+                    open.step.follow(system, &between[range.clone()], LEFT * share, &mut whole[range.clone()]);
+                if !follows {
+                    whole[range].fill(0.0);
+                }
+                changed |= follows;
+            }
+            if !changed {
+                break;
+            }
+            // What friction changes by may be rounding.
+            let Some(more) = self.solve(&whole, LEFT) else { break };
+            step.iter_mut().zip(&more).for_each(|(s, more)| *s += more);
+        }
+        Some(self.slope(&gradient))
+    }
+
+    /// Solves with the matrix of all bodies and what acts between them, by conjugate gradients; none where that leads nowhere.
+    fn solve(&mut self, right: &[f64], tolerance: f64) -> Option<Vec<f64>> {
+        let mut out = vec![0.0; self.length];
+        let mut directions = std::mem::take(&mut self.directions);
+        let multiply = |x: &[f64], y: &mut [f64]| {
+            for open in &self.opened {
+                let range = open.range();
+                open.step.multiply(&self.islands[open.island].system, &x[range.clone()], &mut y[range]);
+            }
+            self.stiffen(x, None, y);
+            for open in &self.opened {
+                open.step.filter(&mut y[open.range()]);
+            }
+        };
+        let by = Factors(&self.opened);
+        let ended = conjugate_gradients(multiply, &by, right, &mut out, tolerance, MOST_PRODUCTS, &mut directions);
+        self.directions = directions;
+        // Near the solution directions are rounding: what was found until there leads downhill all the same.
+        let leads_down = ended.is_ok() || dot(right, &out) > 0.0;
+        (leads_down && out.iter().all(|x| x.is_finite())).then_some(out)
+    }
+
+    /// The slope of the sum along the correction, less the works of what obstacles do.
+    fn slope(&mut self, gradient: &[f64]) -> f64 {
+        let mut slope = 0.0;
+        for open in &mut self.opened {
+            let given = open.step.given();
+            let range = open.range();
+            let between = &gradient[range];
+            let residual = open.step.residual().to_vec();
+            for (s, (r, g)) in open.step.correction().iter().zip(residual.iter().zip(between)) {
+                slope += s * (r + g);
+            }
+            slope -= given;
+        }
+        slope
+    }
+
+    /// Goes along the correction as far as pairs may go, and the sum falls; gives the part that was gone.
+    fn go(&mut self, slope: f64) -> Result<f64, Refused> {
+        for (p, of_point) in self.coordinates.iter().enumerate() {
+            let from = &self.x[p];
+            self.trial[p] = match of_point {
+                Some((body, at)) => {
+                    let Opened { first, step, .. } = &mut self.opened[*body];
+                    let step = step.correction();
+                    std::array::from_fn(|d| from[d] + step[at - *first + d])
+                }
+                None => std::array::from_fn(|d| from[d] + self.ahead[p][d]),
+            };
+        }
+        let Touching { surface, laws, most, .. } = &*self.touching;
+        self.barrier.look(surface, laws, [&self.x, &self.trial], *most)?;
+        let far = std::mem::take(&mut self.trial);
+        let mut part = self.barrier.free_part(surface, laws, [&self.x, &far]);
+        let start = std::mem::take(&mut self.x);
+        let moved = self.moved.clone();
+        let before = self.energy();
+        let given: f64 = self.opened.iter_mut().map(|open| open.step.given()).sum();
+        let rounding: f64 = self.opened.iter().map(|open| open.step.rounding(&self.islands[open.island].system)).sum();
+        let between = |part: f64| {
+            let at = |(a, b): (&[f64; D], &[f64; D])| std::array::from_fn(|d| a[d] + part * (b[d] - a[d]));
+            start.iter().zip(&far).map(at).collect::<Vec<[f64; D]>>()
+        };
+        let mut gone = 0.0;
+        for _ in 0..MOST_HALVINGS {
+            self.x = between(part);
+            for (p, moved) in moved.iter().enumerate() {
+                self.moved[p] = std::array::from_fn(|d| moved[d] + (self.x[p][d] - start[p][d]));
+            }
+            let allowed = self
+                .opened
+                .iter_mut()
+                .all(|open| open.step.evaluate(&mut self.islands[open.island].system, part).is_ok())
+                && self.press(false).is_ok();
+            let mut now = f64::NAN;
+            if allowed {
+                let gradient = self.gradient();
+                now = self.slope(&gradient);
+            }
+            // Differences of energies are lost in rounding where the step is small.
+            let risen = match (before, self.energy().filter(|_| allowed)) {
+                (Some([before, size]), Some([after, other])) => {
+                    let rounding = ROUNDING * (size + other + (part * given).abs()) + rounding;
+                    after - part * given - before > rounding
+                }
+                _ => false,
+            };
+            if allowed && !risen && now <= SLOPE_LEFT * slope.abs() {
+                let steep = part == 1.0 && now < -STEEP * slope.abs();
+                self.stretch = if steep { (2.0 * self.stretch).smaller(LONGEST_STRETCH) } else { 1.0 };
+                gone = part;
+                break;
+            }
+            let secant = slope.abs() / (slope.abs() + now);
+            part *= if secant.is_finite() && !risen { secant.larger(0.1).smaller(0.6) } else { 0.4 };
+        }
+        if gone == 0.0 {
+            self.x = between(0.0);
+            self.moved = moved;
+        }
+        self.trial = far;
+        for open in &mut self.opened {
+            open.step.advance(gone);
+            if gone == 0.0 {
+                open.step.evaluate(&mut self.islands[open.island].system, 0.0)?;
+            }
+        }
+        for ahead in self.ahead.iter_mut().flatten() {
+            *ahead -= gone * *ahead;
+        }
+        self.press(false)?;
+        Ok(gone)
+    }
+
+    /// Φ of all bodies, B and D, and the size of their parts [J]; none where damping takes part.
+    fn energy(&self) -> Option<[f64; 2]> {
+        let [mut sum, mut size] = [0.0; 2];
+        for open in &self.opened {
+            let [energy, parts] = open.step.potential(&self.islands[open.island].system)?;
+            (sum, size) = (sum + energy, size + parts);
+        }
+        for pair in &self.pressed {
+            (sum, size) = (sum + pair.energy, size + pair.energy);
+        }
+        for rub in &self.rubbing {
+            let energy = rub.energy(&rub.slip(&self.moved));
+            (sum, size) = (sum + energy, size + energy);
+        }
+        Some([sum, size])
+    }
+
+    /// Finds the pairs within reach, looking for candidates first where these are not known.
+    fn press(&mut self, search: bool) -> Result<(), Refused> {
+        let Touching { surface, laws, most, .. } = &*self.touching;
+        if search {
+            self.barrier.look(surface, laws, [&self.x, &self.x], *most)?;
+        }
+        Ok(self.barrier.press(surface, laws, &self.x, &mut self.pressed)?)
+    }
+}
+
+impl<const D: usize> Opened<D> {
+    fn range(&self) -> std::ops::Range<usize> {
+        self.first..self.first + self.step.displacement().len()
+    }
+}
+
+pub(crate) fn scaled<const D: usize>(a: &[f64; D], s: f64) -> [f64; D] {
+    a.map(|c| c * s)
+}

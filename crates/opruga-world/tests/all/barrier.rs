@@ -1,0 +1,212 @@
+//! The response `barrier`: forces that grow without bound as a gap closes.
+
+use crate::contact::{ball, contact, model, scene, wall_and_dot, world};
+use opruga_mesh::Mesh;
+use opruga_world::blueprint::*;
+use opruga_world::{Options, World, WorldError};
+
+const RULES: [&str; 4] = ["backward_euler", "bdf2", "implicit_midpoint", "newmark"];
+
+/// A solid rectangle of triangles.
+fn block(name: &str, size: [f64; 2], cells: [u32; 2], x: [f64; 2], mass: f64, youngs_modulus: f64) -> BodyBlueprint<2> {
+    let mesh = Mesh::grid([0.0; 2], size, cells).expect("a grid");
+    let material = [("youngs_modulus", youngs_modulus), ("poissons_ratio", 0.3)];
+    let solid = vec![model::<2>("fem", &material)];
+    BodyBlueprint { translation: x, ..BodyBlueprint::new(name, mesh, Mass::Total(mass), solid) }
+}
+
+fn pinned(side: &str, body: BodyBlueprint<2>) -> BodyBlueprint<2> {
+    let pin = PinBlueprint { select: Selector::Side(side.into()), axes: [true; 2], motion: Vec::new() };
+    BodyBlueprint { pins: vec![pin], ..body }
+}
+
+fn heavy(rule: &str, bodies: Vec<BodyBlueprint<2>>, substeps: u32) -> Blueprint<2> {
+    let mut scene = scene(rule, bodies);
+    scene.surroundings.gravity = [0.0, -9.81];
+    scene.time = Time { seconds: 10.0, frame: 1.0 / 60.0, substeps };
+    scene
+}
+
+fn force_on(world: &mut World<2>, body: usize) -> [f64; 2] {
+    let mut sum = [0.0; 2];
+    for force in world.contact_forces(body) {
+        (0..2).for_each(|d| sum[d] += force[d]);
+    }
+    sum
+}
+
+/// A block that falls onto a held one rests there on its weight, apart from it by less than the reach.
+#[test]
+fn a_block_rests_on_another_one_by_its_weight() {
+    for rule in RULES {
+        let below = pinned("bottom", block("below", [2.0, 0.5], [9, 3], [-0.5, -0.5], 2.0, 1e5));
+        let bodies = vec![below, block("above", [1.0, 1.0], [4, 4], [0.03, 0.05], 1.0, 1e5)];
+        let mut scene = heavy(rule, bodies, 1);
+        scene.contact = contact::<2>(&[("response", "barrier".into()), ("friction", 0.4.into())]);
+        let mut world = world(&scene);
+        for _ in 0..180 {
+            world.frame().unwrap_or_else(|error| panic!("{rule}: {error}"));
+            assert_eq!(world.crossed_surfaces(), [], "{rule} at {} s", world.time());
+        }
+        let weight = force_on(&mut world, 1);
+        assert!((weight[1] - 9.81).abs() < 1e-3 && weight[0].abs() < 1e-3, "{rule}: {weight:?}");
+        let energy = world.energy();
+        assert!(energy.kinetic < 1e-6, "{rule}: {energy:?}");
+        assert!(energy.closure < 1e-4, "{rule}: {energy:?}");
+    }
+}
+
+/// Free bodies that meet keep their momentum, part, and no energy is made.
+#[test]
+fn bodies_keep_momentum_and_part() {
+    for rule in RULES {
+        let [a, b] = [([-1.2, 0.1], [2.0, 0.0]), ([1.0, 0.0], [-1.0, 0.3])];
+        let square = block("b", [1.0, 1.0], [3, 3], [b.0[0] - 0.5, b.0[1] - 0.5], 2.0, 3e3);
+        let bodies = vec![ball("a", 24, a.0, a.1), BodyBlueprint { velocity: b.1, ..square }];
+        let mut scene = scene(rule, bodies);
+        scene.time = Time { seconds: 2.0, frame: 1.0 / 60.0, substeps: 4 };
+        scene.contact = contact::<2>(&[("response", "barrier".into()), ("friction", 0.4.into())]);
+        let mut world = world(&scene);
+        let before = world.momentum();
+        for _ in 0..60 {
+            world.frame().unwrap_or_else(|error| panic!("{rule}: {error}"));
+            assert_eq!(world.crossed_surfaces(), [], "{rule}");
+            assert!(world.energy().closure < 0.02, "{rule}: {:?}", world.energy());
+        }
+        let after = world.momentum();
+        for d in 0..2 {
+            let change = (after.linear.0[d] - before.linear.0[d]).abs();
+            assert!(change < 1e-6, "{rule}: {change} {before:?} {after:?}");
+        }
+        let mean = |body: usize| {
+            let nodes = world.node_count(body) as u32;
+            (0..nodes).map(|n| world.velocity(body, n)[0]).sum::<f64>() / f64::from(nodes)
+        };
+        assert!(mean(0) < mean(1), "{rule}: they part: {} {}", mean(0), mean(1));
+    }
+}
+
+/// A small body that goes many times its size in a step does not pass a thin wall; where no end of the step is found, nothing has moved.
+#[test]
+fn fast_bodies_do_not_tunnel() {
+    for speed in [1.0, 30.0, 300.0, 3000.0] {
+        let mut scene = scene("backward_euler", wall_and_dot(speed));
+        scene.time.frame = 1.0 / 960.0;
+        scene.time.substeps = 1;
+        scene.contact = contact::<2>(&[("response", "barrier".into())]);
+        let mut world = world(&scene);
+        for step in 0..(if speed < 2.0 { 480 } else { 64 }) {
+            let before = world.position(1, 0);
+            if let Err(error) = world.frame() {
+                assert!(speed > 1000.0, "{speed}: {error}");
+                assert_eq!(world.position(1, 0), before);
+                break;
+            }
+            assert_eq!(world.crossed_surfaces(), [], "{speed} m/s, step {step}");
+        }
+    }
+}
+
+/// A block on a slope that friction just holds does not creep; one that it does not hold slides as Coulomb says.
+#[test]
+fn what_sticks_on_a_body_does_not_creep() {
+    let slope = 0.5_f64;
+    let along = [1.0 / (1.0 + slope * slope).sqrt(), -slope / (1.0 + slope * slope).sqrt()];
+    for (friction, sticks) in [(0.52, true), (0.4, false)] {
+        let base = pinned("bottom", block("base", [6.0, 0.5], [12, 2], [-1.0, -0.5], 10.0, 1e7));
+        let mut scene =
+            heavy("backward_euler", vec![base, block("rider", [0.5, 0.5], [2, 2], [0.1, 0.011], 1.0, 1e7)], 1);
+        // Gravity is turned in place of the slope.
+        scene.surroundings.gravity = [-9.81 * along[1], -9.81 * along[0]];
+        scene.contact = contact::<2>(&[("response", "barrier".into()), ("friction", friction.into())]);
+        let mut world = world(&scene);
+        let mean = |world: &World<2>| (0..9).map(|node| world.position(1, node)[0]).sum::<f64>() / 9.0;
+        for _ in 0..60 {
+            world.frame().expect("a frame");
+        }
+        let (start, v0) = (mean(&world), world.velocity(1, 4)[0]);
+        for _ in 0..60 {
+            world.frame().expect("a frame");
+        }
+        let way = mean(&world) - start;
+        if sticks {
+            assert!(way.abs() < 1e-5, "{friction}: crept {way} m in a second");
+        } else {
+            let wanted = v0 + 0.5 * 9.81 * along[0] * (slope - friction);
+            assert!((way - wanted).abs() < 0.02 * wanted, "{friction}: {way} m, {wanted}");
+        }
+    }
+}
+
+/// A square of springs falls onto its corner, where springs give way sideways.
+#[test]
+fn bodies_that_buckle_find_an_end() {
+    let mut mesh = Mesh::grid([-0.4; 2], [0.8; 2], [6; 2]).expect("a grid");
+    let (sine, cosine) = 0.9_f64.sin_cos();
+    mesh.positions.iter_mut().for_each(|x| *x = [cosine * x[0] - sine * x[1], sine * x[0] + cosine * x[1]]);
+    let springs = vec![model::<2>("mass_spring", &[("stiffness", 800.0), ("damping", 1.0)])];
+    let square = BodyBlueprint {
+        translation: [0.1, 0.6],
+        velocity: [-2.4, -7.9],
+        ..BodyBlueprint::new("square", mesh, Mass::Total(2.56), springs)
+    };
+    let base = pinned("bottom", block("base", [4.0, 0.5], [4, 2], [-2.0, -0.5], 10.0, 1e6));
+    let mut scene = heavy("backward_euler", vec![base, square], 1);
+    scene.contact = contact::<2>(&[("response", "barrier".into()), ("friction", 0.3.into())]);
+    let mut world = world(&scene);
+    for _ in 0..60 {
+        world.frame().unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(world.crossed_surfaces(), [], "at {} s", world.time());
+    }
+}
+
+#[test]
+fn a_barrier_refuses_explicit_rules_and_surfaces_that_meet() {
+    let bodies = |at: f64| {
+        vec![block("a", [1.0; 2], [2; 2], [0.0; 2], 1.0, 1e4), block("b", [1.0; 2], [2; 2], [at, 0.3], 1.0, 1e4)]
+    };
+    let with = |rule: &str, at: f64| {
+        let mut scene = heavy(rule, bodies(at), 1);
+        scene.contact = contact::<2>(&[("response", "barrier".into())]);
+        scene
+    };
+    let refused = World::new(with("verlet", 1.5), Options::default()).expect_err("an explicit rule");
+    assert!(refused.to_string().contains("barrier"), "{refused}");
+    let mut world = world(&with("backward_euler", 0.9));
+    let before = world.position(0, 0);
+    let error = world.frame().expect_err("they cross");
+    assert!(matches!(&error, WorldError::Meet { first, second, .. } if first == "a" && second == "b"), "{error}");
+    assert_eq!(world.position(0, 0), before);
+}
+
+/// In space, with edges across one another and a sheet over them, by exact steps and in real time.
+#[test]
+fn solids_and_a_sheet_rest_in_space() {
+    for accuracy in ["exact", "real_time"] {
+        let cube = |name: &str, side: f64, cells: u32, x: [f64; 3]| {
+            let mesh = Mesh::<3>::grid([0.0; 3], [side; 3], [cells; 3]).expect("a grid");
+            let fem = model::<3>("fem", &[("youngs_modulus", 1e5), ("poissons_ratio", 0.3)]);
+            BodyBlueprint { translation: x, ..BodyBlueprint::new(name, mesh, Mass::Total(1.0), vec![fem]) }
+        };
+        let mut scene = crate::contact::scene::<3>(
+            "backward_euler",
+            vec![cube("low", 1.0, 2, [0.0; 3]), cube("high", 0.8, 2, [0.13, 1.05, 0.07])],
+        );
+        scene.bodies[0].pins =
+            vec![PinBlueprint { select: Selector::Side("bottom".into()), axes: [true; 3], motion: Vec::new() }];
+        scene.surroundings.gravity = [0.0, -9.81, 0.0];
+        scene.time = Time { seconds: 1.0, frame: 1.0 / 60.0, substeps: 1 };
+        let registry = opruga_world::Registry::<3>::default();
+        scene.integrator =
+            registry.integrator_values("backward_euler", &[("accuracy", accuracy.into())]).expect("a rule");
+        scene.contact = contact::<3>(&[("response", "barrier".into()), ("friction", 0.4.into())]);
+        let mut world = World::<3>::new(scene.clone(), Options::default()).expect("a world");
+        for _ in 0..60 {
+            world.frame().unwrap_or_else(|error| panic!("{accuracy}: {error}"));
+            assert_eq!(world.crossed_surfaces(), [], "{accuracy} at {} s", world.time());
+        }
+        let force: f64 = world.contact_forces(1).iter().map(|force| force[1]).sum();
+        assert!((force - 9.81).abs() < 0.05, "{accuracy}: {force}");
+        assert!(world.energy().kinetic < 1e-3, "{accuracy}: {:?}", world.energy());
+    }
+}
