@@ -13,7 +13,7 @@ use crate::system::System;
 /// Obstacles hold nodes, and pins lead them: `prescribed` is how far these still have to go, and A is solved in the directions that are free.
 pub trait OpenStep<const D: usize>: Send {
     /// u.
-    fn displacement(&self) -> &[f64];
+    fn displacements(&self) -> &[f64];
     /// The correction of u [m], which the search writes.
     fn correction(&mut self) -> &mut [f64];
     /// Evaluates forces at u and a part of the correction.

@@ -152,7 +152,7 @@ impl<const D: usize> Preconditioner for Factors<'_, D> {
     fn apply(&self, r: &[f64], z: &mut [f64]) {
         z.copy_from_slice(r);
         for Opened { first, step, .. } in self.0 {
-            step.solve(&mut z[*first..first + step.displacement().len()]);
+            step.solve(&mut z[*first..first + step.displacements().len()]);
         }
     }
 }
@@ -529,7 +529,7 @@ impl<const D: usize> Search<'_, D> {
 
 impl<const D: usize> Opened<D> {
     fn range(&self) -> std::ops::Range<usize> {
-        self.first..self.first + self.step.displacement().len()
+        self.first..self.first + self.step.displacements().len()
     }
 }
 

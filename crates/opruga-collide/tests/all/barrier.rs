@@ -1,6 +1,7 @@
 //! The barrier: forces are derivatives of its energy, and nobody goes through it.
 
 use opruga_collide::{Barrier, Laws, PairLaw, Pressed, Surface};
+use opruga_math::Lane;
 use opruga_mesh::Mesh;
 
 const REACH: f64 = 0.1;
@@ -33,7 +34,7 @@ fn blocks<const D: usize>(apart: f64, angle: f64, seed: &mut u64) -> (Surface<D>
         for node in surface.add(&mesh, body) {
             let mut at = mesh.positions[node as usize];
             if body == 1 && D == 3 {
-                let (sine, cosine) = angle.sin_cos();
+                let (sine, cosine) = (libm::sin(angle), libm::cos(angle));
                 (at[0], at[2]) = (cosine * at[0] - sine * at[2], sine * at[0] + cosine * at[2]);
             }
             at[1] += if body == 1 { 1.0 + apart } else { 0.0 };
@@ -73,7 +74,7 @@ fn forces_are_the_gradient<const D: usize>(angle: f64) {
                 }
             }
         }
-        let size = force.iter().flatten().fold(0.0_f64, |most, f| most.max(f.abs()));
+        let size = force.iter().flatten().fold(0.0_f64, |most, f| f.abs().larger(most));
         for p in 0..x.len() {
             for d in 0..D {
                 let energy = |by: f64| {
@@ -125,8 +126,10 @@ fn the_barrier_has_two_continuous_derivatives_and_no_bound() {
     let now = at(REACH - left);
     assert!((0..3).all(|i| (now[i] / wanted[i] - 1.0).abs() < 0.01), "{now:?} {wanted:?}");
     let mut last = [0.0; 3];
+    let mut gap = REACH;
     for k in 1..12 {
-        let now = at(REACH * 0.5_f64.powi(k));
+        gap *= 0.5;
+        let now = at(gap);
         assert!((0..3).all(|i| now[i] > last[i]), "{k}: {now:?} {last:?}");
         last = now;
     }

@@ -71,7 +71,7 @@ impl<R: Rule<D>, const D: usize> Open<R, D> {
 }
 
 impl<R: Rule<D>, const D: usize> OpenStep<D> for Open<R, D> {
-    fn displacement(&self) -> &[f64] {
+    fn displacements(&self) -> &[f64] {
         &self.workspace.u
     }
     fn correction(&mut self) -> &mut [f64] {

@@ -142,7 +142,7 @@ fn what_sticks_on_a_body_does_not_creep() {
 #[test]
 fn bodies_that_buckle_find_an_end() {
     let mut mesh = Mesh::grid([-0.4; 2], [0.8; 2], [6; 2]).expect("a grid");
-    let (sine, cosine) = 0.9_f64.sin_cos();
+    let (sine, cosine) = (libm::sin(0.9), libm::cos(0.9));
     mesh.positions.iter_mut().for_each(|x| *x = [cosine * x[0] - sine * x[1], sine * x[0] + cosine * x[1]]);
     let springs = vec![model::<2>("mass_spring", &[("stiffness", 800.0), ("damping", 1.0)])];
     let square = BodyBlueprint {
