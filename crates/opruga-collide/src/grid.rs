@@ -28,7 +28,7 @@ struct Level<const D: usize> {
     count: usize,
 }
 
-/// The last cell along an axis: whatever is beyond lies in it.
+/// The last cell along an axis: whatever is beyond lies in it. The number of a cell is exact up to there, and overflows beyond (`boxes_far_beyond_all_others_are_found`).
 const FARTHEST: f64 = 1e15;
 
 /// The most levels: cells of the last one hold whatever is left.
@@ -177,5 +177,23 @@ impl<const D: usize> Grid<D> {
         let of = |level: &Level<D>| 8 * level.buckets.capacity() + (16 * D + 8) * level.entries.capacity();
         let levels: usize = self.levels.iter().map(of).sum();
         16 * D * self.boxes.capacity() + self.level_of.capacity() + levels
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn boxes_far_beyond_all_others_are_found() {
+        let mut grid = Grid::<2>::default();
+        let at = |x: f64| [[x, 0.0], [x + 1.0, 1.0]];
+        let boxes = [at(-1e200), at(-1e30), at(0.0), at(1.5), at(1e30), at(1e200)];
+        grid.fill(boxes.into_iter());
+        let mut found = Vec::new();
+        for (number, one) in boxes.iter().enumerate() {
+            grid.touching(one, &mut found);
+            assert_eq!(found, [number as u32]);
+        }
     }
 }

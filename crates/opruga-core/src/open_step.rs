@@ -58,9 +58,10 @@ pub trait OpenStep<const D: usize>: Send {
     fn goal(&self) -> f64;
     /// The most iterations, and whether a step that has not converged then counts.
     fn most_iterations(&self) -> (u32, bool);
-    /// Ends the step with the pushes of other bodies in `system.pushes`, which belong to u.
+    /// Ends the step with the pushes of other bodies in `system.pushes`, which belong to u; counts the iterations of the search, and a step that counts though
+    /// the search has not converged.
     ///
     /// # Errors
     /// [`StepError`] where a model refuses the end.
-    fn close(self: Box<Self>, system: &mut System<D>, iterations: u32) -> Result<(), StepError>;
+    fn close(self: Box<Self>, system: &mut System<D>, iterations: u32, converged: bool) -> Result<(), StepError>;
 }

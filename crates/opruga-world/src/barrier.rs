@@ -92,12 +92,12 @@ impl<const D: usize> Meeting<D> {
             directions: Directions::default(),
             length: first,
             iterations: 0,
+            converged: true,
             stretch: 1.0,
         };
         search.find_softness()?;
         search.find_end(std::mem::take(&mut kept.multipliers))?;
         kept.multipliers = search.multipliers();
-        kept.iterations += u64::from(search.iterations);
         search.close(h)?;
         Ok(())
     }
@@ -106,8 +106,8 @@ impl<const D: usize> Meeting<D> {
 impl<const D: usize> Search<'_, D> {
     /// Ends the steps of all bodies, with the forces that they exert on one another.
     fn close(self, h: f64) -> Result<(), Refused> {
-        let Search { islands, touching, barrier, opened, coordinates, moved, x, pressed, rubbing, iterations, .. } =
-            self;
+        let (iterations, converged) = (self.iterations, self.converged);
+        let Search { islands, touching, barrier, opened, coordinates, moved, x, pressed, rubbing, .. } = self;
         let mut forces = vec![[0.0; D]; x.len()];
         let mut losses = vec![[0.0; 2]; x.len()];
         let mut enter = |points: &[u32; 4], weights: &[f64; 4], force: &[f64; D], account: usize| {
@@ -150,7 +150,7 @@ impl<const D: usize> Search<'_, D> {
             }
             pushes.sort_by_key(|(node, _)| *node);
             system.pushes = Some(pushes);
-            step.close(system, iterations)?;
+            step.close(system, iterations, converged)?;
             refuse_inverted_cells(system)?;
             // Obstacles put nodes onto their surface after the search: nobody may go through another one there either.
             for (p, of_point) in coordinates.iter().enumerate() {

@@ -18,16 +18,17 @@ use opruga_core::system::Workspace;
 use opruga_math::Lane;
 use opruga_solve::{Directions, Preconditioner, conjugate_gradients, dot};
 
-/// The part of its right-hand side that the linear solver may leave, in the first iteration; it falls with what is out of balance.
+/// The part of its right-hand side that the linear solver may leave, in the first iteration; it falls with what is out of balance. As where a body is alone.
 const LEFT: f64 = 1e-2;
 
-/// The least part: beyond it directions are rounding.
+/// The least part: the residuals of stiff bodies (1e7 Pa) are rounding below it, and directions made of them lead nowhere.
 const LEAST_LEFT: f64 = 1e-9;
 
 /// Products of conjugate gradients at most: every pair that presses hard takes about one.
 const MOST_PRODUCTS: u32 = 2000;
 
-/// The part of the slope that may be left after a correction.
+/// The part of the slope that may be left after a correction. Without it corrections go to and fro over the end of sticking, as energies differ by less than
+/// their rounding there (`what_sticks_on_a_body_does_not_creep`).
 const SLOPE_LEFT: f64 = 0.8;
 
 /// A correction whose end is steeper than this part of its beginning lets the next one go twice as far, up to so many times its length: a matrix
@@ -36,7 +37,7 @@ const SLOPE_LEFT: f64 = 0.8;
 const STEEP: f64 = 0.3;
 const LONGEST_STRETCH: f64 = 16.0;
 
-/// Halvings of a correction at most.
+/// Halvings of a correction at most: a trillionth of it is none.
 const MOST_HALVINGS: u32 = 40;
 
 /// Rounds of friction at most, and the part of itself by which its force still changes where they end.
@@ -53,8 +54,6 @@ pub(crate) struct Kept<const D: usize> {
     /// Friction of the substep before, within a frame; ascending.
     pub(crate) multipliers: Vec<(u64, [f64; D])>,
     pub(crate) workspaces: Vec<Workspace<D>>,
-    /// Newton's iterations so far.
-    pub(crate) iterations: u64,
 }
 
 impl<const D: usize> Kept<D> {
@@ -110,6 +109,8 @@ pub(crate) struct Search<'a, const D: usize> {
     pub(crate) directions: Directions,
     pub(crate) length: usize,
     pub(crate) iterations: u32,
+    /// Whether the search has come to its end, friction included.
+    pub(crate) converged: bool,
     /// By how much the next correction is lengthened.
     pub(crate) stretch: f64,
 }
@@ -202,9 +203,10 @@ impl<const D: usize> Search<'_, D> {
             self.rub(&multipliers);
             if self.is_settled(&before) {
                 self.rubbing = before;
-                break;
+                return Ok(());
             }
         }
+        self.converged = false;
         Ok(())
     }
 
@@ -246,7 +248,7 @@ impl<const D: usize> Search<'_, D> {
                 .map(|open| open.step.most_iterations())
                 .fold((0, true), |(most, all), (iterations, accepts)| (most.max(iterations), all && accepts));
             if counted >= most {
-                return if accepts { Ok(()) } else { Err(self.no_end(counted)) };
+                return self.accept_or_refuse(accepts, counted);
             }
             (counted, self.iterations) = (counted + 1, self.iterations + 1);
             let mut changed = false;
@@ -282,9 +284,15 @@ impl<const D: usize> Search<'_, D> {
                 return Ok(());
             }
             if part == 0.0 && !changed {
-                return if accepts { Ok(()) } else { Err(self.no_end(counted)) };
+                return self.accept_or_refuse(accepts, counted);
             }
         }
+    }
+
+    /// Takes a minimum that was not found for one, where the scene says so.
+    fn accept_or_refuse(&mut self, accepts: bool, iterations: u32) -> Result<(), Refused> {
+        self.converged = false;
+        if accepts { Ok(()) } else { Err(self.no_end(iterations)) }
     }
 
     fn no_end(&self, iterations: u32) -> Refused {
@@ -313,7 +321,7 @@ impl<const D: usize> Search<'_, D> {
         out
     }
 
-    /// y += ∂²(B + D)/∂u² x, where `motion` gives what points of obstacles do.
+    /// y += ∂²(B + D)/∂u² x, where `obstacles` is how the points of obstacles move.
     fn stiffen(&self, x: &[f64], obstacles: Option<&[[f64; D]]>, y: &mut [f64]) {
         let relative = |points: &[u32; 4], weights: &[f64; 4]| {
             let mut motion: [f64; D] = gather(&self.coordinates, points, weights, x);

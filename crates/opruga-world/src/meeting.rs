@@ -190,6 +190,16 @@ impl<const D: usize> Meeting<D> {
         }
     }
 
+    /// Whether all bodies are where positions keep their digits, with velocities that are numbers.
+    pub(crate) fn is_in_range(&self, islands: &[Island<D>]) -> bool {
+        let [x, v] = &self.touching.after;
+        let is_in = |(point, (island, _)): (usize, &(u32, u32))| {
+            let range = islands[*island as usize].range;
+            x[point].iter().all(|c| c.abs() <= range) && v[point].iter().all(|c| c.is_finite())
+        };
+        self.points.iter().enumerate().all(is_in)
+    }
+
     /// Takes corners of obstacles to where they are at a time [s].
     pub(crate) fn move_outlines(&mut self, time: f64) {
         let [x, v] = &mut self.touching.after;

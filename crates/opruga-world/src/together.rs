@@ -6,7 +6,6 @@ use crate::world::lock;
 use opruga_collide::Trouble;
 use opruga_core::system::Workspace;
 use opruga_core::threads::together;
-use opruga_math::Lane;
 use rayon::prelude::*;
 use std::sync::{Arc, Mutex};
 
@@ -47,10 +46,8 @@ fn step_through<const D: usize>(
             return Ok(());
         }
         meeting.take(islands, time);
-        // What leaves the range in which positions keep their digits ends the frame: contact would look at every pair of it.
-        let range = islands.iter().fold(f64::INFINITY, |least, island| island.range.smaller(least));
-        let [x, v] = &meeting.touching.after;
-        if !x.iter().flatten().all(|c| c.abs() <= range) || !v.iter().flatten().all(|c| c.is_finite()) {
+        // What leaves its range ends the frame, and is refused there: contact would look at every pair of it.
+        if !meeting.is_in_range(islands) {
             islands.iter_mut().for_each(|island| island.end_together(plan));
             return Ok(());
         }

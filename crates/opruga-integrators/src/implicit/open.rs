@@ -9,7 +9,7 @@ use super::holding;
 use super::line_search::given_along;
 use super::linear::{Filter, Mixture};
 use super::rule::Rule;
-use super::settings::Settings;
+use super::settings::{Otherwise, Settings, Solver};
 use super::stage::{evaluate, judge, look, mixture, potential, rounding_of_models};
 use super::workspace::Workspace;
 use opruga_core::error::StepError;
@@ -181,7 +181,7 @@ impl<R: Rule<D>, const D: usize> OpenStep<D> for Open<R, D> {
         if system.contacts.is_none() {
             return false;
         }
-        let settings = Settings { solver: super::settings::Solver::Auto, ..self.settings };
+        let settings = Settings { solver: Solver::Auto, ..self.settings };
         let verdict = judge(system, &mut self.workspace, &self.balance, &settings, settings.tolerance, true);
         verdict.anew || verdict.unsettled
     }
@@ -189,15 +189,16 @@ impl<R: Rule<D>, const D: usize> OpenStep<D> for Open<R, D> {
         self.settings.tolerance * self.workspace.extent
     }
     fn most_iterations(&self) -> (u32, bool) {
-        let accepts = self.settings.real_time || self.settings.otherwise == super::settings::Otherwise::Accept;
+        let accepts = self.settings.real_time || self.settings.otherwise == Otherwise::Accept;
         (self.settings.iterations, accepts)
     }
-    fn close(mut self: Box<Self>, system: &mut System<D>, iterations: u32) -> Result<(), StepError> {
+    fn close(mut self: Box<Self>, system: &mut System<D>, iterations: u32, converged: bool) -> Result<(), StepError> {
         let Open { rule, balance, ledger, .. } = *self;
         let workspace = &mut *self.workspace;
-        let solved = Solved { iterations, converged: true, ..Solved::default() };
+        let solved = Solved { iterations, converged, ..Solved::default() };
         evaluate(system, workspace, &balance, false)?;
         count(system, &solved);
+        system.work.solver.accepted += u64::from(!converged);
         end(rule, system, workspace, &balance, balance.h);
         finish(system, workspace);
         let found = Found { rule, balance, solved };

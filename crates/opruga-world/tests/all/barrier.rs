@@ -1,6 +1,7 @@
 //! The response `barrier`: forces that grow without bound as a gap closes.
 
 use crate::contact::{ball, contact, model, scene, wall_and_dot, world};
+use crate::implicit_contact::{force_on, heavy};
 use opruga_mesh::Mesh;
 use opruga_world::blueprint::*;
 use opruga_world::{Options, World, WorldError};
@@ -18,21 +19,6 @@ fn block(name: &str, size: [f64; 2], cells: [u32; 2], x: [f64; 2], mass: f64, yo
 fn pinned(side: &str, body: BodyBlueprint<2>) -> BodyBlueprint<2> {
     let pin = PinBlueprint { select: Selector::Side(side.into()), axes: [true; 2], motion: Vec::new() };
     BodyBlueprint { pins: vec![pin], ..body }
-}
-
-fn heavy(rule: &str, bodies: Vec<BodyBlueprint<2>>, substeps: u32) -> Blueprint<2> {
-    let mut scene = scene(rule, bodies);
-    scene.surroundings.gravity = [0.0, -9.81];
-    scene.time = Time { seconds: 10.0, frame: 1.0 / 60.0, substeps };
-    scene
-}
-
-fn force_on(world: &mut World<2>, body: usize) -> [f64; 2] {
-    let mut sum = [0.0; 2];
-    for force in world.contact_forces(body) {
-        (0..2).for_each(|d| sum[d] += force[d]);
-    }
-    sum
 }
 
 /// A block that falls onto a held one rests there on its weight, apart from it by less than the reach.

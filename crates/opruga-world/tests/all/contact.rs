@@ -105,6 +105,47 @@ fn two_balls_meet_and_keep_momentum() {
     }
 }
 
+/// Pairs that may meet in later steps do not count against the limit.
+#[test]
+fn fast_bodies_far_apart_are_within_the_limit_of_pairs() {
+    let fast = [0.0, -40.0];
+    let mut scene = scene("symplectic_euler", vec![ball("a", 24, [0.0, 0.0], fast), ball("b", 24, [3.0, 0.0], fast)]);
+    scene.time = Time { seconds: 1.0, frame: 1.0 / 60.0, substeps: 2 };
+    scene.contact = contact::<2>(&[("most_pairs", 100.0.into()), ("self", false.into())]);
+    let mut world = world(&scene);
+    for _ in 0..5 {
+        world.frame().expect("few pairs in each step");
+    }
+}
+
+/// Each body has a range of its own, by its edges, and obstacles have none: a frame is a whole one beside a fine body and a huge obstacle.
+#[test]
+fn ranges_of_other_bodies_and_obstacles_cut_no_frame_short() {
+    let fine = |x: f64| {
+        let ring = Mesh::ring(1e-3, 36, [0.0; 2], 0.0).expect("a ring");
+        let springs = vec![model::<2>("mass_spring", &[("stiffness", 1.0)])];
+        BodyBlueprint { translation: [x, 0.0], ..BodyBlueprint::new("fine", ring, Mass::Total(1e-3), springs) }
+    };
+    let bodies = || vec![fine(0.0), ball("far", 24, [5e6, 0.0], [0.0, 1.0])];
+    let height = |contact: Option<ContactBlueprint>, huge: bool| {
+        let mut scene = scene("symplectic_euler", bodies());
+        scene.time = Time { seconds: 1.0, frame: 1.0 / 60.0, substeps: 8 };
+        scene.contact = contact;
+        if huge {
+            let corners = [("min", Value::Numbers(vec![-1e13, -20.0])), ("max", Value::Numbers(vec![1e13, -10.0]))];
+            scene.colliders.push(ColliderBlueprint::new::<2>("box", &corners).expect("a collider"));
+        }
+        let mut world = world(&scene);
+        for _ in 0..6 {
+            world.frame().expect("a frame");
+        }
+        world.position(1, 0)[1]
+    };
+    let free = height(None, false);
+    assert_eq!(height(contact::<2>(&[]), false), free);
+    assert_eq!(height(contact::<2>(&[]), true), free);
+}
+
 #[test]
 fn points_bounce_by_the_restitution() {
     for (restitution, rule) in [(0.0, "symplectic_euler"), (0.5, "symplectic_euler"), (1.0, "verlet")] {

@@ -17,7 +17,7 @@ fn block(name: &str, size: [f64; 2], cells: [u32; 2], x: [f64; 2], mass: f64, yo
     BodyBlueprint { translation: x, ..BodyBlueprint::new(name, mesh, Mass::Total(mass), solid) }
 }
 
-fn heavy(rule: &str, bodies: Vec<BodyBlueprint<2>>, substeps: u32) -> Blueprint<2> {
+pub(crate) fn heavy(rule: &str, bodies: Vec<BodyBlueprint<2>>, substeps: u32) -> Blueprint<2> {
     let mut scene = scene(rule, bodies);
     scene.surroundings.gravity = [0.0, -9.81];
     scene.time = Time { seconds: 10.0, frame: 1.0 / 60.0, substeps };
@@ -25,7 +25,7 @@ fn heavy(rule: &str, bodies: Vec<BodyBlueprint<2>>, substeps: u32) -> Blueprint<
 }
 
 /// The force of bodies on a body [N].
-fn force_on(world: &mut World<2>, body: usize) -> [f64; 2] {
+pub(crate) fn force_on(world: &mut World<2>, body: usize) -> [f64; 2] {
     let mut sum = [0.0; 2];
     for force in world.contact_forces(body) {
         (0..2).for_each(|d| sum[d] += force[d]);
@@ -99,6 +99,59 @@ fn bodies_of_all_rules_meet_and_keep_momentum() {
         let speed = mean(0) - mean(1);
         assert!(speed < 0.0, "{first} {second}: they part: {speed}");
     }
+}
+
+fn fixed(body: BodyBlueprint<2>) -> BodyBlueprint<2> {
+    let pin = PinBlueprint { select: Selector::Box([-1e3; 2], [1e3; 2]), axes: [true; 2], motion: Vec::new() };
+    BodyBlueprint { pins: vec![pin], ..body }
+}
+
+/// A square of springs that falls onto its corner: the last round of a step finds impulses that no round was made with.
+#[test]
+fn a_square_of_springs_does_not_sink_into_a_box() {
+    let mut mesh = Mesh::grid([-0.4; 2], [0.8; 2], [6; 2]).expect("a grid");
+    let (sine, cosine) = (libm::sin(0.902), libm::cos(0.902));
+    mesh.positions.iter_mut().for_each(|x| *x = [cosine * x[0] - sine * x[1], sine * x[0] + cosine * x[1]]);
+    let springs = vec![model::<2>("mass_spring", &[("stiffness", 800.0), ("damping", 1.0)])];
+    let square = BodyBlueprint {
+        translation: [0.427714865254298, 1.9],
+        velocity: [-2.387, -7.888],
+        ..BodyBlueprint::new("square", mesh, Mass::Total(2.56), springs)
+    };
+    let base = fixed(BodyBlueprint::new(
+        "box",
+        Mesh::grid([0.0; 2], [2.0, 1.0], [1; 2]).expect("a grid"),
+        Mass::Total(1.0),
+        Vec::new(),
+    ));
+    let mut scene = heavy("backward_euler", vec![base, square], 1);
+    scene.contact = contact::<2>(&[("friction", 0.3.into())]);
+    let mut world = world(&scene);
+    for _ in 0..30 {
+        world.frame().unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(world.crossed_surfaces(), [], "at {} s", world.time());
+    }
+}
+
+/// A corner of an obstacle under an edge whose nodes the obstacle holds: the edge cannot answer, and nothing is asked of it.
+#[test]
+fn a_ring_rests_on_a_line_with_a_corner_in_its_middle() {
+    let ring = Mesh::ring(0.4, 36, [0.0; 2], 0.0).expect("a ring");
+    let gas = vec![
+        model::<2>("mass_spring", &[("stiffness", 1600.0), ("damping", 1.0)]),
+        model::<2>("pressure", &[("nRT", 100.0), ("ambient", 120.0)]),
+    ];
+    let ring = BodyBlueprint { translation: [0.06, 0.6], ..BodyBlueprint::new("ring", ring, Mass::Total(1.0), gas) };
+    let mut scene = heavy("backward_euler", vec![ring], 1);
+    let points = Value::Rows(vec![vec![-1.0, 0.0], vec![0.0, 0.0], vec![1.0, 0.0]]);
+    scene.colliders.push(ColliderBlueprint::new::<2>("polyline", &[("points", points)]).expect("a collider"));
+    let mut world = world(&scene);
+    for _ in 0..120 {
+        world.frame().unwrap_or_else(|error| panic!("{error}"));
+        assert!(world.energy().closure < 1e-6, "{:?}", world.energy());
+    }
+    let lowest = (0..36).map(|node| world.position(0, node)[1]).fold(f64::INFINITY, Lane::smaller);
+    assert!(lowest.abs() < 1e-3, "{lowest}");
 }
 
 /// A small body that goes many times its size in a step meets a thin wall.
