@@ -38,10 +38,6 @@ use opruga_math::Lane;
 /// The part of its gap that a pair keeps in one iteration, at least: the value of the source (2020, section 5).
 const KEPT: f64 = 0.1;
 
-/// Gaps below this part of the reach are too small for what presses: corrections become as small as they are. Without it a dot at 300 m/s finds no end of its step
-/// (`fast_bodies_do_not_tunnel`).
-const CLOSE: f64 = 0.01;
-
 /// How nearly parallel edges fade out: the square of the sine of their angle, as in the source (2020, section 5.3).
 const PARALLEL: f64 = 1e-3;
 
@@ -154,8 +150,6 @@ pub struct Barrier<const D: usize> {
     reach: f64,
     /// How much every point gives way: 1/k of its body there [m/N]; 0 where it is led.
     pub softness: Vec<f64>,
-    /// By how much κ is raised in the step at hand.
-    pub raised: f64,
     candidates: Candidates<D>,
     boxes: Vec<[[f64; D]; 2]>,
 }
@@ -163,20 +157,7 @@ pub struct Barrier<const D: usize> {
 impl<const D: usize> Barrier<D> {
     /// A barrier of a reach [m].
     pub fn new(reach: f64) -> Barrier<D> {
-        Barrier { reach, raised: 1.0, ..Barrier::default() }
-    }
-
-    /// Raises κ where the smallest gap is below a hundredth of the reach and has become smaller than before; gives that gap [m]. A correction
-    /// moves such a pair by a part of its gap alone.
-    ///
-    /// # Source
-    /// Li and others 2020, algorithm 1, line 14.
-    pub fn adapt(&mut self, pressed: &[Pressed<D>], before: f64) -> f64 {
-        let least = pressed.iter().fold(f64::INFINITY, |least, pair| pair.gap.smaller(least));
-        if least < CLOSE * self.reach && least < before {
-            self.raised *= 2.0;
-        }
-        least
+        Barrier { reach, ..Barrier::default() }
     }
 
     /// Looks for all pairs that may come within reach while the points go straight from x to y [m].
@@ -296,7 +277,7 @@ impl<const D: usize> Barrier<D> {
             |points: &[u32]| points.iter().map(|p| self.softness[*p as usize]).sum::<f64>() / points.len() as f64;
         let first = if with_facet { 1 } else { 2 };
         let softness = mean(&points[..first]) + mean(&points[first..=D]);
-        if softness > 0.0 { self.raised / softness } else { 0.0 }
+        if softness > 0.0 { 1.0 / softness } else { 0.0 }
     }
 
     /// The part of the way from x to y that all pairs may go, each keeping a tenth of its gap; 1 where nothing is in the way.

@@ -161,7 +161,6 @@ impl<const D: usize> Preconditioner for Factors<'_, D> {
 impl<const D: usize> Search<'_, D> {
     /// How much the points give way, by the matrices at the start of the step.
     pub(crate) fn find_softness(&mut self) -> Result<(), Refused> {
-        self.barrier.raised = 1.0;
         self.barrier.softness.clear();
         self.barrier.softness.resize(self.coordinates.len(), 0.0);
         for Opened { island, step, .. } in &mut self.opened {
@@ -239,7 +238,7 @@ impl<const D: usize> Search<'_, D> {
 
     /// Newton's method at given friction.
     fn find_minimum(&mut self) -> Result<(), Refused> {
-        let (mut first_norm, mut counted, mut least) = (0.0, 0, f64::INFINITY);
+        let (mut first_norm, mut counted) = (0.0, 0);
         self.stretch = 1.0;
         loop {
             let (most, accepts) = self
@@ -267,12 +266,6 @@ impl<const D: usize> Search<'_, D> {
             }
             let Some(slope) = slope else { return Err(self.not_definite(0)) };
             let part = self.go(slope)?;
-            let raised = self.barrier.raised;
-            least = self.barrier.adapt(&self.pressed, least);
-            if self.barrier.raised > raised {
-                self.press(false)?;
-                changed = true;
-            }
             for Opened { island, step, .. } in &mut self.opened {
                 changed |= step.judge(&self.islands[*island].system);
             }

@@ -1,7 +1,7 @@
 //! The response `barrier`: forces that grow without bound as a gap closes.
 
 use crate::contact::{ball, contact, model, scene, wall_and_dot, world};
-use crate::implicit_contact::{force_on, heavy};
+use crate::implicit_contact::{force_on, heavy, square_over_a_box};
 use opruga_mesh::Mesh;
 use opruga_world::blueprint::*;
 use opruga_world::{Options, World, WorldError};
@@ -127,20 +127,8 @@ fn what_sticks_on_a_body_does_not_creep() {
 /// A square of springs falls onto its corner, where springs give way sideways.
 #[test]
 fn bodies_that_buckle_find_an_end() {
-    let mut mesh = Mesh::grid([-0.4; 2], [0.8; 2], [6; 2]).expect("a grid");
-    let (sine, cosine) = (libm::sin(0.9), libm::cos(0.9));
-    mesh.positions.iter_mut().for_each(|x| *x = [cosine * x[0] - sine * x[1], sine * x[0] + cosine * x[1]]);
-    let springs = vec![model::<2>("mass_spring", &[("stiffness", 800.0), ("damping", 1.0)])];
-    let square = BodyBlueprint {
-        translation: [0.1, 0.6],
-        velocity: [-2.4, -7.9],
-        ..BodyBlueprint::new("square", mesh, Mass::Total(2.56), springs)
-    };
-    let base = pinned("bottom", block("base", [4.0, 0.5], [4, 2], [-2.0, -0.5], 10.0, 1e6));
-    let mut scene = heavy("backward_euler", vec![base, square], 1);
-    scene.contact = contact::<2>(&[("response", "barrier".into()), ("friction", 0.3.into())]);
-    let mut world = world(&scene);
-    for _ in 0..60 {
+    let mut world = world(&square_over_a_box("barrier"));
+    for _ in 0..30 {
         world.frame().unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(world.crossed_surfaces(), [], "at {} s", world.time());
     }
