@@ -229,7 +229,7 @@ impl<'a> Keeper<'a> {
         self.next = self.every.map(|every| Instant::now() + every.max(took));
         let error = written.err()?;
         let count = self.failed.as_ref().map_or(0, |f| f.0) + 1;
-        self.failed = Some((count, format!("a checkpoint on the way could not be written: {}", error.message)));
+        self.failed = Some((count, format!("a checkpoint on the way could not be written: {}", error.about)));
         Some(error.to_string())
     }
 

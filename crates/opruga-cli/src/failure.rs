@@ -118,7 +118,7 @@ impl Failure {
                 if count_of(errors) > 1 { writeln!(err, "{} errors", count_of(errors)) } else { Ok(()) }
             }
             Failure::Run(error) => writeln!(err, "{}", error.text(translation())),
-            Failure::Write(error) => writeln!(err, "{error}"),
+            Failure::Write(error) => writeln!(err, "{}", error.text(translation())),
             Failure::Draw(message) => writeln!(err, "error[draw.failed]: {message}"),
             Failure::Output(message) => writeln!(err, "error[write.failed]: {message}"),
             Failure::Check { code, message } => writeln!(err, "error[{code}]: {message}"),

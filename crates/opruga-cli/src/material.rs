@@ -94,15 +94,7 @@ fn values(call: &Material, dimension: usize) -> Result<Values, Failure> {
         given.push(("--set", field, number));
     }
     for (option, field, value) in given {
-        let shown = value.to_string();
-        values.set(SPEC, field, value, dimension).map_err(|error| {
-            let range =
-                SPEC.fields.iter().find(|known| known.name == field).map(|known| known.range.describe(dimension));
-            let message = error.to_string();
-            let message = message.split("; allowed: ").next().unwrap_or_default().to_string();
-            let error = SceneError::new("scene.range", message).path(option).value(shown);
-            refuse(error.allowed(range.unwrap_or_default()))
-        })?;
+        values.set(SPEC, field, value, dimension).map_err(|error| refuse(SceneError::of(error).path(option)))?;
     }
     Ok(values)
 }
@@ -116,11 +108,7 @@ fn shown<const D: usize>(
     point: Result<AtPoint<D>, opruga::core::error::BuildError>,
     as_json: bool,
 ) -> Result<String, Failure> {
-    let point = point.map_err(|error| {
-        let (message, allowed) = error.message.split_once("; allowed: ").unwrap_or((&error.message, ""));
-        let out = SceneError::new(error.code, message).path("--F");
-        refuse(if allowed.is_empty() { out } else { out.allowed(allowed) })
-    })?;
+    let point = point.map_err(|error| refuse(SceneError::of(error.about).path("--F")))?;
     let number = |field: &str| values.number(field).unwrap_or(0.0);
     let ratio = opruga::math::matrix::determinant::<f64, D>(f) * point.across.unwrap_or(1.0);
     let own: Vec<(&str, f64)> = law::own_fields(name).map(|field| (field, number(field))).collect();

@@ -46,18 +46,7 @@ pub(crate) fn open(path: &Path) -> Result<(Recording<File>, Source), Failure> {
     if !about.is_file() {
         return Err(refuse(SceneError::new("read.not_regular_file", "this is no regular file")));
     }
-    let recording = Recording::open(file).map_err(|e| {
-        let hint = match &e {
-            RecordingError::NotOne => Some("opruga run SCENE --record FILE writes one"),
-            RecordingError::Version { .. } => Some("the version of the program that wrote it can read it"),
-            _ => None,
-        };
-        let error = SceneError::from(&e);
-        refuse(match hint {
-            Some(hint) => error.hint(hint),
-            None => error,
-        })
-    })?;
+    let recording = Recording::open(file).map_err(|error| refuse(SceneError::from(&error)))?;
     let header = recording.header();
     let file = format!("scene {} (in {})", header.name, path.display());
     let held = header.assets.iter().map(|asset| (asset.name.clone(), asset.bytes.as_slice().into()));

@@ -93,7 +93,7 @@ fn wanted_frames(call: &Replay, recording: &Recording<File>) -> Result<RangeIncl
         }
     }
     let Some(last) = last else {
-        let error = RecordingError::NoFrame { frame: 0, frames };
+        let error = RecordingError::no_frame(0, &frames);
         return Err(refused(
             call,
             SceneError::from(&error).hint("the run was killed before its first frame was written"),

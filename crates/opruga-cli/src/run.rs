@@ -17,6 +17,7 @@ use opruga::io::safe_write::WriteError;
 use opruga::io::scene;
 use opruga::io::tables::WarningSummary;
 use opruga::math::words::{counted, number, rounded};
+use opruga::recordings::TapeHint;
 use opruga::{AnyWorld, Options, Simd};
 use std::collections::BTreeMap;
 use std::io::IsTerminal as _;
@@ -315,8 +316,7 @@ impl Job<'_> {
 
 /// The recording can go no further, and the run ends: its state is kept, so that it can go on elsewhere.
 fn unrecorded(error: WriteError) -> Failure {
-    let hint = "the run has ended here; --resume goes on from its checkpoint, with --record to another file";
-    Failure::Write(WriteError { hint: Some(hint.into()), ..error })
+    Failure::Write(error.advice(TapeHint::RunEnded))
 }
 
 /// There is nothing to go on with: the checkpoint lies at the end of the run or behind it.

@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::preparation;
 use opruga::blueprint::AnyBlueprint;
 use opruga::core::spec::all_near;
-use opruga::io::problem::{shown, visible};
+use opruga::io::problem::{Around, shown, visible};
 use opruga::io::refusals::{in_scene, of_command};
 use opruga::io::{Files, Notice, SceneError, scene};
 use opruga::math::words::number;
@@ -107,7 +107,7 @@ impl Source {
         world: &Options,
     ) -> Result<Box<dyn AnyWorld>, Failure> {
         let built = preparation::watched(&world.break_off, || blueprint.build(world.clone())).map_err(|first| {
-            if first == WorldError::BrokenOff {
+            if first == (WorldError::BrokenOff {}) {
                 return Failure::Interrupted;
             }
             // The scene is read again rather than kept for the case that its world is refused.
@@ -141,10 +141,12 @@ impl Source {
 
 /// An error with the time at which it came about; some say themselves when it was.
 fn timed(said: SceneError, error: &WorldError, time: f64) -> SceneError {
-    if matches!(error, WorldError::Snapshot(_)) || said.message.contains("t = ") {
+    if matches!(error, WorldError::Snapshot { .. }) || said.message.contains("t = ") {
         return said;
     }
-    SceneError { message: format!("at t = {} s: {}", number(time), said.message), ..said }
+    let message = format!("at t = {} s: {}", number(time), said.message);
+    let about = said.about.clone().map(|about| Around::AtTime { time, about }.into());
+    SceneError { message, about, ..said }
 }
 
 /// Neither a file nor a scene of the program: what else could be meant.

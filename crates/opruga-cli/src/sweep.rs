@@ -14,6 +14,7 @@ use opruga::io::SceneError;
 use opruga::io::output_folder::{Existing, OutputFolder};
 use opruga::io::safe_write::WriteError;
 use opruga::math::words::counted;
+use opruga::sweep::errors::SweepError;
 use opruga::sweep::{Metric, Question, Row, Status, Sweep, head, line, plots, read_rows};
 use opruga::{Simd, sweep::Point};
 use std::fs::{File, OpenOptions};
@@ -186,13 +187,8 @@ fn folder_of(question: &Question, path: &Path, force: bool) -> Result<OutputFold
     let before = if force { None } else { asked(path)? };
     let existing = if force || before.is_some() { Existing::Replace } else { Existing::Refuse };
     if let Some(before) = before.as_ref().filter(|before| !question.same(before)) {
-        return Err(Failure::Write(WriteError {
-            code: "write.exists",
-            message: format!("the folder holds a sweep with another question: {}", question.difference(before)),
-            path: path.to_path_buf(),
-            bytes: 0,
-            hint: Some("--force begins anew, --out takes another folder".into()),
-        }));
+        let difference = question.difference(before);
+        return Err(Failure::Write(WriteError::of(path, SweepError::OtherQuestion { difference })));
     }
     let folder = OutputFolder::open(path, existing)?;
     if before.is_none() {
@@ -309,13 +305,7 @@ impl Work<'_> {
     }
 
     fn lost(&self, path: &Path, error: &std::io::Error) -> Failure {
-        Failure::Write(WriteError {
-            code: "write.failed",
-            message: format!("a row of the table cannot be written: {error}"),
-            path: PathBuf::from(path),
-            bytes: 0,
-            hint: Some("the rows before it are kept; the same call goes on with the sweep".into()),
-        })
+        Failure::Write(WriteError::of(path, SweepError::RowNotWritten { reason: error.to_string() }))
     }
 }
 

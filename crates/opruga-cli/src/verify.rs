@@ -30,7 +30,10 @@ pub(crate) fn verify(call: &Verify) -> Result<u8, Failure> {
     let existing = if call.force { Existing::Replace } else { Existing::Refuse };
     let folder = call.report.as_ref().map(|path| OutputFolder::open(path, existing)).transpose();
     // Folders have another option here.
-    let folder = folder.map_err(|e| WriteError { hint: e.hint.map(|hint| hint.replace("--out", "--report")), ..e })?;
+    let folder = folder.map_err(|e| {
+        let about = e.about.renamed(&str::to_string, &|text| text.replace("--out", "--report"));
+        WriteError { about, ..e }
+    })?;
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let threads = call.threads.map_or(cores, usize::from);
     let bar = progress_bar(cases.len());

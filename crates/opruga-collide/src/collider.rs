@@ -2,6 +2,7 @@
 
 use crate::facets::{Facets, Flaw};
 use crate::motion::{Frame, Motion};
+use crate::refusals::Refusal;
 use crate::shape::{Ball, Capsule, Cuboid, HalfSpace};
 use crate::vector::{add, dot, identity, length, magnitude, rotation, scaled, subtract, turning};
 use opruga_core::error::BuildError;
@@ -79,14 +80,14 @@ pub(crate) struct Reach<const D: usize> {
 }
 
 /// Refuses a collider.
-struct Refusal<'a> {
+struct Refuse<'a> {
     number: usize,
     values: &'a Values,
 }
 
-impl Refusal<'_> {
-    fn error(&self, code: &'static str, message: String) -> BuildError {
-        BuildError::new(format!("collider {} ({})", self.number, self.values.kind()), code, message)
+impl Refuse<'_> {
+    fn error(&self, refusal: Refusal) -> BuildError {
+        BuildError::of(format!("collider {} ({})", self.number, self.values.kind()), refusal)
     }
     /// The value of a field, as it stands in the scene.
     fn shown(&self, field: &str) -> String {
@@ -97,7 +98,7 @@ impl Refusal<'_> {
 impl<const D: usize> Collider<D> {
     /// Builds a collider from its parameters; `number` counts colliders from 0 and names it in errors.
     pub(crate) fn build(number: usize, values: &Values) -> Result<Collider<D>, BuildError> {
-        let refuse = Refusal { number, values };
+        let refuse = Refuse { number, values };
         let (form, parts, center) = match values.kind() {
             "half_space" => half_space(values, &refuse)?,
             "box" => cuboid(values, &refuse)?,
@@ -106,7 +107,7 @@ impl<const D: usize> Collider<D> {
             "convex" => convex(values, &refuse)?,
             "polyline" if D == 2 => polyline(values, &refuse)?,
             "triangle_mesh" if D == 3 => triangle_mesh(values, &refuse)?,
-            _ => return Err(refuse.error("collider.kind", format!("there is no such collider in {D}D"))),
+            _ => return Err(refuse.error(Refusal::Kind { dimension: D })),
         };
         let motion = motion(values, &center);
         let mut law = Law {
@@ -127,10 +128,8 @@ impl<const D: usize> Collider<D> {
                 Part::Ball(ball) => {
                     law.extent += ball.radius;
                     if ball.sign < 0.0 && law.thickness >= ball.radius {
-                        return Err(refuse.error(
-                            "collider.no_room",
-                            format!("`thickness` is {}; allowed: less than the radius {}", law.thickness, ball.radius),
-                        ));
+                        let (thickness, radius) = (law.thickness, ball.radius);
+                        return Err(refuse.error(Refusal::FilledBall { thickness, radius }));
                     }
                 }
                 _ => {}
@@ -140,10 +139,7 @@ impl<const D: usize> Collider<D> {
             law.extent += magnitude(&shape.half);
             for half in &shape.half {
                 if law.thickness >= *half {
-                    return Err(refuse.error(
-                        "collider.no_room",
-                        format!("`thickness` is {}; allowed: less than half of every side, {half}", law.thickness),
-                    ));
+                    return Err(refuse.error(Refusal::FilledBox { thickness: law.thickness, half: *half }));
                 }
             }
         }
@@ -275,7 +271,7 @@ const SHORTEST: f64 = 1e-150;
 /// Form, parts and centre of a shape.
 type Built<const D: usize> = (Form<D>, Vec<Part<D>>, [f64; D]);
 
-fn half_space<const D: usize>(values: &Values, refuse: &Refusal) -> Result<Built<D>, BuildError> {
+fn half_space<const D: usize>(values: &Values, refuse: &Refuse<'_>) -> Result<Built<D>, BuildError> {
     let (point, normal) = (values.vector::<D>("point"), values.vector::<D>("normal"));
     let mut unit = normal;
     let mut size = length(&unit);
@@ -286,9 +282,8 @@ fn half_space<const D: usize>(values: &Values, refuse: &Refusal) -> Result<Built
         size = length(&unit);
     }
     if !(size > SHORTEST && size.is_finite()) {
-        let shown = refuse.shown("normal");
-        let message = format!("`normal` is {shown}; allowed: a vector of a length above {SHORTEST:e}");
-        return Err(refuse.error("collider.no_direction", message));
+        let (normal, least) = (refuse.shown("normal"), format!("{SHORTEST:e}"));
+        return Err(refuse.error(Refusal::NoNormal { normal, least }));
     }
     for n in &mut unit {
         *n /= size;
@@ -296,7 +291,7 @@ fn half_space<const D: usize>(values: &Values, refuse: &Refusal) -> Result<Built
     Ok((Form::HalfSpace { point, normal: unit }, vec![Part::HalfSpace(HalfSpace::through(&point, unit))], point))
 }
 
-fn cuboid<const D: usize>(values: &Values, refuse: &Refusal) -> Result<Built<D>, BuildError> {
+fn cuboid<const D: usize>(values: &Values, refuse: &Refuse<'_>) -> Result<Built<D>, BuildError> {
     let given = |name| values.get(name).is_some();
     let corners = [given("min"), given("max")];
     let middle = [given("center"), given("size")];
@@ -306,22 +301,13 @@ fn cuboid<const D: usize>(values: &Values, refuse: &Refusal) -> Result<Built<D>,
             (scaled(&add(&min, &max), 0.5), scaled(&subtract(&max, &min), 0.5))
         }
         ([false, false], [true, true]) => (values.vector::<D>("center"), scaled(&values.vector::<D>("size"), 0.5)),
-        _ => {
-            let message = "needs either `min` and `max`, or `center` and `size`".to_string();
-            return Err(refuse.error("collider.box_fields", message));
-        }
+        _ => return Err(refuse.error(Refusal::BoxFields {})),
     };
     if half.iter().any(|h| !(*h > 0.0 && h.is_finite())) {
-        let message = if corners[0] {
-            format!(
-                "`max` is {} and `min` is {}; allowed: every coordinate of `max` above that of `min`",
-                refuse.shown("max"),
-                refuse.shown("min")
-            )
-        } else {
-            format!("`size` is {}; allowed: lengths above 0", refuse.shown("size"))
-        };
-        return Err(refuse.error("collider.empty_box", message));
+        return Err(refuse.error(match corners[0] {
+            true => Refusal::EmptyCorners { max: refuse.shown("max"), min: refuse.shown("min") },
+            false => Refusal::EmptySize { size: refuse.shown("size") },
+        }));
     }
     // The rows of the transpose are the turned unit vectors.
     let turn = rotation::<D>(&turning(&spin(values, "rotation")), -1.0);
@@ -343,25 +329,20 @@ fn cuboid<const D: usize>(values: &Values, refuse: &Refusal) -> Result<Built<D>,
     Ok((Form::Box { shape, inside }, parts, center))
 }
 
-fn ball<const D: usize>(values: &Values, _refuse: &Refusal) -> Result<Built<D>, BuildError> {
+fn ball<const D: usize>(values: &Values, _refuse: &Refuse<'_>) -> Result<Built<D>, BuildError> {
     let (center, inside) = (values.vector::<D>("center"), values.flag("inside"));
     let radius = values.number("radius").unwrap_or(0.0);
     let ball = Ball { center, radius, sign: if inside { -1.0 } else { 1.0 } };
     Ok((Form::Ball { center, radius, inside }, vec![Part::Ball(ball)], center))
 }
 
-fn capsule<const D: usize>(values: &Values, refuse: &Refusal) -> Result<Built<D>, BuildError> {
+fn capsule<const D: usize>(values: &Values, refuse: &Refuse<'_>) -> Result<Built<D>, BuildError> {
     let (a, b) = (values.vector::<D>("a"), values.vector::<D>("b"));
     let radius = values.number("radius").unwrap_or(0.0);
     let along = subtract(&b, &a);
     let square = dot(&along, &along);
     if !(square > 1e-280 && square.is_finite()) {
-        let message = format!(
-            "`a` is {} and `b` is {}; allowed: two different points (one point is a `ball`)",
-            refuse.shown("a"),
-            refuse.shown("b")
-        );
-        return Err(refuse.error("collider.no_direction", message));
+        return Err(refuse.error(Refusal::NoAxis { a: refuse.shown("a"), b: refuse.shown("b") }));
     }
     // Of the coordinate axes the one that is most at a right angle, made fully so.
     let mut least = 0;
@@ -378,7 +359,7 @@ fn capsule<const D: usize>(values: &Values, refuse: &Refusal) -> Result<Built<D>
 }
 
 /// The points of a field, and the middle of the box around them.
-fn points<const D: usize>(values: &Values, refuse: &Refusal) -> Result<(Vec<[f64; D]>, [f64; D]), BuildError> {
+fn points<const D: usize>(values: &Values, refuse: &Refuse<'_>) -> Result<(Vec<[f64; D]>, [f64; D]), BuildError> {
     let (mut low, mut high) = ([f64::INFINITY; D], [f64::NEG_INFINITY; D]);
     let mut points = Vec::new();
     for row in values.rows("points") {
@@ -393,28 +374,17 @@ fn points<const D: usize>(values: &Values, refuse: &Refusal) -> Result<(Vec<[f64
     // Squares of lengths must stay finite.
     let fits = magnitude(&subtract(&high, &low)) < 1e100;
     if points.is_empty() || !fits {
-        let message = format!(
-            "`points` has {} points from {low:?} to {high:?}; allowed: at least one, within 1e100 m of each other",
-            points.len()
-        );
-        return Err(refuse.error("collider.points", message));
+        let (low, high) = (format!("{low:?}"), format!("{high:?}"));
+        return Err(refuse.error(Refusal::FarPoints { count: points.len(), low, high }));
     }
     Ok((points, scaled(&add(&low, &high), 0.5)))
 }
 
-fn convex<const D: usize>(values: &Values, refuse: &Refusal) -> Result<Built<D>, BuildError> {
+fn convex<const D: usize>(values: &Values, refuse: &Refuse<'_>) -> Result<Built<D>, BuildError> {
     let (points, center) = points::<D>(values, refuse)?;
-    let (facets, faces) = Facets::convex(&points).map_err(|_| {
-        let what = if D == 2 { "area" } else { "volume" };
-        refuse.error(
-            "collider.flat_hull",
-            format!(
-                "the hull of the {} `points` has no {what}; allowed: points that are not all on one {}",
-                points.len(),
-                if D == 2 { "line" } else { "plane" }
-            ),
-        )
-    })?;
+    let count = points.len();
+    let flat = || if D == 2 { Refusal::NoArea { count } } else { Refusal::NoVolume { count } };
+    let (facets, faces) = Facets::convex(&points).map_err(|_| refuse.error(flat()))?;
     let form = if D == 2 {
         // Faces run clockwise one after the other; their second corners are the polygon counterclockwise.
         Form::Polygon { points: faces.iter().map(|f| points[f[1]]).collect() }
@@ -428,13 +398,12 @@ fn convex<const D: usize>(values: &Values, refuse: &Refusal) -> Result<Built<D>,
     Ok((form, vec![Part::Facets(facets)], center))
 }
 
-fn polyline<const D: usize>(values: &Values, refuse: &Refusal) -> Result<Built<D>, BuildError> {
+fn polyline<const D: usize>(values: &Values, refuse: &Refuse<'_>) -> Result<Built<D>, BuildError> {
     let (points, center) = points::<D>(values, refuse)?;
     let closed = values.flag("closed");
     let least = if closed { 3 } else { 2 };
     if points.len() < least {
-        let message = format!("`points` has {} points; allowed: at least {least}", points.len());
-        return Err(refuse.error("collider.points", message));
+        return Err(refuse.error(Refusal::FewPoints { count: points.len(), least }));
     }
     let count = if closed { points.len() } else { points.len() - 1 };
     let mut segments = Vec::with_capacity(count);
@@ -444,26 +413,20 @@ fn polyline<const D: usize>(values: &Values, refuse: &Refusal) -> Result<Built<D
         segments.push(corners);
     }
     let facets = Facets::surface(&segments).map_err(|flaw| match flaw {
-        Flaw::Degenerate(k) => refuse.error(
-            "collider.degenerate_facet",
-            format!(
-                "points {k} and {} are both {:?}; allowed: segments of a length above 0",
-                (k + 1) % points.len(),
-                points[k]
-            ),
-        ),
-        Flaw::Flat => refuse.error("collider.points", "the points have no extent".to_string()),
+        Flaw::Degenerate(k) => {
+            let (first, second, position) = (k, (k + 1) % points.len(), format!("{:?}", points[k]));
+            refuse.error(Refusal::SamePoints { first, second, position })
+        }
+        Flaw::Flat => refuse.error(Refusal::NoExtent {}),
     })?;
     Ok((Form::Polyline { points, closed }, vec![Part::Facets(facets)], center))
 }
 
-fn triangle_mesh<const D: usize>(values: &Values, refuse: &Refusal) -> Result<Built<D>, BuildError> {
+fn triangle_mesh<const D: usize>(values: &Values, refuse: &Refuse<'_>) -> Result<Built<D>, BuildError> {
     let (points, center) = points::<D>(values, refuse)?;
     let numbers = values.integers("triangles");
     if numbers.is_empty() || !numbers.len().is_multiple_of(3) {
-        let message =
-            format!("`triangles` has {} numbers; allowed: three per triangle, at least one triangle", numbers.len());
-        return Err(refuse.error("collider.triangles", message));
+        return Err(refuse.error(Refusal::Triangles { count: numbers.len() }));
     }
     let mut corners = Vec::with_capacity(numbers.len() / 3);
     let mut triangles = Vec::with_capacity(numbers.len() / 3);
@@ -471,8 +434,7 @@ fn triangle_mesh<const D: usize>(values: &Values, refuse: &Refusal) -> Result<Bu
         let mut corner = [points[0]; D];
         for (k, &number) in triangle.iter().enumerate() {
             let Some(point) = points.get(number as usize) else {
-                let message = format!("`triangles` names point {number}; allowed: 0 to {}", points.len() - 1);
-                return Err(refuse.error("collider.triangles", message));
+                return Err(refuse.error(Refusal::NoPoint { point: number, last: points.len() - 1 }));
             };
             corner[k % D] = *point;
         }
@@ -480,11 +442,10 @@ fn triangle_mesh<const D: usize>(values: &Values, refuse: &Refusal) -> Result<Bu
         triangles.push([triangle[0], triangle[1], triangle[2]]);
     }
     let facets = Facets::surface(&corners).map_err(|flaw| match flaw {
-        Flaw::Degenerate(k) => refuse.error(
-            "collider.degenerate_facet",
-            format!("triangle {k} with points {:?} has no area; allowed: triangles with an area", triangles[k]),
-        ),
-        Flaw::Flat => refuse.error("collider.points", "the points have no extent".to_string()),
+        Flaw::Degenerate(k) => {
+            refuse.error(Refusal::FlatTriangle { triangle: k, points: format!("{:?}", triangles[k]) })
+        }
+        Flaw::Flat => refuse.error(Refusal::NoExtent {}),
     })?;
     Ok((Form::Triangles { points, triangles, solid: false }, vec![Part::Facets(facets)], center))
 }

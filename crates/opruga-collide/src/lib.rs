@@ -82,6 +82,8 @@ mod pass;
 mod passages;
 mod picture;
 mod reach;
+#[doc(hidden)]
+pub mod refusals;
 mod reports;
 mod response;
 mod row;

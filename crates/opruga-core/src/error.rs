@@ -1,20 +1,17 @@
 //! What can go wrong while a world is built or stepped.
 
-use opruga_math::message::AnyMessage;
+use opruga_math::message::{AnyMessage, Field, IntoField};
+use opruga_math::messages;
 use opruga_math::words::{counted, number};
 
 /// Why a model, integrator or collider could not be built from its parameters and the body.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{kind}: {message}")]
+#[error("{kind}: {}", about.in_full())]
 pub struct BuildError {
     /// The model, integrator, collider or section that refuses.
     pub kind: String,
-    /// A stable code, such as `model.open_surface`.
-    pub code: &'static str,
-    /// What is wrong, with the offending value and what is allowed.
-    pub message: String,
-    /// The same as a value; none where the text is all there is.
-    pub about: Option<AnyMessage>,
+    /// What is wrong.
+    pub about: AnyMessage,
 }
 
 impl BuildError {
@@ -23,16 +20,25 @@ impl BuildError {
 
     /// A preparation that was broken off from outside.
     pub fn broken_off(kind: impl Into<String>) -> BuildError {
-        BuildError::new(kind, BuildError::BROKEN_OFF, "the preparation was broken off")
+        BuildError::of(kind, BrokenOff::Preparation {})
     }
-    /// An error of a kind of thing, with a stable code and a message.
-    pub fn new(kind: impl Into<String>, code: &'static str, message: impl Into<String>) -> BuildError {
-        BuildError { kind: kind.into(), code, message: message.into(), about: None }
+    /// An error of a kind that a program has added, with a stable code and an English text.
+    pub fn new(kind: impl Into<String>, code: &'static str, text: impl Into<String>) -> BuildError {
+        BuildError::of(kind, AnyMessage::plain(code, text.into()))
     }
     /// An error of a kind of thing from a message.
     pub fn of(kind: impl Into<String>, about: impl Into<AnyMessage>) -> BuildError {
-        let about = about.into();
-        BuildError { about: Some(about.clone()), ..BuildError::new(kind, about.code(), about.in_full()) }
+        BuildError { kind: kind.into(), about: about.into() }
+    }
+    /// The stable code, such as `model.open_surface`.
+    pub fn code(&self) -> &'static str {
+        self.about.code()
+    }
+}
+
+impl IntoField for BuildError {
+    fn field(&self) -> Field {
+        Source::Of { kind: self.kind.clone(), about: self.about.clone() }.field()
     }
 }
 
@@ -46,62 +52,72 @@ pub fn what_was_left(range: Option<f64>) -> String {
     }
 }
 
-/// Why a substep could not be made.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum StepError {
-    /// A position or velocity is not finite any more, or a position is so far from the origin that it is mostly rounding.
-    #[error("node {node} of body {body} left {} at t = {} s", what_was_left(*range), number(*time))]
-    Diverged {
-        /// The body, by its place in the island.
-        body: usize,
-        /// The node.
-        node: u32,
-        /// The time at the start of the substep [s].
-        time: f64,
-        /// How far from the origin along an axis positions keep their digits [m], where the node went beyond that.
-        range: Option<f64>,
-    },
-    /// An implicit rule has not found the end of the step.
-    #[error(
-        "`{integrator}` did not converge in {} at t = {} s{}: the forces are out of balance by {} N, and the last correction \
-         was {} m; allowed: {} m",
-        counted(u64::from(*iterations), "iteration", "iterations"), number(*time),
-        match (beyond, flat_cells) {
-            (Some(part), _) => format!(", beyond {part}"),
-            (None, Some([flat, all])) => format!(", from a state with {flat} of {all} cells flat or inside out"),
-            (None, None) => String::new(),
+/// How far a step was found, and from what cells.
+fn circumstances(beyond: Option<f64>, inverted: usize, cells: usize) -> String {
+    match (beyond, inverted) {
+        (Some(load), _) => format!(", beyond {} of the load", number(load)),
+        (None, 0) => String::new(),
+        (None, _) => format!(", from a state with {inverted} of {cells} cells degenerate or inverted"),
+    }
+}
+
+messages! {
+    /// Why a preparation has ended early.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum BrokenOff {
+        "run.broken_off" #[error("the preparation was broken off")]
+        Preparation {},
+    }
+
+    /// What refuses, and why: a [`BuildError`] as a part of a text.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum Source {
+        "part.source" #[error("{kind}: {about}")]
+        #[allowed("{}", about.allowed().unwrap_or_default())] #[hint("{}", about.hint().unwrap_or_default())]
+        Of { kind: String, about: AnyMessage },
+    }
+
+    /// Why a substep could not be made.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum StepError {
+        /// A position or velocity is not finite any more, or a position is so far from the origin that it is mostly rounding: the body by
+        /// its place in the island, the node, the time at the start of the substep \[s\], and how far from the origin along an axis positions
+        /// keep their digits \[m\], where the node went beyond that.
+        "part.step" #[error("node {node} of body {body} left {} at t = {} s", what_was_left(*range), number(*time))]
+        Diverged { body: usize, node: u32, time: f64, range: Option<f64> },
+        /// An implicit rule has not found the end of the step: after so many iterations of Newton, with the largest force out of balance
+        /// on a node \[N\], the largest displacement in the last iteration \[m\], the correction that ends the iteration \[m\], the time at the
+        /// start of the step \[s\], the part of the load up to which a balance was found, and how many cells are degenerate or inverted
+        /// where the step begins, of how many.
+        "part.step"
+        #[error("`{integrator}` did not converge in {} at t = {} s{}: the forces are out of balance by {} N, and the last correction was {} m", counted(u64::from(*iterations), "iteration", "iterations"), number(*time), circumstances(*beyond, *inverted, *cells), number(*residual), number(*correction))]
+        #[allowed("{} m", number(*tolerance))] #[hint("{hint}")]
+        NotConverged {
+            integrator: &'static str,
+            iterations: u32,
+            residual: f64,
+            correction: f64,
+            tolerance: f64,
+            time: f64,
+            beyond: Option<f64>,
+            inverted: usize,
+            cells: usize,
+            hint: AnyMessage,
         },
-        number(*residual), number(*correction), number(*tolerance)
-    )]
-    NotConverged {
-        /// The rule.
-        integrator: &'static str,
-        /// How many iterations of Newton were made.
-        iterations: u32,
-        /// The largest force out of balance on a node [N].
-        residual: f64,
-        /// The largest displacement in the last iteration [m].
-        correction: f64,
-        /// The correction that ends the iteration [m].
-        tolerance: f64,
-        /// The time at the start of the step [s].
-        time: f64,
-        /// Up to where it was found, such as `0.25 of the load`, where that was looked for in parts.
-        beyond: Option<String>,
-        /// How many cells are flat or inside out where the step begins, and how many there are; none if none is.
-        flat_cells: Option<[usize; 2]>,
-        /// What helps under the settings of the rule.
-        hint: Box<str>,
-    },
-    /// The step was broken off from outside.
-    #[error("the step was broken off")]
-    BrokenOff,
+        /// The step was broken off from outside.
+        "part.step" #[error("the step was broken off")]
+        BrokenOff {},
+        /// A model has no meaning in this state; what helps under the settings of the rule, where the model does not say it.
+        "part.step" #[error("{model}: {about}")]
+        #[allowed("{}", about.allowed().unwrap_or_default())]
+        #[hint("{}", about.hint().or_else(|| helps.as_ref().map(ToString::to_string)).unwrap_or_default())]
+        Model { model: &'static str, about: AnyMessage, helps: Option<AnyMessage> },
+    }
+}
+
+impl StepError {
     /// A model has no meaning in this state.
-    #[error("{model}: {message}")]
-    Model {
-        /// The model.
-        model: &'static str,
-        /// What is wrong.
-        message: String,
-    },
+    pub fn of(model: &'static str, about: impl Into<AnyMessage>) -> StepError {
+        StepError::Model { model, about: about.into(), helps: None }
+    }
 }

@@ -15,6 +15,7 @@ pub mod integrator;
 mod ledger;
 mod lending;
 pub mod memory;
+pub mod messages;
 pub mod open_step;
 pub mod pair;
 mod pinned_motion;

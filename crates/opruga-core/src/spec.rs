@@ -3,11 +3,13 @@
 //! One description serves the scene reader, the error messages, the documentation, the JSON Schema and the panels
 //! of the studio. It knows nothing of any file format.
 
+mod allowed;
 mod condition;
 mod convert;
 mod names;
 
-pub use condition::Condition;
+pub use allowed::{AllowedValues, ChoiceError, ValueError, quoted};
+pub use condition::{Alternatives, Condition, ConditionText};
 pub use names::{all_near, nearest};
 
 use crate::error::BuildError;
@@ -50,14 +52,6 @@ pub enum Role {
     OfferedExplicit,
     /// The integrator that takes the place of [`Role::Statics`] where a body has to move. It is stable at any step.
     OfferedImplicit,
-}
-
-/// The code of the refusal of none or several of the fields of a choice.
-pub const ONE_OF: &str = "model.one_of";
-
-/// What a choice between fields asks for.
-pub fn one_of(set: &[&str]) -> String {
-    format!("exactly one of `{}` must be given", set.join("` and `"))
 }
 
 impl Spec {
@@ -363,7 +357,7 @@ impl Values {
     /// `model.one_of` for the first of them.
     pub fn check_choices(&self, spec: &Spec) -> Result<(), BuildError> {
         match spec.choices().find(|set| set.iter().filter(|name| self.get(name).is_some()).count() != 1) {
-            Some(set) => Err(BuildError::new(spec.kind, ONE_OF, one_of(set))),
+            Some(set) => Err(BuildError::of(spec.kind, ChoiceError::OneOf { fields: quoted(set) })),
             None => Ok(()),
         }
     }
@@ -374,35 +368,12 @@ impl Values {
     }
 }
 
-/// Why a value was refused.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ValueError {
-    /// There is no field of that name.
-    #[error("there is no field `{name}`{}", nearest.as_ref().map(|n| format!("; did you mean `{n}`?")).unwrap_or_default())]
-    UnknownField {
-        /// The name that was given.
-        name: String,
-        /// The nearest name that exists.
-        nearest: Option<String>,
-    },
-    /// The value is outside of its range or of another type.
-    #[error("`{name}` is {value}; allowed: {allowed}")]
-    NotAllowed {
-        /// The field.
-        name: String,
-        /// The value that was given.
-        value: String,
-        /// What is allowed.
-        allowed: String,
-    },
-}
-
 impl Allowed {
     /// The value itself if it is allowed; else the value and what is allowed, in words.
     ///
     /// # Errors
-    /// A pair of texts: the offending value and the allowed range.
-    pub fn accept(&self, value: Value, dimension: usize) -> Result<Value, (String, String)> {
+    /// The offending value and what is allowed.
+    pub fn accept(&self, value: Value, dimension: usize) -> Result<Value, (String, AllowedValues)> {
         let refuse = |v: &Value| Err((v.to_string(), self.describe(dimension)));
         let rows_ok = |rows: &[Vec<f64>], length: usize| {
             !rows.is_empty() && rows.iter().all(|r| r.len() == length && r.iter().all(|x| x.is_finite()))
@@ -450,45 +421,6 @@ impl Allowed {
             }
             (Allowed::Path, Value::Rows(rows)) if rows_ok(rows, dimension + 1) && rising(rows) => Ok(value),
             _ => refuse(&value),
-        }
-    }
-
-    /// What is allowed, in words.
-    pub fn describe(&self, dimension: usize) -> String {
-        match self {
-            Allowed::Number { least, greatest } => {
-                let low = match least {
-                    Bound::None => None,
-                    Bound::Closed(b) => Some(format!(">= {b}")),
-                    Bound::Open(b) => Some(format!("> {b}")),
-                };
-                let high = match greatest {
-                    Bound::None => None,
-                    Bound::Closed(b) => Some(format!("<= {b}")),
-                    Bound::Open(b) => Some(format!("< {b}")),
-                };
-                let bounds: Vec<String> = [low, high].into_iter().flatten().collect();
-                if bounds.is_empty() { "a finite number".into() } else { format!("a number {}", bounds.join(" and ")) }
-            }
-            Allowed::Integer { least, greatest } => format!("a whole number from {least} to {greatest}"),
-            Allowed::Boolean => "true or false".into(),
-            Allowed::Text => "a text of at most 256 bytes".into(),
-            Allowed::Choice(words) => {
-                format!("one of {}", words.iter().map(|w| format!("\"{w}\"")).collect::<Vec<_>>().join(", "))
-            }
-            Allowed::Vector => format!("{dimension} finite numbers"),
-            Allowed::Direction => format!("{dimension} finite numbers that are not all zero"),
-            Allowed::Numbers => "a list of finite numbers".into(),
-            Allowed::Integers => "a list of whole numbers from 0".into(),
-            Allowed::Points => format!("a list of points of {dimension} finite numbers"),
-            Allowed::Curve => "a curve [[t, value], …] of finite numbers with rising t".into(),
-            Allowed::CurveNotNegative => {
-                "a curve [[t, value], …] of finite numbers with rising t and values >= 0".into()
-            }
-            Allowed::Path => format!(
-                "a path [[t, {}], …] of finite numbers with rising t",
-                if dimension == 2 { "x, y" } else { "x, y, z" }
-            ),
         }
     }
 }

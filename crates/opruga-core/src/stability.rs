@@ -38,7 +38,16 @@ use crate::state::{Columns, Layout, View};
 use crate::system::System;
 use crate::tile::Tile;
 use lanczos::{extremes, largest};
-use opruga_math::{Column, Lane, WIDTH};
+use opruga_math::{Column, Lane, WIDTH, messages};
+
+messages! {
+    /// Why no stable step can be given.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum Unstable {
+        "step.not_finite" #[error("the forces around the state are not finite, so no stable step can be given")]
+        Forces {},
+    }
+}
 
 /// Limits are lowered by this factor, for small changes of the state.
 const SAFETY: f64 = 0.98;

@@ -185,7 +185,7 @@ impl<const D: usize> System<D> {
     /// [`StepError::BrokenOff`] where it shall end: what was made of it is to be taken back.
     pub fn go_on(&self) -> Result<(), StepError> {
         match self.break_off.is_wanted() {
-            true => Err(StepError::BrokenOff),
+            true => Err(StepError::BrokenOff {}),
             false => Ok(()),
         }
     }

@@ -9,6 +9,8 @@ pub mod heun;
 mod implicit;
 pub mod implicit_midpoint;
 pub mod newmark;
+#[doc(hidden)]
+pub mod refusals;
 pub mod runge_kutta;
 pub mod symplectic_euler;
 pub mod verlet;

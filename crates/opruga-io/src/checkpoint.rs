@@ -12,6 +12,7 @@
 //! The file ends there: anything more or less is refused.
 
 use crate::problem::SceneError;
+use opruga_math::messages;
 use std::io::{self, Write};
 
 /// The version that is written.
@@ -29,58 +30,41 @@ pub struct Checkpoint {
     pub payload: Vec<u8>,
 }
 
-/// Why a checkpoint was refused.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum CheckpointError {
-    /// It does not begin as a checkpoint.
-    #[error("this is no checkpoint of Opruga")]
-    NotOne,
-    /// Another version of the program wrote it.
-    #[error("the checkpoint has version {found}; this program reads version {VERSION}")]
-    Version {
-        /// The version that was found.
-        found: u32,
-    },
-    /// It is shorter than its head says.
-    #[error("the checkpoint is cut off: it has {found} bytes of {expected}")]
-    CutOff {
-        /// The bytes that it has.
-        found: u64,
-        /// The bytes that it should have.
-        expected: u64,
-    },
-    /// Something follows its end.
-    #[error("{extra} bytes follow the end of the checkpoint")]
-    TooLong {
-        /// The bytes too many.
-        extra: u64,
-    },
-    /// A checksum does not fit.
-    #[error("the checkpoint is damaged between bytes {from} and {to}")]
-    Damaged {
-        /// The first byte of the damaged part.
-        from: u64,
-        /// One past its last byte.
-        to: u64,
-    },
+messages! {
+    /// Why a checkpoint was refused.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum CheckpointError {
+        /// It does not begin as a checkpoint.
+        "checkpoint.not_one" #[error("this is no checkpoint of Opruga")] #[allowed("a whole checkpoint of version {VERSION}")]
+        NotOne {},
+        /// Another version of the program wrote it.
+        "checkpoint.version" #[error("the checkpoint has version {found}; this program reads version {VERSION}")]
+        #[allowed("a whole checkpoint of version {VERSION}")]
+        Version { found: u32 },
+        /// It is shorter than its head says.
+        "checkpoint.cut_off" #[error("the checkpoint is cut off: it has {found} bytes of {expected}")]
+        #[allowed("a whole checkpoint of version {VERSION}")]
+        CutOff { found: u64, expected: u64 },
+        /// Something follows its end.
+        "checkpoint.too_long" #[error("{extra} bytes follow the end of the checkpoint")] #[allowed("a whole checkpoint of version {VERSION}")]
+        TooLong { extra: u64 },
+        /// A checksum does not fit.
+        "checkpoint.damaged" #[error("the checkpoint is damaged between bytes {from} and {to}")]
+        #[allowed("a whole checkpoint of version {VERSION}")]
+        Damaged { from: u64, to: u64 },
+    }
 }
 
 impl CheckpointError {
     /// A stable word for programs.
     pub fn code(&self) -> &'static str {
-        match self {
-            CheckpointError::NotOne => "checkpoint.not_one",
-            CheckpointError::Version { .. } => "checkpoint.version",
-            CheckpointError::CutOff { .. } => "checkpoint.cut_off",
-            CheckpointError::TooLong { .. } => "checkpoint.too_long",
-            CheckpointError::Damaged { .. } => "checkpoint.damaged",
-        }
+        opruga_math::message::Message::code(self)
     }
 }
 
 impl From<&CheckpointError> for SceneError {
     fn from(error: &CheckpointError) -> SceneError {
-        SceneError::new(error.code(), error.to_string()).allowed(format!("a whole checkpoint of version {VERSION}"))
+        SceneError::of(error.clone())
     }
 }
 
@@ -114,7 +98,7 @@ impl Checkpoint {
     pub fn read(bytes: &[u8]) -> Result<Checkpoint, CheckpointError> {
         let found = bytes.len() as u64;
         if !bytes.starts_with(&MAGIC[..bytes.len().min(8)]) {
-            return Err(CheckpointError::NotOne);
+            return Err(CheckpointError::NotOne {});
         }
         if bytes.len() < HEAD {
             return Err(CheckpointError::CutOff { found, expected: HEAD as u64 });

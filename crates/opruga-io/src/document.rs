@@ -3,7 +3,9 @@
 use crate::brackets::unclosed;
 use crate::limits::Limits;
 use crate::problem::{MOST_SHOWN, SceneError, visible};
+use crate::scene::ValueKind;
 use crate::source::Source;
+use crate::text_errors::{OverrideError, TextError, TextHint};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -65,15 +67,15 @@ impl Node {
         }
     }
     /// What kind of value it is, in words.
-    pub(crate) fn kind(&self) -> &'static str {
+    pub(crate) fn kind(&self) -> ValueKind {
         match &self.data {
-            Data::Table(_) => "a table",
-            Data::Array(_) => "a list",
-            Data::Text(_) => "a text",
-            Data::Integer(..) => "a whole number",
-            Data::Number(..) => "a number",
-            Data::Boolean(_) => "a truth value",
-            Data::Date(_) => "a date",
+            Data::Table(_) => ValueKind::Table,
+            Data::Array(_) => ValueKind::List,
+            Data::Text(_) => ValueKind::Text,
+            Data::Integer(..) => ValueKind::Whole,
+            Data::Number(..) => ValueKind::Number,
+            Data::Boolean(_) => ValueKind::Truth,
+            Data::Date(_) => ValueKind::Date,
         }
     }
     /// The value as a short text for messages.
@@ -108,15 +110,19 @@ pub(crate) fn parse(source: &Source<'_>) -> (Option<Node>, Vec<SceneError>) {
         // All that is read as part of a list that is never closed makes no sense: that is one slip.
         if let Some(open) = open.filter(|open| span.start >= open.open) {
             if !std::mem::replace(&mut told, true) {
-                let (from, until) = (source.position(open.open).0, source.position(open.until).0);
-                let what = if open.wanted == ']' { "list" } else { "table" };
-                let message = format!("the text is no TOML: the {what} that opens in line {from} is not closed");
-                let hint = format!("a `{}` is missing between here and line {until}", open.wanted);
+                let (line, until) = (source.position(open.open).0, source.position(open.until).0);
+                let about = match open.wanted {
+                    ']' => TextError::OpenList { line },
+                    _ => TextError::OpenTable { line },
+                };
                 // The parser stumbles first where the bracket is missing, or where what follows begins.
                 let place = if span.start < open.until { span.start } else { open.open };
-                let hint =
-                    if place == open.open { hint } else { format!("a `{}` is missing before here", open.wanted) };
-                errors.push(source.mark(SceneError::new("scene.syntax", message).hint(hint), place, place + 1));
+                let bracket = open.wanted;
+                let hint = match place == open.open {
+                    true => TextHint::BracketBefore { bracket, line: until },
+                    false => TextHint::BracketHere { bracket },
+                };
+                errors.push(source.mark(SceneError::of(about).advice(hint), place, place + 1));
             }
             broken = true;
             continue;
@@ -136,10 +142,12 @@ pub(crate) fn parse(source: &Source<'_>) -> (Option<Node>, Vec<SceneError>) {
         }
         let empty = span.is_empty()
             && source.text.get(..span.start).is_some_and(|t| t.trim_end_matches([' ', '\t']).ends_with('='));
-        let message =
-            if empty { "a value is missing".to_string() } else { problem.message().replace(", expected nothing", "") };
-        let mut error = SceneError::new("scene.syntax", format!("the text is no TOML: {message}"));
-        error.hint = source.text.lines().nth(line - 1).and_then(|text| with_unit(text.split_once('=')?.1));
+        let error = SceneError::of(match empty {
+            true => TextError::NoValue {},
+            false => TextError::Syntax { reason: problem.message().replace(", expected nothing", "") },
+        });
+        let hint = source.text.lines().nth(line - 1).and_then(|text| with_unit(text.split_once('=')?.1));
+        let error = hint.map_or(error.clone(), |hint| error.advice(hint));
         errors.push(source.mark(error, span.start, span.end));
     }
     if count > MOST_SHOWN {
@@ -152,14 +160,13 @@ pub(crate) fn parse(source: &Source<'_>) -> (Option<Node>, Vec<SceneError>) {
 const FOLLOW: [&str; 3] = ["invalid key-value pair", "missing table open", "key with no value"];
 
 /// What helps where a value is a number with a unit behind it.
-fn with_unit(value: &str) -> Option<String> {
+fn with_unit(value: &str) -> Option<TextHint> {
     let value = value.split('#').next().unwrap_or(value).trim();
     let end = value.find(|c: char| !(c.is_ascii_digit() || "+-._eE".contains(c)))?;
     let (number, unit) = (value[..end].trim_end_matches(['e', 'E']), value[end..].trim());
     let known = number.parse::<f64>().is_ok() && !unit.is_empty() && unit.len() <= 12;
-    (known && unit.chars().next().is_some_and(char::is_alphabetic)).then(|| {
-        format!("numbers stand without units: write {number}; `opruga reference` tells the unit of every field")
-    })
+    let known = known && unit.chars().next().is_some_and(char::is_alphabetic);
+    known.then(|| TextHint::Unit { bare: number.into() })
 }
 
 /// The error for a key that was written a second time, naming the first place.
@@ -168,11 +175,12 @@ fn duplicate(source: &Source<'_>, root: &Node, start: usize, end: usize) -> Scen
     let mut first = None;
     last_before(root, word, start, &mut first);
     let (line, _) = source.position(start);
-    let message = match first.map(|at| source.position(at).0) {
-        Some(other) if other != line => format!("`{}` is given twice, first in line {other}", visible(word)),
-        _ => format!("`{}` is given twice", visible(word)),
-    };
-    source.mark(SceneError::new("scene.duplicate_key", message).path(word), start, end).hint("keep one of the two")
+    let key = visible(word);
+    let error = SceneError::of(match first.map(|at| source.position(at).0) {
+        Some(other) if other != line => TextError::TwiceInLines { key, line: other },
+        _ => TextError::Twice { key },
+    });
+    source.mark(error.path(word), start, end)
 }
 
 /// The last place before a byte where a key of this name stands.
@@ -252,8 +260,8 @@ pub(crate) fn parse_value(text: &str, number: usize) -> Result<Node, SceneError>
     {
         Node { place: Place::Override(number), data: Data::Text(trimmed.to_string()) }
     } else {
-        let why = errors.first().map(|e| e.message().to_string()).unwrap_or_default();
-        return Err(SceneError::new("set.value", format!("the value is no TOML: {why}")));
+        let reason = errors.first().map(|e| e.message().to_string()).unwrap_or_default();
+        return Err(SceneError::of(OverrideError::Value { reason }));
     };
     set_place(&mut value, Place::Override(number));
     Ok(value)

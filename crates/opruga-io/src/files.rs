@@ -1,6 +1,7 @@
 //! The files that a scene names: looked up beside it, or held in memory.
 
 use crate::problem::{SceneError, visible};
+use crate::text_errors::{FileError, Measured};
 use opruga_core::spec::nearest;
 use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
@@ -74,21 +75,20 @@ impl Files {
             return Ok(Arc::clone(bytes));
         }
         let Some(folder) = &self.folder else {
-            let error = SceneError::new("read.failed", format!("there is no file `{}`", visible(name)));
-            return Err(error
-                .value(visible(name))
-                .nearest(nearest(name, self.held.keys().map(String::as_str)))
-                .allowed(match self.held.len() {
-                    0 => "a scene without a folder names no files".into(),
-                    _ => self.held.keys().cloned().collect::<Vec<_>>().join(", "),
-                }));
+            let (name_shown, near) = (visible(name), nearest(name, self.held.keys().map(String::as_str)));
+            let about = match self.held.len() {
+                0 => FileError::NoFolder { name: name_shown },
+                _ => {
+                    let known = self.held.keys().cloned().collect::<Vec<_>>().join(", ");
+                    FileError::NotHeld { name: name_shown, known }
+                }
+            };
+            return Err(SceneError::of(about).nearest(near));
         };
         let path = folder.join(name);
         self.check_place(folder, &path, name)?;
-        crate::regular_file::regular_file(&path, most_bytes, "shape.too_large", "the file").map_err(|error| {
-            let error = error.value(visible(name));
-            if path.exists() { error } else { self.missing(folder, name, error) }
-        })
+        crate::regular_file::regular_file(&path, most_bytes, "shape.too_large", Measured::File)
+            .map_err(|error| if path.exists() { error.value(visible(name)) } else { self.missing(folder, name) })
     }
 
     /// Refuses names that lead out of the folder, by words or by links.
@@ -106,22 +106,18 @@ impl Files {
         if plain && !foreign && !name.is_empty() && inside {
             return Ok(());
         }
-        Err(SceneError::new("shape.outside", format!("`{}` leads out of the folder of the scene", visible(name)))
-            .value(visible(name))
-            .allowed("a file in the folder of the scene or below it, named with /")
-            .hint("`--allow-outside` lets a scene read files from anywhere"))
+        Err(SceneError::of(FileError::Outside { name: visible(name) }))
     }
 
-    /// Adds the nearest name that exists in the same folder.
-    fn missing(&self, folder: &Path, name: &str, error: SceneError) -> SceneError {
+    /// That a file is not there, with the nearest name that exists in the same folder.
+    fn missing(&self, folder: &Path, name: &str) -> SceneError {
         let (before, last) = name.rsplit_once('/').map_or(("", name), |(before, last)| (before, last));
         let entries = std::fs::read_dir(folder.join(before)).into_iter().flatten().flatten();
         let mut names: Vec<String> = entries.take(10_000).filter_map(|e| e.file_name().into_string().ok()).collect();
         names.sort();
         let near = nearest(last, names.iter().map(String::as_str));
         let whole = near.map(|n| if before.is_empty() { n } else { format!("{before}/{n}") });
-        let hint = format!("files are looked up in `{}`", visible(&folder.display().to_string()));
-        let error = SceneError { message: format!("the file `{}` is not there", visible(name)), ..error }.hint(hint);
-        error.nearest(whole)
+        let folder = visible(&folder.display().to_string());
+        SceneError::of(FileError::NotThere { name: visible(name), folder }).nearest(whole)
     }
 }

@@ -34,7 +34,9 @@ pub mod shapes;
 mod source;
 pub mod tables;
 pub mod template;
+mod text_errors;
 pub mod tracks;
+pub mod write_faults;
 
 pub use catalogue::Catalogue;
 pub use files::Files;

@@ -4,6 +4,7 @@ use crate::aside::{aside_name, is_the_file, remove_the_dead};
 use crate::safe_write::{
     Aside, Fill, TRIAL, WriteError, folder_of, make_folders, safe_write_through, sync_folder, try_write,
 };
+use crate::write_faults::{Doing, WriteFault};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -68,50 +69,42 @@ impl OutputFolder {
     /// `write.folder` where it cannot be made or written, `write.locked` where another process writes into it,
     /// `write.exists` where it holds other files and `existing` refuses them.
     pub fn open(path: &Path, existing: Existing) -> Result<OutputFolder, WriteError> {
-        let cannot = |what: &str, e: &io::Error| {
-            WriteError::new(
-                "write.folder",
-                path,
-                format!("the folder cannot be {what}: {}", crate::regular_file::reason(e)),
-            )
+        let cannot = |doing: Doing, e: &io::Error| {
+            WriteError::of(path, WriteFault::Folder { doing, reason: crate::regular_file::reason(e) })
         };
         if path.exists() && !path.is_dir() {
-            return Err(WriteError::new("write.folder", path, "this is a file, no folder"));
+            return Err(WriteError::of(path, WriteFault::IsFile {}));
         }
         if !path.exists() {
-            make_folders(path).map_err(|e| cannot("made", &e))?;
+            make_folders(path).map_err(|e| cannot(Doing::Made, &e))?;
         }
         let open = || OpenOptions::new().create(true).truncate(false).write(true).open(path.join(LOCK));
-        let mut lock = open().map_err(|e| cannot("written", &e))?;
+        let mut lock = open().map_err(|e| cannot(Doing::Written, &e))?;
         let mut locked = lock.try_lock();
         while locked.is_ok() && !is_the_file(&lock, &path.join(LOCK)) {
             // Its last owner took it away in the moment before: what is locked here nobody else would find.
-            lock = open().map_err(|e| cannot("written", &e))?;
+            lock = open().map_err(|e| cannot(Doing::Written, &e))?;
             locked = lock.try_lock();
         }
         match locked {
             Ok(()) => {}
             Err(fs::TryLockError::WouldBlock) => {
-                let error = WriteError::new("write.locked", path, "another process writes into this folder");
-                return Err(WriteError {
-                    hint: Some("wait for it, or choose another folder with --out".into()),
-                    ..error
-                });
+                return Err(WriteError::of(path, WriteFault::FolderLocked {}));
             }
             // A file system without locks: the folder can still be used.
             Err(fs::TryLockError::Error(e)) if e.kind() == io::ErrorKind::Unsupported => {}
-            Err(fs::TryLockError::Error(e)) => return Err(cannot("locked", &e)),
+            Err(fs::TryLockError::Error(e)) => return Err(cannot(Doing::Locked, &e)),
         }
         // What was being written when an earlier owner of the lock was killed.
         remove_the_dead(path, None);
-        for entry in fs::read_dir(path).map_err(|e| cannot("read", &e))?.flatten() {
+        for entry in fs::read_dir(path).map_err(|e| cannot(Doing::Read, &e))?.flatten() {
             if entry.file_name().to_str().is_some_and(|name| name.ends_with(TRIAL)) {
                 let _ = fs::remove_file(entry.path());
             }
         }
         if existing == Existing::Refuse {
             let mut names: Vec<String> = fs::read_dir(path)
-                .map_err(|e| cannot("read", &e))?
+                .map_err(|e| cannot(Doing::Read, &e))?
                 .filter_map(|entry| Some(entry.ok()?.file_name().to_string_lossy().into_owned()))
                 .filter(|name| name != LOCK)
                 .collect();
@@ -119,25 +112,19 @@ impl OutputFolder {
             if let Some(first) = names.first() {
                 // Nothing of ours is left in a folder that is somebody else's, nor the lock of a process that was killed here.
                 let _ = fs::remove_file(path.join(LOCK));
-                let message = format!(
-                    "the folder already holds {} files, among them {}",
-                    names.len(),
-                    crate::problem::visible(first)
-                );
-                let message = if names.len() == 1 {
-                    format!("the folder already holds {}", crate::problem::visible(first))
-                } else {
-                    message
-                };
-                return Err(WriteError {
-                    hint: Some("--force replaces them, --out chooses another folder".into()),
-                    ..WriteError::new("write.exists", path, message)
-                });
+                let file = crate::problem::visible(first);
+                return Err(WriteError::of(
+                    path,
+                    match names.len() {
+                        1 => WriteFault::HoldsFile { file },
+                        count => WriteFault::HoldsFiles { count, file },
+                    },
+                ));
             }
         }
         let folder = OutputFolder { path: path.to_path_buf(), force: existing != Existing::Refuse, lock: Some(lock) };
         try_write(&folder.path("trial"), true).map_err(|e| WriteError {
-            code: "write.folder",
+            about: WriteFault::Unwritable { problem: e.about.clone() }.into(),
             path: path.to_path_buf(),
             ..e
         })?;

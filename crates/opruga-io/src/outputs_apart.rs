@@ -5,6 +5,7 @@
 
 use crate::aside::is_aside;
 use crate::safe_write::WriteError;
+use crate::write_faults::WriteFault;
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
@@ -91,15 +92,11 @@ impl Uses {
 }
 
 fn replaces(path: &Path, output: &str, input: &str) -> WriteError {
-    let message = format!("{output} would replace {input}, which is an input of this call");
-    let error = WriteError::new("write.input", path, message);
-    WriteError { hint: Some("choose another name; --force replaces outputs only, never an input".into()), ..error }
+    WriteError::of(path, WriteFault::ReplacesInput { output: output.into(), input: input.into() })
 }
 
 fn twice(path: &Path, one: &str, other: &str) -> WriteError {
-    let message = format!("{one} and {other} are one file: only the last would be left");
-    let error = WriteError::new("write.twice", path, message);
-    WriteError { hint: Some("choose another name for one of them".into()), ..error }
+    WriteError::of(path, WriteFault::OneFile { one: one.into(), other: other.into() })
 }
 
 impl Folder {
@@ -202,7 +199,7 @@ mod tests {
     fn code(fill: impl FnOnce(&mut Uses)) -> &'static str {
         let mut uses = Uses::default();
         fill(&mut uses);
-        uses.check().map_or_else(|error| error.code, |()| "")
+        uses.check().map_or_else(|error| error.code(), |()| "")
     }
 
     #[test]

@@ -5,6 +5,7 @@
 
 use crate::document::{self, Data, Entry, Node, Place};
 use crate::problem::{SceneError, visible};
+use crate::text_errors::{OverrideError, TextHint};
 use opruga_core::spec::nearest;
 
 /// Splits `PATH=VALUE`.
@@ -14,10 +15,7 @@ use opruga_core::spec::nearest;
 pub fn split(argument: &str) -> Result<(String, String), SceneError> {
     match argument.split_once('=') {
         Some((path, value)) if !path.trim().is_empty() => Ok((path.trim().to_string(), value.trim().to_string())),
-        _ => Err(SceneError::new("set.syntax", format!("`{}` is no override", visible(argument)))
-            .value(visible(argument))
-            .allowed("PATH=VALUE")
-            .hint("for example --set body.ball.mass=2")),
+        _ => Err(SceneError::of(OverrideError::NoOverride { argument: visible(argument) })),
     }
 }
 
@@ -39,7 +37,7 @@ pub(crate) fn apply_all(root: &mut Node, overrides: &[(String, String)]) -> Resu
 
 fn apply(root: &mut Node, path: &str, value: &str, number: usize) -> Result<(), SceneError> {
     if value.is_empty() {
-        return Err(SceneError::new("set.value", "the value is missing").path(path).allowed("PATH=VALUE"));
+        return Err(SceneError::of(OverrideError::NoValue {}).path(path));
     }
     let value = document::parse_value(value, number).map_err(|error| {
         let error = error.path(path).value(visible(value));
@@ -48,16 +46,16 @@ fn apply(root: &mut Node, path: &str, value: &str, number: usize) -> Result<(), 
         }
         let several = value.contains(',') || value.contains("..");
         if several && !value.contains(['[', '{', '"', '\'']) {
-            let hint = "`opruga sweep` takes lists (8,16,32) and ranges (0.5..4:log:7), with a run for each value; a vector stands in brackets";
-            return error.allowed("one value").hint(hint);
+            let reason = error.about.as_ref().and_then(|about| about.fields().into_iter().next());
+            let reason = reason.map_or(String::new(), |(_, reason)| reason.to_string());
+            let several = SceneError::of(OverrideError::SeveralValues { reason }).path(path).value(visible(value));
+            return several.advice(TextHint::Sweep {});
         }
-        error.hint("texts with spaces need quotes")
+        error.advice(TextHint::Quotes {})
     })?;
     let parts: Vec<&str> = path.split('.').collect();
     if parts.len() > 32 || parts.iter().any(|p| p.is_empty()) {
-        return Err(SceneError::new("set.path", format!("`{}` is no path", visible(path)))
-            .path(visible(path))
-            .allowed("names separated by single dots"));
+        return Err(SceneError::of(OverrideError::Path { path: visible(path) }).path(visible(path)));
     }
     set(root, &parts, "", value, number)
 }
@@ -92,14 +90,14 @@ fn set(node: &mut Node, parts: &[&str], walked: &str, value: Node, number: usize
                 let count = items.len();
                 return match items.get_mut(k) {
                     Some(item) => set(item, rest, &here, value, number),
-                    None => Err(SceneError::new("set.path", format!("`{}` has no entry {k}", visible(walked)))
-                        .path(shown)
-                        .value(k.to_string())
-                        .allowed(if count == 0 {
-                            "it is empty".to_string()
-                        } else {
-                            format!("numbers from 0 to {}", count - 1)
-                        })),
+                    None => {
+                        let list = visible(walked);
+                        let error = SceneError::of(match count {
+                            0 => OverrideError::EmptyList { list, index: k.to_string() },
+                            count => OverrideError::NoEntry { list, index: k, last: count - 1 },
+                        });
+                        Err(error.path(shown))
+                    }
                 };
             }
             let matching: Vec<usize> =
@@ -108,24 +106,25 @@ fn set(node: &mut Node, parts: &[&str], walked: &str, value: Node, number: usize
                 [k] => set(&mut items[*k], rest, &here, value, number),
                 [] => {
                     let labels: Vec<String> = items.iter().filter_map(label).collect();
-                    let allowed = labels.iter().take(20).map(|l| visible(l)).collect::<Vec<_>>().join(", ");
-                    Err(SceneError::new("set.path", format!("`{}` has no entry `{}`", visible(walked), visible(head)))
-                        .path(shown)
-                        .value(visible(head))
-                        .allowed(if allowed.is_empty() { "it is empty".to_string() } else { allowed })
-                        .nearest(nearest(head, labels.iter().map(String::as_str))))
+                    let known = labels.iter().take(20).map(|l| visible(l)).collect::<Vec<_>>().join(", ");
+                    let (list, name) = (visible(walked), visible(head));
+                    let about = match known.is_empty() {
+                        true => OverrideError::EmptyList { list, index: format!("`{name}`") },
+                        false => OverrideError::NoEntryCalled { list, name, known },
+                    };
+                    let near = nearest(head, labels.iter().map(String::as_str));
+                    Err(SceneError::of(about).path(shown).value(visible(head)).nearest(near))
                 }
-                several => Err(SceneError::new(
-                    "set.path",
-                    format!("`{}` has {} entries `{}`", visible(walked), several.len(), visible(head)),
-                )
-                .path(shown)
-                .value(visible(head))
-                .allowed(format!("their numbers: {several:?}"))),
+                several => {
+                    let (list, count, indices) = (visible(walked), several.len(), format!("{several:?}"));
+                    let about = OverrideError::SeveralEntries { list, count, name: visible(head), indices };
+                    Err(SceneError::of(about).path(shown))
+                }
             }
         }
-        _ => Err(SceneError::new("set.path", format!("`{}` is {}, it has no fields", visible(walked), node.kind()))
-            .path(shown)
-            .value(visible(head))),
+        _ => {
+            let about = OverrideError::NoFields { value: visible(walked), kind: node.kind(), field: visible(head) };
+            Err(SceneError::of(about).path(shown))
+        }
     }
 }

@@ -1,7 +1,9 @@
 //! What is wrong, where, and what would be right: for people and, as JSON, for programs.
 
+use crate::scene::FieldError;
 use core::fmt;
 use opruga_math::message::{AnyMessage, Message};
+use opruga_math::words::number;
 use opruga_words::Translation;
 use opruga_world::Warning;
 pub(crate) use opruga_world::validity::unprintable;
@@ -19,6 +21,9 @@ opruga_math::messages! {
         Times { count: usize },
         "part.label" #[error("{text}, at byte {byte}")]
         AtByte { text: String, byte: usize },
+        "part.label" #[error("at t = {} s: {about}", number(*time))]
+        #[allowed("{}", about.allowed().unwrap_or_default())] #[hint("{}", about.hint().unwrap_or_default())]
+        AtTime { time: f64, about: AnyMessage },
         "part.label" #[error("did you mean `{word}`?")]
         Nearest { word: String },
         "part.label" #[error("without --strict this is a warning")]
@@ -55,6 +60,8 @@ pub struct SceneError {
     pub about: Option<AnyMessage>,
     /// What would help, as a value, where the message itself does not say it.
     pub advice: Option<AnyMessage>,
+    /// What is allowed, as a value, where the message itself does not say it.
+    pub allowance: Option<AnyMessage>,
 }
 
 /// A line of a file with a part of it marked.
@@ -94,6 +101,7 @@ impl SceneError {
             byte: None,
             about: None,
             advice: None,
+            allowance: None,
         }
     }
     /// An error of a message, with its code, value, what is allowed and what helps; in no particular line.
@@ -109,7 +117,7 @@ impl SceneError {
     }
     /// What stands behind the errors that are shown: so many were only counted.
     pub(crate) fn and_more(count: usize) -> SceneError {
-        SceneError { value: Some(count.to_string()), ..SceneError::new(MORE, format!("and {count} more")) }
+        SceneError::of(FieldError::More { count })
     }
     /// How many errors this one stands for.
     fn stands_for(&self) -> usize {
@@ -140,6 +148,14 @@ impl SceneError {
     #[must_use]
     pub fn hint(mut self, hint: impl Into<String>) -> SceneError {
         self.hint = Some(hint.into());
+        self
+    }
+    /// Adds what is allowed, as a value.
+    #[must_use]
+    pub fn allows(mut self, allowance: impl Into<AnyMessage>) -> SceneError {
+        let allowance = allowance.into();
+        self.allowed = Some(allowance.to_string());
+        self.allowance = Some(allowance);
         self
     }
     /// Adds what would help, as a value.
@@ -188,7 +204,7 @@ impl SceneError {
     pub fn translated(mut self, translation: Option<&Translation>) -> SceneError {
         let (message, (allowed, hint)) = (self.sentence_alone(translation), self.beside(translation));
         (self.message, self.allowed, self.hint) = (message, allowed, hint);
-        (self.about, self.advice) = (None, None);
+        (self.about, self.advice, self.allowance) = (None, None, None);
         self
     }
     /// The sentence without a place.
@@ -199,7 +215,8 @@ impl SceneError {
     /// What is allowed and what helps.
     fn beside(&self, translation: Option<&Translation>) -> (Option<String>, Option<String>) {
         let known = translation.zip(self.about.as_ref());
-        let allowed = || known.and_then(|(own, about)| own.allowed(&**about));
+        let allowance = translation.zip(self.allowance.as_ref()).and_then(|(own, allowance)| own.text(&**allowance));
+        let allowed = || allowance.or_else(|| known.and_then(|(own, about)| own.allowed(&**about)));
         let advice = translation.zip(self.advice.as_ref()).and_then(|(own, advice)| own.text(&**advice));
         let hint = || advice.or_else(|| known.and_then(|(own, about)| own.hint(&**about)));
         (

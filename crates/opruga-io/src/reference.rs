@@ -149,7 +149,7 @@ fn allowed(range: &Allowed) -> String {
         Allowed::Path => "a path `[[t, x, y(, z)], …]`, t rising".into(),
         Allowed::Curve => "a curve `[[t, value], …]`, t rising".into(),
         Allowed::CurveNotNegative => "a curve `[[t, value], …]`, t rising, values >= 0".into(),
-        other => other.describe(2),
+        other => other.describe(2).to_string(),
     }
 }
 

@@ -4,83 +4,71 @@ use crate::document::{self, Data, Entry, Node, Place};
 use crate::overrides;
 use crate::problem::{Around, SceneError};
 use crate::source::Source;
-use opruga_core::error::what_was_left;
+use opruga_math::message::AnyMessage;
+use opruga_math::messages;
 use opruga_math::words::number;
+use opruga_world::error::Place as Part;
 use opruga_world::schema::{self, MOST_SUBSTEPS};
 use opruga_world::{RefusedCommand, Warning, WorldError};
+
+messages! {
+    /// What helps where a scene is refused, beside what the world itself says.
+    #[derive(Clone, Debug, PartialEq)]
+    pub(crate) enum RefusalHint {
+        "part.refusal_hint" #[error("substeps >= {substeps}, such as --set time.substeps={substeps}; or another integrator")]
+        Substeps { substeps: u32 },
+        "part.refusal_hint" #[error("another `value`: a frame has at most {most} substeps")]
+        OtherValue { most: u32 },
+        "part.refusal_hint" #[error("a `value` of {substeps} or more, or another integrator")]
+        LargerValue { substeps: u32 },
+        "part.refusal_hint" #[error("another `value`, or substeps >= {substeps} when the command begins, which a command before it sets")]
+        ValueOrEarlierCommand { substeps: u32 },
+        "part.refusal_hint" #[error("another `value`, or substeps >= {substeps} when the command begins, such as --set time.substeps={substeps}")]
+        ValueOrSubsteps { substeps: u32 },
+        "part.refusal_hint" #[error("a softer or heavier body, or substeps >= {substeps} when the command begins, which a command before it sets")]
+        BodyOrEarlierCommand { substeps: u32 },
+        "part.refusal_hint" #[error("a softer or heavier body, or substeps >= {substeps} when the command begins, such as --set time.substeps={substeps}")]
+        BodyOrSubsteps { substeps: u32 },
+    }
+
+    /// What a command of a scene was refused for.
+    #[derive(Clone, Debug, PartialEq)]
+    pub(crate) enum CommandRefusal {
+        "part.command" #[error("the command `{word}`: {about}")]
+        #[allowed("{}", about.allowed().unwrap_or_default())] #[hint("{}", about.hint().unwrap_or_default())]
+        Command { word: &'static str, about: AnyMessage },
+    }
+}
+
+/// All messages of this file.
+pub(crate) const MESSAGES: &[&[opruga_math::message::Variant]] = &[RefusalHint::VARIANTS, CommandRefusal::VARIANTS];
 
 impl From<&WorldError> for SceneError {
     /// The same in the words of a scene: what is wrong, what is allowed, what would help. The place is that of the path;
     /// [`in_scene`] finds its line.
     fn from(error: &WorldError) -> SceneError {
-        let say = |message: String| SceneError::new(error.code(), message).path(path_of(error));
+        let said = SceneError { code: error.code(), ..SceneError::of(error.clone()) }.path(path_of(error));
         match error {
-            WorldError::UnstableStep { integrator, body, h, limit, omega, damping, substeps } => {
-                let fastest = match damping {
-                    0.0 => format!("its fastest motion: {} rad/s", number(*omega)),
-                    _ => format!("its fastest motion: {} rad/s, damping {} 1/s", number(*omega), number(*damping)),
-                };
-                let (h, limit) = (number(*h), number(*limit));
-                say(format!("the step h = {h} s of `{integrator}` is unstable for body `{body}`"))
-                    .value(h)
-                    .allowed(format!("h <= {limit} s ({fastest})"))
-                    .hint(match *substeps {
-                        substeps if substeps <= MOST_SUBSTEPS => format!(
-                            "substeps >= {substeps}, such as --set time.substeps={substeps}; or another integrator"
-                        ),
-                        _ => format!(
-                            "a frame has at most {MOST_SUBSTEPS} substeps: a shorter one, a softer or heavier body, or another integrator"
-                        ),
-                    })
-            }
-            WorldError::Diverged { body, node, time, last, range } => say(format!(
-                "body `{body}` diverged: node {node} left {} in the substep from t = {} s",
-                what_was_left(*range),
-                number(*time)
-            ))
-            .value(time.to_string())
-            .hint(format!(
-                "the output ends with the last good frame, t = {} s; more substeps may help{}",
-                number(*last),
-                if range.is_some() { ", and `world.largest_distance` takes away what falls for ever" } else { "" }
-            )),
-            WorldError::NotConverged { body, message, hint } => {
-                let said = split(say(format!("body `{body}`: {message}")));
-                let message = format!("{}; the world is at its last good frame", said.message);
-                SceneError { message, hint: Some(hint.clone()), ..said }
-            }
-            WorldError::Step { body, message } => {
-                let said = split(say(format!("body `{body}`: {message}")));
-                SceneError { message: format!("{}; the world is at its last good frame", said.message), ..said }
-            }
-            // The obstacle says itself which one it is.
-            WorldError::Build { place, source } if place == "collider" => split(say(source.to_string())),
-            WorldError::Build { source, .. } => {
-                let mut said = split(say(error.to_string()));
-                if let Some((field, value)) = named_value(&source.message) {
-                    said.path = format!("{}.{field}", said.path);
-                    said.value = Some(value.into());
+            WorldError::UnstableStep { h, substeps, .. } => {
+                let said = said.value(number(*h));
+                match *substeps {
+                    ..=MOST_SUBSTEPS => said.advice(RefusalHint::Substeps { substeps: *substeps }),
+                    _ => said,
                 }
-                said
             }
-            other => split(say(other.to_string())),
+            WorldError::Diverged { time, .. } => said.value(time.to_string()),
+            WorldError::Build { place, source } if *place != (Part::Collider {}) => {
+                match named_value(&source.about.to_string()) {
+                    Some((field, value)) => {
+                        let path = format!("{}.{field}", said.path);
+                        said.path(path).value(value)
+                    }
+                    None => said,
+                }
+            }
+            _ => said,
         }
     }
-}
-
-/// Messages of models, integrators and obstacles may say themselves what is allowed, and what would help.
-fn split(error: SceneError) -> SceneError {
-    let mut error = error;
-    if let Some((message, hint)) = error.message.split_once("; hint: ").map(|(m, h)| (m.to_string(), h.to_string())) {
-        (error.message, error.hint) = (message, Some(hint));
-    }
-    for allowed in ["; allowed: ", "; allowed with it: "] {
-        if let Some((message, allowed)) = error.message.split_once(allowed).map(|(m, a)| (m.to_string(), a.to_string()))
-        {
-            (error.message, error.allowed) = (message, Some(allowed));
-        }
-    }
-    error
 }
 
 /// The field that a message begins with and its value: ``` `field` is 0.5 …```, or ``` `field` of cell 7 is 0.5 …```.
@@ -107,36 +95,31 @@ fn is_field_of_body(kind: &str) -> bool {
 
 /// The path of the part of the scene that an error is about.
 fn path_of(error: &WorldError) -> String {
-    let body = |place: &str| {
-        let name = place.split('`').nth(1)?;
-        Some(format!("body.{}", name.split('[').next().unwrap_or(name)))
-    };
+    let body = |name: &str| format!("body.{}", name.split('[').next().unwrap_or(name));
     match error {
-        WorldError::Build { place, source } => match body(place) {
-            Some(body) if place.starts_with("integrator of ") => format!("{body}.integrator"),
+        WorldError::Build { place: Part::IntegratorOf { name }, .. } => format!("{}.integrator", body(name)),
+        WorldError::Build { place: Part::Body { name }, source } => match source.kind.as_str() {
             // Where a body lies, what holds it, and how it is stepped or swings is no matter of one model.
-            Some(body) if is_field_of_body(&source.kind) => format!("{body}.{}", source.kind),
-            Some(body) if ["stability", "modes", "memory", "mass"].contains(&source.kind.as_str()) => body,
-            Some(body) if source.code.starts_with("static.") => body,
-            Some(body) => format!("{body}.models.{}", source.kind),
-            None if place == "collider" => {
-                let number = source.kind.split(' ').nth(1).unwrap_or("0");
-                format!("collider.{number}")
-            }
-            None => place.clone(),
+            kind if is_field_of_body(kind) => format!("{}.{kind}", body(name)),
+            "stability" | "modes" | "memory" | "mass" => body(name),
+            _ if source.code().starts_with("static.") => body(name),
+            kind => format!("{}.models.{kind}", body(name)),
         },
+        WorldError::Build { place: Part::Collider {}, source } => {
+            format!("collider.{}", source.kind.split(' ').nth(1).unwrap_or("0"))
+        }
+        WorldError::Build { place, .. } => place.to_string(),
         WorldError::UnstableStep { .. } => "time.substeps".into(),
-        WorldError::Step { body, .. } | WorldError::Diverged { body, .. } | WorldError::NotConverged { body, .. } => {
-            format!("body.{}", body.split('[').next().unwrap_or(body))
-        }
-        WorldError::Meet { first, .. } | WorldError::LedThrough { first, .. } => {
-            format!("body.{}", first.split('[').next().unwrap_or(first))
-        }
-        WorldError::Path { path, .. } => body(path).unwrap_or_default(),
-        WorldError::Snapshot(_)
+        WorldError::Step { body: name, .. }
+        | WorldError::Diverged { body: name, .. }
+        | WorldError::NotConverged { body: name, .. }
+        | WorldError::Meet { first: name, .. }
+        | WorldError::LedThrough { first: name, .. } => body(name),
+        WorldError::Path { path, .. } => path.split('`').nth(1).map_or_else(String::new, body),
+        WorldError::Snapshot { .. }
         | WorldError::Overflow { .. }
         | WorldError::TooManyContacts { .. }
-        | WorldError::BrokenOff => String::new(),
+        | WorldError::BrokenOff {} => String::new(),
     }
 }
 
@@ -194,28 +177,25 @@ pub fn of_command(
     (text, file): (&str, &str),
     overrides: &[(String, String)],
 ) -> SceneError {
-    let mut said = SceneError::from(error);
-    said.message = format!("the command `{}`: {}", command.word, said.message);
-    (said.file, said.path) = (file.to_string(), "command".into());
+    let said = SceneError::from(error);
+    let about = said.about.clone().map(|about| CommandRefusal::Command { word: command.word, about }.into());
+    let message = about.as_ref().map_or_else(|| said.message.clone(), AnyMessage::to_string);
+    let mut said = SceneError { about, message, file: file.to_string(), path: "command".into(), ..said };
     let sets = command.sets.is_some();
-    if let WorldError::UnstableStep { substeps, .. } = error
-        && *substeps > MOST_SUBSTEPS
-        && sets
-    {
-        said.hint = Some(format!("another `value`: a frame has at most {MOST_SUBSTEPS} substeps"));
-    } else if let WorldError::UnstableStep { substeps, .. } = error
-        && *substeps <= MOST_SUBSTEPS
-    {
+    if let WorldError::UnstableStep { substeps, .. } = error {
         // What an override sets lasts until a command sets it.
-        let how = match command.substeps_were_set {
-            true => ", which a command before it sets".to_string(),
-            false => format!(", such as --set time.substeps={substeps}"),
+        let (substeps, earlier) = (*substeps, command.substeps_were_set);
+        let hint = match substeps {
+            ..=MOST_SUBSTEPS => Some(match (sets, earlier) {
+                (true, _) if command.sets_substeps() => RefusalHint::LargerValue { substeps },
+                (true, true) => RefusalHint::ValueOrEarlierCommand { substeps },
+                (true, false) => RefusalHint::ValueOrSubsteps { substeps },
+                (false, true) => RefusalHint::BodyOrEarlierCommand { substeps },
+                (false, false) => RefusalHint::BodyOrSubsteps { substeps },
+            }),
+            _ => sets.then_some(RefusalHint::OtherValue { most: MOST_SUBSTEPS }),
         };
-        said.hint = Some(match sets {
-            true if command.sets_substeps() => format!("a `value` of {substeps} or more, or another integrator"),
-            true => format!("another `value`, or substeps >= {substeps} when the command begins{how}"),
-            false => format!("a softer or heavier body, or substeps >= {substeps} when the command begins{how}"),
-        });
+        said = hint.map_or(said.clone(), |hint| said.advice(hint));
     }
     let source = Source { file, text: text.strip_prefix('\u{feff}').unwrap_or(text) };
     let Some(mut root) = document::parse(&source).0 else { return said };

@@ -1,23 +1,24 @@
 //! Regular files, read whole and within a limit.
 
 use crate::problem::SceneError;
+use crate::text_errors::{FileError, Measured, TextError};
 use std::path::Path;
 use std::sync::Arc;
 
 /// The bytes of a regular file no larger than a limit.
-pub(crate) fn regular_file(path: &Path, most: u64, code: &'static str, what: &str) -> Result<Arc<[u8]>, SceneError> {
+pub(crate) fn regular_file(
+    path: &Path,
+    most: u64,
+    code: &'static str,
+    what: Measured,
+) -> Result<Arc<[u8]>, SceneError> {
     use std::io::Read as _;
-    let failed = |e: std::io::Error| SceneError::new("read.failed", format!("the file cannot be read: {}", reason(&e)));
+    let failed = |e: std::io::Error| SceneError::of(FileError::Failed { reason: reason(&e) });
     let about = std::fs::metadata(path).map_err(failed)?;
     if !about.is_file() {
-        let what = if about.is_dir() { "this is a folder" } else { "this is no regular file" };
-        return Err(SceneError::new("read.not_regular_file", what));
+        return Err(SceneError::of(if about.is_dir() { FileError::Folder {} } else { FileError::NotRegular {} }));
     }
-    let too_large = |size: u64| {
-        SceneError::new(code, format!("{what} has {size} bytes"))
-            .value(size.to_string())
-            .allowed(format!("at most {most} bytes"))
-    };
+    let too_large = |size: u64| SceneError { code, ..SceneError::of(TextError::Size { what, size, most }) };
     if about.len() > most {
         return Err(too_large(about.len()));
     }
@@ -50,8 +51,7 @@ impl Stamp {
     fn unchanged(&self, file: &std::fs::File, read: u64) -> Result<(), SceneError> {
         match Stamp::of(file) {
             Ok(now) if now == *self && read == self.bytes => Ok(()),
-            _ => Err(SceneError::new("read.changed", "the file was changed while it was read")
-                .hint("try again once it is saved")),
+            _ => Err(SceneError::of(FileError::Changed {})),
         }
     }
 }

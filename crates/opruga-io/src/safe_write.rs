@@ -1,42 +1,44 @@
 //! Files that are never half written: written aside, synced, then renamed.
 
 use crate::aside::{make_aside, remove_the_dead};
+use crate::problem::SceneError;
+use crate::write_faults::WriteFault;
+use opruga_math::message::AnyMessage;
+use opruga_words::Translation;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 /// A file that could not be written. What was there before is unchanged.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct WriteError {
-    /// `write.failed`, `write.exists`, `write.locked`, `write.folder`, `write.input` or `write.twice`.
-    pub code: &'static str,
-    /// What happened, in one sentence without a full stop.
-    pub message: String,
+    /// What happened.
+    pub about: AnyMessage,
     /// The file or folder.
     pub path: PathBuf,
     /// How many bytes had been written.
     pub bytes: u64,
-    /// What would help.
-    pub hint: Option<String>,
+    /// What would help, where the message does not say it.
+    pub advice: Option<AnyMessage>,
 }
 
 impl WriteError {
-    pub(crate) fn new(code: &'static str, path: &Path, message: impl Into<String>) -> WriteError {
-        WriteError { code, message: message.into(), path: path.to_path_buf(), bytes: 0, hint: None }
-    }
-    fn exists(path: &Path) -> WriteError {
-        let error = WriteError::new("write.exists", path, "the file is already there");
-        WriteError { hint: Some("--force replaces it".into()), ..error }
+    /// An error of a message.
+    pub fn of(path: &Path, about: impl Into<AnyMessage>) -> WriteError {
+        WriteError { about: about.into(), path: path.to_path_buf(), bytes: 0, advice: None }
     }
     pub(crate) fn failed(path: &Path, bytes: u64, error: &io::Error) -> WriteError {
-        WriteError {
-            bytes,
-            ..WriteError::new(
-                "write.failed",
-                path,
-                format!("writing stopped after {bytes} bytes: {}", crate::regular_file::reason(error)),
-            )
-        }
+        let reason = crate::regular_file::reason(error);
+        WriteError { bytes, ..WriteError::of(path, WriteFault::Stopped { bytes, reason }) }
+    }
+    /// Adds what would help.
+    #[must_use]
+    pub fn advice(self, advice: impl Into<AnyMessage>) -> WriteError {
+        WriteError { advice: Some(advice.into()), ..self }
+    }
+    /// `write.failed`, `write.exists`, `write.locked`, `write.folder`, `write.input` or `write.twice`.
+    pub fn code(&self) -> &'static str {
+        self.about.code()
     }
     /// The exit code of a program that stops because of this error.
     pub fn exit_code(&self) -> i32 {
@@ -44,21 +46,23 @@ impl WriteError {
     }
     /// The error object of the command line.
     pub fn to_json(&self) -> serde_json::Value {
+        let hint = self.advice.as_ref().map(AnyMessage::to_string).or_else(|| self.about.hint());
         serde_json::json!({
-            "code": self.code, "message": self.message, "file": self.path.display().to_string(), "line": null, "column": null,
-            "path": null, "value": self.bytes, "allowed": null, "hint": self.hint,
+            "code": self.code(), "message": self.about.to_string(), "file": self.path.display().to_string(), "line": null,
+            "column": null, "path": null, "value": self.bytes, "allowed": null, "hint": hint,
         })
+    }
+    /// The same as [`core::fmt::Display`] writes it, in the language of a translation.
+    pub fn text(&self, translation: Option<&Translation>) -> String {
+        let mut error = SceneError::of(self.about.clone());
+        error.file = self.path.display().to_string();
+        self.advice.iter().fold(error, |error, advice| error.advice(advice.clone())).text(translation)
     }
 }
 
 impl core::fmt::Display for WriteError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        let path = self.path.display().to_string();
-        write!(f, "{}: error[{}]: {}", crate::problem::visible(&path), self.code, self.message)?;
-        match &self.hint {
-            Some(hint) => write!(f, "\n  = hint: {hint}"),
-            None => Ok(()),
-        }
+        f.write_str(&self.text(None))
     }
 }
 
@@ -90,14 +94,14 @@ pub(crate) const TRIAL: &str = ".opruga-trial";
 /// `write.exists` where the file is there and `force` is not given; `write.failed`.
 pub fn try_write(path: &Path, force: bool) -> Result<(), WriteError> {
     if !force && path.exists() && !path.is_dir() {
-        return Err(WriteError::exists(path));
+        return Err(WriteError::of(path, WriteFault::FileExists {}));
     }
     let mut trial = path.as_os_str().to_owned();
     trial.push(TRIAL);
     let trial = PathBuf::from(trial);
     let of_path = |e| WriteError { path: path.to_path_buf(), ..e };
     if path.is_dir() {
-        return Err(of_path(WriteError::new("write.failed", path, "this is a folder")));
+        return Err(of_path(WriteError::of(path, WriteFault::IsFolder {})));
     }
     safe_write(&trial, true, |w| w.write_all(b"opruga\n"))
         .and_then(|_| match fs::remove_file(&trial) {
@@ -163,18 +167,20 @@ impl Aside {
     /// As [`safe_write`]; then nothing is left behind.
     pub(crate) fn write<'a>(path: &Path, force: bool, wrap: Wrap<'a>, fill: Fill<'a>) -> Result<Aside, WriteError> {
         if path.is_dir() {
-            return Err(WriteError::new("write.failed", path, "this is a folder"));
+            return Err(WriteError::of(path, WriteFault::IsFolder {}));
         }
         if !force && path.exists() {
-            return Err(WriteError::exists(path));
+            return Err(WriteError::of(path, WriteFault::FileExists {}));
         }
         let Some(name) = path.file_name() else {
-            return Err(WriteError::new("write.failed", path, "this is no name of a file"));
+            return Err(WriteError::of(path, WriteFault::NoFileName {}));
         };
         let (aside, file) = make_aside(folder_of(path), name).map_err(|e| {
-            let message = format!("the file cannot be made: {}", crate::regular_file::reason(&e));
-            let hint = (e.kind() == io::ErrorKind::NotFound).then(|| "the folder around it is missing".into());
-            WriteError { hint, ..WriteError::new("write.failed", path, message) }
+            let reason = crate::regular_file::reason(&e);
+            let no_folder = e.kind() == io::ErrorKind::NotFound;
+            let fault =
+                if no_folder { WriteFault::NoFolderAround { reason } } else { WriteFault::FileNotMade { reason } };
+            WriteError::of(path, fault)
         })?;
         match fill_and_sync(&file, wrap, fill) {
             Ok(bytes) => Ok(Aside { path: path.to_path_buf(), aside, bytes, _lock: file }),
@@ -193,7 +199,7 @@ impl Aside {
     pub(crate) fn name(self, force: bool) -> Result<u64, WriteError> {
         let Aside { path, bytes, .. } = &self;
         if !force && path.exists() {
-            let error = WriteError::exists(path);
+            let error = WriteError::of(path, WriteFault::FileExists {});
             self.forget();
             return Err(error);
         }

@@ -2,6 +2,7 @@
 
 use crate::limits::Limits;
 use crate::problem::{Excerpt, SceneError, unprintable};
+use crate::text_errors::{Measured, TextError};
 
 /// The byte-order mark of UTF-8.
 const MARK: &[u8] = b"\xef\xbb\xbf";
@@ -23,11 +24,10 @@ pub(crate) struct Source<'a> {
 impl<'a> Source<'a> {
     /// Checks size and encoding. A byte-order mark of UTF-8 is skipped.
     pub(crate) fn new(file: &'a str, bytes: &'a [u8], limits: &Limits) -> Result<Source<'a>, SceneError> {
-        let error = |code, message: String| SceneError { file: file.to_string(), ..SceneError::new(code, message) };
+        let error = |about: TextError| SceneError { file: file.to_string(), ..SceneError::of(about) };
         if bytes.len() as u64 > limits.file_bytes {
-            return Err(error("scene.too_large", format!("the scene has {} bytes", bytes.len()))
-                .value(bytes.len().to_string())
-                .allowed(format!("at most {} bytes", limits.file_bytes)));
+            let (size, most) = (bytes.len() as u64, limits.file_bytes);
+            return Err(error(TextError::Size { what: Measured::Scene, size, most }));
         }
         let zeros = |k: usize| bytes.iter().skip(k).step_by(2).take(32).filter(|b| **b == 0).count();
         let wide = bytes.starts_with(&[0xff, 0xfe])
@@ -37,20 +37,12 @@ impl<'a> Source<'a> {
                 && (zeros(0) * 4 >= bytes.len().div_ceil(2).min(32)
                     || zeros(1) * 4 >= bytes.len().div_ceil(2).min(32)));
         if wide {
-            return Err(Source { file, text: "" }
-                .mark(error("scene.encoding", "the scene is written in UTF-16 or UTF-32".into()), 0, 0)
-                .allowed("UTF-8")
-                .hint("save it as UTF-8"));
+            return Err(Source { file, text: "" }.mark(error(TextError::Wide {}), 0, 0));
         }
         let bytes = bytes.strip_prefix(MARK).unwrap_or(bytes);
         if bytes.starts_with(MARK) {
             // The parser would skip a second one: two programs took the file for one without a mark.
-            let message = "the scene begins with two byte-order marks (U+FEFF)";
-            return Err(Source { file, text: "" }
-                .mark(error("scene.encoding", message.into()), 0, 0)
-                .value("U+FEFF U+FEFF")
-                .allowed("UTF-8, with one byte-order mark at most")
-                .hint("save it as UTF-8 without a byte-order mark"));
+            return Err(Source { file, text: "" }.mark(error(TextError::TwoMarks {}), 0, 0));
         }
         let text = match core::str::from_utf8(bytes) {
             Ok(text) => text,
@@ -58,17 +50,13 @@ impl<'a> Source<'a> {
                 let good = core::str::from_utf8(&bytes[..e.valid_up_to()]).unwrap_or("");
                 let source = Source { file, text: good };
                 let byte = bytes.get(good.len()).copied().unwrap_or(0);
-                return Err(source
-                    .mark(error("scene.encoding", format!("byte 0x{byte:02x} is no UTF-8")), good.len(), good.len())
-                    .allowed("UTF-8")
-                    .hint("save it as UTF-8"));
+                let about = TextError::Byte { byte: format!("0x{byte:02x}") };
+                return Err(source.mark(error(about), good.len(), good.len()));
             }
         };
         let source = Source { file, text };
         if text.trim().is_empty() {
-            return Err(source
-                .mark(error("scene.empty", "the scene is empty".into()), 0, 0)
-                .hint("`opruga new NAME` writes a scene to begin with"));
+            return Err(source.mark(error(TextError::Empty {}), 0, 0));
         }
         source.check_nesting(limits, false)?;
         Ok(source)
@@ -161,14 +149,7 @@ impl<'a> Source<'a> {
     /// dots in keys) and what a parser would make of the text, before it allocates or recurses. `value`: the text is that of
     /// a value, and not of a whole scene.
     fn check_nesting(&self, limits: &Limits, value: bool) -> Result<(), SceneError> {
-        let too_deep = |at: usize| {
-            self.mark(
-                SceneError::new("scene.depth", format!("tables and arrays are nested more than {} deep", limits.depth)),
-                at,
-                at + 1,
-            )
-            .allowed(format!("at most {} levels", limits.depth))
-        };
+        let too_deep = |at: usize| self.mark(SceneError::of(TextError::Depth { most: limits.depth }), at, at + 1);
         let bytes = self.text.as_bytes();
         // An open bracket: whether it is an inline table, and how deep the key before it was.
         let mut open: Vec<(bool, usize)> = Vec::new();
@@ -185,15 +166,8 @@ impl<'a> Source<'a> {
             pieces += u64::from(between && !space || byte == b'\n');
             between = space;
             if pieces > limits.values.saturating_mul(PIECES) {
-                let message = "the text has more values, keys and lines than fit into the memory of its reader";
-                return Err(self
-                    .mark(SceneError::new("scene.too_large", message), at, at + 1)
-                    .allowed(format!(
-                        "at most {} values in lists, or {} lines with a key",
-                        limits.values,
-                        limits.values / 3
-                    ))
-                    .hint("large shapes belong in mesh files"));
+                let about = TextError::Pieces { values: limits.values, lines: limits.values / 3 };
+                return Err(self.mark(SceneError::of(about), at, at + 1));
             }
             match byte {
                 b'#' => at += bytes[at..].iter().position(|b| *b == b'\n').unwrap_or(bytes.len() - at) - 1,

@@ -112,6 +112,12 @@ impl Message for Restated {
 }
 
 impl AnyMessage {
+    /// A message with a text in English alone, of a program that adds kinds of its own.
+    pub fn plain(code: &'static str, english: String) -> AnyMessage {
+        let fields = vec![("text", Field::Text(english.clone()))];
+        AnyMessage::from(Restated { code, variant: "Plain", fields, english, beside: [None, None, None] })
+    }
+
     /// The same with other names: `name` changes a field that is one, `text` those within an English text.
     #[must_use]
     pub fn renamed(&self, name: &dyn Fn(&str) -> String, text: &dyn Fn(&str) -> String) -> AnyMessage {

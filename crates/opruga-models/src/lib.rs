@@ -19,6 +19,13 @@ use opruga_core::potential::Model;
 /// All messages of this crate, for tests of translations.
 #[doc(hidden)]
 pub const MESSAGES: &[&[opruga_math::message::Variant]] = &[
+    mass_spring::Refusal::VARIANTS,
+    pressure::Refusal::VARIANTS,
+    bending::Refusal::VARIANTS,
+    as_published::Refusal::VARIANTS,
+    materials::Refusal::VARIANTS,
+    fem::Simplices::VARIANTS,
+    fem::Refusal::VARIANTS,
     boundary_element::Refusal::VARIANTS,
     boundary_element::TurnedFacets::VARIANTS,
     shape_matching::Refusal::VARIANTS,

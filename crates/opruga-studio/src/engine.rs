@@ -10,6 +10,7 @@ use crate::shown::{BodyShown, EnergyShown, Extent, ObstacleShown, Show, Shown};
 use opruga::blueprint::{Action, AnyBlueprint, CommandBlueprint, Selector};
 use opruga::core::spec::{Value, Values};
 use opruga::pictures::Scenery;
+use opruga::world::PathFault;
 use opruga::{AnyBody, AnyWorld, Options, Warning, WorldError};
 use toml_edit::Table;
 
@@ -149,14 +150,14 @@ fn has_drawings(world: &dyn AnyWorld) -> bool {
 }
 
 fn no_body(body: usize) -> WorldError {
-    WorldError::Path { path: format!("body {body}"), message: "there is no such body".into() }
+    WorldError::path(format!("body {body}"), PathFault::NoBody {})
 }
 
 impl Living {
     fn give(&mut self, until: f64, action: Action<3>, body: &str) -> Result<Given, WorldError> {
         let at = self.world.time();
         let command = CommandBlueprint { at, until: until.max(at), action };
-        let refused = || WorldError::Path { path: "command".into(), message: "it has no form in a scene".into() };
+        let refused = || WorldError::path("command", PathFault::NoForm {});
         let table = command_table(&command, self.dimension(), body).ok_or_else(refused)?;
         let number = self.world.act(&command)?;
         Ok(Given { number, table })

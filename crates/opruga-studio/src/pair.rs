@@ -10,6 +10,7 @@ use crate::shown::{Beside, Show, Shown};
 use opruga::blueprint::AnyBlueprint;
 use opruga::core::spec::{Value, Values};
 use opruga::io::Files;
+use opruga::world::SnapshotFault;
 use opruga::{Options, Warning, WorldError};
 use std::sync::Arc;
 
@@ -32,7 +33,7 @@ pub fn build(
     let (scene, twins) = right_of(document, differences, files)?;
     let right = one(&scene)?;
     let differences = differences.to_vec();
-    Ok(Box::new(Pair { left, right, differences, twins, stopped: None, behind: false }))
+    Ok(Box::new(Pair { left, right, differences, twins, stopped: None, reasons: Vec::new(), behind: false }))
 }
 
 /// Two engines of one scene.
@@ -44,7 +45,9 @@ struct Pair {
     /// Which node on the right stands for one on the left, where bodies have other nodes.
     twins: Twins,
     /// Why the right one does not go on.
-    stopped: Option<String>,
+    stopped: Option<Said>,
+    /// All reasons for which it ever stopped: a snapshot names one by its English text.
+    reasons: Vec<Said>,
     /// Whether the right one has missed a command: only one that is built anew can go on then.
     behind: bool,
 }
@@ -58,7 +61,8 @@ impl Pair {
         if self.stopped.is_none()
             && let Err(error) = act(&mut *self.right)
         {
-            self.stopped = Some(error.to_string());
+            self.stopped = Some(Said::World(error));
+            self.reasons.extend(self.stopped.clone());
         }
         self.behind |= self.stopped.is_some();
     }
@@ -96,13 +100,14 @@ impl Engine for Pair {
             return Ok(());
         }
         match self.right.frame() {
-            Err(WorldError::BrokenOff) => {
+            Err(WorldError::BrokenOff {}) => {
                 self.left.rewind(&before)?;
-                return Err(WorldError::BrokenOff);
+                return Err(WorldError::BrokenOff {});
             }
-            Err(error) => self.stopped = Some(error.to_string()),
-            Ok(()) => self.stopped = self.right.exploded().map(|exploded| exploded.to_string()),
+            Err(error) => self.stopped = Some(Said::World(error)),
+            Ok(()) => self.stopped = self.right.exploded().map(Said::Exploded),
         }
+        self.reasons.extend(self.stopped.clone());
         Ok(())
     }
     fn begin_what_is_due(&mut self) -> Result<(), WorldError> {
@@ -127,9 +132,9 @@ impl Engine for Pair {
     }
     fn snapshot(&self) -> Vec<u8> {
         let (left, right) = (self.left.snapshot(), self.right.snapshot());
-        let reason = self.stopped.as_deref().unwrap_or_default().as_bytes();
+        let reason = self.stopped.as_ref().map_or_else(String::new, Said::to_string);
         let mut bytes = MARK.to_vec();
-        for part in [&left[..], reason] {
+        for part in [&left[..], reason.as_bytes()] {
             bytes.extend((part.len() as u64).to_le_bytes());
             bytes.extend(part);
         }
@@ -145,7 +150,7 @@ impl Engine for Pair {
             let (reason, right) = part(rest)?;
             Some((left, std::str::from_utf8(reason).ok()?, right))
         });
-        let foreign = || WorldError::Snapshot("it is not that of two scenes side by side".into());
+        let foreign = || WorldError::snapshot(SnapshotFault::NoPair {});
         let (left, reason, right) = parts.ok_or_else(foreign)?;
         let before = self.left.snapshot();
         self.left.rewind(left)?;
@@ -156,7 +161,9 @@ impl Engine for Pair {
             self.left.rewind(&before)?;
             return Err(error);
         }
-        self.stopped = (!reason.is_empty()).then(|| reason.to_string());
+        let known = self.reasons.iter().find(|said| said.to_string() == reason);
+        let stopped = || known.cloned().unwrap_or_else(|| Said::Because(reason.into()));
+        self.stopped = (!reason.is_empty()).then(stopped);
         Ok(())
     }
     fn warnings(&self) -> Vec<Warning> {

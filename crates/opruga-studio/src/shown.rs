@@ -118,7 +118,7 @@ pub struct Beside {
     /// In what it differs.
     pub differences: Vec<Difference>,
     /// Why it does not go on.
-    pub stopped: Option<String>,
+    pub stopped: Option<Said>,
 }
 
 /// One obstacle.

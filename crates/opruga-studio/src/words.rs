@@ -1,19 +1,12 @@
 //! Every word of the interface, in every language, in one place.
 
 mod croatian;
-mod details;
 mod messages;
 mod named;
-mod own;
-mod parts;
-mod readers;
-#[cfg(test)]
-mod said_in_sources;
-mod scene_errors;
 mod scene_titles;
-mod sentences;
 
 pub use named::Part;
+use opruga::math::message::Message;
 use opruga::words::Translation;
 
 /// A language of the interface.
@@ -36,6 +29,11 @@ impl Language {
             Language::English => None,
             Language::Croatian => Some(Translation::croatian()),
         }
+    }
+
+    /// What a message of the engine says, what is allowed and what would help; in English where there is no other text of it.
+    pub fn in_full(self, message: &dyn Message) -> String {
+        self.translation().and_then(|known| known.in_full(message)).unwrap_or_else(|| message.in_full())
     }
 
     /// Its two letters in ISO 639.

@@ -8,7 +8,8 @@ opruga_math::messages! {
     pub enum VideoError {
         /// A frame has no pixels, or more than the format allows.
         "video.size"
-        #[error("a film of {width} by {height} pixels is impossible; allowed: 1 to 16384 a side, and 35 million in all")]
+        #[error("a film of {width} by {height} pixels is impossible")]
+        #[allowed("1 to 16384 a side, and 35 million in all")]
         Size { width: u32, height: u32 },
         /// A frame has another size than the film.
         "video.frame_size"
@@ -16,7 +17,8 @@ opruga_math::messages! {
         FrameSize { width: u32, height: u32, film_width: u32, film_height: u32 },
         /// The rate is outside of what the clock of the format counts.
         "video.rate"
-        #[error("a film cannot have {} frames per second; allowed: 0.0001 to 10000", number(*rate))]
+        #[error("a film cannot have {} frames per second", number(*rate))]
+        #[allowed("0.0001 to 10000")]
         Rate { rate: f64 },
         /// The film has no frame.
         "video.empty"

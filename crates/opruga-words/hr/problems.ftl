@@ -12,3 +12,6 @@ part-label-Times = { $count } { $count ->
 part-label-Nearest = misliš li `{ $word }`?
 part-label-NotStrict = bez --strict ovo je upozorenje
 part-label-AtByte = { $text }, u bajtu { $byte }
+part-label-AtTime = u t = { $time } s: { $about }
+    .allowed = { ALLOWED($about) }
+    .hint = { HINT($about) }

@@ -3,7 +3,8 @@
 //! An entry is called after the code and the variant, with `-` for the point: `msh-version-Unknown`. Its attributes `.allowed` and
 //! `.hint` are the texts of these names. A field is a variable; where it is a message itself, its own entry is taken. A selector
 //! compares a count with numbers and with plural categories of the language, a text with itself, a message with its variant, and
-//! `none` with a field that is not there. `NUMBER` knows `maximumSignificantDigits`, which is 6 without it.
+//! `none` with a field that is not there. `NUMBER` knows `maximumSignificantDigits`, which is 6 without it. `ALLOWED` is what a field
+//! that is a message says is allowed, `HINT` what it says would help, and where it says nothing the text of the next field.
 //!
 //! # Source
 //! Project Fluent, "Fluent Syntax Guide", <https://projectfluent.org/fluent/guide/>; Unicode CLDR, "Language Plural Rules".
@@ -21,11 +22,16 @@ use std::sync::LazyLock;
 static CROATIAN: LazyLock<Translation> = LazyLock::new(|| Translation::new(&CROATIAN_FILES).0);
 
 /// The Croatian texts, by what writes them.
-const CROATIAN_FILES: [&str; 6] = [
+const CROATIAN_FILES: [&str; 11] = [
     include_str!("../hr/problems.ftl"),
     include_str!("../hr/limits.ftl"),
     include_str!("../hr/meshes.ftl"),
     include_str!("../hr/mesh_files.ftl"),
+    include_str!("../hr/shapes.ftl"),
+    include_str!("../hr/scenes.ftl"),
+    include_str!("../hr/refusals.ftl"),
+    include_str!("../hr/sweeps.ftl"),
+    include_str!("../hr/files.ftl"),
     include_str!("../hr/models.ftl"),
     include_str!("../hr/warnings.ftl"),
 ];
@@ -94,6 +100,28 @@ impl Translation {
         Some(self.resolved(&pattern.value, &message.fields())).filter(|text| !text.is_empty())
     }
 
+    /// What the first field says beside its text, or the text of the first of the others that is there.
+    fn beside_of(
+        &self,
+        name: &str,
+        arguments: &CallArguments<&'static str>,
+        fields: &[(&'static str, Field)],
+    ) -> String {
+        let messages = arguments.positional.iter().map(|argument| match argument {
+            InlineExpression::VariableReference { id } => match field(fields, id.name) {
+                Some(Field::Message(message)) => Some(message),
+                _ => None,
+            },
+            _ => None,
+        });
+        let texts = messages.enumerate().map(|(place, message)| match (place, name) {
+            (0, "ALLOWED") => self.allowed(&**message?),
+            (0, _) => self.hint(&**message?),
+            _ => Some(self.text_or_english(&**message?)),
+        });
+        texts.flatten().next().unwrap_or_default()
+    }
+
     fn entry(&self, message: &dyn Message) -> Option<&Known<&'static str>> {
         self.entries.get(&*entry_name(message.code(), message.variant()))
     }
@@ -119,9 +147,10 @@ impl Translation {
             Expression::Inline(InlineExpression::StringLiteral { value }) => unescape_unicode_to_string(value).into(),
             Expression::Inline(InlineExpression::NumberLiteral { value }) => (*value).into(),
             Expression::Inline(InlineExpression::Placeable { expression }) => self.filled(expression, fields),
-            Expression::Inline(InlineExpression::FunctionReference { id, arguments }) if id.name == "NUMBER" => {
-                number_of(arguments, fields)
-            }
+            Expression::Inline(InlineExpression::FunctionReference { id, arguments }) => match id.name {
+                "NUMBER" => number_of(arguments, fields),
+                name => self.beside_of(name, arguments, fields),
+            },
             Expression::Inline(InlineExpression::MessageReference { id, .. }) => {
                 let pattern = self.entries.get(id.name).and_then(|entry| entry.value.as_ref());
                 pattern.map_or_else(String::new, |pattern| self.resolved(pattern, fields))
@@ -133,7 +162,7 @@ impl Translation {
                 let chosen = chosen.or_else(|| variants.iter().find(|variant| variant.default));
                 chosen.map_or_else(String::new, |variant| self.resolved(&variant.value, fields))
             }
-            // Other functions and terms have no use here.
+            // Terms have no use here.
             _ => String::new(),
         }
     }

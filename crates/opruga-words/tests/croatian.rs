@@ -1,22 +1,60 @@
 //! The Croatian texts are those of the messages that the crates have, no more and no fewer.
 
+use opruga_core::error::StepError;
+use opruga_integrators::refusals::StepHint;
+use opruga_math::message::Message as _;
+use opruga_models::fem::Refusal;
 use opruga_words::Translation;
+use opruga_world::WorldError;
 use std::path::Path;
 
 #[test]
 fn every_message_has_a_croatian_text_with_its_fields() {
     let io = opruga_io::messages::MESSAGES.iter().flat_map(|lists| lists.iter());
-    let others = [opruga_models::MESSAGES, opruga_world::warnings::MESSAGES, &[opruga_video::VideoError::VARIANTS]];
+    let others = [
+        opruga_models::MESSAGES,
+        opruga_integrators::refusals::MESSAGES,
+        opruga_collide::refusals::MESSAGES,
+        opruga_world::warnings::MESSAGES,
+        opruga::sweep::errors::MESSAGES,
+        opruga::recordings::MESSAGES,
+        &[opruga_video::VideoError::VARIANTS],
+    ];
     let variants = io.chain(others.into_iter().flatten()).flat_map(|list| list.iter());
     let gaps = Translation::croatian().gaps(variants);
     assert!(gaps.is_empty(), "{gaps:#?}");
 }
 
 #[test]
+fn what_a_model_refuses_in_a_step_comes_with_what_helps_under_the_settings_of_the_rule() {
+    let (about, helps) = (Refusal::NoThicknessLeft { cell: 3, time: 0.75 }.into(), Some(StepHint::LoadSteps {}.into()));
+    let cause = StepError::Model { model: "fem", about, helps };
+    let error = WorldError::Step { body: "b".into(), cause };
+    let croatian = Translation::croatian().in_full(&error).expect("it is known");
+    assert!(croatian.starts_with("tijelo `b`: fem: ćelija 3 u t = 0.75 s nema pozitivnu debljinu"), "{croatian}");
+    let hint = "`when_not_converged = \"halve\"`, više `load_steps`, ili više `iterations`";
+    assert!(croatian.ends_with(&format!("; savjet: {hint}")), "{croatian}");
+    let english = error.in_full();
+    assert!(
+        english.ends_with("; hint: `when_not_converged = \"halve\"`, more `load_steps`, or more `iterations`"),
+        "{english}"
+    );
+}
+
+#[test]
 fn every_enum_of_messages_is_listed() {
     let crates = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the crates");
     let mut missing = Vec::new();
-    for name in ["opruga-io", "opruga-mesh", "opruga-models", "opruga-world"] {
+    for name in [
+        "opruga",
+        "opruga-collide",
+        "opruga-core",
+        "opruga-integrators",
+        "opruga-io",
+        "opruga-mesh",
+        "opruga-models",
+        "opruga-world",
+    ] {
         let sources = sources(&crates.join(name).join("src"));
         let listed = |enumeration: &str| sources.iter().any(|text| text.contains(&format!("{enumeration}::VARIANTS")));
         for text in &sources {

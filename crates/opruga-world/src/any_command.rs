@@ -3,6 +3,7 @@
 use crate::blueprint::{Action, AnyBlueprint, Blueprint, CommandBlueprint, Selector};
 use crate::bytes::{Reader, Writer};
 use crate::error::WorldError;
+use crate::path_faults::PathFault;
 use crate::registry::Registry;
 
 fn cut<T: Copy, const D: usize>(vector: [T; 3]) -> [T; D] {
@@ -54,8 +55,7 @@ impl CommandBlueprint<3> {
             }
             Action::Remove { name } => Action::Remove { name: name.clone() },
             Action::Add(_) => {
-                let message = "it has no form in a scene".into();
-                return Err(WorldError::Path { path: "command".into(), message });
+                return Err(WorldError::path("command", PathFault::NoForm {}));
             }
         };
         Ok(CommandBlueprint { at: self.at, until: self.until, action })
@@ -81,9 +81,9 @@ impl AnyBlueprint {
         registry: &Registry<D>,
         now: f64,
     ) -> Result<CommandBlueprint<D>, WorldError> {
-        let refuse = |message: &str| WorldError::Path { path: "add".into(), message: message.into() };
+        let refuse = |fault: PathFault| WorldError::path("add", fault);
         if self.scene().dimension() != D {
-            return Err(refuse("the scene has another dimension"));
+            return Err(refuse(PathFault::OtherDimension {}));
         }
         let mut bytes = Vec::new();
         let mut out = Writer(&mut bytes);
@@ -91,7 +91,7 @@ impl AnyBlueprint {
             AnyBlueprint::Plane(blueprint) => blueprint.addition(now).map(|command| out.command(command)),
             AnyBlueprint::Space(blueprint) => blueprint.addition(now).map(|command| out.command(command)),
         };
-        written.ok_or_else(|| refuse("the scene adds nothing now"))?;
+        written.ok_or_else(|| refuse(PathFault::AddsNothing {}))?;
         Reader(&bytes).command(registry)
     }
 }

@@ -5,11 +5,11 @@
 use crate::barrier_search::{Kept, Opened, Refused, Search, scaled};
 use crate::island::Island;
 use crate::meeting::{Meeting, Substep};
+use crate::refusals::Refusal;
 use opruga_collide::{Pressed, Touching, Trouble};
 use opruga_core::error::StepError;
 use opruga_core::system::{Stage, System, Workspace};
 use opruga_math::WIDTH;
-use opruga_math::words::number;
 use opruga_solve::Directions;
 
 impl<const D: usize> Meeting<D> {
@@ -162,8 +162,7 @@ impl<const D: usize> Search<'_, D> {
         let Touching { surface, laws, most, after: [end, _], .. } = &*touching;
         barrier.look(surface, laws, [&x, end], *most)?;
         if barrier.free_part(surface, laws, [&x, end]) < 1.0 {
-            let message = "obstacles push nodes through others that a barrier keeps apart; hint: smaller steps, or finer surfaces";
-            return Err(StepError::Model { model: "contact", message: message.into() }.into());
+            return Err(StepError::of("contact", Refusal::Pushed {}).into());
         }
         Ok(())
     }
@@ -177,13 +176,8 @@ fn refuse_inverted_cells<const D: usize>(system: &System<D>) -> Result<(), StepE
         if let Some(cell) =
             cells.iter().find(|cell| cell.smallest_volume_ratio <= 0.0 || cell.smallest_volume_ratio.is_nan())
         {
-            let message = format!(
-                "cell {} turns inside out (volume ratio {}), where a barrier keeps bodies apart; hint: a material that resists that, such as \
-                 `neo_hookean`, or smaller steps",
-                cell.cell,
-                number(cell.smallest_volume_ratio)
-            );
-            return Err(StepError::Model { model: member.potential.properties().name, message });
+            let (cell, ratio) = (cell.cell, cell.smallest_volume_ratio);
+            return Err(StepError::of(member.potential.properties().name, Refusal::InvertedByBarrier { cell, ratio }));
         }
     }
     Ok(())

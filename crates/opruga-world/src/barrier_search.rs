@@ -11,6 +11,7 @@
 //! Source: M. Li and others, Incremental potential contact, ACM Trans. Graph. 39 (2020), algorithm 1.
 
 use crate::island::Island;
+use crate::refusals::Refusal;
 use opruga_collide::{Barrier, Pressed, Rubbing, Touching, Trouble};
 use opruga_core::error::StepError;
 use opruga_core::open_step::OpenStep;
@@ -185,9 +186,7 @@ impl<const D: usize> Search<'_, D> {
 
     fn not_definite(&self, body: usize) -> Refused {
         let name = self.opened.get(body).map_or("", |open| self.islands[open.island].integrator.name());
-        let message =
-            "the matrix of a step with a barrier has no factor; hint: smaller steps, or another material".to_string();
-        StepError::Model { model: name, message }.into()
+        StepError::of(name, Refusal::NoFactor {}).into()
     }
 
     /// Finds the common end, friction included.
@@ -290,10 +289,7 @@ impl<const D: usize> Search<'_, D> {
 
     fn no_end(&self, iterations: u32) -> Refused {
         let name = self.opened.first().map_or("", |open| self.islands[open.island].integrator.name());
-        let message = format!(
-            "bodies that a barrier keeps apart have no common end of the step after {iterations} iterations; hint: smaller steps, or more `iterations`"
-        );
-        StepError::Model { model: name, message }.into()
+        StepError::of(name, Refusal::NoCommonEnd { iterations }).into()
     }
 
     /// ∂(B + D)/∂u [N].

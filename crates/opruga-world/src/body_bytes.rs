@@ -4,6 +4,7 @@ use crate::blueprint::{Action, BodyBlueprint, CommandBlueprint, Mass, PinBluepri
 use crate::bytes::{Reader, Writer};
 use crate::error::WorldError;
 use crate::inputs::{read_action, read_selector, write_action, write_selector};
+use crate::path_faults::{Held, Promised, SnapshotFault};
 use crate::registry::Registry;
 use crate::schema;
 use opruga_core::spec::{Spec, Value, Values};
@@ -11,8 +12,8 @@ use opruga_mesh::{Area, Mesh, Skin};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-fn damaged(what: &str) -> WorldError {
-    WorldError::Snapshot(format!("it holds {what} that is of no kind known here"))
+fn damaged(what: Held) -> WorldError {
+    WorldError::snapshot(SnapshotFault::Unknown { what })
 }
 
 impl Writer<'_> {
@@ -148,7 +149,7 @@ impl Reader<'_> {
         let bytes = usize::try_from(n).ok().and_then(|n| n.checked_mul(4 * N));
         let (head, tail) = bytes
             .and_then(|bytes| self.0.split_at_checked(bytes))
-            .ok_or_else(|| WorldError::Snapshot(format!("it promises {n} numbers, more than it holds")))?;
+            .ok_or_else(|| WorldError::snapshot(SnapshotFault::Promises { count: n, what: Promised::Numbers }))?;
         self.0 = tail;
         let numbers: Vec<u32> = head.as_chunks::<4>().0.iter().map(|bytes| u32::from_le_bytes(*bytes)).collect();
         Ok(numbers.as_chunks::<N>().0.to_vec())
@@ -169,13 +170,14 @@ impl Reader<'_> {
         known: impl Fn(&str) -> Option<&'static Spec>,
     ) -> Result<Values, WorldError> {
         let kind = self.text()?;
-        let spec = known(&kind).ok_or_else(|| damaged(&format!("`{kind}`")))?;
+        let spec =
+            known(&kind).ok_or_else(|| WorldError::snapshot(SnapshotFault::UnknownKind { kind: kind.clone() }))?;
         let mut values = Values::defaults(spec, dimension);
         for _ in 0..self.length()? {
             let (name, value) = (self.text()?, self.value()?);
             values
                 .set(spec, &name, value, dimension)
-                .map_err(|error| WorldError::Snapshot(format!("in `{kind}`, {error}")))?;
+                .map_err(|problem| WorldError::snapshot(SnapshotFault::Field { kind: kind.clone(), problem }))?;
         }
         Ok(values)
     }
@@ -195,10 +197,10 @@ impl Reader<'_> {
     /// A body whose mesh is still to come.
     pub(crate) fn body<const D: usize>(&mut self, registry: &Registry<D>) -> Result<BodyBlueprint<D>, WorldError> {
         let name = self.text()?;
-        let [translation, velocity] = self.vectors::<D>()?[..] else { return Err(damaged("a body")) };
+        let [translation, velocity] = self.vectors::<D>()?[..] else { return Err(damaged(Held::Body)) };
         let angular_velocity = self.numbers()?;
         let rows = self.vectors::<D>()?;
-        let Some((gradient, node_velocities)) = rows.split_at_checked(D) else { return Err(damaged("a body")) };
+        let Some((gradient, node_velocities)) = rows.split_at_checked(D) else { return Err(damaged(Held::Body)) };
         let velocity_gradient = core::array::from_fn(|row| gradient[row]);
         let (kind, numbers) = (self.count()?, self.numbers()?);
         let mass = match (kind, numbers.as_slice()) {
@@ -206,7 +208,7 @@ impl Reader<'_> {
             (1, [density]) => Mass::Density(*density),
             (2, densities) => Mass::DensityOfCells(Arc::from(densities)),
             (3, [mass]) => Mass::Node(*mass),
-            _ => return Err(damaged("a mass")),
+            _ => return Err(damaged(Held::Mass)),
         };
         let thickness = self.number()?;
         let integrator = self.own_integrator(registry)?;
@@ -218,7 +220,7 @@ impl Reader<'_> {
             .collect::<Result<Vec<_>, _>>()?;
         let contact = models.pop_if(|last| last.kind() == own.kind);
         if models.iter().any(|model| model.kind() == own.kind) {
-            return Err(damaged("a body"));
+            return Err(damaged(Held::Body));
         }
         let mut pins = Vec::new();
         for _ in 0..self.length()? {
@@ -227,7 +229,7 @@ impl Reader<'_> {
             for axis in &mut axes {
                 *axis = self.count()? == 1;
             }
-            let Value::Rows(motion) = self.value()? else { return Err(damaged("a pin")) };
+            let Value::Rows(motion) = self.value()? else { return Err(damaged(Held::Pin)) };
             pins.push(PinBlueprint { select, axes, motion });
         }
         let mesh = Arc::new(Mesh::default());
@@ -301,7 +303,7 @@ impl Reader<'_> {
                 models: self.optional(|reader| reader.models(registry))?,
                 integrator: self.own_integrator(registry)?,
             },
-            _ => return Err(damaged("a command")),
+            _ => return Err(damaged(Held::Command)),
         };
         Ok(CommandBlueprint { at, until, action })
     }

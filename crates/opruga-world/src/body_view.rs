@@ -1,7 +1,9 @@
 //! One body as a handle names it: readings that say what is wrong instead of showing another body.
 
 use crate::blueprint::BodyBlueprint;
-use crate::error::WorldError;
+use crate::error::{Place, WorldError};
+use crate::path_faults::PathFault;
+use crate::refusals::Refusal;
 use crate::slots::BodyHandle;
 use crate::world::World;
 use opruga_core::error::BuildError;
@@ -30,10 +32,8 @@ impl<const D: usize> World<D> {
         if self.slots.is_of(handle) {
             return Ok(handle.index);
         }
-        let message = "the body of this handle is not in this world any more, or never was; hint: `World::body` finds a body by its \
-                       name, `World::handle` gives a handle of it";
-        let source = BuildError::new("handle", "stale_handle", message);
-        Err(WorldError::Build { place: format!("body {}", handle.index), source })
+        let source = BuildError::of("handle", Refusal::StaleHandle {});
+        Err(WorldError::Build { place: Place::BodyAt { index: handle.index }, source })
     }
 }
 
@@ -78,6 +78,6 @@ impl<'w, const D: usize> BodyView<'w, D> {
             return Ok(());
         }
         let path = format!("body `{}`, node {node}", self.blueprint().name);
-        Err(WorldError::Path { path, message: format!("there is no such node; allowed: 0 to {}", count - 1) })
+        Err(WorldError::path(path, PathFault::NoNode { last: count - 1 }))
     }
 }

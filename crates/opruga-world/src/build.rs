@@ -3,11 +3,13 @@
 use crate::blueprint::{Blueprint, BodyBlueprint, LoadKind, Mass};
 use crate::carried::{BodyHistory, BodyState};
 use crate::contact_laws;
-use crate::error::WorldError;
+use crate::error::{Place, WorldError};
 use crate::island::Island;
 use crate::loads::{CentralForces, FollowerPressure, NodeForces};
 use crate::masses::{densities, node_masses};
+use crate::path_faults::PathFault;
 use crate::plausible;
+use crate::refusals::Refusal;
 use crate::registry::Registry;
 use crate::slots::{Origin, Slots};
 use crate::unfold;
@@ -172,13 +174,13 @@ impl<const D: usize> Builder<'_, D> {
             let time = &self.blueprint.time;
             plausible::check_range(&state.x, range)
                 .and_then(|()| plausible::check_speed(&state.v, range, time.frame / f64::from(time.substeps)))
-                .map_err(|source| WorldError::Build { place: format!("body `{}`", body.name), source })?;
+                .map_err(|source| WorldError::Build { place: Place::body(&body.name), source })?;
         }
         let (mut x, mut v) = (Columns::zeros(places), Columns::zeros(places));
         let masses: Vec<Vec<f64>> = blueprints.iter().map(|b| node_masses(b)).collect();
         for (body, masses) in blueprints.iter().zip(&masses) {
             plausible::check_masses(body, masses)
-                .map_err(|source| WorldError::Build { place: format!("body `{}`", body.name), source })?;
+                .map_err(|source| WorldError::Build { place: Place::body(&body.name), source })?;
         }
         // Unused lanes repeat the first body.
         let lane = |l: usize| if l < bodies.len() { l } else { 0 };
@@ -200,12 +202,12 @@ impl<const D: usize> Builder<'_, D> {
             largest_velocity: self.blueprint.surroundings.largest_velocity,
         };
         for (number, values) in first.models.iter().enumerate() {
-            let refuse = |source: BuildError| match source.code {
-                BuildError::BROKEN_OFF => WorldError::BrokenOff,
-                _ => WorldError::Build { place: format!("body `{}`", first.name), source },
+            let refuse = |source: BuildError| match source.code() {
+                BuildError::BROKEN_OFF => WorldError::BrokenOff {},
+                _ => WorldError::Build { place: Place::body(&first.name), source },
             };
             let Some(model) = self.registry.model(values.kind()) else {
-                return Err(refuse(BuildError::new(values.kind(), "scene.unknown_name", "there is no such model")));
+                return Err(refuse(BuildError::of(values.kind(), Refusal::NoModelHere {})));
             };
             let all: Vec<&Values> = (0..layout.stride()).map(|l| &blueprints[lane(l)].models[number]).collect();
             let potential = model
@@ -243,11 +245,11 @@ impl<const D: usize> Builder<'_, D> {
         }
         let integrator = match &first.integrator {
             Some(values) => {
-                build_integrator(self.registry, values, || format!("integrator of body `{}`", first.name))?.into()
+                build_integrator(self.registry, values, || Place::IntegratorOf { name: first.name.clone() })?.into()
             }
             None => Arc::clone(self.integrator),
         };
-        let refuse = |source| WorldError::Build { place: format!("body `{}`", first.name), source };
+        let refuse = |source| WorldError::Build { place: Place::body(&first.name), source };
         for body in &blueprints {
             contact_laws::check(self.blueprint, body, &*integrator).map_err(refuse)?;
         }
@@ -292,24 +294,16 @@ impl<const D: usize> Builder<'_, D> {
                 if let Some(first) = owner[cell as usize].replace(number)
                     && first != number
                 {
-                    let message = format!(
-                        "cell {cell} belongs to the models {first} and {number} of the body, whose stiffness would add up; allowed: \
-                         every cell in one `{kind}` model. Name groups without common cells by `cells`"
-                    );
-                    return Err(BuildError::new(kind, "model.cells_twice", message));
+                    let refusal = Refusal::CellsTwice { cell, first, second: number, kind };
+                    return Err(BuildError::of(kind, refusal));
                 }
             }
         }
         let bare = owner.iter().filter(|owner| owner.is_none()).count();
         match owner.iter().position(Option::is_none) {
             Some(first) if !groups.is_empty() => {
-                let message = format!(
-                    "{bare} of {} cells, the first of them cell {first}, are in none of the groups {} of the models: they would have \
-                     mass and no stiffness; allowed: every cell in one model",
-                    owner.len(),
-                    groups.join(", ")
-                );
-                Err(BuildError::new(kind, "model.uncovered_cells", message))
+                let (count, cells, groups) = (bare, owner.len(), groups.join(", "));
+                Err(BuildError::of(kind, Refusal::Uncovered { count, cells, first, groups }))
             }
             _ => Ok(()),
         }
@@ -320,27 +314,16 @@ impl<const D: usize> Builder<'_, D> {
         let coupling =
             body.models.iter().find(|model| model.text("mass") == Some("consistent")).or(body.models.first());
         let kind = coupling.map_or("", Values::kind);
-        let refuse = |code, message: String| Err(BuildError::new(kind, code, message));
+        let refuse = |refusal: Refusal| Err(BuildError::of(kind, refusal));
         if !integrator.takes_mass_matrix() {
-            let message = format!(
-                "`mass` is \"consistent\", which couples the accelerations of the nodes of a cell, and `{}` moves every node by \
-                 its own mass; allowed: \"lumped\"; hint: consistent masses go with backward_euler, bdf2, implicit_midpoint and newmark",
-                integrator.name()
-            );
-            return refuse("integrator.mass_matrix", message);
+            return refuse(Refusal::MassMatrix { integrator: integrator.name() });
         }
         // In statics masses are weights alone.
         if !self.blueprint.colliders.is_empty() && !integrator.is_static() {
-            let message = "`mass` is \"consistent\", and there are obstacles, whose impacts act on the masses of single nodes; allowed: \
-                           \"lumped\"; hint: consistent masses go with obstacles in `equilibrium`, which knows no impacts";
-            return refuse("model.mass", message.into());
+            return refuse(Refusal::MassAndObstacles {});
         }
         if let Mass::Node(mass) = body.mass {
-            let message = format!(
-                "`mass` is \"consistent\", and `node_mass` = {mass} kg gives every node the same mass, whatever its cells; allowed: \
-                 \"lumped\"; hint: `mass` or `density` of the body goes with consistent masses"
-            );
-            return refuse("model.mass", message);
+            return refuse(Refusal::NodeMass { mass });
         }
         Ok(())
     }
@@ -352,13 +335,13 @@ impl<const D: usize> Builder<'_, D> {
         layout: Layout,
         mass: &Parameter,
     ) -> Result<(), WorldError> {
-        let refuse = |source| WorldError::Build { place: "world".into(), source };
+        let refuse = |source| WorldError::Build { place: Place::Section { path: "world" }, source };
         let Some(model) = self.registry.model_with(Role::WorldDrag) else { return Ok(()) };
         let mut values = Values::defaults(model.spec(), D);
         let rate = Value::Number(self.blueprint.surroundings.drag);
         values
             .set(model.spec(), model.spec().fields[0].name, rate, D)
-            .map_err(|e| refuse(BuildError::new(model.spec().kind, "scene.range", e.to_string())))?;
+            .map_err(|e| refuse(BuildError::of(model.spec().kind, e)))?;
         let all = vec![&values; layout.stride()];
         let ingredients = Ingredients {
             mesh: &*body.mesh,
@@ -450,31 +433,20 @@ impl<const D: usize> Builder<'_, D> {
 /// A model without what an integrator needs.
 fn no_view<const D: usize>(model: &dyn Potential<D>, integrator: &str) -> BuildError {
     let properties = model.properties();
-    let (what, also) = match properties.views.hessian {
-        true => ("no symmetric second derivatives", ", and `equilibrium` finds where it comes to rest"),
-        false => ("no second derivatives", ""),
+    let (integrator, why) = (integrator.to_string(), model.lacks());
+    let refusal = match properties.views.hessian {
+        true => Refusal::NoSymmetry { integrator, why },
+        false => Refusal::NoDerivatives { integrator, why },
     };
-    let why = model.lacks().map_or(String::new(), |why| format!(": {why}"));
-    let message = format!(
-        "the model has {what}, which `{integrator}` needs{why}; hint: an explicit integrator steps it, such as \
-         `symplectic_euler`{also}"
-    );
-    BuildError::new(properties.name, "integrator.needs", message)
+    BuildError::of(properties.name, refusal)
 }
 
 fn no_cells<const D: usize>(body: &BodyBlueprint<D>) -> WorldError {
-    WorldError::Path {
-        path: format!("load on {}", body.name),
-        message: "the selected nodes hold no whole cell of the body; allowed: all nodes of one cell at least".into(),
-    }
+    WorldError::path(format!("load on {}", body.name), PathFault::NoCells {})
 }
 
 fn no_facets<const D: usize>(body: &BodyBlueprint<D>) -> WorldError {
-    WorldError::Path {
-        path: format!("load on {}", body.name),
-        message: "the selected nodes hold no whole facet of the boundary; allowed: all nodes of one facet at least"
-            .into(),
-    }
+    WorldError::path(format!("load on {}", body.name), PathFault::NoFacets {})
 }
 
 /// The enclosed volume of a body at rest [m³] (area times thickness in 2D).
@@ -491,18 +463,18 @@ pub(crate) fn build_colliders<const D: usize>(
     }
     let values: Vec<_> = blueprint.colliders.iter().map(|c| c.values.clone()).collect();
     let built = Colliders::<D>::build(&values);
-    Ok(Some(Arc::new(built.map_err(|source| WorldError::Build { place: "collider".into(), source })?)))
+    Ok(Some(Arc::new(built.map_err(|source| WorldError::Build { place: Place::Collider {}, source })?)))
 }
 
 /// An integrator from its parameters; `place` says whose it is.
 pub(crate) fn build_integrator<const D: usize>(
     registry: &Registry<D>,
     values: &Values,
-    place: impl Fn() -> String,
+    place: impl Fn() -> Place,
 ) -> Result<Box<dyn Integrator<D>>, WorldError> {
     let refuse = |source| WorldError::Build { place: place(), source };
     let Some(kind) = registry.integrator(values.kind()) else {
-        let source = BuildError::new(values.kind(), "scene.unknown_name", "there is no such integrator");
+        let source = BuildError::of(values.kind(), Refusal::NoIntegratorHere {});
         return Err(refuse(source));
     };
     kind.build(values).map_err(refuse)

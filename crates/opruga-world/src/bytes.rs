@@ -2,6 +2,7 @@
 
 use crate::carried::{BodyHistory, Kept};
 use crate::error::WorldError;
+use crate::path_faults::{Promised, SnapshotFault};
 use opruga_core::history::Content;
 use opruga_core::spec::Value;
 use opruga_core::state::Columns;
@@ -120,7 +121,7 @@ pub(crate) struct Reader<'a>(pub(crate) &'a [u8]);
 impl<'a> Reader<'a> {
     pub(crate) fn bytes(&mut self) -> Result<&'a [u8], WorldError> {
         let n = self.count()?;
-        let promised = || WorldError::Snapshot(format!("it promises {n} bytes, more than it holds"));
+        let promised = || WorldError::snapshot(SnapshotFault::Promises { count: n, what: Promised::Bytes });
         let n = usize::try_from(n).map_err(|_| promised())?;
         let (head, tail) = self.0.split_at_checked(n).ok_or_else(promised)?;
         self.0 = tail;
@@ -131,7 +132,7 @@ impl<'a> Reader<'a> {
 impl Reader<'_> {
     pub(crate) fn eight(&mut self) -> Result<[u8; 8], WorldError> {
         let (head, tail) =
-            self.0.split_first_chunk::<8>().ok_or_else(|| WorldError::Snapshot("it ends too early".into()))?;
+            self.0.split_first_chunk::<8>().ok_or_else(|| WorldError::snapshot(SnapshotFault::EndsEarly {}))?;
         self.0 = tail;
         Ok(*head)
     }
@@ -142,7 +143,7 @@ impl Reader<'_> {
     pub(crate) fn length(&mut self) -> Result<usize, WorldError> {
         let n = self.count()?;
         if n > self.0.len() as u64 / 8 {
-            return Err(WorldError::Snapshot(format!("it promises {n} numbers, more than it holds")));
+            return Err(WorldError::snapshot(SnapshotFault::Promises { count: n, what: Promised::Numbers }));
         }
         Ok(n as usize)
     }
@@ -151,11 +152,11 @@ impl Reader<'_> {
     }
     pub(crate) fn text(&mut self) -> Result<String, WorldError> {
         let n = self.count()?;
-        let promised = || WorldError::Snapshot(format!("it promises a text of {n} bytes, more than it holds"));
+        let promised = || WorldError::snapshot(SnapshotFault::Promises { count: n, what: Promised::Letters });
         let n = usize::try_from(n).map_err(|_| promised())?;
         let (head, tail) = self.0.split_at_checked(n).ok_or_else(promised)?;
         self.0 = tail;
-        String::from_utf8(head.to_vec()).map_err(|_| WorldError::Snapshot("a text is no UTF-8".into()))
+        String::from_utf8(head.to_vec()).map_err(|_| WorldError::snapshot(SnapshotFault::Text {}))
     }
     pub(crate) fn numbers(&mut self) -> Result<Vec<f64>, WorldError> {
         let n = self.length()?;
@@ -176,7 +177,7 @@ impl Reader<'_> {
                 let n = self.length()?;
                 Value::Rows((0..n).map(|_| self.numbers()).collect::<Result<_, _>>()?)
             }
-            _ => return Err(WorldError::Snapshot("a value is of an unknown kind".into())),
+            _ => return Err(WorldError::snapshot(SnapshotFault::Value {})),
         })
     }
     pub(crate) fn history<const D: usize>(&mut self) -> Result<BodyHistory<D>, WorldError> {
@@ -188,7 +189,7 @@ impl Reader<'_> {
                 COUNT => Kept::Count(self.count()?),
                 FLAG => Kept::Flag(self.count()? != 0),
                 VECTORS => Kept::Vectors(self.vectors::<D>()?),
-                _ => return Err(WorldError::Snapshot(format!("the channel `{name}` is of an unknown type"))),
+                _ => return Err(WorldError::snapshot(SnapshotFault::Channel { channel: name })),
             };
             let numbers = match &kept {
                 Kept::Number(number) => std::slice::from_ref(number),
@@ -196,7 +197,7 @@ impl Reader<'_> {
                 Kept::Count(_) | Kept::Flag(_) => &[],
             };
             if let Some(odd) = numbers.iter().find(|x| !x.is_finite()) {
-                return Err(WorldError::Snapshot(format!("the channel `{name}` holds {odd}")));
+                return Err(WorldError::snapshot(SnapshotFault::ChannelNumber { channel: name, number: *odd }));
             }
             history.channels.push((name, kept));
         }

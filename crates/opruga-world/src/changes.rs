@@ -7,11 +7,13 @@ use crate::blueprint::{Surroundings, Time};
 use crate::build::build_colliders;
 use crate::error::WorldError;
 use crate::inputs::Input;
+use crate::path_faults::PathFault;
 use crate::rebuild::Touched;
 use crate::schema::{CONTACT, MOST_SUBSTEPS};
 use crate::slots::Origin;
 use crate::world::World;
 use opruga_core::spec::{Allowed, Value, Values, nearest};
+use opruga_math::message::AnyMessage;
 use std::collections::BTreeMap;
 
 /// Where an added body comes from.
@@ -35,10 +37,6 @@ pub(crate) enum Before<const D: usize> {
     Collider(usize, Values),
     Contact(Values),
 }
-
-const FORMS: &str = "body.NAME.models.KIND.FIELD, body.NAME.integrator.FIELD, integrator.FIELD, collider.NUMBER.FIELD, contact.FIELD, world.gravity, world.drag, \
-                     world.largest_force, world.largest_velocity, world.largest_distance, \
-                     world.unfold, time.substeps";
 
 impl<const D: usize> World<D> {
     /// Changes a parameter: `body.NAME.models.KIND.FIELD`, `body.NAME.integrator.FIELD`, `integrator.FIELD`, `collider.NUMBER.FIELD`,
@@ -74,11 +72,11 @@ impl<const D: usize> World<D> {
 
     /// Changes the scene alone; returns what it was, and the bodies whose islands must follow.
     pub(crate) fn change(&mut self, path: &str, value: Value) -> Result<(Before<D>, Touched), WorldError> {
-        let refuse = |message: String| WorldError::Path { path: path.to_string(), message };
+        let refuse = |about: AnyMessage| WorldError::path(path, about);
         let parts: Vec<&str> = path.split('.').collect();
         match parts.as_slice() {
             ["body", name, "models", kind, field] => {
-                let bodies = self.named_or_refused(name).map_err(refuse)?;
+                let bodies = self.named_or_refused(name).map_err(|fault| refuse(fault.into()))?;
                 let mut changed = Vec::new();
                 for body in bodies {
                     let mut models = self.blueprint.bodies[body].models.clone();
@@ -90,12 +88,10 @@ impl<const D: usize> World<D> {
                     let spec = number.and_then(|n| self.registry.model(models[n].kind())).map(|m| m.spec());
                     let (Some(spec), Some(number)) = (spec, number) else {
                         let kinds: Vec<&str> = models.iter().map(Values::kind).collect();
-                        return Err(refuse(format!(
-                            "body `{name}` has no model `{kind}`; it has {}",
-                            kinds.join(", ")
-                        )));
+                        let (body, kind, known) = (name.to_string(), kind.to_string(), kinds.join(", "));
+                        return Err(refuse(PathFault::NoModel { body, kind, known }.into()));
                     };
-                    models[number].set_instead(spec, field, value.clone(), D).map_err(|e| refuse(e.to_string()))?;
+                    models[number].set_instead(spec, field, value.clone(), D).map_err(|e| refuse(e.into()))?;
                     changed.push((body, models));
                 }
                 for (body, models) in &mut changed {
@@ -105,16 +101,16 @@ impl<const D: usize> World<D> {
                 Ok((Before::Models(changed), Touched::Bodies(touched)))
             }
             ["body", name, "integrator", field] => {
-                let bodies = self.named_or_refused(name).map_err(refuse)?;
+                let bodies = self.named_or_refused(name).map_err(|fault| refuse(fault.into()))?;
                 let mut changed = Vec::new();
                 for body in bodies {
                     let Some(mut values) = self.blueprint.bodies[body].integrator.clone() else {
-                        let message = format!("body `{name}` follows the integrator of the scene: integrator.{field}");
-                        return Err(refuse(message));
+                        let (body, field) = (name.to_string(), field.to_string());
+                        return Err(refuse(PathFault::FollowsScene { body, field }.into()));
                     };
                     let spec = self.registry.integrator(values.kind()).map(|i| i.spec());
-                    let spec = spec.ok_or_else(|| refuse("there is no such integrator".into()))?;
-                    values.set_instead(spec, field, value.clone(), D).map_err(|e| refuse(e.to_string()))?;
+                    let spec = spec.ok_or_else(|| refuse(PathFault::NoSuchIntegrator {}.into()))?;
+                    values.set_instead(spec, field, value.clone(), D).map_err(|e| refuse(e.into()))?;
                     changed.push((body, Some(values)));
                 }
                 for (body, values) in &mut changed {
@@ -125,9 +121,9 @@ impl<const D: usize> World<D> {
             }
             ["integrator", field] => {
                 let spec = self.registry.integrator(self.blueprint.integrator.kind()).map(|i| i.spec());
-                let spec = spec.ok_or_else(|| refuse("there is no such integrator".into()))?;
+                let spec = spec.ok_or_else(|| refuse(PathFault::NoSuchIntegrator {}.into()))?;
                 let before = self.blueprint.integrator.clone();
-                self.blueprint.integrator.set_instead(spec, field, value, D).map_err(|e| refuse(e.to_string()))?;
+                self.blueprint.integrator.set_instead(spec, field, value, D).map_err(|e| refuse(e.into()))?;
                 let follow = |b: &usize| self.blueprint.bodies[*b].integrator.is_none();
                 let touched = self.bodies().filter(follow).collect();
                 Ok((Before::Integrator(before), Touched::Bodies(touched)))
@@ -136,22 +132,19 @@ impl<const D: usize> World<D> {
                 let count = self.blueprint.colliders.len();
                 let found = number.parse::<usize>().ok().filter(|n| *n < count);
                 let number = found.ok_or_else(|| {
-                    refuse(format!(
-                        "there is no collider {number}; allowed: {}",
-                        match count {
-                            0 => "the scene has none".into(),
-                            1 => "0".into(),
-                            n => format!("0 to {}", n - 1),
-                        }
-                    ))
+                    let collider = number.to_string();
+                    refuse(match count {
+                        0 => PathFault::NoColliders { collider }.into(),
+                        n => PathFault::NoCollider { collider, last: n - 1 }.into(),
+                    })
                 })?;
                 let before = self.blueprint.colliders[number].values.clone();
                 let spec = opruga_collide::all(D).into_iter().find(|s| s.kind == before.kind());
-                let spec = spec.ok_or_else(|| refuse("there is no such kind of collider".into()))?;
+                let spec = spec.ok_or_else(|| refuse(PathFault::NoColliderKind {}.into()))?;
                 self.blueprint.colliders[number]
                     .values
                     .set_instead(spec, field, value, D)
-                    .map_err(|e| refuse(e.to_string()))?;
+                    .map_err(|e| refuse(e.into()))?;
                 match build_colliders(&self.blueprint) {
                     Ok(colliders) => self.colliders = colliders,
                     Err(error) => {
@@ -162,10 +155,9 @@ impl<const D: usize> World<D> {
                 Ok((Before::Collider(number, before), Touched::Bodies(Vec::new())))
             }
             ["contact", field] => {
-                let message = "the scene has no `[contact]`, without which bodies pass through one another; allowed: in a scene with one";
-                let contact = self.blueprint.contact.as_mut().ok_or_else(|| refuse(message.into()))?;
+                let contact = self.blueprint.contact.as_mut().ok_or_else(|| refuse(PathFault::NoContact {}.into()))?;
                 let before = contact.values.clone();
-                contact.values.set_instead(CONTACT.spec, field, value, D).map_err(|e| refuse(e.to_string()))?;
+                contact.values.set_instead(CONTACT.spec, field, value, D).map_err(|e| refuse(e.into()))?;
                 // Made anew with the laws that hold from now on.
                 self.meeting = None;
                 Ok((Before::Contact(before), Touched::Bodies(Vec::new())))
@@ -173,7 +165,8 @@ impl<const D: usize> World<D> {
             ["world", field] => {
                 let before = self.blueprint.surroundings;
                 let accept = |range: Allowed| {
-                    range.accept(value.clone(), D).map_err(|(v, allowed)| refuse(format!("is {v}; allowed: {allowed}")))
+                    let is = |(value, allowed)| refuse(PathFault::Is { value, allowed }.into());
+                    range.accept(value.clone(), D).map_err(is)
                 };
                 let number = |value: Value| match value {
                     Value::Number(x) => Some(x),
@@ -184,7 +177,10 @@ impl<const D: usize> World<D> {
                 match *field {
                     "gravity" => match accept(Allowed::Vector)? {
                         Value::Numbers(g) if g.len() == D => now.gravity = core::array::from_fn(|d| g[d]),
-                        other => return Err(refuse(format!("is {other}; allowed: {D} finite numbers"))),
+                        other => {
+                            let (value, allowed) = (other.to_string(), Allowed::Vector.describe(D));
+                            return Err(refuse(PathFault::Is { value, allowed }.into()));
+                        }
                     },
                     "drag" => now.drag = number(accept(Allowed::NOT_NEGATIVE)?).unwrap_or(0.0),
                     "largest_force" => now.largest_force = number(accept(Allowed::POSITIVE)?),
@@ -197,12 +193,9 @@ impl<const D: usize> World<D> {
                     other => {
                         let known =
                             ["gravity", "drag", "largest_force", "largest_velocity", "largest_distance", "unfold"];
-                        let hint = nearest(other, known.into_iter()).map(|n| format!("; did you mean `{n}`?"));
-                        let hint = hint.unwrap_or_default();
-                        return Err(refuse(format!(
-                            "there is no `{other}` in `world`; it has {}{hint}",
-                            known.join(", ")
-                        )));
+                        let (near, known) = (nearest(other, known.into_iter()), known.join(", "));
+                        let fault = PathFault::NoFieldOfWorld { field: other.into(), known, nearest: near };
+                        return Err(refuse(fault.into()));
                     }
                 }
                 Ok((Before::Surroundings(before), Touched::All))
@@ -213,18 +206,20 @@ impl<const D: usize> World<D> {
                     self.blueprint.time.substeps = n as u32;
                     Ok((Before::Time(before), Touched::Bodies(Vec::new())))
                 }
-                other => Err(refuse(format!("is {other}; allowed: a whole number from 1 to {MOST_SUBSTEPS}"))),
+                other => {
+                    let allowed = Allowed::Integer { least: 1, greatest: i64::from(MOST_SUBSTEPS) }.describe(D);
+                    Err(refuse(PathFault::Is { value: other.to_string(), allowed }.into()))
+                }
             },
-            _ => Err(refuse(format!("allowed: {FORMS}"))),
+            _ => Err(refuse(PathFault::NotAParameter {}.into())),
         }
     }
 
-    fn named_or_refused(&self, name: &str) -> Result<Vec<usize>, String> {
+    fn named_or_refused(&self, name: &str) -> Result<Vec<usize>, PathFault> {
         let bodies = self.named(name);
         if bodies.is_empty() {
             let known = self.bodies().map(|b| self.blueprint.bodies[b].name.as_str());
-            let hint = nearest(name, known).map(|n| format!("; did you mean `{n}`?")).unwrap_or_default();
-            return Err(format!("there is no body `{name}`{hint}"));
+            return Err(PathFault::NoBodyCalled { name: name.into(), nearest: nearest(name, known) });
         }
         Ok(bodies)
     }

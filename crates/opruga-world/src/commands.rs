@@ -5,13 +5,13 @@ use crate::changes::Source;
 use crate::error::WorldError;
 use crate::inputs::Input;
 use crate::loads::{NodeForces, Pull};
+use crate::path_faults::PathFault;
 use crate::running::{Progress, Running};
 use crate::selection::longest_side;
 use crate::slots::Origin;
 use crate::world::World;
 use opruga_core::state::View;
 use opruga_core::system::{Pin, System};
-use opruga_math::words;
 use opruga_mesh::Mesh;
 use std::collections::BTreeSet;
 use std::sync::atomic::AtomicU64;
@@ -75,7 +75,7 @@ impl<const D: usize> World<D> {
         if let Some(body) = command.action.body()
             && !self.slots.is_there(body)
         {
-            return Err(WorldError::Path { path: format!("body {body}"), message: "there is no such body".into() });
+            return Err(WorldError::path(format!("body {body}"), PathFault::NoBody {}));
         }
         crate::validity::given(&command)?;
         self.write_down(|| Input::Command(command.clone()));
@@ -92,8 +92,7 @@ impl<const D: usize> World<D> {
     pub fn act(&mut self, command: CommandBlueprint<D>) -> Result<usize, WorldError> {
         let (at, now) = (command.at, self.time());
         if (at - now).abs() > 1e-9 * self.blueprint.time.frame {
-            let message = format!("the command begins at {at} s, and the world is at {now} s");
-            return Err(WorldError::Path { path: "at".into(), message });
+            return Err(WorldError::path("at", PathFault::NotNow { at, now }));
         }
         crate::validity::given(&command)?;
         self.begin_what_is_due()?;
@@ -119,14 +118,14 @@ impl<const D: usize> World<D> {
     /// # Errors
     /// [`WorldError::Path`] if the command is no drag, the time does not rise, or a number is not finite.
     pub fn lead(&mut self, number: usize, row: Vec<f64>) -> Result<(), WorldError> {
-        let refuse = |message: &str| WorldError::Path { path: format!("command {number}"), message: message.into() };
-        let running = self.running.get_mut(number).ok_or_else(|| refuse("there is no such command"))?;
+        let refuse = |fault: PathFault| WorldError::path(format!("command {number}"), fault);
+        let running = self.running.get_mut(number).ok_or_else(|| refuse(PathFault::NoCommand {}))?;
         let Action::Drag { path, .. } = &mut running.command.action else {
-            return Err(refuse("it is no drag, which alone has a path"));
+            return Err(refuse(PathFault::NoDrag {}));
         };
         let rises = path.last().is_none_or(|last| last[0] < row[0]);
         if row.len() != D + 1 || !rises || !row.iter().all(|x| x.is_finite()) {
-            return Err(refuse("a row of its path is a later time and a point, all of them finite"));
+            return Err(refuse(PathFault::Row {}));
         }
         path.push(row.clone());
         running.path.write().unwrap_or_else(PoisonError::into_inner).push(row);
@@ -144,13 +143,10 @@ impl<const D: usize> World<D> {
                 Ok(())
             }
             Some(running) => {
-                let message = format!("it begins at {} s and cannot end at {until} s", running.command.at);
-                Err(WorldError::Path { path: format!("command {number}"), message })
+                let fault = PathFault::CannotEnd { at: running.command.at, until };
+                Err(WorldError::path(format!("command {number}"), fault))
             }
-            None => {
-                let message = "there is no such command".into();
-                Err(WorldError::Path { path: format!("command {number}"), message })
-            }
+            None => Err(WorldError::path(format!("command {number}"), PathFault::NoCommand {})),
         }
     }
 
@@ -217,9 +213,7 @@ impl<const D: usize> World<D> {
             && self.handle(body).is_none()
         {
             let path = self.blueprint.bodies.get(body).map_or(format!("body {body}"), |b| b.name.clone());
-            let message =
-                format!("there is no such body at t = {} s, when a command begins", words::number(self.time()));
-            return Err(WorldError::Path { path, message });
+            return Err(WorldError::path(path, PathFault::NoBodyThen { time: self.time() }));
         }
         let acting = match &command.action {
             Action::Drag { body, node, facet, path, .. } => {

@@ -2,12 +2,12 @@
 
 use crate::barrier_search::Kept;
 use crate::blueprint::{Blueprint, BodyBlueprint, ContactBlueprint};
+use crate::refusals::Refusal;
 use opruga_collide::{Laws, PairLaw};
 use opruga_core::error::BuildError;
 use opruga_core::integrator::Integrator;
 use opruga_core::spec::{Value, Values};
 use opruga_math::Lane;
-use opruga_math::words::number;
 use opruga_mesh::Mesh;
 
 /// The distance of surfaces in contact where the scene is silent, relative to the mean edge: small beside every facet, and many times what
@@ -154,34 +154,17 @@ pub(crate) fn check<const D: usize>(
 ) -> Result<(), BuildError> {
     let Some(contact) = &scene.contact else { return Ok(()) };
     if body.touches() && integrator.is_static() {
-        let message = format!(
-            "`{}` finds a state at rest, where bodies do not touch one another yet; allowed: an integrator of motion, such as \
-             `backward_euler` or `verlet`; hint: or `contact.touch = false` in this body, which then passes through the others",
-            integrator.name()
-        );
-        return Err(BuildError::new("contact", "contact.implicit", message));
+        return Err(BuildError::of("contact", Refusal::TouchesInStatics { integrator: integrator.name() }));
     }
     if body.touches() && is_barrier(contact) && !integrator.takes_pushes() {
-        let message = format!(
-            "`{}` does not solve for the end of a step, which a barrier needs; allowed: an implicit integrator, such as `backward_euler`; \
-             hint: or `response = \"constraint\"`, which takes every integrator",
-            integrator.name()
-        );
-        return Err(BuildError::new("contact", "contact.barrier", message));
+        return Err(BuildError::of("contact", Refusal::NoBarrier { integrator: integrator.name() }));
     }
     let shortest = edges_of(&body.mesh).shortest;
     if let Some(reach) = contact.values.number("reach").filter(|reach| is_barrier(contact) && *reach >= shortest) {
-        let message = format!(
-            "the reach is {} m and the shortest edge of the body {} m, so its own features would push one another at rest; allowed: less than \
-             that edge",
-            number(reach),
-            number(shortest)
-        );
-        return Err(BuildError::new("contact.reach", "contact.reach", message));
+        return Err(BuildError::of("contact.reach", Refusal::Reach { reach, shortest }));
     }
     if scene.surroundings.unfold {
-        let message = "`unfold` displaces bodies at random, into others too; allowed: `unfold = false` in a scene with `[contact]`";
-        return Err(BuildError::new("contact", "contact.unfold", message));
+        return Err(BuildError::of("contact", Refusal::Unfold {}));
     }
     Ok(())
 }

@@ -3,6 +3,7 @@
 use crate::blueprint::{Action, CommandBlueprint, Selector};
 use crate::bytes::{Reader, Writer};
 use crate::error::WorldError;
+use crate::path_faults::{PathFault, SnapshotFault};
 use opruga_core::spec::Value;
 
 /// Something that a program has done to a world between two frames.
@@ -49,23 +50,17 @@ pub enum Input<const D: usize> {
 
 impl<const D: usize> Input<D> {
     pub(crate) fn unwritable(&self) -> WorldError {
-        let refuse = |path: String, message: &str| WorldError::Path { path, message: message.into() };
         match self {
-            Input::Force { body } => {
-                refuse(format!("body {body}"), "a force that only the program knows cannot be recorded")
-            }
-            Input::Act => refuse(
-                "command".into(),
-                "a command that the program leads while it acts cannot be recorded; save the scene with it instead",
-            ),
-            Input::Add { name } => refuse(name.clone(), "a body that the program adds cannot be recorded"),
+            Input::Force { body } => WorldError::path(format!("body {body}"), PathFault::ForceUnrecorded {}),
+            Input::Act => WorldError::path("command", PathFault::ActUnrecorded {}),
+            Input::Add { name } => WorldError::path(name, PathFault::BodyUnrecorded {}),
             Input::Command(CommandBlueprint { action: Action::Add(body), .. }) => {
-                refuse(body.name.clone(), "a body that the program adds cannot be recorded")
+                WorldError::path(&body.name, PathFault::BodyUnrecorded {})
             }
             Input::Command(CommandBlueprint { action: Action::Change { body, .. }, .. }) => {
-                refuse(format!("body {body}"), "other models that the program gives a body cannot be recorded")
+                WorldError::path(format!("body {body}"), PathFault::ModelsUnrecorded {})
             }
-            _ => refuse(String::new(), "this cannot be recorded"),
+            _ => WorldError::path("", PathFault::Unrecorded {}),
         }
     }
 
@@ -130,7 +125,7 @@ impl<const D: usize> Input<D> {
 }
 
 fn unknown() -> WorldError {
-    WorldError::Snapshot("what a program did is of an unknown kind".into())
+    WorldError::snapshot(SnapshotFault::Input {})
 }
 
 /// False for what cannot be written.

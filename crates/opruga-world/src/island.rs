@@ -251,7 +251,7 @@ impl<const D: usize> Island<D> {
             Err(error) => {
                 self.restore();
                 let named = match error {
-                    StepError::BrokenOff => error,
+                    StepError::BrokenOff {} => error,
                     error => self.name_culprit(plan).unwrap_or(error),
                 };
                 self.restore();

@@ -2,7 +2,8 @@
 
 use crate::blueprint::{Blueprint, BodyBlueprint};
 use crate::build::build_integrator;
-use crate::error::WorldError;
+use crate::error::{Place, WorldError};
+use crate::refusals::Refusal;
 use crate::registry::Registry;
 use opruga_core::error::BuildError;
 use opruga_core::integrator::Integrator;
@@ -31,8 +32,8 @@ impl<'a, const D: usize> Estimate<'a, D> {
         let needs = needs.map(|model| model.need(&counts));
         let (bytes, couplings) = needs.fold((0.0, 0.0), |sum, need| (sum.0 + need.bytes, sum.1 + need.couplings));
         let own = body.integrator.as_ref();
-        let own =
-            own.map(|values| build_integrator(self.registry, values, || format!("integrator of body `{}`", body.name)));
+        let own = own
+            .map(|values| build_integrator(self.registry, values, || Place::IntegratorOf { name: body.name.clone() }));
         let working = own.transpose()?.as_deref().unwrap_or(self.integrator).memory(&counts, couplings);
         let mesh = Arc::as_ptr(&body.mesh);
         let mesh_bytes = if mesh == self.mesh { 0.0 } else { counts.mesh_bytes::<D>() };
@@ -51,7 +52,7 @@ impl<'a, const D: usize> Estimate<'a, D> {
 /// # Errors
 /// [`WorldError`] where there is no such integrator.
 pub fn estimate<const D: usize>(blueprint: &Blueprint<D>, registry: &Registry<D>) -> Result<f64, WorldError> {
-    let integrator = build_integrator(registry, &blueprint.integrator, || "integrator".into())?;
+    let integrator = build_integrator(registry, &blueprint.integrator, || Place::Section { path: "integrator" })?;
     Ok(estimate_of(&blueprint.bodies, &*integrator, registry)?.all)
 }
 
@@ -78,17 +79,13 @@ pub(crate) fn check<const D: usize>(
     most: Option<u64>,
 ) -> Result<(), WorldError> {
     let Estimate { all, largest, name, .. } = estimate_of(bodies, integrator, registry)?;
-    let allowed = match most {
-        Some(most) if all > most as f64 => format!("at most {most} bytes"),
+    let (shown, largest) = (format!("{all:.0}"), format!("{largest:.0}"));
+    let refusal = match most {
+        Some(most) if all > most as f64 => Refusal::SceneMemory { all: shown, body: name.into(), largest, most },
         _ if is_given(all) => return Ok(()),
-        _ => "what the machine gives to this program".to_string(),
+        _ => Refusal::MachineMemory { all: shown, body: name.into(), largest },
     };
-    let message = format!(
-        "the bodies of the scene take about {all:.0} bytes, `{name}` {largest:.0} of them; allowed: {allowed}; hint: a coarser mesh, an \
-         explicit integrator, or `linear_solver = \"matrix_free\"`"
-    );
-    let source = BuildError::new("memory", "limit.memory", message);
-    Err(WorldError::Build { place: format!("body `{name}`"), source })
+    Err(WorldError::Build { place: Place::body(name), source: BuildError::of("memory", refusal) })
 }
 
 /// Asks for memory in one piece and gives it back: where a limit of the system is below that, building would end the program.

@@ -6,7 +6,9 @@
 //! that is about to buckle.
 
 use crate::any_scene::three;
-use crate::error::WorldError;
+use crate::error::{Place, WorldError};
+use crate::path_faults::PathFault;
+use crate::refusals::Refusal;
 use crate::world::World;
 use opruga_core::error::BuildError;
 use opruga_core::potential::{Definiteness, Sink, Views};
@@ -61,27 +63,25 @@ impl<const D: usize> World<D> {
     /// frequency can be found since a node without mass can move.
     pub fn modes(&self, body: usize, count: usize) -> Result<Vec<Mode<D>>, WorldError> {
         if self.handle(body).is_none() {
-            return Err(WorldError::Path { path: format!("body {body}"), message: "there is no such body".into() });
+            return Err(WorldError::path(format!("body {body}"), PathFault::NoBody {}));
         }
         let name = self.blueprint.bodies[body].name.clone();
-        let refuse = |code, message: String| WorldError::Build {
-            place: format!("body `{name}`"),
-            source: BuildError::new("modes", code, message),
+        let refuse = |refusal: Refusal| WorldError::Build {
+            place: Place::body(&name),
+            source: BuildError::of("modes", refusal),
         };
         // By itself: others side by side do not matter.
         let mut system = self.island_of(&[body], &BTreeMap::new(), &self.integrator)?.system;
         let has_modes = |views: Views| views.hessian && views.symmetric;
         if let Some(member) = system.members.iter().find(|member| !has_modes(member.potential.properties().views)) {
-            let message = match member.potential.lacks() {
-                Some(why) => {
-                    format!("`{}` has no symmetric second derivatives: {why}", member.potential.properties().name)
-                }
-                None => format!("`{}` has no second derivatives", member.potential.properties().name),
-            };
-            return Err(refuse("integrator.needs", message));
+            let properties = member.potential.properties();
+            return Err(refuse(match member.potential.lacks() {
+                Some(why) => Refusal::NoSymmetricModes { model: properties.name, why: Some(why) },
+                None => Refusal::NoModes { model: properties.name },
+            }));
         }
         let mut force = Columns::zeros(system.places());
-        system.evaluate(Stage::Current, 0.0, 0.0, &mut force).map_err(|e| refuse("run.model", e.to_string()))?;
+        system.evaluate(Stage::Current, 0.0, 0.0, &mut force).map_err(|cause| refuse(Refusal::State { cause }))?;
         let mut stiffness = BlockMatrix::<D>::default();
         stiffness.assemble(system.nodes, 0, |matrix| {
             system.hessian(Stage::Current, 0.0, Definiteness::Exact, matrix);
@@ -90,23 +90,16 @@ impl<const D: usize> World<D> {
         let mut held = vec![false; mass.len()];
         system.held_axes(&mut |place, d| held[place * D + d] = true);
         if held.iter().all(|held| *held) {
-            let message = "all nodes of the body are held along every axis, and nothing of it can swing; allowed: a node that is free \
-                           along an axis; hint: another body, or fewer pins";
-            return Err(refuse("modes.all_held", message.into()));
+            return Err(refuse(Refusal::AllHeld {}));
         }
         if let Some(light) = (0..mass.len()).find(|k| !(mass[*k] > 0.0 || held[*k])) {
-            let message = format!("node {} has no mass; allowed: masses above 0 where a node can move", light / D);
-            return Err(refuse("modes.no_mass", message));
+            return Err(refuse(Refusal::NoMassOfNode { node: light / D }));
         }
         let axes = held.iter().filter(|held| !**held).count();
         let bytes = memory(count, axes);
         if bytes > MOST_BYTES {
-            let message = format!(
-                "{} modes of a body with {axes} free coordinates take about {bytes:.0} bytes; allowed: at most {MOST_BYTES:.0} bytes; \
-                 hint: fewer modes",
-                count.min(axes)
-            );
-            return Err(refuse("modes.memory", message));
+            let (bytes, most) = (format!("{bytes:.0}"), format!("{MOST_BYTES:.0}"));
+            return Err(refuse(Refusal::ModesMemory { count: count.min(axes), axes, bytes, most }));
         }
         // Held axes: no row and no column.
         let free: Vec<bool> = (0..system.nodes).map(|node| !held[node * D..(node + 1) * D].contains(&true)).collect();
@@ -137,7 +130,12 @@ impl<const D: usize> World<D> {
             let mut strained = vec![0.0; shape.len()];
             stiffness.multiply(&shape, &mut strained);
             if dot(&shape, &strained).abs() <= FREE * fastest {
-                rigid.push(Mode { square: 0.0, shape: vectors(&shape), residual: 0.0, rigid: Some(motion.name()) });
+                rigid.push(Mode {
+                    square: 0.0,
+                    shape: vectors(&shape),
+                    residual: 0.0,
+                    rigid: Some(motion.name().to_string()),
+                });
                 known.push(shape);
             }
         }
@@ -145,8 +143,7 @@ impl<const D: usize> World<D> {
             *m = if *held { 0.0 } else { *m };
         }
 
-        let without_frequencies =
-            || refuse("modes.indefinite", "the stiffness of this state has no natural frequencies".into());
+        let without_frequencies = || refuse(Refusal::Indefinite {});
         // (K + s M) must be positive definite; that of a state that is about to buckle needs a larger s.
         let mut shift = 1e-6 * fastest;
         let mut factor = Cholesky::default();

@@ -1,16 +1,17 @@
 //! What a scene may well say, but hardly means: units that do not go together, bodies that begin inside an obstacle.
 
 use crate::blueprint::{BodyBlueprint, Mass};
-use crate::error::WorldError;
+use crate::error::{Place, WorldError};
 use crate::island::Island;
 use crate::masses::node_masses;
+use crate::refusals::Refusal;
 use crate::selection::{extent, longest_side};
 use crate::warnings::{Remedy, Warning, WorldWarning};
 use crate::world::World;
 use opruga_core::error::BuildError;
 use opruga_core::spec::Role;
 use opruga_core::stability::Spectrum;
-use opruga_math::words::{number, rounded};
+use opruga_math::words::number;
 use opruga_mesh::{Measure, Mesh, Share};
 
 /// The code of the warning of [`sag`].
@@ -69,14 +70,7 @@ pub(crate) fn check_range<const D: usize>(x: &[[f64; D]], range: f64) -> Result<
     if farthest <= range {
         return Ok(());
     }
-    let message = format!(
-        "it begins {} m from the origin along an axis, where positions are rounded by {} m; allowed: at most {} m, where that is a \
-         millionth of the distance of its nodes; hint: move the scene to the origin",
-        rounded(farthest, 3),
-        rounded(farthest * f64::EPSILON, 2),
-        rounded(range, 3),
-    );
-    Err(BuildError::new("position", "scene.range", message))
+    Err(BuildError::of("position", Refusal::FarBody { farthest, range }))
 }
 
 /// Refuses a body that goes farther in a step of h [s] than its [`range`] reaches.
@@ -86,16 +80,7 @@ pub(crate) fn check_speed<const D: usize>(v: &[[f64; D]], range: f64, h: f64) ->
     if fastest * h <= range {
         return Ok(());
     }
-    let message = format!(
-        "`velocity` and `angular_velocity` let it begin with {} m/s along an axis, {} m in a step of {} s; allowed: at most {} m/s, \
-         with which a step ends where positions still have digits that tell its nodes apart; hint: are its units mixed (metres, seconds, \
-         radians)?",
-        rounded(fastest, 3),
-        rounded(fastest * h, 3),
-        number(h),
-        rounded(range / h, 3),
-    );
-    Err(BuildError::new("velocity", "scene.range", message))
+    Err(BuildError::of("velocity", Refusal::FastBody { fastest, h, range }))
 }
 
 /// The largest number whose square has a place among the finite numbers.
@@ -130,14 +115,8 @@ pub(crate) fn check_masses<const D: usize>(body: &BodyBlueprint<D>, masses: &[f6
         return Ok(());
     };
     let (word, value) = words_of_masses(body)[0];
-    let message = format!(
-        "`{word}` is {value:?}, with which node {node} has a mass of {} kg; allowed: such that every node has at least {} kg and at most \
-         {} kg; hint: are its units mixed (metres, kilograms)?",
-        number(masses[node]),
-        number(f64::MIN_POSITIVE),
-        number(f64::MAX),
-    );
-    Err(BuildError::new("mass", "scene.range", message))
+    let (value, mass) = (format!("{value:?}"), masses[node]);
+    Err(BuildError::of("mass", Refusal::MassOfNode { word, value, node, mass }))
 }
 
 impl<const D: usize> World<D> {
@@ -148,17 +127,13 @@ impl<const D: usize> World<D> {
         }
         let most =
             |numbers: &[f64]| numbers.iter().fold(0.0, |most: f64, x| if x.abs() > most { x.abs() } else { most });
-        let refuse = |place: String, kind: &str, message: String| {
-            Err(WorldError::Build { place, source: BuildError::new(kind, "scene.range", message) })
+        let refuse = |place: Place, kind: &str, refusal: Refusal| {
+            Err(WorldError::Build { place, source: BuildError::of(kind, refusal) })
         };
         let g = most(&self.blueprint.surroundings.gravity);
         if g > LARGEST {
-            let message = format!(
-                "a weight of {} m/s² takes the energy of the bodies beyond the finite numbers; allowed: at most {} m/s² along an axis",
-                number(g),
-                number(LARGEST),
-            );
-            return refuse("world.gravity".into(), "gravity", message);
+            let refusal = Refusal::Weight { weight: g, most: LARGEST };
+            return refuse(Place::Section { path: "world.gravity" }, "gravity", refusal);
         }
         let finite = |island: &&Island<D>| {
             let (survey, stock) = (&island.survey, &island.stock);
@@ -168,17 +143,11 @@ impl<const D: usize> World<D> {
         let island = self.islands.iter().find(|island| !finite(island)).or(self.islands.first());
         let Some(body) = island.map(|island| &self.blueprint.bodies[island.bodies[0]]) else { return Ok(()) };
         let (word, value) = words_of_masses(body)[0];
-        let message = match value > LARGEST {
-            true => format!(
-                "`{word}` is {value:?}, which takes the energy or the momentum of the body beyond the finite numbers; allowed: numbers \
-                 whose squares are finite, up to {}",
-                number(LARGEST),
-            ),
-            false => "its energy or its momentum is beyond the finite numbers; hint: are its units mixed (metres, kilograms, \
-                      seconds)?"
-                .into(),
+        let refusal = match value > LARGEST {
+            true => Refusal::BeyondFinite { word, value: format!("{value:?}"), most: LARGEST },
+            false => Refusal::Sums {},
         };
-        refuse(format!("body `{}`", body.name), "mass", message)
+        refuse(Place::body(&body.name), "mass", refusal)
     }
 }
 

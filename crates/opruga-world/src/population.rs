@@ -5,6 +5,7 @@ use crate::build::alike;
 use crate::changes::{Before, Source};
 use crate::error::WorldError;
 use crate::inputs::Input;
+use crate::path_faults::PathFault;
 use crate::rebuild::Touched;
 use crate::running::Progress;
 use crate::slots::Origin;
@@ -56,7 +57,7 @@ impl<const D: usize> World<D> {
 
     pub(crate) fn include(&mut self, body: BodyBlueprint<D>, source: Source) -> Result<usize, WorldError> {
         if self.body(&body.name).is_some() {
-            return Err(WorldError::Path { path: body.name, message: "the name is taken".into() });
+            return Err(WorldError::path(body.name, PathFault::Taken {}));
         }
         crate::validity::body(&body)?;
         crate::memory::check(std::slice::from_ref(&body), &*self.integrator, &self.registry, self.options.most_bytes)?;
@@ -114,7 +115,7 @@ impl<const D: usize> World<D> {
     /// Takes a body away, for the program or for a command.
     pub(crate) fn remove_now(&mut self, name: &str) -> Result<(), WorldError> {
         let Some(body) = self.body(name) else {
-            return Err(WorldError::Path { path: name.to_string(), message: "there is no such body".into() });
+            return Err(WorldError::path(name, PathFault::NoBody {}));
         };
         self.take_away(&[body])
     }

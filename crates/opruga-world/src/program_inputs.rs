@@ -4,6 +4,7 @@
 use crate::error::WorldError;
 use crate::inputs::Input;
 use crate::loads::ForceLaw;
+use crate::path_faults::PathFault;
 use crate::world::World;
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -50,12 +51,12 @@ impl<const D: usize> World<D> {
         position: [f64; D],
         velocity: [f64; D],
     ) -> Result<(), WorldError> {
-        let refuse = |message: String| Err(WorldError::Path { path: format!("body {body}, node {node}"), message });
+        let refuse = |fault: PathFault| Err(WorldError::path(format!("body {body}, node {node}"), fault));
         if node as usize >= self.node_count(body) {
-            return refuse("there is no such node".into());
+            return refuse(PathFault::NoNode { last: self.node_count(body).saturating_sub(1) });
         }
         if let Some(x) = position.iter().chain(&velocity).find(|x| !x.is_finite()) {
-            return refuse(format!("{x} is no place and no velocity; allowed: finite numbers"));
+            return refuse(PathFault::NoPosition { value: *x });
         }
         let (island, lane) = self.place[body];
         let island = &mut self.islands[island];
@@ -89,7 +90,7 @@ impl<const D: usize> World<D> {
     /// [`WorldError`] if there is no such body or its island cannot be built anew; the world stays as it was.
     pub fn add_force(&mut self, body: usize, law: Arc<ForceLaw<D>>) -> Result<(), WorldError> {
         let Some(handle) = self.handle(body) else {
-            return Err(WorldError::Path { path: format!("body {body}"), message: "there is no such body".into() });
+            return Err(WorldError::path(format!("body {body}"), PathFault::NoBody {}));
         };
         self.user_forces.push((handle, law));
         let outcome = self.rebuild(&BTreeSet::from([body]));

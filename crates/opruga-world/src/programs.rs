@@ -1,41 +1,40 @@
 //! Scenes that a program builds without a file: values by name, and blueprints with the defaults of the scene format.
 
 use crate::blueprint::{Blueprint, BodyBlueprint, ColliderBlueprint, Mass, Surroundings, Time};
-use crate::error::WorldError;
+use crate::error::{Place, WorldError};
+use crate::refusals::Refusal;
 use crate::registry::Registry;
 use opruga_core::error::BuildError;
-use opruga_core::spec::{Spec, Value, ValueError, Values};
+use opruga_core::spec::{Spec, Value, Values};
+use opruga_math::message::AnyMessage;
 use opruga_mesh::Mesh;
 use std::sync::Arc;
 
 /// The values of one kind: its defaults, and the fields that the program sets.
 fn values<const D: usize>(
     kind: &str,
-    what: &str,
+    what: &'static str,
     specs: &[&'static Spec],
     fields: &[(&str, Value)],
 ) -> Result<Values, WorldError> {
-    let refuse =
-        |code, message| Err(WorldError::Build { place: what.into(), source: BuildError::new(kind, code, message) });
+    let refuse = |about: AnyMessage| {
+        Err(WorldError::Build { place: Place::Section { path: what }, source: BuildError::of(kind, about) })
+    };
     let Some(spec) = specs.iter().find(|spec| spec.kind == kind) else {
-        let known: Vec<&str> = specs.iter().map(|spec| spec.kind).collect();
-        return refuse("scene.unknown_name", format!("there is no such {what}; allowed: {}", known.join(", ")));
+        let known = specs.iter().map(|spec| spec.kind).collect::<Vec<_>>().join(", ");
+        return refuse(Refusal::NoKindHere { what, known }.into());
     };
     let mut values = Values::defaults(spec, D);
     for (name, value) in fields {
         if let Err(error) = values.set(spec, name, value.clone(), D) {
-            let code = match error {
-                ValueError::UnknownField { .. } => "scene.unknown_field",
-                ValueError::NotAllowed { .. } => "scene.range",
-            };
-            return refuse(code, error.to_string());
+            return refuse(error.into());
         }
     }
     match values.missing(spec).first() {
-        Some(name) => refuse("scene.missing", format!("`{name}` is missing")),
+        Some(name) => refuse(Refusal::NoFieldGiven { name }.into()),
         None => match values.check_choices(spec) {
             Ok(()) => Ok(values),
-            Err(source) => Err(WorldError::Build { place: what.into(), source }),
+            Err(source) => Err(WorldError::Build { place: Place::Section { path: what }, source }),
         },
     }
 }

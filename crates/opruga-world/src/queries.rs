@@ -1,6 +1,7 @@
 //! Where a ray meets the bodies, and which point of them is nearest: for programs.
 
 use crate::error::WorldError;
+use crate::path_faults::PathFault;
 use crate::world::World;
 use opruga_collide::{closest_on_facet, closest_on_segment, facet_normal};
 use opruga_math::Lane;
@@ -112,8 +113,7 @@ impl<const D: usize> World<D> {
         refuse_reach(reach)?;
         let most = direction.iter().fold(0.0, |most: f64, d| if d.abs() > most { d.abs() } else { most });
         if most == 0.0 {
-            let message = format!("is {direction:?}; allowed: a vector with a length above 0");
-            return Err(WorldError::Path { path: "direction".into(), message });
+            return Err(WorldError::path("direction", PathFault::NoDirection { value: format!("{direction:?}") }));
         }
         let direction = unit(direction.map(|d| d / most));
         let mut best: Option<SurfacePoint<D>> = None;
@@ -223,12 +223,12 @@ fn refuse_infinite<const D: usize>(name: &str, numbers: &[f64; D]) -> Result<(),
     if numbers.iter().all(|x| x.is_finite()) {
         return Ok(());
     }
-    Err(WorldError::Path { path: name.into(), message: format!("is {numbers:?}; allowed: finite numbers") })
+    Err(WorldError::path(name, PathFault::NotFinite { value: format!("{numbers:?}") }))
 }
 
 fn refuse_reach(reach: f64) -> Result<(), WorldError> {
     if reach >= 0.0 {
         return Ok(());
     }
-    Err(WorldError::Path { path: "reach".into(), message: format!("is {reach}; allowed: >= 0") })
+    Err(WorldError::path("reach", PathFault::IsText { value: reach.to_string(), allowed: ">= 0".into() }))
 }

@@ -3,7 +3,7 @@
 use crate::blueprint::{Blueprint, BodyBlueprint};
 use crate::build::{Builder, build_integrator, group};
 use crate::carried::{BodyHistory, BodyState};
-use crate::error::WorldError;
+use crate::error::{Place, WorldError};
 use crate::island::Island;
 use crate::world::World;
 use opruga_math::WIDTH;
@@ -88,7 +88,8 @@ impl<const D: usize> World<D> {
     ) -> Result<(), WorldError> {
         let before = self.stock_energy();
         let integrator: Arc<_> =
-            build_integrator(&self.registry, &self.blueprint.integrator, || "integrator".into())?.into();
+            build_integrator(&self.registry, &self.blueprint.integrator, || Place::Section { path: "integrator" })?
+                .into();
         let groups = group(&self.blueprint.bodies, &self.slots, |body| self.batches(body));
         // For every group its old island, or one that is new.
         let mut found: Vec<Result<usize, Box<Island<D>>>> = Vec::with_capacity(groups.len());

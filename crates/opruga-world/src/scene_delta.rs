@@ -5,6 +5,7 @@ use crate::build::build_colliders;
 use crate::bytes::{Reader, Writer};
 use crate::changes::Before;
 use crate::error::WorldError;
+use crate::path_faults::SnapshotFault;
 use crate::running::Running;
 use crate::schema::{CONTACT, MOST_SUBSTEPS};
 use crate::slots::Origin;
@@ -14,8 +15,8 @@ use opruga_mesh::Mesh;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-fn refused<T>(message: &str) -> Result<T, WorldError> {
-    Err(WorldError::Snapshot(message.into()))
+fn refused<T>(fault: SnapshotFault) -> Result<T, WorldError> {
+    Err(WorldError::snapshot(fault))
 }
 
 impl<const D: usize> World<D> {
@@ -111,7 +112,7 @@ impl<const D: usize> World<D> {
         let changed = reader.count()?;
         if changed > 0 {
             let unfold = changed == 2;
-            let [gravity] = reader.vectors::<D>()?[..] else { return refused("its gravity is none") };
+            let [gravity] = reader.vectors::<D>()?[..] else { return refused(SnapshotFault::Gravity {}) };
             let drag = reader.number()?;
             let mut limit = || Ok::<_, WorldError>(reader.numbers()?.first().copied());
             let (largest_force, largest_velocity, largest_distance) = (limit()?, limit()?, limit()?);
@@ -122,7 +123,7 @@ impl<const D: usize> World<D> {
         }
         let substeps = reader.count()?;
         if substeps > u64::from(MOST_SUBSTEPS) {
-            return refused("it has more substeps than a frame may have");
+            return refused(SnapshotFault::Substeps {});
         }
         if substeps > 0 {
             let before = self.blueprint.time;
@@ -133,7 +134,7 @@ impl<const D: usize> World<D> {
             let number = reader.count()? as usize;
             let values = reader.values(D, |kind| opruga_collide::all(D).into_iter().find(|spec| spec.kind == kind))?;
             let Some(collider) = self.blueprint.colliders.get_mut(number) else {
-                return refused("it changes an obstacle that is not there");
+                return refused(SnapshotFault::NoObstacle {});
             };
             let before = std::mem::replace(&mut collider.values, values);
             self.keep_start(Before::Collider(number, before));
@@ -152,7 +153,7 @@ impl<const D: usize> World<D> {
             let number = reader.count()? as usize;
             let (models, own) = (reader.models(&registry)?, reader.own_integrator(&registry)?);
             if number >= self.blueprint.bodies.len() || !self.slots.origin[number].is_taken() {
-                return refused("it changes a body that is not there");
+                return refused(SnapshotFault::NoBody {});
             }
             let body = &mut self.blueprint.bodies[number];
             let models: Vec<Values> = std::mem::replace(&mut body.models, models);
@@ -176,7 +177,7 @@ impl<const D: usize> World<D> {
                     let number = reader.count()? as usize;
                     let command = commands.get(number).map(|running| (&running.command.action, running.generation));
                     let Some((Action::Add(body), generation)) = command else {
-                        return refused("it holds a body that no command here adds");
+                        return refused(SnapshotFault::NotAdded {});
                     };
                     self.blueprint.bodies.push((**body).clone());
                     self.slots.put(place, Origin::Command(number), generation);
@@ -194,7 +195,7 @@ impl<const D: usize> World<D> {
                         _ => {
                             let first = reader.count()? as usize;
                             let Some(first) = self.blueprint.bodies.get(first) else {
-                                return refused("a body has the mesh of one that is not there");
+                                return refused(SnapshotFault::NoMesh {});
                             };
                             Arc::clone(&first.mesh)
                         }
@@ -205,7 +206,7 @@ impl<const D: usize> World<D> {
                     self.slots.put(place, Origin::Program, generation);
                 }
                 3 => self.reserve(place, Origin::Reserved),
-                _ => return refused("a body came from nowhere"),
+                _ => return refused(SnapshotFault::FromNowhere {}),
             }
         }
         Ok(())

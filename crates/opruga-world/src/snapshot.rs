@@ -5,6 +5,7 @@ use crate::bytes::{Reader, Writer};
 use crate::carried::BodyState;
 use crate::error::WorldError;
 use crate::ledger::Flows;
+use crate::path_faults::SnapshotFault;
 use crate::rebuild::Touched;
 use crate::running::{Progress, Running};
 use crate::slots::{ACTED, Origin};
@@ -137,13 +138,13 @@ impl<const D: usize> World<D> {
 
     /// Reads what a snapshot says before its bodies.
     fn read_head<'b>(reader: &mut Reader<'b>) -> Result<Head<'b>, WorldError> {
-        let refuse = |message: &str| Err(WorldError::Snapshot(message.into()));
+        let refuse = |fault: SnapshotFault| Err(WorldError::snapshot(fault));
         let version = reader.count()?;
         if ![VERSION, BEFORE].contains(&version) {
-            return refuse(&format!("its version is not {VERSION}"));
+            return refuse(SnapshotFault::Version { version: VERSION });
         }
         if reader.count()? != D as u64 {
-            return refuse("it has another dimension");
+            return refuse(SnapshotFault::Dimension {});
         }
         Ok(Head { version, frames: reader.count()?, delta: reader.bytes()? })
     }
@@ -157,23 +158,23 @@ impl<const D: usize> World<D> {
         commands: &[Running<D>],
         other_future: bool,
     ) -> Result<Rest<D>, WorldError> {
-        let refuse = |message: &str| Err(WorldError::Snapshot(message.into()));
+        let refuse = |fault: SnapshotFault| Err(WorldError::snapshot(fault));
         let mut rest = Rest { next: reader.count()?, ..Rest::default() };
         if reader.count()? != self.blueprint.bodies.len() as u64 {
-            return refuse("it has another number of bodies");
+            return refuse(SnapshotFault::BodyCount {});
         }
         for (number, body) in self.blueprint.bodies.iter().enumerate() {
             rest.alive.push(reader.count()? == 1);
             let origin = self.slots.origin[number];
             if rest.alive[number] && !origin.is_taken() || !rest.alive[number] && origin == Origin::Program {
-                return refuse("a body is where it cannot be");
+                return refuse(SnapshotFault::BodyPlace {});
             }
             if !rest.alive[number] {
                 continue;
             }
             let generation = self.slots.generation[number];
             if origin == Origin::Program && generation >= rest.next || rest.next >= ACTED {
-                return refuse("a body has the generation of one to come");
+                return refuse(SnapshotFault::Generation {});
             }
             let x = reader.vectors::<D>()?;
             let v = reader.vectors::<D>()?;
@@ -183,20 +184,20 @@ impl<const D: usize> World<D> {
                 memory.push(reader.numbers()?);
             }
             if x.len() != body.mesh.positions.len() || v.len() != x.len() || models != body.models.len() {
-                return refuse(&format!("body `{}` has another shape", body.name));
+                return refuse(SnapshotFault::OtherShape { body: body.name.clone() });
             }
             if x.iter().chain(&v).flatten().any(|c| !c.is_finite()) {
-                return refuse(&format!("body `{}` has a number that is not finite", body.name));
+                return refuse(SnapshotFault::NotFinite { body: body.name.clone() });
             }
             let history = match version {
                 VERSION => reader.history()?,
                 _ => match reader.empty_history()? {
                     Some(history) => history,
-                    None => return refuse(&format!("its version is not {VERSION}")),
+                    None => return refuse(SnapshotFault::Version { version: VERSION }),
                 },
             };
             if !history.is_of_nodes(x.len()) {
-                return refuse(&format!("body `{}` has another shape", body.name));
+                return refuse(SnapshotFault::OtherShape { body: body.name.clone() });
             }
             rest.states.insert(number, BodyState { x, v, memory, history });
             let laws = reader.count()?;
@@ -206,7 +207,7 @@ impl<const D: usize> World<D> {
         }
         let count = reader.length()?;
         if !other_future && count != commands.len() {
-            return refuse("it has another number of commands");
+            return refuse(SnapshotFault::CommandCount {});
         }
         for _ in 0..count {
             rest.progress.push(read_progress(reader)?);
@@ -214,7 +215,7 @@ impl<const D: usize> World<D> {
         if other_future {
             // Commands stand in the order of time: those that have begun come first.
             if rest.progress.iter().skip(commands.len()).any(|progress| *progress != Progress::Waiting) {
-                return refuse("it has another number of commands");
+                return refuse(SnapshotFault::CommandCount {});
             }
             rest.progress.resize(commands.len(), Progress::Waiting);
         }
@@ -230,7 +231,7 @@ impl<const D: usize> World<D> {
             let nodes = state.map_or(0, |state| state.x.len());
             let pinned = if let Action::Pin { .. } = command.action { held.len() } else { 0 };
             if held.iter().any(|(node, _)| *node as usize >= nodes) || anchors.len() != pinned {
-                return refuse("a command holds what is not there");
+                return refuse(SnapshotFault::CommandHolds {});
             }
         }
         let mut numbers = [0.0; 10];
@@ -250,7 +251,7 @@ impl<const D: usize> World<D> {
             *number = reader.number()?;
         }
         if !reader.0.is_empty() {
-            return refuse("it goes on after its end");
+            return refuse(SnapshotFault::GoesOn {});
         }
         let [user, gas, damping, friction, contact, correction, numerical, start, changed, largest] = numbers;
         let [limited_forces, limited_velocities, limited_pulls, lost_bodies, open_frames, damped_frames] = counts;
@@ -389,7 +390,7 @@ impl<const D: usize> World<D> {
         let mut delta = Reader(delta);
         self.take_delta(&mut delta, commands)?;
         if !delta.0.is_empty() {
-            return Err(WorldError::Snapshot("what it says of the scene goes on after its end".into()));
+            return Err(WorldError::snapshot(SnapshotFault::SceneGoesOn {}));
         }
         let rest = self.read_rest(&mut reader, version, commands, other_future)?;
         self.running = self.commands_then(commands, &rest);
@@ -464,6 +465,6 @@ fn read_progress<const D: usize>(reader: &mut Reader<'_>) -> Result<Progress<D>,
                 .collect::<Result<Vec<_>, WorldError>>()?;
             Progress::Acting { held, anchors: reader.vectors::<D>()? }
         }
-        _ => return Err(WorldError::Snapshot("a command is in an unknown state".into())),
+        _ => return Err(WorldError::snapshot(SnapshotFault::CommandState {})),
     })
 }

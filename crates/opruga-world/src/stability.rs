@@ -1,15 +1,15 @@
 //! The stable step of every kind of body, estimated before it is stepped.
 
 use crate::blueprint::BodyBlueprint;
-use crate::error::WorldError;
+use crate::error::{Place, WorldError};
 use crate::island::Island;
 use crate::masses::node_masses;
 use crate::plausible;
+use crate::refusals::Refusal;
 use crate::warnings::{Warning, WorldWarning};
 use crate::world::World;
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::stability::{Stability, estimate};
-use opruga_math::words;
 use std::sync::Arc;
 
 /// How many islands are looked at again when energy comes from nowhere.
@@ -43,14 +43,13 @@ impl<const D: usize> World<D> {
             let island = &mut self.islands[number];
             let stability = match island.stability {
                 Some(stability) => stability,
-                None => estimate(&island.system, &*island.integrator).map_err(|e| WorldError::Build {
-                    place: format!("body `{name}`"),
-                    source: BuildError::new(
-                        "stability",
-                        "step.not_finite",
-                        format!("{}{}", step_message(&e), extremes(&self.blueprint.bodies[island.bodies[0]])),
-                    ),
-                })?,
+                None => {
+                    let body = &self.blueprint.bodies[island.bodies[0]];
+                    estimate(&island.system, &*island.integrator).map_err(|error| WorldError::Build {
+                        place: Place::body(&name),
+                        source: BuildError::of("stability", no_estimate(error, body)),
+                    })?
+                }
             };
             island.stability = Some(stability);
             estimates.push((number, name, stability));
@@ -78,12 +77,7 @@ impl<const D: usize> World<D> {
                     if !self.options.allow_unstable {
                         return Err(error);
                     }
-                    warnings.push(Warning {
-                        code: "step.unstable".into(),
-                        message: error.to_string(),
-                        count: 1,
-                        about: None,
-                    });
+                    warnings.push(Warning::new(error, 1));
                 }
                 None => {
                     let growth = stability.spectrum.growth_per_second(integrator, h);
@@ -174,8 +168,12 @@ fn held<const D: usize>(island: &Island<D>, lane: usize) -> Held {
     own.map(|pin| (pin.place / stride, pin.axes.iter().fold(0, |bits, axis| bits * 2 + u8::from(*axis)))).collect()
 }
 
-/// The numbers of a body that most likely lie behind forces or frequencies that are not finite, and what is allowed.
-fn extremes<const D: usize>(body: &BodyBlueprint<D>) -> String {
+/// Why there is no estimate, with the numbers of a body that most likely lie behind forces or frequencies that are not finite.
+fn no_estimate<const D: usize>(error: StepError, body: &BodyBlueprint<D>) -> Refusal {
+    let cause = match error {
+        StepError::Model { about, .. } => about,
+        other => other.into(),
+    };
     let numbers = body.models.iter().flat_map(|model| {
         let numbers = model.iter().filter_map(|(name, _)| Some((name, model.number(name)?)));
         numbers.map(|(name, x)| (model.kind(), name, x))
@@ -185,19 +183,10 @@ fn extremes<const D: usize>(body: &BodyBlueprint<D>) -> String {
         .into_iter()
         .filter(|mass| *mass > 0.0)
         .fold(f64::INFINITY, |least, m| if m < least { m } else { least });
-    let number = largest.map_or(String::new(), |(kind, name, x)| {
-        format!("the largest number of its models is `{name}` = {} of `{kind}`, and ", words::number(x))
-    });
-    format!(
-        "; allowed: forces, stiffnesses and their ratios to the masses of nodes below 1e300; hint: {number}its lightest node has {} kg",
-        words::number(lightest)
-    )
-}
-
-/// What an error of the estimate says, without the name of the estimate.
-fn step_message(error: &StepError) -> String {
-    match error {
-        StepError::Model { message, .. } => message.clone(),
-        other => other.to_string(),
+    match largest {
+        None => Refusal::NoEstimate { cause, lightest },
+        Some((kind, field, value)) => {
+            Refusal::NoEstimateOf { cause, field: field.into(), value, kind: kind.into(), lightest }
+        }
     }
 }

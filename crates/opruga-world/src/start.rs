@@ -3,15 +3,17 @@
 use crate::at_start::AtStart;
 use crate::blueprint::Blueprint;
 use crate::build::{build_colliders, build_integrator, initial_state};
-use crate::error::WorldError;
+use crate::error::{Place, WorldError};
 use crate::ledger::{Energy, Flows, Momentum};
 use crate::looks::Looks;
+use crate::path_faults::PathFault;
 use crate::rebuild::Touched;
 use crate::registry::Registry;
 use crate::running::Running;
 use crate::slots::Slots;
 use crate::world::{MOST_THREADS, Options, World};
 use opruga_core::integrator::Integrator;
+use opruga_core::spec::AllowedValues;
 use opruga_math::Simd;
 use std::collections::BTreeMap;
 use std::sync::atomic::AtomicU64;
@@ -44,17 +46,18 @@ impl<const D: usize> World<D> {
 
     fn build(blueprint: Blueprint<D>, options: Options, registry: Arc<Registry<D>>) -> Result<World<D>, WorldError> {
         if !(1..=MOST_THREADS).contains(&options.threads) {
-            let message = format!("is {}; allowed: 1 to {MOST_THREADS}", options.threads);
-            return Err(WorldError::Path { path: "threads".into(), message });
+            let allowed = AllowedValues::Integer { least: 1, greatest: MOST_THREADS as i64 };
+            let value = options.threads.to_string();
+            return Err(WorldError::path("threads", PathFault::Is { value, allowed }));
         }
         let integrator: Arc<dyn Integrator<D>> =
-            build_integrator(&registry, &blueprint.integrator, || "integrator".into())?.into();
+            build_integrator(&registry, &blueprint.integrator, || Place::Section { path: "integrator" })?.into();
         crate::memory::check(&blueprint.bodies, &*integrator, &registry, options.most_bytes)?;
         let colliders = build_colliders(&blueprint)?;
         let pool = (options.threads > 1)
             .then(|| rayon::ThreadPoolBuilder::new().num_threads(options.threads).build())
             .transpose()
-            .map_err(|e| WorldError::Path { path: "threads".into(), message: e.to_string() })?;
+            .map_err(|e| WorldError::path("threads", PathFault::Threads { reason: e.to_string() }))?;
         let workspaces = (0..options.threads).map(|_| Mutex::default()).collect();
         let bodies = blueprint.bodies.len();
         let states = blueprint.bodies.iter().map(initial_state).enumerate().collect();

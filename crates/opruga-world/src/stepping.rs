@@ -88,14 +88,13 @@ impl<const D: usize> World<D> {
                     let (body, last) = (body(*local), self.time());
                     WorldError::Diverged { body, node: *node, time: *time, last, range: *range }
                 }
-                Err(StepError::BrokenOff) => WorldError::BrokenOff,
-                Err(StepError::Model { model, message }) => {
-                    WorldError::Step { body: body(0), message: format!("{model}: {message}") }
+                Err(StepError::BrokenOff {}) => WorldError::BrokenOff {},
+                Err(cause @ StepError::NotConverged { .. }) => {
+                    WorldError::NotConverged { body: body(0), cause: cause.clone() }
                 }
-                Err(error @ StepError::NotConverged { hint, .. }) => {
-                    WorldError::NotConverged { body: body(0), message: error.to_string(), hint: hint.to_string() }
-                }
-                Ok(()) => WorldError::Step { body: body(0), message: String::new() },
+                Err(cause) => WorldError::Step { body: body(0), cause: cause.clone() },
+                // It is one that has failed.
+                Ok(()) => WorldError::Overflow { last: self.time() },
             });
         }
         self.frames += 1;

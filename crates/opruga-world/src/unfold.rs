@@ -184,7 +184,7 @@ impl<const D: usize> Island<D> {
                 self.system.work.solver.add(&before);
                 Ok(true)
             }
-            Err(StepError::BrokenOff) => Err(StepError::BrokenOff),
+            Err(StepError::BrokenOff {}) => Err(StepError::BrokenOff {}),
             Err(_) => {
                 let tried = self.system.work.solver;
                 self.return_to(found);

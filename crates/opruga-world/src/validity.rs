@@ -5,11 +5,12 @@ use crate::blueprint::{
     Action, Blueprint, BodyBlueprint, CommandBlueprint, LoadBlueprint, LoadKind, Mass, PinBlueprint, Selector,
     Surroundings, Time,
 };
-use crate::error::WorldError;
+use crate::error::{Place, WorldError};
 use crate::schema::{self, Section};
 use opruga_core::error::BuildError;
-use opruga_core::spec::{Allowed, Value};
-use opruga_math::words::number;
+use opruga_core::spec::{Allowed, Value, ValueError};
+use opruga_math::message::AnyMessage;
+use opruga_mesh::outline::OutlineError;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -19,30 +20,24 @@ pub const LONGEST: f64 = 1e70;
 /// The most frames of a run.
 const MOST_FRAMES: f64 = 1e12;
 
-/// What is allowed in names.
-pub const NAMES: &str = "1 to 256 bytes without control characters and . , [ ] = quotes; not only digits";
+pub use crate::faults::{BlueprintFault, NameFault};
 
-/// What is wrong with something, in the words of errors.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// What is wrong with a field of a part of the blueprint.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
-    /// A stable code.
-    pub code: &'static str,
     /// The field.
     pub field: &'static str,
     /// What is wrong.
-    pub message: String,
-    /// The offending value.
-    pub value: String,
-    /// What is allowed; empty where that goes without saying.
-    pub allowed: String,
+    pub about: AnyMessage,
 }
 
 impl Fault {
+    fn new(field: &'static str, about: impl Into<AnyMessage>) -> Fault {
+        Fault { field, about: about.into() }
+    }
     /// The error about it in a part of the blueprint.
-    fn in_part(self, place: &str) -> WorldError {
-        let allowed = if self.allowed.is_empty() { String::new() } else { format!("; allowed: {}", self.allowed) };
-        let source = BuildError::new(self.field, self.code, format!("{}{allowed}", self.message));
-        WorldError::Build { place: place.into(), source }
+    fn at(self, place: Place) -> WorldError {
+        WorldError::Build { place, source: BuildError::of(self.field, self.about) }
     }
 }
 
@@ -53,13 +48,8 @@ fn field<const D: usize>(section: &Section, name: &'static str, value: Value) ->
 }
 
 fn range<const D: usize>(range: &Allowed, name: &'static str, value: Value) -> Result<(), Fault> {
-    range.accept(value, D).map(|_| ()).map_err(|(value, allowed)| Fault {
-        code: "scene.range",
-        field: name,
-        message: format!("`{name}` is {value}"),
-        value,
-        allowed,
-    })
+    let refused = |(value, allowed)| Fault::new(name, ValueError::NotAllowed { name: name.into(), value, allowed });
+    range.accept(value, D).map(|_| ()).map_err(refused)
 }
 
 /// Whether a character could change how the rest of a line is shown.
@@ -70,34 +60,34 @@ pub fn unprintable(c: char) -> bool {
 
 /// What is wrong with a name: names stand in paths and in the heads of tables, and keep clear of what separates those. The number
 /// of a copy, `name[3]`, is no part of its name.
-pub fn name_fault(name: &str) -> Option<String> {
+pub fn name_fault(name: &str) -> Option<NameFault> {
     let bad = name.chars().find(|c| unprintable(*c) || ".,[]\"'=".contains(*c));
     if name.is_empty() {
-        return Some("the name is empty".into());
+        return Some(NameFault::Empty {});
     }
     if let Some(c) = bad {
-        let shown = if unprintable(c) { c.escape_unicode().to_string() } else { c.to_string() };
-        return Some(format!("the name contains `{shown}`"));
+        let letter = if unprintable(c) { c.escape_unicode().to_string() } else { c.to_string() };
+        return Some(NameFault::Contains { letter });
     }
     let number = name.chars().all(|c| c.is_ascii_digit());
-    number.then(|| "the name is a number, which would be the place of a body".into())
+    number.then_some(NameFault::Number {})
 }
 
 /// What is wrong with how time passes, beyond the ranges of its fields: the frames would not end, or time would stand still.
 pub fn time_fault(time: &Time) -> Option<Fault> {
     let Time { seconds, frame, substeps } = *time;
     let h = frame / f64::from(substeps);
-    let (message, allowed) = if seconds <= 0.0 {
+    let shown = format!("{frame:e}");
+    let about = if seconds <= 0.0 {
         return None;
     } else if seconds + h == seconds {
-        let message = format!("a step of {} s is lost in {} s: time would stand still", number(h), number(seconds));
-        (message, "a step that changes the time")
+        BlueprintFault::LostStep { h, seconds, frame: shown }
     } else if seconds / frame > MOST_FRAMES {
-        (format!("{} s are {} frames", number(seconds), number(seconds / frame)), "at most 1e12 frames")
+        BlueprintFault::ManyFrames { seconds, frames: seconds / frame, frame: shown }
     } else {
         return None;
     };
-    Some(Fault { code: "scene.range", field: "frame", message, value: format!("{frame:e}"), allowed: allowed.into() })
+    Some(Fault::new("frame", about))
 }
 
 /// How a set of nodes does not fit a body.
@@ -109,6 +99,27 @@ pub enum SelectorFault {
     NoGroup(String),
     /// It selects no node.
     Nothing,
+}
+
+impl SelectorFault {
+    /// It in words; `shown` makes names fit to be printed.
+    pub fn about<const D: usize>(&self, body: &BodyBlueprint<D>, shown: &dyn Fn(&str) -> String) -> BlueprintFault {
+        let name = shown(&body.name);
+        match self {
+            SelectorFault::NoNode(node) => {
+                let last = body.mesh.positions.len().saturating_sub(1);
+                BlueprintFault::NoNode { body: name, node: *node, last }
+            }
+            SelectorFault::NoGroup(group) if body.mesh.groups.is_empty() => {
+                BlueprintFault::NoGroups { body: name, group: shown(group) }
+            }
+            SelectorFault::NoGroup(group) => {
+                let known = body.mesh.groups.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
+                BlueprintFault::NoGroup { body: name, group: shown(group), known }
+            }
+            SelectorFault::Nothing => BlueprintFault::SelectsNothing { body: name },
+        }
+    }
 }
 
 impl<const D: usize> Selector<D> {
@@ -142,24 +153,10 @@ impl<const D: usize> Selector<D> {
 
 /// Refuses a set that does not fit a body.
 fn select<const D: usize>(select: &Selector<D>, body: &BodyBlueprint<D>) -> Result<(), Fault> {
-    let name = &body.name;
-    let (code, message, value, allowed) = match select.fault(body) {
-        None => return Ok(()),
-        Some(SelectorFault::NoNode(node)) => {
-            let allowed = format!("nodes from 0 to {}", body.mesh.positions.len().saturating_sub(1));
-            ("scene.range", format!("body `{name}` has no node {node}"), node.to_string(), allowed)
-        }
-        Some(SelectorFault::NoGroup(group)) => {
-            let groups: Vec<&str> = body.mesh.groups.keys().map(String::as_str).collect();
-            let allowed = if groups.is_empty() { "it has no groups".into() } else { groups.join(", ") };
-            ("scene.unknown_name", format!("the mesh of `{name}` has no group `{group}`"), group, allowed)
-        }
-        Some(SelectorFault::Nothing) => {
-            let message = format!("the selector selects no node of `{name}`");
-            ("scene.selects_nothing", message, String::new(), String::new())
-        }
-    };
-    Err(Fault { code, field: "select", message, value, allowed })
+    match select.fault(body) {
+        None => Ok(()),
+        Some(fault) => Err(Fault::new("select", fault.about(body, &str::to_string))),
+    }
 }
 
 /// Refuses what a scene file could not say.
@@ -179,29 +176,30 @@ pub(crate) fn blueprint<const D: usize>(scene: &Blueprint<D>) -> Result<(), Worl
     for one in &bodies {
         // Copies share their mesh.
         if meshes.insert(Arc::as_ptr(&one.mesh)) {
-            mesh(one).map_err(|fault| fault.in_part(&format!("body `{}`", one.name)))?;
+            mesh(one).map_err(|fault| fault.at(Place::body(&one.name)))?;
         }
-        numbers(one).map_err(|fault| fault.in_part(&format!("body `{}`", one.name)))?;
+        numbers(one).map_err(|fault| fault.at(Place::body(&one.name)))?;
         if !names.insert(one.name.as_str()) {
-            let message = format!("two bodies are called `{}`", one.name);
-            return Err(duplicate(message, &one.name).in_part(&format!("body `{}`", one.name)));
+            let about = NameFault::TwoBodies { name: one.name.clone(), line: None };
+            return Err(Fault::new("name", about).at(Place::body(&one.name)));
         }
     }
     contact(scene, &bodies)?;
     for (k, one) in scene.loads.iter().enumerate() {
-        load(one, &bodies).map_err(|fault| fault.in_part(&format!("load {k}")))?;
+        load(one, &bodies).map_err(|fault| fault.at(Place::Load { index: k }))?;
     }
     for (k, one) in scene.commands.iter().enumerate() {
-        command(one).map_err(|fault| fault.in_part(&format!("command {k}")))?;
+        command(one).map_err(|fault| fault.at(Place::Command { index: k }))?;
     }
     names.clear();
     for probe in &scene.probes {
-        let place = format!("probe `{}`", probe.name);
+        let place = || Place::Probe { name: probe.name.clone() };
         if !names.insert(probe.name.as_str()) {
-            return Err(duplicate(format!("two probes are called `{}`", probe.name), &probe.name).in_part(&place));
+            let about = NameFault::TwoProbes { name: probe.name.clone(), line: None };
+            return Err(Fault::new("name", about).at(place()));
         }
-        let body = body_of(probe.body, &bodies).map_err(|fault| fault.in_part(&place))?;
-        select(&probe.select, body).map_err(|fault| fault.in_part(&place))?;
+        let body = body_of(probe.body, &bodies).map_err(|fault| fault.at(place()))?;
+        select(&probe.select, body).map_err(|fault| fault.at(place()))?;
     }
     Ok(())
 }
@@ -211,7 +209,7 @@ pub(crate) fn blueprint<const D: usize>(scene: &Blueprint<D>) -> Result<(), Worl
 /// # Errors
 /// As [`blueprint`].
 pub(crate) fn body<const D: usize>(body: &BodyBlueprint<D>) -> Result<(), WorldError> {
-    mesh(body).and_then(|()| numbers(body)).map_err(|fault| fault.in_part(&format!("body `{}`", body.name)))
+    mesh(body).and_then(|()| numbers(body)).map_err(|fault| fault.at(Place::body(&body.name)))
 }
 
 /// Refuses pairs of groups that no body is in.
@@ -221,30 +219,22 @@ fn contact<const D: usize>(scene: &Blueprint<D>, bodies: &[&BodyBlueprint<D>]) -
         for field in ["first", "second"] {
             let group = pair.text(field).unwrap_or("");
             if !groups.contains(group) {
-                let (message, value) = (format!("no body is in the group `{group}`"), group.to_string());
-                let allowed = groups.iter().copied().collect::<Vec<_>>().join(", ");
-                let fault = Fault { code: "scene.unknown_name", field, message, value, allowed };
-                return Err(fault.in_part(&format!("contact.pair {k}")));
+                let known = groups.iter().copied().collect::<Vec<_>>().join(", ");
+                let fault = Fault::new(field, BlueprintFault::NoMember { group: group.into(), known });
+                return Err(fault.at(Place::Pair { index: k }));
             }
         }
     }
     Ok(())
 }
 
-fn duplicate(message: String, name: &str) -> Fault {
-    Fault { code: "scene.duplicate_name", field: "name", message, value: name.into(), allowed: String::new() }
-}
-
 fn body_of<'b, const D: usize>(number: usize, bodies: &[&'b BodyBlueprint<D>]) -> Result<&'b BodyBlueprint<D>, Fault> {
-    bodies.get(number).copied().ok_or_else(|| Fault {
-        code: "scene.unknown_name",
-        field: "body",
-        message: format!("there is no body {number}"),
-        value: number.to_string(),
-        allowed: match bodies.len() {
-            0 => "the scene has no bodies".into(),
-            n => format!("0 to {}", n - 1),
-        },
+    bodies.get(number).copied().ok_or_else(|| {
+        let about = match bodies.len() {
+            0 => BlueprintFault::NoBodies { index: number },
+            count => BlueprintFault::NoBody { index: number, last: count - 1 },
+        };
+        Fault::new("body", about)
     })
 }
 
@@ -255,7 +245,7 @@ pub(crate) fn time<const D: usize>(time: &Time) -> Result<(), WorldError> {
         field::<D>(&schema::TIME, "substeps", Value::Integer(time.substeps.into()))?;
         time_fault(time).map_or(Ok(()), Err)
     };
-    all().map_err(|fault| fault.in_part("time"))
+    all().map_err(|fault| fault.at(Place::Section { path: "time" }))
 }
 
 pub(crate) fn surroundings<const D: usize>(all: &Surroundings<D>) -> Result<(), WorldError> {
@@ -272,25 +262,21 @@ pub(crate) fn surroundings<const D: usize>(all: &Surroundings<D>) -> Result<(), 
         }
         Ok(())
     };
-    check().map_err(|fault: Fault| fault.in_part("world"))
+    check().map_err(|fault: Fault| fault.at(Place::Section { path: "world" }))
 }
 
 /// What the mesh of a body must keep to, so that nobody who reads it goes astray.
 fn mesh<const D: usize>(body: &BodyBlueprint<D>) -> Result<(), Fault> {
-    let fault = |message: String, allowed: &str| {
-        let (value, allowed) = (String::new(), allowed.into());
-        Fault { code: "scene.shape", field: "shape", message, value, allowed }
-    };
     if body.mesh.positions.is_empty() {
-        return Err(fault("it has no nodes".into(), "one node at least"));
+        return Err(Fault::new("shape", BlueprintFault::NoNodes {}));
     }
-    body.mesh.validate().map_err(|error| fault(error.to_string(), ""))?;
+    body.mesh.validate().map_err(|error| Fault::new("shape", OutlineError::Mesh { error }))?;
     // Written so that what is no number is too far.
     let far = |x: &f64| (x.abs() <= LONGEST).then_some(()).is_none();
     match body.mesh.positions.iter().position(|x| x.iter().any(far)) {
         Some(node) => {
-            let message = format!("node {node} lies at {:?}", body.mesh.positions[node]);
-            Err(fault(message, "coordinates within 1e70 m of the origin of the shape"))
+            let position = format!("{:?}", body.mesh.positions[node]);
+            Err(Fault::new("shape", BlueprintFault::FarNode { node, position }))
         }
         None => Ok(()),
     }
@@ -302,9 +288,8 @@ fn numbers<const D: usize>(body: &BodyBlueprint<D>) -> Result<(), Fault> {
     let common = body.name.strip_suffix(']').and_then(|name| name.rsplit_once('['));
     let common = common.filter(|(_, copy)| !copy.is_empty() && copy.bytes().all(|b| b.is_ascii_digit()));
     let name = common.map_or(body.name.as_str(), |(name, _)| name);
-    if let Some(message) = name_fault(name) {
-        let (value, allowed) = (body.name.clone(), NAMES.into());
-        return Err(Fault { code: "scene.name", field: "name", message, value, allowed });
+    if let Some(fault) = name_fault(name) {
+        return Err(Fault::new("name", fault));
     }
     field::<D>(&schema::BODY, "name", Value::Text(body.name.clone()))?;
     match &body.mass {
@@ -313,13 +298,8 @@ fn numbers<const D: usize>(body: &BodyBlueprint<D>) -> Result<(), Fault> {
         Mass::Node(mass) => field::<D>(&schema::BODY, "node_mass", Value::Number(*mass))?,
         Mass::DensityOfCells(densities) => {
             if densities.len() != body.mesh.cells.len() {
-                return Err(Fault {
-                    code: "scene.length",
-                    field: "density_of_cells",
-                    message: format!("it has {} numbers", densities.len()),
-                    value: densities.len().to_string(),
-                    allowed: format!("one for each of {} cells", body.mesh.cells.len()),
-                });
+                let (count, cells) = (densities.len(), body.mesh.cells.len());
+                return Err(Fault::new("density_of_cells", BlueprintFault::Densities { count, cells }));
             }
             for density in densities.iter() {
                 range::<D>(&Allowed::POSITIVE, "density_of_cells", Value::Number(*density))?;
@@ -332,26 +312,16 @@ fn numbers<const D: usize>(body: &BodyBlueprint<D>) -> Result<(), Fault> {
     let gradient = body.velocity_gradient.iter().map(|row| row.to_vec()).collect();
     range::<D>(&Allowed::Points, "velocity", Value::Rows(gradient))?;
     if !(body.node_velocities.is_empty() || body.node_velocities.len() == body.mesh.nodes()) {
-        return Err(Fault {
-            code: "scene.length",
-            field: "velocity",
-            message: format!("{} nodes have a velocity", body.node_velocities.len()),
-            value: body.node_velocities.len().to_string(),
-            allowed: format!("none, or each of {} nodes", body.mesh.nodes()),
-        });
+        let (count, nodes) = (body.node_velocities.len(), body.mesh.nodes());
+        return Err(Fault::new("velocity", BlueprintFault::NodeVelocities { count, nodes }));
     }
     for velocity in body.node_velocities.iter() {
         range::<D>(&Allowed::Vector, "velocity", Value::Numbers(velocity.to_vec()))?;
     }
     let turns = if D == 2 { 1 } else { 3 };
     if !(body.angular_velocity.is_empty() || body.angular_velocity.len() == turns) {
-        return Err(Fault {
-            code: "scene.length",
-            field: "angular_velocity",
-            message: format!("`angular_velocity` has {} numbers", body.angular_velocity.len()),
-            value: body.angular_velocity.len().to_string(),
-            allowed: turns.to_string(),
-        });
+        let count = body.angular_velocity.len();
+        return Err(Fault::new("angular_velocity", BlueprintFault::AngularVelocity { count, wanted: turns }));
     }
     range::<D>(&Allowed::Numbers, "angular_velocity", Value::Numbers(body.angular_velocity.clone()))?;
     body.pins.iter().try_for_each(|one| pin(one, body))
@@ -402,7 +372,7 @@ pub(crate) fn command<const D: usize>(command: &CommandBlueprint<D>) -> Result<(
 /// # Errors
 /// As [`blueprint`].
 pub(crate) fn given<const D: usize>(given: &CommandBlueprint<D>) -> Result<(), WorldError> {
-    command(given).map_err(|fault| fault.in_part("command"))?;
+    command(given).map_err(|fault| fault.at(Place::Section { path: "command" }))?;
     match &given.action {
         Action::Add(added) => body(added),
         _ => Ok(()),

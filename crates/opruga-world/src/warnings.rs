@@ -1,5 +1,9 @@
 //! What deserves attention in a world: warnings as values.
 
+use crate::error::{Place, WorldError};
+use crate::faults::{BlueprintFault, NameFault};
+use crate::path_faults::{Held, PathFault, Promised, SnapshotFault};
+use crate::refusals::Refusal;
 use opruga_math::message::{AnyMessage, if_any};
 use opruga_math::words::{counted, number, rounded};
 use opruga_math::{messages, terms};
@@ -17,6 +21,15 @@ pub const MESSAGES: &[&[opruga_math::message::Variant]] = &[
     Remedy::VARIANTS,
     WorstCell::VARIANTS,
     WorldWarning::VARIANTS,
+    Refusal::VARIANTS,
+    Place::VARIANTS,
+    WorldError::VARIANTS,
+    PathFault::VARIANTS,
+    SnapshotFault::VARIANTS,
+    Promised::VARIANTS,
+    Held::VARIANTS,
+    NameFault::VARIANTS,
+    BlueprintFault::VARIANTS,
 ];
 
 /// Something that deserves attention, and how often it happened.

@@ -108,6 +108,26 @@ pub struct Tape {
     kept: u64,
 }
 
+opruga_math::messages! {
+    /// Why a program cannot be recorded.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum TapeFault {
+        "recording.input" #[error("{error}")] #[hint("commands, `set`, `place_node` and `remove_body` can be recorded")]
+        Input { error: WorldError },
+    }
+}
+
+opruga_math::terms! {
+    /// What helps where a recording can go no further.
+    pub enum TapeHint = "part.tape_hint" {
+        RunEnded = "the run has ended here; --resume goes on from its checkpoint, with --record to another file",
+    }
+}
+
+/// All messages of recordings, for tests of translations.
+#[doc(hidden)]
+pub const MESSAGES: &[&[opruga_math::message::Variant]] = &[TapeFault::VARIANTS, TapeHint::VARIANTS];
+
 /// Why a recording was not written, or not played.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TapeError {
@@ -172,13 +192,7 @@ impl Tape {
     /// Adds what the program has done before a frame.
     fn inputs(&mut self, world: &mut dyn AnyWorld, frame: u64) -> Result<(), WriteError> {
         for input in world.take_inputs() {
-            let bytes = input.map_err(|e| WriteError {
-                code: "recording.input",
-                message: e.to_string(),
-                path: self.path.clone(),
-                bytes: 0,
-                hint: Some("commands, `set`, `place_node` and `remove_body` can be recorded".into()),
-            })?;
+            let bytes = input.map_err(|error| WriteError::of(&self.path, TapeFault::Input { error }))?;
             self.file.input(frame, &bytes)?;
         }
         Ok(())

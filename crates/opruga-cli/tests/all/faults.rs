@@ -322,7 +322,7 @@ fn calls_that_make_no_sense_are_explained() {
         (run("body.soft.models.pressure.nRT=-1"), "= allowed: a number >= 0"),
         (run("body.soft.models.pressure.gamma=0.9"), "error[scene.range]: `gamma` is 0.9"),
         (run("body.sof.mass=1"), "= hint: did you mean `soft`?"),
-        (run("mass"), "error[set.syntax]: `mass` is no override"),
+        (run("mass"), "error[set.syntax]: `mass` is not an override"),
         (vec!["run", "pressures", "--seconds", "nan"], "--seconds"),
         (vec!["run", "pressures", "--seconds", "1e99"], "allowed: 0 to 1e9"),
         (vec!["run", "--threads", "-1"], "error: invalid value '-1' for '--threads <THREADS>': -1 is not in 1..=256"),

@@ -158,9 +158,12 @@ fn bad_calls_are_refused_before_anything_is_written() {
     let folder = tempfile::tempdir().expect("a folder");
     for (arguments, word) in [
         (vec!["sweep", "ball", "--metric=energy_drift", "--out=o"], "no parameter varies"),
-        (vec!["sweep", "ball", "--set=body.ball.mass=1,2", "--out=o"], "nothing is measured"),
+        (vec!["sweep", "ball", "--set=body.ball.mass=1,2", "--out=o"], "the sweep measures nothing"),
         (vec!["sweep", "ball", "--set=body.ball.mass=1,2", "--metric=bounce_hight", "--out=o"], "did you mean"),
-        (vec!["sweep", "ball", "--set=body.ball.mass=1..2", "--metric=energy_drift", "--out=o"], "how many values"),
+        (
+            vec!["sweep", "ball", "--set=body.ball.mass=1..2", "--metric=energy_drift", "--out=o"],
+            "lacks its number of values",
+        ),
         (
             vec!["sweep", "ball", "--set=body.ball.mass=1..2", "--sample=0", "--metric=energy_drift", "--out=o"],
             "a sample of 0 points visits nothing\n  = allowed: 1 to 1000000\n  = hint: for example --sample 20",

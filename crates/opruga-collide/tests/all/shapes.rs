@@ -329,51 +329,51 @@ fn refusals_name_collider_and_value() {
     }
     // A direction of zeros is no value of the field; one whose length is lost has none either.
     let e = refused::<2>(values::<2>("half_space", &[("normal", vector(&[1e-200, 0.0]))]));
-    assert_eq!((e.kind.as_str(), e.code), ("collider 1 (half_space)", "collider.no_direction"));
-    assert_eq!(e.message, "`normal` is [1e-200, 0.0]; allowed: a vector of a length above 1e-150");
+    assert_eq!((e.kind.as_str(), e.code()), ("collider 1 (half_space)", "collider.no_direction"));
+    assert_eq!(e.about.in_full(), "`normal` is [1e-200, 0.0]; allowed: a vector of a length above 1e-150");
     let e = refused::<2>(values::<2>("box", &[("min", vector(&[0.0, 0.0]))]));
-    assert_eq!(e.code, "collider.box_fields");
+    assert_eq!(e.code(), "collider.box_fields");
     let e = refused::<3>(values::<3>("box", &[("min", vector(&[0.0; 3])), ("max", vector(&[1.0, -1.0, 1.0]))]));
-    assert_eq!(e.code, "collider.empty_box");
-    assert!(e.message.contains("[1.0, -1.0, 1.0]"));
+    assert_eq!(e.code(), "collider.empty_box");
+    assert!(e.about.to_string().contains("[1.0, -1.0, 1.0]"));
     let e = refused::<2>(values::<2>(
         "box",
         &[("min", vector(&[0.0; 2])), ("max", vector(&[1.0; 2])), INSIDE, ("thickness", number(0.5))],
     ));
-    assert_eq!(e.code, "collider.no_room");
+    assert_eq!(e.code(), "collider.no_room");
     let e = refused::<2>(values::<2>("ball", &[("radius", number(1.0)), INSIDE, ("thickness", number(1.0))]));
-    assert_eq!(e.code, "collider.no_room");
+    assert_eq!(e.code(), "collider.no_room");
     let e = refused::<3>(values::<3>(
         "capsule",
         &[("a", vector(&[1.0; 3])), ("b", vector(&[1.0; 3])), ("radius", number(1.0))],
     ));
-    assert_eq!(e.code, "collider.no_direction");
+    assert_eq!(e.code(), "collider.no_direction");
     let e =
         refused::<2>(values::<2>("convex", &[("points", rows(&[&[0.0, 0.0], &[1.0, 1.0], &[2.0, 2.0], &[2.0, 2.0]]))]));
-    assert_eq!(e.code, "collider.flat_hull");
+    assert_eq!(e.code(), "collider.flat_hull");
     let flat = rows(&[&[0.0, 0.0, 0.0], &[1.0, 0.0, 0.0], &[0.0, 1.0, 0.0], &[1.0, 1.0, 0.0], &[1.0, 1.0, 0.0]]);
-    assert_eq!(refused::<3>(values::<3>("convex", &[("points", flat)])).code, "collider.flat_hull");
+    assert_eq!(refused::<3>(values::<3>("convex", &[("points", flat)])).code(), "collider.flat_hull");
     assert_eq!(
-        refused::<3>(values::<3>("convex", &[("points", rows(&[&[1.0, 0.0, 0.0]]))])).code,
+        refused::<3>(values::<3>("convex", &[("points", rows(&[&[1.0, 0.0, 0.0]]))])).code(),
         "collider.flat_hull"
     );
     let e = refused::<2>(values::<2>("polyline", &[("points", rows(&[&[0.0, 0.0], &[1.0, 0.0], &[1.0, 0.0]]))]));
-    assert_eq!((e.code, e.message.contains("points 1 and 2")), ("collider.degenerate_facet", true));
+    assert_eq!((e.code(), e.about.to_string().contains("points 1 and 2")), ("collider.degenerate_facet", true));
     let e = refused::<2>(values::<2>(
         "polyline",
         &[("points", rows(&[&[0.0, 0.0], &[1.0, 0.0]])), ("closed", Value::Boolean(true))],
     ));
-    assert_eq!(e.code, "collider.points");
+    assert_eq!(e.code(), "collider.points");
     let mesh = |numbers: &[u32]| {
         values::<3>(
             "triangle_mesh",
             &[("points", rows(&[&[0.0; 3], &[1.0; 3], &[2.0; 3]])), ("triangles", Value::Integers(numbers.to_vec()))],
         )
     };
-    assert_eq!(refused::<3>(mesh(&[0, 1, 3])).message, "`triangles` names point 3; allowed: 0 to 2");
-    assert_eq!(refused::<3>(mesh(&[0, 1])).code, "collider.triangles");
-    assert_eq!(refused::<3>(mesh(&[0, 1, 2])).code, "collider.degenerate_facet");
-    assert_eq!(Colliders::<2>::build(&[mesh(&[0, 1, 2])]).unwrap_err().code, "collider.kind");
+    assert_eq!(refused::<3>(mesh(&[0, 1, 3])).about.in_full(), "`triangles` names point 3; allowed: 0 to 2");
+    assert_eq!(refused::<3>(mesh(&[0, 1])).code(), "collider.triangles");
+    assert_eq!(refused::<3>(mesh(&[0, 1, 2])).code(), "collider.degenerate_facet");
+    assert_eq!(Colliders::<2>::build(&[mesh(&[0, 1, 2])]).unwrap_err().code(), "collider.kind");
 }
 
 #[test]

@@ -1,6 +1,36 @@
 //! Where a parameter has a say.
 
 use super::{Field, Value, Values};
+use opruga_math::message::AnyMessage;
+use opruga_math::messages;
+
+messages! {
+    /// Words of which one holds.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum Alternatives {
+        "part.alternatives" #[error("{word}")]
+        Last { word: String },
+        "part.alternatives" #[error("{word} or {rest}")]
+        Either { word: String, rest: AnyMessage },
+    }
+
+    /// What must hold for a parameter to have a say, in words.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum ConditionText {
+        "part.condition" #[error("in {dimension}D")]
+        Dimension { dimension: usize },
+        "part.condition" #[error("where `{field}` is {words}")]
+        Word { field: &'static str, words: AnyMessage },
+        "part.condition" #[error("with `{field}`")]
+        Given { field: &'static str },
+        "part.condition" #[error("with {fields}")]
+        GivenOneOf { fields: AnyMessage },
+        "part.condition" #[error("without `{field}`")]
+        NotGiven { field: &'static str },
+        "part.condition" #[error("where `{field}` is not 0")]
+        NotZero { field: &'static str },
+    }
+}
 
 /// What must hold for a parameter to have a say.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,21 +64,28 @@ impl Condition {
     }
 }
 
-impl core::fmt::Display for Condition {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+fn alternatives(words: impl DoubleEndedIterator<Item = String>) -> AnyMessage {
+    let either = |rest, word| match rest {
+        None => Some(AnyMessage::from(Alternatives::Last { word })),
+        Some(rest) => Some(Alternatives::Either { word, rest }.into()),
+    };
+    words.rev().fold(None, either).unwrap_or_else(|| Alternatives::Last { word: String::new() }.into())
+}
+
+impl Condition {
+    /// It in words.
+    pub fn text(&self) -> ConditionText {
         match *self {
-            Condition::Dimension(wanted) => write!(f, "in {wanted}D"),
-            Condition::Word(name, words) => {
-                let words: Vec<String> = words.iter().map(|word| format!("\"{word}\"")).collect();
-                write!(f, "where `{name}` is {}", words.join(" or "))
+            Condition::Dimension(dimension) => ConditionText::Dimension { dimension },
+            Condition::Word(field, words) => {
+                ConditionText::Word { field, words: alternatives(words.iter().map(|word| format!("\"{word}\""))) }
             }
-            Condition::Given(name) => write!(f, "with `{name}`"),
+            Condition::Given(field) => ConditionText::Given { field },
             Condition::GivenOneOf(names) => {
-                let names: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
-                write!(f, "with {}", names.join(" or "))
+                ConditionText::GivenOneOf { fields: alternatives(names.iter().map(|name| format!("`{name}`"))) }
             }
-            Condition::NotGiven(name) => write!(f, "without `{name}`"),
-            Condition::NotZero(name) => write!(f, "where `{name}` is not 0"),
+            Condition::NotGiven(field) => ConditionText::NotGiven { field },
+            Condition::NotZero(field) => ConditionText::NotZero { field },
         }
     }
 }
@@ -63,7 +100,7 @@ impl Field {
         if self.applies.is_empty() {
             return self.documentation.to_string();
         }
-        let conditions: Vec<String> = self.applies.iter().map(Condition::to_string).collect();
+        let conditions: Vec<String> = self.applies.iter().map(|condition| condition.text().to_string()).collect();
         format!("{} Has an effect only {}.", self.documentation, conditions.join(" and "))
     }
 }

@@ -1,5 +1,6 @@
 //! The ends of a spectrum by Lanczos' recurrence.
 
+use super::Unstable;
 use crate::error::StepError;
 use crate::state::Columns;
 use opruga_math::{Lane, WIDTH, sum_in_fixed_order};
@@ -76,8 +77,7 @@ pub(super) fn extremes<const D: usize>(
         }
         let beta = dot(&r, &r).sqrt();
         if !(alpha.is_finite() && beta.is_finite()) {
-            let message = "the forces around the state are not finite, so no stable step can be given".into();
-            return Err(StepError::Model { model: "stability", message });
+            return Err(StepError::of("stability", Unstable::Forces {}));
         }
         matrix.alpha.push(alpha);
         matrix.beta.push(beta);

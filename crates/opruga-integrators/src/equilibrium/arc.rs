@@ -15,10 +15,10 @@ use crate::implicit::direction::wanted_forces;
 use crate::implicit::linear::Filter;
 use crate::implicit::stage::{evaluate, judge, look, mixture};
 use crate::implicit::workspace::Workspace;
+use crate::refusals::Refusal;
 use opruga_core::error::StepError;
 use opruga_core::potential::Definiteness;
 use opruga_core::system::System;
-use opruga_math::words::number;
 use opruga_solve::{Indefinite, dot};
 
 /// Halvings of the way of a step at most.
@@ -63,23 +63,12 @@ pub(super) fn follow<const D: usize>(
             return Ok(1.0);
         }
         if tried.unloaded {
-            let message = format!(
-                "no load acts on what is free at t = {} s, and `arc_length` goes by the part of the load that is on; allowed: weight \
-                 or loads; hint: without `arc_length` every step ends where pins and gases balance",
-                number(system.time + h)
-            );
-            return Err(StepError::Model { model: SPEC.kind, message });
+            return Err(StepError::of(SPEC.kind, Refusal::NoLoad { time: system.time + h }));
         }
         displacement *= 0.5;
     }
     if tried.turned {
-        let message = format!(
-            "the curve of equilibria turns back or sharply aside at {} of the load, however short the step, down to a thousandth \
-             of `arc_length`; a branch of another form may begin here; hint: a small force or a shape that leads onto one \
-             branch, or the whole load at once, without `arc_length`",
-            number(load)
-        );
-        return Err(StepError::Model { model: SPEC.kind, message });
+        return Err(StepError::of(SPEC.kind, Refusal::TurnsBack { load }));
     }
     report(SPEC.kind, &rule.settings, system, workspace, &Solved { converged: false, ..tried.solved })?;
     Ok(load)

@@ -50,6 +50,7 @@ use crate::implicit::settings::{Otherwise, Settings, Solver, fields};
 use crate::implicit::step::MOST_HALVINGS;
 use crate::implicit::step_limit::{leaves_nodes_inside, lift_out};
 use crate::implicit::workspace::Workspace;
+use crate::refusals::Refusal;
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::history::{Channel, PerBody, PerNode};
 use opruga_core::integrator::{Amplification, Integrator, IntegratorKind};
@@ -57,7 +58,6 @@ use opruga_core::memory::Counts;
 use opruga_core::potential::{Reading, Views};
 use opruga_core::spec::{Allowed, Condition, Default, Field, Role, Spec, Values};
 use opruga_core::system::{Stage, System};
-use opruga_math::words::number;
 use opruga_solve::blocks::nodes;
 
 /// The parameters.
@@ -121,9 +121,7 @@ impl<const D: usize> IntegratorKind<D> for EquilibriumKind {
     fn build(&self, values: &Values) -> Result<Box<dyn Integrator<D>>, BuildError> {
         let rule = Equilibrium::new(values);
         if rule.arc_length.is_some() && rule.settings.solver == Solver::MatrixFree {
-            let message = "`linear_solver` is \"matrix_free\", and `arc_length` factors a matrix; allowed with it: \"auto\", \
-                           \"conjugate_gradients\", \"cholesky\"";
-            return Err(BuildError::new(SPEC.kind, "integrator.no_matrix", message));
+            return Err(BuildError::of(SPEC.kind, Refusal::MatrixFreeByArc {}));
         }
         Ok(Box::new(rule))
     }
@@ -194,13 +192,12 @@ impl Equilibrium {
     fn told<const D: usize>(&self, mut error: StepError, system: &System<D>, from: Option<Reached>) -> StepError {
         let helps = self.settings.hint_of_statics(self.arc_length.is_some(), system.contacts.is_none());
         match &mut error {
-            StepError::Model { model, message } if *model != SPEC.kind && !message.contains("; hint: ") => {
-                message.push_str("; hint: ");
-                message.push_str(helps);
+            StepError::Model { model, about, helps: own } if *model != SPEC.kind && about.hint().is_none() => {
+                *own = Some(helps.into());
             }
             StepError::NotConverged { beyond, hint, .. } => {
-                *beyond = from.map(|from| format!("{} of the load", number(from.load)));
-                if **hint == *self.settings.hint() {
+                *beyond = from.map(|from| from.load);
+                if *hint == self.settings.hint().into() {
                     *hint = helps.into();
                 }
             }
@@ -345,18 +342,13 @@ impl<const D: usize> Integrator<D> for Equilibrium {
     }
     fn check(&self, system: &System<D>, obstacles: bool) -> Result<(), BuildError> {
         if self.settings.solver == Solver::MatrixFree && !has_symmetric_matrix(system) {
-            let message = "`linear_solver` is \"matrix_free\", whose conjugate gradients need a symmetric matrix, and that of the body is \
-                           none; allowed: \"auto\"";
-            return Err(BuildError::new(SPEC.kind, "integrator.no_matrix", message));
+            return Err(BuildError::of(SPEC.kind, Refusal::Unsymmetric {}));
         }
         if !obstacles {
             return rigid::refuse_free_motions(system);
         }
         if self.arc_length.is_some() && rigid::is_loose(system) {
-            let message = "`arc_length` is given, and pins do not hold the body, which nothing presses onto obstacles where the curve \
-                           begins, without any load; allowed: pins that hold it, or the whole load at once, in as many \
-                           `load_steps` as it takes";
-            return Err(BuildError::new(SPEC.kind, "static.arc_length_and_obstacles", message));
+            return Err(BuildError::of(SPEC.kind, Refusal::LooseByArc {}));
         }
         Ok(())
     }

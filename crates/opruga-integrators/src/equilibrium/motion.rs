@@ -1,5 +1,6 @@
 //! The motions of a body or a piece as a whole: translations and rotations, and which of them pins hold.
 
+use crate::refusals::MotionName;
 use opruga_core::potential::{DensePart, Sink};
 use opruga_core::state::Columns;
 use opruga_core::system::System;
@@ -19,7 +20,7 @@ impl<const D: usize> Motion<D> {
         self.rotation.iter().any(|x| x.abs() > 1e-6)
     }
     /// `translation along x`, `rotation`.
-    pub fn name(&self) -> String {
+    pub fn name(&self) -> MotionName {
         let shown = |vector: &[f64]| {
             let size = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
             if let Some(axis) = vector.iter().position(|x| x.abs() > 0.999_999 * size) {
@@ -29,9 +30,9 @@ impl<const D: usize> Motion<D> {
             format!("({})", numbers.join(", "))
         };
         match (self.turns(), D) {
-            (false, _) => format!("translation along {}", shown(&self.translation)),
-            (true, 2) => "rotation".into(),
-            (true, _) => format!("rotation about an axis along {}", shown(&self.rotation)),
+            (false, _) => MotionName::Translation { axis: shown(&self.translation) },
+            (true, 2) => MotionName::Rotation {},
+            (true, _) => MotionName::RotationAbout { axis: shown(&self.rotation) },
         }
     }
 }

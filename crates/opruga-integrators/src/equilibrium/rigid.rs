@@ -4,66 +4,47 @@ use super::motion::{Motion, center, loose_motions, shape_at};
 use super::pieces::{pieces, whole};
 use super::restraint::{deliver_outer, free_motions};
 use super::slack::endless_turns;
+use crate::refusals::{MotionName, Refusal};
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::state::Columns;
 use opruga_core::system::System;
+use opruga_math::message::AnyMessage;
 use opruga_math::words::number;
 
 /// Refuses a body that can move as a whole, or of which a piece can.
 pub(super) fn refuse_free_motions<const D: usize>(system: &System<D>) -> Result<(), BuildError> {
     let x = &system.state.x;
-    let refused = |message: String| Err(BuildError::new("equilibrium", "static.rigid_modes", message));
+    let refused = |refusal: Refusal| Err(BuildError::of("equilibrium", refusal));
     let free = free_motions(system, x, &whole(system), &[]);
     if !free.is_empty() {
-        return refused(format!(
-            "nothing holds the body against {}; an equilibrium needs a body that is held; hint: pin as many axes of nodes \
-             as there are rigid modes, or give it something to rest on",
-            counted(&free)
-        ));
+        return refused(Refusal::Free { motions: names(&free), count: free.len() });
     }
     let endless = endless_turns(system, &whole(system));
     if !endless.is_empty() {
-        return refused(format!(
-            "nothing holds the body against {}, since its forces are linear: what turns it turns it without end, and no weight \
-             brings it back as it does a pendulum; an equilibrium needs a body that is held; hint: pin as many axes of nodes as \
-             there are rigid modes, or take a material for large rotations, such as `neo_hookean`",
-            counted(&endless)
-        ));
+        return refused(Refusal::Endless { motions: names(&endless), count: endless.len() });
     }
-    let pieces = pieces(system);
-    if pieces.len() > 1 {
-        for piece in &pieces {
-            let mut free = free_motions(system, x, piece, &[]);
-            if free.is_empty() {
-                free = endless_turns(system, piece);
-            }
-            if !free.is_empty() {
-                return refused(format!(
-                    "the body is in {} pieces, and nothing holds that of {} about {} against {}; an equilibrium needs every \
-                     piece held; hint: pin as many axes of its nodes as it has rigid modes, join it to the others, or leave it out",
-                    pieces.len(),
-                    number_of(piece.len()),
-                    place(&center(x, piece)),
-                    counted(&free)
-                ));
-            }
+    let all = pieces(system);
+    for piece in all.iter().filter(|_| all.len() > 1) {
+        let mut free = free_motions(system, x, piece, &[]);
+        if free.is_empty() {
+            free = endless_turns(system, piece);
+        }
+        if !free.is_empty() {
+            let (pieces, nodes, center) = (all.len(), piece.len(), place(&center(x, piece)));
+            return refused(Refusal::FreePiece { pieces, nodes, center, motions: names(&free), count: free.len() });
         }
     }
     Ok(())
 }
 
-/// `translation along x, rotation: 2 rigid modes`.
-fn counted<const D: usize>(free: &[Motion<D>]) -> String {
-    let count = if free.len() == 1 { "1 rigid mode".into() } else { format!("{} rigid modes", free.len()) };
-    format!("{}: {count}", names(free))
-}
-
-fn names<const D: usize>(free: &[Motion<D>]) -> String {
-    free.iter().map(Motion::name).collect::<Vec<String>>().join(", ")
-}
-
-fn number_of(nodes: usize) -> String {
-    if nodes == 1 { "1 node".into() } else { format!("{nodes} nodes") }
+/// `translation along x, rotation`.
+fn names<const D: usize>(free: &[Motion<D>]) -> AnyMessage {
+    let list = |rest, first| match rest {
+        None => Some(first),
+        Some(rest) => Some(MotionName::List { first, rest }.into()),
+    };
+    let names = free.iter().rev().map(|motion| AnyMessage::from(motion.name()));
+    names.fold(None, list).unwrap_or_else(|| MotionName::Rotation {}.into())
 }
 
 /// `(0.5, 2)`, a place in metres with four digits.
@@ -84,12 +65,7 @@ pub(super) fn refuse_what_contact_leaves_free<const D: usize>(
     }
     let free = free_motions(system, x, &whole(system), touched);
     if !free.is_empty() {
-        let message = format!(
-            "the body lies on an obstacle, and neither that nor pins hold it against {}; an equilibrium needs a body that is \
-             held; hint: pin an axis of a node for each, or let the obstacle rub (`friction`)",
-            names(&free)
-        );
-        return Err(StepError::Model { model: "equilibrium", message });
+        return Err(StepError::of("equilibrium", Refusal::Slides { motions: names(&free) }));
     }
     let pieces = pieces(system);
     // A piece that has not met an obstacle yet may still do so.
@@ -99,16 +75,9 @@ pub(super) fn refuse_what_contact_leaves_free<const D: usize>(
             touched.iter().filter(|(node, _)| piece.binary_search(node).is_ok()).copied().collect();
         let free = free_motions(system, x, piece, &own);
         if !free.is_empty() {
-            let message = format!(
-                "the body is in {} pieces, and that of {} about {} lies on an obstacle, and neither that nor pins hold it \
-                 against {}; an equilibrium needs every piece held; hint: pin an axis of a node for each, or let the obstacle rub \
-                 (`friction`)",
-                pieces.len(),
-                number_of(piece.len()),
-                place(&center(x, piece)),
-                names(&free)
-            );
-            return Err(StepError::Model { model: "equilibrium", message });
+            let (nodes, center) = (piece.len(), place(&center(x, piece)));
+            let refusal = Refusal::PieceSlides { pieces: pieces.len(), nodes, center, motions: names(&free) };
+            return Err(StepError::of("equilibrium", refusal));
         }
     }
     Ok(())

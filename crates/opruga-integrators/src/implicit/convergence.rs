@@ -3,10 +3,10 @@
 use super::balance::Solved;
 use super::settings::{Otherwise, Settings};
 use super::workspace::Workspace;
+use crate::refusals::StepHint;
 use opruga_core::error::StepError;
 use opruga_core::system::{Stage, System};
 use opruga_math::Lane;
-use opruga_math::words::number;
 
 /// Forces and corrections within so many roundings were lost in these, as is a body that its rounding would throw farther than its extent.
 const LOST: f64 = 10.0;
@@ -57,8 +57,8 @@ pub(super) fn accept_or_refuse<const D: usize>(
     Err(refusal(integrator, settings, workspace, solved, (system.time, degenerate_cells(system)), settings.hint()))
 }
 
-/// How many cells of the state are degenerate or inverted, and how many there are; none where none is.
-fn degenerate_cells<const D: usize>(system: &System<D>) -> Option<[usize; 2]> {
+/// How many cells of the state are degenerate or inverted, and how many there are.
+fn degenerate_cells<const D: usize>(system: &System<D>) -> [usize; 2] {
     let view = system.view(Stage::Current, system.time);
     let cells = system.members.iter().flat_map(|member| member.potential.cell_states(&view, 0));
     let (mut degenerate, mut all) = (0, 0);
@@ -66,7 +66,7 @@ fn degenerate_cells<const D: usize>(system: &System<D>) -> Option<[usize; 2]> {
         degenerate += usize::from(cell.is_degenerate());
         all += 1;
     }
-    (degenerate > 0).then_some([degenerate, all])
+    [degenerate, all]
 }
 
 /// The error of a step that did not converge, with its time [s] and the cells that it found flat or inside out.
@@ -75,8 +75,8 @@ pub(super) fn refusal<const D: usize>(
     settings: &Settings,
     workspace: &Workspace<D>,
     solved: &Solved,
-    (time, flat_cells): (f64, Option<[usize; 2]>),
-    hint: &'static str,
+    (time, [inverted, cells]): (f64, [usize; 2]),
+    hint: StepHint,
 ) -> StepError {
     let (residual, tolerance) = (workspace.largest_residual(), settings.tolerance * workspace.extent);
     let [of_positions, of_forces, displacement] = solved.floor;
@@ -93,17 +93,8 @@ pub(super) fn refusal<const D: usize>(
         tolerance,
         time,
         beyond: None,
-        flat_cells,
-        hint: if is_rounding { hint_of_rounding(solved.floor).into() } else { hint.into() },
+        inverted,
+        cells,
+        hint: if is_rounding { StepHint::Rounding { of_positions, of_forces }.into() } else { hint.into() },
     }
-}
-
-/// What helps where a step was lost in the rounding of positions and forces.
-fn hint_of_rounding([of_positions, of_forces, _]: [f64; 3]) -> String {
-    format!(
-        "positions have sixteen digits here, which leave {} m and forces of {} N open: a larger `tolerance`, a scene nearer to the \
-         origin, larger cells, or a body that is less stiff",
-        number(of_positions),
-        number(of_forces)
-    )
 }

@@ -2,6 +2,7 @@
 
 use super::balance::Solved;
 use super::workspace::Workspace;
+use crate::refusals::StepHint;
 use opruga_core::error::StepError;
 use opruga_core::history::PerBody;
 use opruga_core::system::System;
@@ -19,7 +20,7 @@ pub(crate) fn check<const D: usize>(
     system: &mut System<D>,
     workspace: &Workspace<D>,
     solved: &Solved,
-    refused: impl FnOnce(&'static str) -> StepError,
+    refused: impl FnOnce(StepHint) -> StepError,
 ) -> Result<(), StepError> {
     let mut size = system.history.get(SIZE);
     if size <= 0.0 {
@@ -41,8 +42,5 @@ pub(crate) fn check<const D: usize>(
     if (0..D).all(|d| high[d] - low[d] <= largest) {
         return Ok(());
     }
-    Err(refused(
-        "steps that counted though they had not converged have made the body a hundred times as large as it was: more substeps, \
-         or `when_not_converged = \"halve\"`",
-    ))
+    Err(refused(StepHint::Grown {}))
 }

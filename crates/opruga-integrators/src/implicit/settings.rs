@@ -1,10 +1,10 @@
 //! The parameters that all implicit rules have.
 
 use super::slenderness::is_slender;
+use crate::refusals::{Refusal, StepHint};
 use opruga_core::error::BuildError;
 use opruga_core::spec::{Allowed, Bound, Default, Field, Values};
 use opruga_core::system::System;
-use opruga_math::words::number;
 
 /// The part with which an iteration is good enough, and the part that may be left when there is no other.
 const ENOUGH: [f64; 2] = [0.2, 0.2];
@@ -170,25 +170,17 @@ impl Settings {
     pub(crate) fn of_rule(kind: &'static str, values: &Values) -> Result<Settings, BuildError> {
         let settings = Settings::new(values);
         if settings.real_time && UNDAMPED.contains(&kind) {
-            let message = match values.number("spectral_radius") {
-                // Its acceleration is that of the displacement, balanced or not, and the next step begins with it.
-                Some(radius) if radius < 1.0 => format!(
-                    "`accuracy` is \"real_time\", whose steps leave a part out of balance; `{kind}` with `spectral_radius` = {} damps \
-                     slow motions hardly, and hands that part on with the acceleration that it remembers; allowed: \"exact\"; hint: \
-                     `backward_euler` and `bdf2` have a real-time setting",
-                    number(radius)
-                ),
-                _ => format!(
-                    "`accuracy` is \"real_time\", whose steps leave a part out of balance; `{kind}` damps nothing, and would add it up \
-                     without end; allowed: \"exact\"; hint: `backward_euler` and `bdf2` have a real-time setting"
-                ),
-            };
-            return Err(BuildError::new(kind, "integrator.real_time", message));
+            return Err(BuildError::of(
+                kind,
+                match values.number("spectral_radius") {
+                    // Its acceleration is that of the displacement, balanced or not, and the next step begins with it.
+                    Some(radius) if radius < 1.0 => Refusal::DampsLittle { integrator: kind, radius },
+                    _ => Refusal::DampsNothing { integrator: kind },
+                },
+            ));
         }
         if settings.real_time && settings.solver == Solver::MatrixFree {
-            let message = "`linear_solver` is \"matrix_free\", and `accuracy` is \"real_time\", which keeps a matrix; allowed \
-                           with it: \"auto\", \"conjugate_gradients\", \"cholesky\"";
-            return Err(BuildError::new(kind, "integrator.no_matrix", message));
+            return Err(BuildError::of(kind, Refusal::MatrixFreeInRealTime {}));
         }
         Ok(settings)
     }
@@ -217,27 +209,21 @@ impl Settings {
 
 impl Settings {
     /// What helps a step of a rule through time that did not converge.
-    pub(crate) fn hint(&self) -> &'static str {
+    pub(crate) fn hint(&self) -> StepHint {
         match (self.real_time, self.otherwise) {
-            (true, _) => "more substeps, or `accuracy = \"exact\"`; the step was already halved down to 1/256",
-            (_, Otherwise::Halve) => "more substeps, or more `iterations`; the step was already halved down to 1/256",
-            _ => "more substeps, more `iterations`, or `when_not_converged = \"halve\"`",
+            (true, _) => StepHint::Exact {},
+            (_, Otherwise::Halve) => StepHint::Iterations {},
+            _ => StepHint::Halve {},
         }
     }
     /// What helps where no balance is found; `alone` says that there are no obstacles.
-    pub(crate) fn hint_of_statics(&self, by_arc: bool, alone: bool) -> &'static str {
+    pub(crate) fn hint_of_statics(&self, by_arc: bool, alone: bool) -> StepHint {
         match (by_arc, self.otherwise, alone) {
-            (true, ..) => "a shorter `arc_length`, or more `iterations`",
-            (_, Otherwise::Halve, true) => {
-                "more `iterations`; the load was already halved down to 1/256: where a body gives way, `arc_length` follows it through its snap"
-            }
-            (_, Otherwise::Halve, false) => {
-                "more `iterations`; the load was already halved down to 1/256: a rule that steps through time with damping finds a place to rest"
-            }
-            (_, _, true) => {
-                "`when_not_converged = \"halve\"`, more `load_steps`, or more `iterations`; where a body gives way, `arc_length`"
-            }
-            (_, _, false) => "`when_not_converged = \"halve\"`, more `load_steps`, or more `iterations`",
+            (true, ..) => StepHint::ShorterArc {},
+            (_, Otherwise::Halve, true) => StepHint::Arc {},
+            (_, Otherwise::Halve, false) => StepHint::ThroughTime {},
+            (_, _, true) => StepHint::LoadStepsOrArc {},
+            (_, _, false) => StepHint::LoadSteps {},
         }
     }
 }

@@ -170,7 +170,7 @@ impl<R: Rule<D>, const D: usize> Method<'_, R, D> {
             let solver = system.work.solver;
             system.work = work;
             system.work.solver = solver;
-            let broken_off = matches!(outcome, Err(StepError::BrokenOff));
+            let broken_off = matches!(outcome, Err(StepError::BrokenOff {}));
             let asked_for = self.settings.otherwise == Otherwise::Halve || self.minimiser.always_halves();
             if !broken_off && asked_for && halvings < MOST_HALVINGS {
                 let solver = &mut system.work.solver;
@@ -244,7 +244,7 @@ impl<R: Rule<D>, const D: usize> Method<'_, R, D> {
         found: &Found<R>,
     ) -> Result<(), StepError> {
         let (time, solved) = (system.time, &found.solved);
-        let refused = |hint| refusal(R::NAME, self.settings, workspace, solved, (time, None), hint);
+        let refused = |hint| refusal(R::NAME, self.settings, workspace, solved, (time, [0, 0]), hint);
         growth::check(system, workspace, solved, refused)
     }
 }

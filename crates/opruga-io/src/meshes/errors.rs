@@ -1,5 +1,6 @@
 //! What readers of mesh files refuse and leave out.
 
+use super::ENDINGS;
 use super::terms::{ElementName, Expected};
 use opruga_math::message::{AnyMessage, if_any};
 use opruga_math::words::counted;
@@ -210,5 +211,14 @@ messages! {
         Turned { count: usize, cells: usize },
         "mesh.unreferenced" #[error("{} left out", counted(*count as u64, "node that no cell names is", "nodes that no cell names are"))] #[value("{count}")]
         Unreferenced { count: usize },
+    }
+}
+
+messages! {
+    /// Why a file is not read as a mesh.
+    #[derive(Clone, Debug, PartialEq)]
+    pub(crate) enum EndingError {
+        "shape.format" #[error("files ending in `.{ending}` cannot be read")] #[value("{name}")] #[allowed("a file ending in {ENDINGS}")]
+        Unreadable { name: String, ending: String },
     }
 }

@@ -28,7 +28,7 @@ mod vtu;
 mod write;
 
 pub use assemble::Mending;
-pub(crate) use errors::MeshFileError;
+pub(crate) use errors::{MeshFileError, NumberHint};
 pub(crate) use found::{Found, Kind};
 pub(crate) use scanner::cut_line;
 pub use write::{WRITTEN, Written, endings, write};
@@ -51,6 +51,8 @@ pub(crate) const MESSAGES: &[&[opruga_math::message::Variant]] = &[
     errors::ScanError::VARIANTS,
     errors::MeshFileError::VARIANTS,
     errors::MeshFileNotice::VARIANTS,
+    errors::EndingError::VARIANTS,
+    write::MeshWriteError::VARIANTS,
     format_errors::GmshError::VARIANTS,
     format_errors::MeditError::VARIANTS,
     format_errors::MfemError::VARIANTS,
@@ -140,10 +142,8 @@ pub fn read<'a>(name: &'a str, bytes: &'a [u8], open: &mut Open<'_>) -> Result<M
             found
         }
         other => {
-            let error =
-                SceneError::new("shape.format", format!("files ending in `.{}` cannot be read", visible(other)));
-            let error = error.value(visible(name)).allowed(format!("a file ending in {ENDINGS}"));
-            return Err(SceneError { file: name.to_string(), ..error });
+            let about = errors::EndingError::Unreadable { name: visible(name), ending: visible(other) };
+            return Err(SceneError { file: name.to_string(), ..SceneError::of(about) });
         }
     };
     Ok(MeshFile { found, scanner, beside })

@@ -20,14 +20,30 @@ pub struct Written {
     pub left_out: Vec<String>,
 }
 
+opruga_math::messages! {
+    /// Why a mesh cannot be written.
+    #[derive(Clone, Debug, PartialEq)]
+    pub(crate) enum MeshWriteError {
+        "mesh.write" #[error("the mesh has no cells")] #[value("0")] #[allowed("at least one cell")]
+        #[hint("a filling makes cells in a surface or an outline")]
+        NoCellsToWrite {},
+        "mesh.write" #[error("files ending in `.{ending}` cannot be written")] #[value("{ending}")] #[allowed("{WRITTEN}")]
+        Ending { ending: String },
+        "mesh.write" #[error("cells of second order are not written to {format} files")] #[value("{cells}")] #[allowed("linear cells")]
+        #[hint("`.msh`, `.vtk` and `.vtu` files take them")]
+        SecondOrder { format: &'static str, cells: usize },
+        "mesh.write" #[error("TetGen has no quadrilaterals and hexahedra")] #[value("{cells}")] #[allowed("triangles or tetrahedra")]
+        Boxes { cells: usize },
+    }
+}
+
 /// Writes the cells of a mesh, its groups, values of cells and of nodes, in the format of an ending (without the dot).
 ///
 /// # Errors
 /// `mesh.write` for an unknown ending, a mesh without cells, and cells that the format does not have.
 pub fn write<const D: usize>(mesh: &Mesh<D>, ending: &str) -> Result<Written, SceneError> {
     if mesh.cells.is_empty() {
-        let error = SceneError::new("mesh.write", "the mesh has no cells").value("0");
-        return Err(error.allowed("at least one cell").hint("a filling makes cells in a surface or an outline"));
+        return Err(SceneError::of(MeshWriteError::NoCellsToWrite {}));
     }
     match ending.to_ascii_lowercase().as_str() {
         "msh" => Ok(Written { files: vec![("msh", gmsh(mesh).into_bytes())], left_out: Vec::new() }),
@@ -43,11 +59,7 @@ pub fn write<const D: usize>(mesh: &Mesh<D>, ending: &str) -> Result<Written, Sc
         "mesh" => medit(mesh),
         "mfem" => mfem(mesh),
         "node" | "ele" => tetgen(mesh),
-        other => {
-            let error =
-                SceneError::new("mesh.write", format!("files ending in `.{}` cannot be written", visible(other)));
-            Err(error.value(visible(other)).allowed(WRITTEN))
-        }
+        other => Err(SceneError::of(MeshWriteError::Ending { ending: visible(other) })),
     }
 }
 
@@ -293,13 +305,12 @@ fn vtu_file<const D: usize>(mesh: &Mesh<D>) -> Vec<u8> {
 }
 
 /// Refuses cells of second order, which are written to other formats.
-fn linear<const D: usize>(mesh: &Mesh<D>, format: &str) -> Result<(), SceneError> {
+fn linear<const D: usize>(mesh: &Mesh<D>, format: &'static str) -> Result<(), SceneError> {
     let quadratic = mesh.cells.quadratic_triangles.len() + mesh.cells.quadratic_tetrahedra.len();
     if quadratic == 0 {
         return Ok(());
     }
-    let error = SceneError::new("mesh.write", format!("cells of second order are not written to {format} files"));
-    Err(error.value(quadratic.to_string()).allowed("linear cells").hint("`.msh`, `.vtk` and `.vtu` files take them"))
+    Err(SceneError::of(MeshWriteError::SecondOrder { format, cells: quadratic }))
 }
 
 /// One number per cell: the place of its group, from 1; 0 without one. Cells of several groups have that of the first by name.
@@ -389,8 +400,7 @@ fn tetgen<const D: usize>(mesh: &Mesh<D>) -> Result<Written, SceneError> {
     linear(mesh, "TetGen")?;
     let boxes = mesh.cells.quadrilaterals.len() + mesh.cells.hexahedra.len();
     if boxes > 0 {
-        let error = SceneError::new("mesh.write", "TetGen has no quadrilaterals and hexahedra");
-        return Err(error.value(boxes.to_string()).allowed("triangles or tetrahedra"));
+        return Err(SceneError::of(MeshWriteError::Boxes { cells: boxes }));
     }
     let mut left_out = Vec::new();
     if !mesh.cell_groups.is_empty() || !mesh.groups.is_empty() {

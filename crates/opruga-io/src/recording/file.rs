@@ -4,6 +4,7 @@ use super::format::Header;
 use super::writer::Writer;
 use crate::aside::{make_aside, remove_the_dead};
 use crate::safe_write::{Target, WriteError, make_folders, sync_folder};
+use crate::write_faults::WriteFault;
 use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -59,18 +60,14 @@ impl RecordingFile {
         // Held until the new file has the name.
         let earlier = earlier(path, force)?;
         let replaces = earlier.is_some();
-        let name =
-            path.file_name().ok_or_else(|| WriteError::new("write.failed", path, "this is no name of a file"))?;
+        let name = path.file_name().ok_or_else(|| WriteError::of(path, WriteFault::NoFileName {}))?;
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         make_folders(folder).map_err(|e| {
-            let message = format!("the folder around it cannot be made: {}", crate::regular_file::reason(&e));
-            WriteError::new("write.failed", path, message)
+            WriteError::of(path, WriteFault::FolderAroundNotMade { reason: crate::regular_file::reason(&e) })
         })?;
         remove_the_dead(folder, Some(name));
-        let (aside, file) = make_aside(folder, name).map_err(|e| {
-            let message = format!("the file cannot be made: {}", crate::regular_file::reason(&e));
-            WriteError::new("write.failed", path, message)
-        })?;
+        let (aside, file) = make_aside(folder, name)
+            .map_err(|e| WriteError::of(path, WriteFault::FileNotMade { reason: crate::regular_file::reason(&e) }))?;
         let begin = || -> io::Result<(File, Writer<Box<dyn Target + Send>>)> {
             let held = file.try_clone()?;
             lock(&held)?;
@@ -155,7 +152,7 @@ impl RecordingFile {
     /// Does a piece of work unless one before has failed: what stands behind a gap would be damage.
     fn write(&mut self, work: impl FnOnce(&mut RecordingFile) -> io::Result<()>) -> Result<(), WriteError> {
         if self.ended {
-            return Err(WriteError::new("write.failed", &self.path, "the recording has ended before"));
+            return Err(WriteError::of(&self.path, WriteFault::RecordingEnded {}));
         }
         let lost = match &mut self.syncing {
             Some(syncing) if syncing.has_ended() => self.syncing.take().map_or(Ok(()), Syncing::end),
@@ -223,24 +220,20 @@ impl Syncing {
 
 /// Looks at what has the name now, and locks it.
 fn earlier(path: &Path, force: bool) -> Result<Option<File>, WriteError> {
-    let refuse = |code, message: &str, hint: Option<&str>| {
-        Err(WriteError { hint: hint.map(String::from), ..WriteError::new(code, path, message) })
-    };
+    let refuse = |fault: WriteFault| Err(WriteError::of(path, fault));
     match fs::metadata(path) {
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(None),
         Err(e) => return Err(WriteError::failed(path, 0, &e)),
-        Ok(about) if about.is_dir() => return refuse("write.failed", "this is a folder", None),
+        Ok(about) if about.is_dir() => return refuse(WriteFault::IsFolder {}),
         // Above all no device, which would be replaced by a file.
-        Ok(about) if !about.is_file() => return refuse("write.failed", "this is no regular file", None),
-        Ok(_) if !force => return refuse("write.exists", "the file is already there", Some("--force replaces it")),
+        Ok(about) if !about.is_file() => return refuse(WriteFault::NoRegularFile {}),
+        Ok(_) if !force => return refuse(WriteFault::FileExists {}),
         Ok(_) => {}
     }
     let file = File::open(path).map_err(|e| WriteError::failed(path, 0, &e))?;
     match lock(&file) {
         Ok(()) => Ok(Some(file)),
-        Err(e) if e.kind() == std::io::ErrorKind::WouldBlock => {
-            refuse("write.locked", "another process writes this file", Some("wait for it, or choose another name"))
-        }
+        Err(e) if e.kind() == std::io::ErrorKind::WouldBlock => refuse(WriteFault::FileLocked {}),
         Err(e) => Err(WriteError::failed(path, 0, &e)),
     }
 }

@@ -140,7 +140,7 @@ pub(super) fn beginning(header: &Header) -> (Vec<u8>, u32) {
 /// The bytes of the header, from the bytes before it.
 pub(super) fn header_bytes(head: &[u8], file: u64) -> Result<u64, RecordingError> {
     if head.is_empty() || !head.starts_with(&MAGIC[..head.len().min(8)]) {
-        return Err(RecordingError::NotOne);
+        return Err(RecordingError::NotOne {});
     }
     let Some((head, _)) = head.split_first_chunk::<HEAD>() else {
         return Err(RecordingError::CutOff { found: file, expected: HEAD as u64 });

@@ -8,7 +8,7 @@ use core::ops::Range;
 use std::io::{ErrorKind, Read, Seek, SeekFrom};
 
 /// How the file of a recording ends.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Ending {
     /// As the run that wrote it has meant it to.
     Closed,
@@ -94,7 +94,7 @@ impl<R: Read + Seek> Recording<R> {
     /// # Errors
     /// [`RecordingError::NoFrame`].
     pub fn kept(&self, frame: u64) -> Result<u64, RecordingError> {
-        self.order.kept(frame).ok_or_else(|| RecordingError::NoFrame { frame, frames: self.frames() })
+        self.order.kept(frame).ok_or_else(|| RecordingError::no_frame(frame, &self.frames()))
     }
 
     /// The hash of a frame, as the program that computed it has given it: every frame has one. Frames one after the other
@@ -146,7 +146,7 @@ impl<R: Read + Seek> Recording<R> {
     pub fn input(&mut self, number: usize) -> Result<Vec<u8>, RecordingError> {
         let frames = self.frames();
         let Some([frame, place]) = self.inputs.get(number).copied() else {
-            return Err(RecordingError::NoFrame { frame: number as u64, frames });
+            return Err(RecordingError::no_frame(number as u64, &frames));
         };
         let damaged = |to: u64| RecordingError::Damaged { from: place, to };
         let head = self.chunk_head(place)?.ok_or(damaged(place + CHUNK as u64))?;

@@ -1,6 +1,7 @@
 //! `[[load]]` and `[[command]]`.
 
 use super::body_list::Bodies;
+use super::errors::{CommandError, FieldError, Part, Wanted};
 use super::lifetimes::Lifetimes;
 use super::moments::{Frames, Set};
 use super::pins;
@@ -18,7 +19,7 @@ fn tagged(
     node: &Node,
     path: &str,
     tag: &'static str,
-    what: &str,
+    what: Part,
     sections: &'static [Section],
 ) -> Option<Values> {
     let words: Vec<&str> = sections.iter().map(|s| s.spec.kind).collect();
@@ -31,7 +32,7 @@ fn tagged(
 pub(crate) fn loads<const D: usize>(reader: &mut Reader<'_>, root: &Node, bodies: &Bodies<D>) -> Vec<LoadBlueprint<D>> {
     let mut loads = Vec::new();
     for (node, path) in reader.list(root, "", "load") {
-        let Some(values) = tagged(reader, node, &path, "kind", "load", schema::LOADS) else { continue };
+        let Some(values) = tagged(reader, node, &path, "kind", Part::Load, schema::LOADS) else { continue };
         let targets = bodies.targets(reader, node, &path);
         let Some(targets) = selectors::of_bodies(reader, node, &path, bodies, targets) else { continue };
         let kind = match values.kind() {
@@ -77,28 +78,23 @@ pub(crate) fn commands<const D: usize>(
     let (mut commands, mut sets, mut lifetimes) = (Vec::new(), Vec::new(), Lifetimes::default());
     for (number, (node, path)) in list.iter().enumerate() {
         let before = reader.count();
-        let Some(values) = tagged(reader, node, path, "do", "command", schema::COMMANDS) else { continue };
+        let Some(values) = tagged(reader, node, path, "do", Part::Command, schema::COMMANDS) else { continue };
         let at = values.number("at").unwrap_or(0.0);
         let Some(actions) = actions(reader, number, node, path, &values, &known) else { continue };
         let end_of_path = values.rows("path").last().and_then(|row| row.first().copied());
         let until = values.number("until").or(end_of_path).unwrap_or(at);
         let lasts = actions.iter().any(Action::lasts);
         if values.kind() == "drag" && node.get("until").is_none() && values.rows("path").len() == 1 {
-            let error = SceneError::new(
-                "scene.missing",
-                "`until` is missing: a path of one point does not say when the drag ends",
-            )
-            .path(join(path, "until"))
-            .allowed(format!("a time after {at}"));
-            reader.report(node.place, error.hint("a path of several points ends the drag with its last one"));
+            let error = SceneError::of(CommandError::NoEnd { at }).path(join(path, "until"));
+            reader.report(node.place, error);
         } else if until < at || until == at && lasts && reader.sound_since(before, path) {
             let key = if node.get("until").is_some() { "until" } else { "path" };
-            let when = if until < at { "before" } else { "when" };
-            let error =
-                SceneError::new("scene.range", format!("the command ends at {until} s, {when} it begins at {at} s"))
-                    .path(join(path, key));
-            let from = if lasts { "after" } else { "from" };
-            reader.report(place_of(node, key), error.value(until.to_string()).allowed(format!("a time {from} {at}")));
+            let about = match (until < at, lasts) {
+                (true, false) => CommandError::EndsBefore { until, at },
+                (true, true) => CommandError::LastsNegative { until, at },
+                (false, _) => CommandError::EndsAtOnce { until, at },
+            };
+            reader.report(place_of(node, key), SceneError::of(about).path(join(path, key)));
         }
         if let Some(frames) = frames
             && reader.sound_since(before, path)
@@ -178,12 +174,13 @@ fn actions<const D: usize>(
             let before = reader.count();
             let models = node.get("models").map(|_| {
                 let list = reader.list(node, path, "models");
-                list.into_iter().filter_map(|(item, here)| reader.kind_table(item, &here, "model", &kinds)).collect()
+                list.into_iter()
+                    .filter_map(|(item, here)| reader.kind_table(item, &here, Part::Model, &kinds))
+                    .collect()
             });
             let integrator = reader.integrator(node, path);
             if reader.count() == before && models.is_none() && integrator.is_none() {
-                let error = SceneError::new("scene.missing", "the command changes nothing").path(path);
-                reader.report(node.place, error.allowed("`models`, `integrator` or both"));
+                reader.report(node.place, SceneError::of(CommandError::ChangesNothing {}).path(path));
             }
             let change = |body| Action::Change { body, models: models.clone(), integrator: integrator.clone() };
             targets?.into_iter().map(|(body, _)| change(body)).collect()
@@ -213,18 +210,14 @@ fn held(reader: &mut Reader<'_>, node: &Node, path: &str) -> Option<(Option<u32>
         Data::Text(word) if word == "nearest" => Some((None, false)),
         Data::Text(word) if word == "nearest_facet" => Some((None, true)),
         Data::Text(word) => {
-            let error = SceneError::new("scene.unknown_word", format!("`node` is {}", value.shown()))
-                .path(here)
-                .value(value.shown());
-            let error = error
-                .allowed("the number of a node, \"nearest\" or \"nearest_facet\"")
-                .nearest(nearest(word, WORDS.into_iter()));
-            reader.report(value.place, error);
+            let about = FieldError::Word { field: "node".into(), value: value.shown() };
+            let near = nearest(word, WORDS.into_iter());
+            reader.report(value.place, SceneError::of(about).path(here).allows(Wanted::Node).nearest(near));
             None
         }
         Data::Integer(..) => Some((Some(reader.natural(value, &here)?), false)),
         _ => {
-            reader.wrong_type(value, &here, "the number of a node, \"nearest\" or \"nearest_facet\"");
+            reader.wrong_type(value, &here, Wanted::Node);
             None
         }
     }

@@ -3,6 +3,7 @@
 use super::Cost;
 use super::body_list::Bodies;
 use super::copies::{Copies, copies, write_out};
+use super::errors::{BodyError, Part, SceneAllowed, SceneHint, Wanted};
 use super::names::{Names, What};
 use super::reader::{Reader, join};
 use super::shape::{self, ShapePlace};
@@ -12,6 +13,7 @@ use crate::document::{Data, Node, Place};
 use crate::problem::{SceneError, visible};
 use crate::shapes::Loaded;
 use opruga_core::spec::{Role, Values};
+use opruga_mesh::outline::OutlineError;
 use opruga_mesh::{Cut, Measure, Mesh, MeshError};
 use opruga_world::blueprint::{BodyBlueprint, Mass, PinBlueprint, Selector};
 use opruga_world::validity::{self, LONGEST};
@@ -94,7 +96,7 @@ pub(crate) fn all<const D: usize>(reader: &mut Reader<'_>, root: &Node, seed: u6
 pub(crate) fn later<const D: usize>(reader: &mut Reader<'_>, commands: &[(&Node, String)], bodies: &mut Bodies<D>) {
     let mut added: Vec<(f64, usize, BodyBlueprint<D>)> = Vec::new();
     let mut names = Names::of(What::Bodies);
-    bodies.names.keys().chain(bodies.copied.keys()).for_each(|name| drop(names.take(name, (), |_| String::new())));
+    bodies.names.keys().chain(bodies.copied.keys()).for_each(|name| drop(names.take(name, (), |_| None)));
     for (number, (node, path)) in commands.iter().enumerate() {
         let (Some("add"), Some(at)) = (node.get("do").and_then(Node::text), node.get("body")) else { continue };
         let path = join(path, "body");
@@ -102,7 +104,7 @@ pub(crate) fn later<const D: usize>(reader: &mut Reader<'_>, commands: &[(&Node,
             bodies.broken.extend(at.get("name").and_then(Node::text).map(String::from));
             continue;
         };
-        if let Some(error) = names.take(&body.name, (), |_| String::new()) {
+        if let Some(error) = names.take(&body.name, (), |_| None) {
             reader.report(place_of(at, "name"), error.path(join(&path, "name")));
         }
         let time = match node.get("at").map(|n| &n.data) {
@@ -142,7 +144,7 @@ fn draft<'n, const D: usize>(
     may_copy: bool,
 ) -> Option<Draft<'n, D>> {
     if !matches!(node.data, Data::Table(_)) {
-        reader.wrong_type(node, &path, "a table");
+        reader.wrong_type(node, &path, Wanted::Table);
         return None;
     }
     let before = reader.count();
@@ -153,8 +155,9 @@ fn draft<'n, const D: usize>(
     }
     let mass = mass(reader, node, &path, &values);
     let before_shape = reader.count();
-    let shape =
-        node.get("shape").and_then(|shape| reader.kind_table(shape, &join(&path, "shape"), "shape", &shapes::all()));
+    let shape = node
+        .get("shape")
+        .and_then(|shape| reader.kind_table(shape, &join(&path, "shape"), Part::Shape, &shapes::all()));
     let sound = reader.count() == before_shape;
     let loaded = shape.as_ref().and_then(|values| shape::loaded::<D>(reader, node, &path, values, sound));
     let rotation = reader.turn(node.get("rotation"), &join(&path, "rotation"));
@@ -163,7 +166,7 @@ fn draft<'n, const D: usize>(
     let kinds = reader.catalogue.models.clone();
     let mut models = Vec::new();
     for (item, here) in reader.list(node, &path, "models") {
-        models.extend(reader.kind_table(item, &here, "model", &kinds));
+        models.extend(reader.kind_table(item, &here, Part::Model, &kinds));
     }
     let mut pins = Vec::new();
     for (item, here) in reader.list(node, &path, "pin") {
@@ -176,9 +179,7 @@ fn draft<'n, const D: usize>(
     }
     let copies = match node.get("copies") {
         Some(at) if !may_copy => {
-            let error = SceneError::new("scene.not_here", "a body that a command adds has no copies")
-                .path(join(&path, "copies"));
-            reader.report(at.place, error.hint("write one command for every body"));
+            reader.report(at.place, SceneError::of(BodyError::NoCopies {}).path(join(&path, "copies")));
             None
         }
         Some(at) => copies(reader, at, &join(&path, "copies")),
@@ -211,24 +212,22 @@ fn draft<'n, const D: usize>(
 
 /// Names stand in paths and in the heads of tables: they keep clear of what separates those.
 pub(crate) fn check_name(reader: &mut Reader<'_>, node: &Node, path: &str, name: &str) {
-    let Some(why) = validity::name_fault(name) else { return };
-    let error = SceneError::new("scene.name", why).path(path).value(visible(name));
-    reader.report(node.place, error.allowed(validity::NAMES));
+    let Some(fault) = validity::name_fault(name) else { return };
+    reader.report(node.place, SceneError::of(fault).path(path).value(visible(name)));
 }
 
 /// The densities of the cells of a mesh by their name in its file.
 fn densities<const D: usize>(mesh: &Mesh<D>, name: &str) -> Result<Arc<[f64]>, SceneError> {
     let Some(numbers) = mesh.cell_values.get(name) else {
         let known: Vec<String> = mesh.cell_values.keys().map(|known| format!("`{}`", visible(known))).collect();
-        let known = if known.is_empty() { "there are none".into() } else { known.join(", ") };
-        let message = format!("the cells of the mesh have no numbers `{}`", visible(name));
-        return Err(SceneError::new("scene.no_values", message).value(visible(name)).allowed(known));
+        let error = SceneError::of(BodyError::NoCellNumbers { name: visible(name) });
+        return Err(match known.is_empty() {
+            true => error.allows(SceneAllowed::ThereAreNone {}),
+            false => error.allowed(known.join(", ")),
+        });
     };
     match numbers.iter().position(|density| !(*density > 0.0 && density.is_finite())) {
-        Some(cell) => {
-            let message = format!("the density of cell {cell} is {} kg/m³", numbers[cell]);
-            Err(SceneError::new("scene.range", message).value(numbers[cell].to_string()).allowed("a number > 0"))
-        }
+        Some(cell) => Err(SceneError::of(BodyError::Density { cell, density: numbers[cell] })),
         None => Ok(Arc::from(numbers.as_slice())),
     }
 }
@@ -251,19 +250,12 @@ fn mass(reader: &mut Reader<'_>, node: &Node, path: &str, values: &Values) -> Op
         [] if values.flag("fixed") => Some(Mass::Node(1.0)),
         [] if reader.misspelt(node, &schema::BODY, None).iter().any(|meant| WORDS.contains(&meant.as_str())) => None,
         [] => {
-            let error = SceneError::new("scene.missing", "the body has no mass")
-                .path(join(path, "mass"))
-                .allowed("exactly one of mass, density, density_of_cells, node_mass");
-            reader.report(node.place, error.hint("a body that never moves is `fixed = true`"));
+            reader.report(node.place, SceneError::of(BodyError::NoMass {}).path(join(path, "mass")));
             None
         }
         several => {
-            let words = several.iter().map(|w| format!("`{w}`")).collect::<Vec<_>>().join(" and ");
-            let error = SceneError::new("scene.conflict", format!("the body has {words}")).path(join(path, several[1]));
-            reader.report(
-                place_of(node, several[1]),
-                error.allowed("exactly one of mass, density, density_of_cells, node_mass"),
-            );
+            let about = BodyError::SeveralMasses { first: several[0].into(), second: several[1].into() };
+            reader.report(place_of(node, several[1]), SceneError::of(about).path(join(path, several[1])));
             None
         }
     }
@@ -276,12 +268,12 @@ fn duplicate_names<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, 
         let place = place_of(draft.node, "name");
         let source = reader.source;
         let line = |first: &Place| match first {
-            Place::Bytes(at, _) => format!(", first in line {}", source.position(*at).0),
-            Place::Override(_) => String::new(),
+            Place::Bytes(at, _) => Some(source.position(*at).0),
+            Place::Override(_) => None,
         };
         if let Some(error) = names.take(&draft.name, place, line) {
             let error = error.path(join(&draft.path, "name"));
-            reader.report(place, error.hint("every body needs a name of its own; many alike are `copies`"));
+            reader.report(place, error.advice(SceneHint::OwnName {}));
         }
     }
 }
@@ -320,8 +312,7 @@ fn of_wanted_cells<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>
         None
     };
     if (simplices || order == Some(2)) && mesh.cells.is_empty() {
-        let error = SceneError::new("scene.shape", format!("`{key}` is about cells, and the shape has none"));
-        return refuse(reader, error.hint("filled shapes are `grid`, files with a `filling`, and `mesh`"));
+        return refuse(reader, SceneError::of(BodyError::NoCells { field: key }));
     }
     let cut = if draft.values.integer("tetrahedra_per_hexahedron") == Some(5) { Cut::Five } else { Cut::Six };
     let cut = if simplices { mesh.into_simplices_by(cut) } else { Ok(mesh) };
@@ -334,23 +325,15 @@ fn of_wanted_cells<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>
     };
     match cut.and_then(wanted) {
         Ok(mesh) => Some(mesh),
-        Err(refusal @ MeshError::NotSimplices { .. }) => {
-            let error = SceneError::new("scene.shape", refusal.to_string());
-            refuse(reader, error.hint("`simplices = true` cuts them into triangles or tetrahedra"))
+        Err(error @ MeshError::NotSimplices { .. }) => {
+            refuse(reader, SceneError::of(OutlineError::Mesh { error }).advice(SceneHint::Simplices {}))
         }
-        Err(refusal) => refuse(reader, SceneError::new("scene.shape", refusal.to_string())),
+        Err(error) => refuse(reader, SceneError::of(OutlineError::Mesh { error })),
     }
 }
 
 /// The smallest scale: powers of lengths up to the fourth are not zero then.
 const SHORTEST: f64 = 1e-70;
-
-/// Refuses a body whose volume would be zero by rounding alone.
-fn report_tiny(reader: &mut Reader<'_>, node: &Node, path: String, what: String) {
-    let error = SceneError::new("scene.range", format!("{what}: products of lengths so small are zero"));
-    let error = error.path(path).value(node.shown()).allowed("from 1e-70");
-    reader.report(node.place, error.hint("coordinates are in metres: `scale = 1e-6` makes micrometres of them"));
-}
 
 /// Whether a number of a value is longer than any length may be.
 fn is_vast(node: &Node) -> bool {
@@ -359,13 +342,6 @@ fn is_vast(node: &Node) -> bool {
         Data::Array(items) => items.iter().any(is_vast),
         _ => false,
     }
-}
-
-/// Refuses a body whose volume would be no number any more.
-fn report_vast(reader: &mut Reader<'_>, node: &Node, path: String, what: String) {
-    let error = SceneError::new("scene.range", format!("{what}: products of such lengths are no numbers any more"));
-    let error = error.path(path).value(node.shown()).allowed("coordinates within 1e70 m of the origin of the shape");
-    reader.report(node.place, error);
 }
 
 /// Makes the mesh of a body, whatever else may be wrong with it, and checks its pins.
@@ -380,15 +356,18 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
     let vast = draft.node.get("shape").and_then(|shape| shape.entries().iter().find(|entry| is_vast(&entry.value)));
     if let Some(entry) = vast {
         let path = join(&place.path, &entry.key);
-        report_vast(reader, &entry.value, path, format!("`{}` is {}", entry.key, entry.value.shown()));
+        let about = BodyError::Vast { field: entry.key.clone(), value: entry.value.shown() };
+        reader.report(entry.value.place, SceneError::of(about).path(path));
         return None;
     }
     if let Some(scale) = draft.node.get("scale").filter(|node| is_vast(node)) {
-        report_vast(reader, scale, join(&draft.path, "scale"), format!("`scale` is {}", scale.shown()));
+        let about = BodyError::Vast { field: "scale".into(), value: scale.shown() };
+        reader.report(scale.place, SceneError::of(about).path(join(&draft.path, "scale")));
         return None;
     }
     if let Some(scale) = draft.node.get("scale").filter(|_| transform.scale < SHORTEST) {
-        report_tiny(reader, scale, join(&draft.path, "scale"), format!("`scale` is {}", scale.shown()));
+        let error = SceneError::of(BodyError::Tiny { value: scale.shown() });
+        reader.report(scale.place, error.path(join(&draft.path, "scale")));
         return None;
     }
     let mesh: Mesh<D> = shape::mesh(reader, shape, draft.loaded.as_ref(), &transform, &place)?;
@@ -396,7 +375,8 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
         // Its own lengths are fair.
         let key = if draft.node.get("scale").is_some() { "scale" } else { "shape" };
         let node = draft.node.get(key).unwrap_or(draft.node);
-        report_vast(reader, node, join(&draft.path, key), format!("`{key}` makes it too large"));
+        let error = SceneError::of(BodyError::MadeVast { field: key, value: node.shown() });
+        reader.report(node.place, error.path(join(&draft.path, key)));
         return None;
     }
     let mut mesh = of_wanted_cells(reader, draft, mesh)?;
@@ -413,15 +393,13 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
     };
     // One metre is a fair depth of the plane, but no thickness of a cloth, and no width of a wire.
     let thin = match mesh.measure() {
-        Ok(Measure::Length(_)) => Some("of a wire needs its width, here"),
-        Ok(Measure::Area(_)) if D == 3 => Some("of a sheet needs its"),
+        Ok(Measure::Length(_)) => Some(BodyError::WireWidth {}),
+        Ok(Measure::Area(_)) if D == 3 => Some(BodyError::SheetThickness {}),
         _ => None,
     };
-    if let (Some(Mass::Density(_)), Some(of), None) = (&draft.mass, thin, draft.node.get("thickness")) {
-        let error = SceneError::new("scene.missing", format!("`density` {of} `thickness`"))
-            .path(join(&draft.path, "thickness"))
-            .allowed("a number > 0");
-        reader.report(place_of(draft.node, "density"), error.hint("or give the `mass` of the whole body"));
+    if let (Some(Mass::Density(_)), Some(about), None) = (&draft.mass, thin, draft.node.get("thickness")) {
+        let error = SceneError::of(about).path(join(&draft.path, "thickness"));
+        reader.report(place_of(draft.node, "density"), error);
         return None;
     }
     let mass = match (&draft.mass, draft.values.text("density_of_cells")) {

@@ -1,6 +1,7 @@
 //! `copies`: many bodies of one shape in rows, columns and layers.
 
 use super::body_list::Bodies;
+use super::errors::{FieldError, SceneAllowed, Wanted};
 use super::reader::{Reader, join};
 use crate::document::{Data, Node};
 use crate::problem::SceneError;
@@ -29,14 +30,13 @@ pub(super) fn copies<const D: usize>(reader: &mut Reader<'_>, node: &Node, path:
     let count = node.get("count")?;
     let here = join(path, "count");
     let Data::Array(items) = &count.data else {
-        reader.wrong_type(count, &here, "a list of whole numbers such as [10, 5]");
+        reader.wrong_type(count, &here, Wanted::Counts);
         return None;
     };
     if items.is_empty() || items.len() > D {
-        let error = SceneError::new("scene.length", format!("`count` has {} numbers", items.len()))
-            .path(here)
-            .value(count.shown());
-        reader.report(count.place, error.allowed(format!("1 to {D} whole numbers from 1")));
+        let about = FieldError::Length { field: "count".into(), count: items.len(), value: count.shown() };
+        let error = SceneError::of(about).path(here).allows(SceneAllowed::Counts { dimension: D });
+        reader.report(count.place, error);
         return None;
     }
     let mut number = [1u32; D];

@@ -1,5 +1,6 @@
 //! How many dimensions a scene has; and what else is wrong with one that does not say it.
 
+use super::errors::{FieldError, SceneHint};
 use super::reader::Reader;
 use super::scene;
 use crate::document::{Data, Entry, Node, Place};
@@ -40,14 +41,12 @@ fn said(reader: &mut Reader<'_>, root: &Node) -> Dimension {
     match root.get("dimension").map(|node| (&node.data, node)) {
         Some((Data::Integer(Some(d @ (2 | 3)), _), _)) => Dimension::Known(*d as usize),
         Some((_, node)) => {
-            let error = SceneError::new("scene.dimension", format!("`dimension` is {}", node.shown()))
-                .path("dimension")
-                .value(node.shown());
-            reader.report(node.place, error.allowed("2 or 3"));
+            let error = SceneError::of(FieldError::WrongDimension { value: node.shown() }).path("dimension");
+            reader.report(node.place, error);
             Dimension::Wrong("dimension".into(), likely(node))
         }
         None => {
-            let error = SceneError::new("scene.missing", "`dimension` is missing").path("dimension").allowed("2 or 3");
+            let error = SceneError::of(FieldError::NoDimension {}).path("dimension");
             let known = |key: &str| {
                 let fields = schema::SCENE.spec.fields.iter().map(|field| field.name);
                 fields.chain(schema::SCENE.children.iter().map(|child| child.name)).any(|name| name == key)
@@ -58,7 +57,7 @@ fn said(reader: &mut Reader<'_>, root: &Node) -> Dimension {
                 return Dimension::Wrong(String::new(), None);
             };
             let key = visible(&entry.key);
-            reader.report(entry.place, error.value(key.clone()).hint(format!("`{key}` is misspelt")));
+            reader.report(entry.place, error.value(key.clone()).advice(SceneHint::Misspelt { word: key }));
             Dimension::Wrong(entry.key.clone(), likely(&entry.value))
         }
     }

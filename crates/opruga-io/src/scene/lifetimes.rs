@@ -1,6 +1,7 @@
 //! Commands on bodies that are not there when they begin: before a command adds them, or after one has taken them away.
 
 use super::body_list::Bodies;
+use super::errors::CommandError;
 use super::place_of;
 use super::reader::{Reader, join};
 use crate::document::Node;
@@ -72,22 +73,14 @@ impl<'n> Lifetimes<'n> {
                     }
                 };
                 if let Some(k) = missing {
-                    let name = bodies.list.get(k).map_or(String::new(), |body| visible(&body.name));
+                    let body = bodies.list.get(k).map_or(String::new(), |body| visible(&body.name));
                     let told = match (coming.get(&k), gone.get(&k)) {
-                        (Some(added), _) => Some((
-                            format!("the command begins at {at} s, before `{name}` is added at {added} s"),
-                            format!("a time from {added}"),
-                        )),
-                        (_, Some(removed)) => Some((
-                            format!("the command begins at {at} s, after `{name}` is taken away at {removed} s"),
-                            format!("a time before {removed}"),
-                        )),
+                        (Some(added), _) => Some(CommandError::BeforeAdded { at, body, added: *added }),
+                        (_, Some(removed)) => Some(CommandError::AfterRemoved { at, body, removed: *removed }),
                         _ => None,
                     };
-                    if let Some((message, allowed)) = told {
-                        let error =
-                            SceneError::new("scene.range", message).path(join(&path, "at")).value(at.to_string());
-                        reader.report(place_of(node, "at"), error.allowed(allowed));
+                    if let Some(about) = told {
+                        reader.report(place_of(node, "at"), SceneError::of(about).path(join(&path, "at")));
                         continue;
                     }
                 }

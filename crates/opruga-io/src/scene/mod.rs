@@ -10,6 +10,7 @@ mod body_list;
 mod copies;
 mod cost;
 mod dimension;
+mod errors;
 mod lifetimes;
 mod moments;
 mod names;
@@ -33,13 +34,17 @@ use crate::overrides;
 use crate::problem::{Notice, SceneError, visible};
 use crate::regular_file::regular_file;
 use crate::source::Source;
+use crate::text_errors::Measured;
 use body_list::Bodies;
 pub(crate) use cost::{Cost, CostError, shown};
+pub(crate) use errors::{FieldError, MESSAGES, ValueKind};
+use errors::{Part, ReferenceError, SceneHint};
 use moments::Frames;
 use opruga_core::spec::{Values, nearest};
 use opruga_world::blueprint::{
     AnyBlueprint, Blueprint, ColliderBlueprint, ContactBlueprint, LoadBlueprint, Pictured, Surroundings, Time,
 };
+use opruga_world::validity::BlueprintFault;
 use opruga_world::{schema, validity};
 use reader::{Reader, join, listed};
 pub use shape::of_fields as shape_of_fields;
@@ -157,9 +162,9 @@ pub fn read_file(
 /// `read.failed`, `read.not_regular_file`, `read.changed` where somebody writes into the file meanwhile, or
 /// `scene.too_large`.
 pub fn bytes_of(path: &Path, limits: &Limits) -> Result<Vec<u8>, SceneError> {
-    let bytes = regular_file(path, limits.file_bytes, "scene.too_large", "the scene");
+    let bytes = regular_file(path, limits.file_bytes, "scene.too_large", Measured::Scene);
     bytes.map(|bytes| bytes.to_vec()).map_err(|error| match error.code {
-        "read.failed" if !path.exists() => error.hint("`opruga list` shows the scenes that come with the program"),
+        "read.failed" if !path.exists() => error.advice(SceneHint::ListScenes {}),
         _ => error,
     })
 }
@@ -181,7 +186,7 @@ fn scene<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Option<Bluepri
     let mut sound_colliders = Vec::new();
     for (node, path) in reader.list(root, "", "collider") {
         let before = reader.count();
-        let Some(values) = reader.kind_table(node, &path, "collider", &known) else { continue };
+        let Some(values) = reader.kind_table(node, &path, Part::Collider, &known) else { continue };
         sound_colliders.extend((reader.count() == before).then(|| ColliderBlueprint { values: values.clone() }));
         colliders.push(ColliderBlueprint { values });
     }
@@ -251,8 +256,7 @@ fn time(reader: &mut Reader<'_>, root: &Node) -> Time {
         && let Some(fault) = validity::time_fault(&time)
     {
         let at = node.get(fault.field).unwrap_or(node);
-        let error = SceneError::new(fault.code, fault.message).path(join("time", fault.field)).value(fault.value);
-        reader.report(at.place, error.allowed(fault.allowed));
+        reader.report(at.place, SceneError::of(fault.about).path(join("time", fault.field)));
     }
     time
 }
@@ -283,12 +287,9 @@ fn contact<const D: usize>(reader: &mut Reader<'_>, root: &Node, bodies: &Bodies
         for field in ["first", "second"].into_iter().filter(|_| bodies.broken.is_empty()) {
             let groups = || bodies.list.iter().map(|body| body.contact_group());
             if let Some(group) = pair.text(field).filter(|group| groups().all(|known| known != *group)) {
-                let group = visible(group);
-                let error = SceneError::new("scene.unknown_name", format!("no body is in the group `{group}`"))
-                    .path(join(&path, field))
-                    .value(group)
-                    .allowed(listed(groups()))
-                    .nearest(nearest(pair.text(field).unwrap_or(""), groups()));
+                let about = BlueprintFault::NoMember { group: visible(group), known: listed(groups()) };
+                let near = nearest(pair.text(field).unwrap_or(""), groups());
+                let error = SceneError::of(about).path(join(&path, field)).nearest(near);
                 reader.report(place_of(item, field), error);
             }
         }
@@ -308,26 +309,21 @@ fn picture<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Pictured<D> 
         (true, true) => sound.then(|| [values.vector("low"), values.vector("high")]),
         (low, _) => {
             let (one, other) = if low { ("low", "high") } else { ("high", "low") };
-            let text = format!("`{one}` is one corner of a box, and the other one, `{other}`, is missing");
-            let error = SceneError::new("scene.missing", text).path(join("picture", other));
-            reader.report(place_of(node, one), error.hint("both corners, or neither: then all that is seen is shown"));
+            let error = SceneError::of(ReferenceError::OneCorner { one, other }).path(join("picture", other));
+            reader.report(place_of(node, one), error);
             None
         }
     };
     if let Some([low, high]) = region
         && !(0..D).all(|axis| low[axis] < high[axis])
     {
-        let error = SceneError::new("scene.range", "the box that pictures show has no inside")
-            .path("picture.high")
-            .value(format!("{high:?}"))
-            .allowed(format!("on every axis more than `low` = {low:?}"));
+        let (low, high) = (format!("{low:?}"), format!("{high:?}"));
+        let error = SceneError::of(ReferenceError::EmptyBox { low, high }).path("picture.high");
         reader.report(place_of(node, "high"), error);
     }
     let angles = ["azimuth", "elevation"];
     if let Some(name) = angles.into_iter().find(|name| D == 2 && given(name)) {
-        let error = SceneError::new("scene.dimension", format!("`{name}` turns the camera of a scene in space"))
-            .path(join("picture", name))
-            .allowed("in scenes with `dimension = 3`");
+        let error = SceneError::of(ReferenceError::Camera { field: name }).path(join("picture", name));
         reader.report(place_of(node, name), error);
     }
     Pictured {

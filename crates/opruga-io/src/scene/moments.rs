@@ -1,15 +1,12 @@
 //! When commands begin and end: with a frame, the first that begins at their time or later. What never comes about by that is told of.
 
+use super::errors::{CommandError, SceneHint};
 use super::place_of;
 use super::reader::{Reader, join};
 use crate::document::{Data, Node, Place};
 use crate::problem::{SceneError, visible};
-use opruga_math::words::number;
 use opruga_world::blueprint::Time;
 use std::collections::BTreeMap;
-
-/// The code of what is told here.
-const NEVER: &str = "command.never";
 
 /// The frames of a run.
 pub(crate) struct Frames {
@@ -43,23 +40,17 @@ impl Frames {
         until: Option<f64>,
     ) -> bool {
         let (key, about) = match (self.end, until) {
-            (Some(end), _) if at > end => {
-                let message = format!("the command begins at {at} s, after the end at {end} s");
-                ("at", SceneError::new(NEVER, message).hint("it only comes about in a run with a larger --seconds"))
-            }
+            (Some(end), _) if at > end => ("at", SceneError::of(CommandError::AfterEnd { at, end })),
             (Some(end), _) if self.first_from(at) >= self.first_from(end) => {
-                let message = format!("the command begins at {at} s, and no frame of the run begins then or later");
-                let hint = "commands begin with a frame; this one only comes about in a run with a larger --seconds";
-                ("at", SceneError::new(NEVER, message).hint(hint))
+                ("at", SceneError::of(CommandError::NoFrame { at }))
             }
             (_, Some(until)) if self.first_from(at) >= self.first_from(until) => {
-                let message = format!("the command begins at {at} s and ends at {until} s, before a frame begins");
                 let key = if node.get("until").is_some() { "until" } else { "path" };
-                (key, SceneError::new(NEVER, message).hint(self.rule()))
+                (key, SceneError::of(CommandError::BetweenFrames { at, until }).advice(self.rule()))
             }
             _ => return true,
         };
-        let about = about.path(join(path, key)).value(if key == "at" { at } else { until.unwrap_or(at) }.to_string());
+        let about = about.path(join(path, key));
         reader.notice(place_of(node, key), about);
         false
     }
@@ -72,20 +63,16 @@ impl Frames {
         for set in &sets {
             let Some(before) = last.insert(&set.parameter, set) else { continue };
             if self.first_from(before.at) == self.first_from(set.at) {
-                let name = visible(&set.parameter);
-                let message =
-                    format!("`{name}` is set at {} s and again at {} s, before a frame begins", before.at, set.at);
-                let about = SceneError::new(NEVER, message).path(join(&before.path, "at")).value(before.at.to_string());
-                reader.notice(before.place, about.hint(self.rule()));
+                let (parameter, first, second) = (visible(&set.parameter), before.at, set.at);
+                let about = SceneError::of(CommandError::SetAgain { parameter, first, second });
+                let about = about.path(join(&before.path, "at")).advice(self.rule());
+                reader.notice(before.place, about);
             }
         }
     }
 
-    fn rule(&self) -> String {
-        format!(
-            "commands begin and end with a frame, the first at their time or later; here one begins every {} s",
-            number(self.length)
-        )
+    fn rule(&self) -> SceneHint {
+        SceneHint::Frames { frame: self.length }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Names that are the same, or print alike.
 
 use crate::problem::{SceneError, visible};
+use opruga_world::validity::NameFault;
 use std::collections::BTreeMap;
 
 /// What bears the names.
@@ -24,27 +25,23 @@ impl<P> Names<P> {
         Names { what, seen: BTreeMap::new() }
     }
 
-    /// Takes a name up; one that is there already, or prints like one that is, gives an error with its value. `wording` adds what is
-    /// known of the place of the first one.
-    pub(super) fn take(&mut self, name: &str, place: P, wording: impl FnOnce(&P) -> String) -> Option<SceneError> {
+    /// Takes a name up; one that is there already, or prints like one that is, gives an error with its value. `line` gives
+    /// the line of the first one, where it has one.
+    pub(super) fn take(&mut self, name: &str, place: P, line: impl FnOnce(&P) -> Option<usize>) -> Option<SceneError> {
         let form: String = crate::canonical::decomposed(name);
         let Some((first, at)) = self.seen.get(&form) else {
             self.seen.insert(form, (name.to_string(), place));
             return None;
         };
-        let (shown, at) = (visible(name), wording(at));
+        let (same, line, own) = (first == name, line(at), visible(name));
         let (here, there) = (code_points(name, first), code_points(first, name));
-        let message = match (self.what, first == name) {
-            (What::Bodies, true) => format!("two bodies are called `{shown}`{at}"),
-            (What::Probes, true) => format!("two probes are called `{shown}`{at}"),
-            (What::Bodies, false) => format!(
-                "the names of two bodies print alike and differ by Unicode normalisation alone, {here} here and {there} there: `{shown}`{at}"
-            ),
-            (What::Probes, false) => format!(
-                "the names of two probes print alike and differ by Unicode normalisation alone, {here} here and {there} there: `{shown}`{at}"
-            ),
-        };
-        Some(SceneError::new("scene.duplicate_name", message).value(shown))
+        let name = own;
+        Some(SceneError::of(match (self.what, same) {
+            (What::Bodies, true) => NameFault::TwoBodies { name, line },
+            (What::Probes, true) => NameFault::TwoProbes { name, line },
+            (What::Bodies, false) => NameFault::AlikeBodies { name, here, there, line },
+            (What::Probes, false) => NameFault::AlikeProbes { name, here, there, line },
+        }))
     }
 }
 
@@ -68,12 +65,12 @@ mod tests {
     #[test]
     fn names_that_print_alike_are_one_name_and_their_code_points_are_told() {
         let mut names = Names::of(What::Bodies);
-        assert!(names.take("caf\u{e9}-1", (), |_| String::new()).is_none());
-        assert!(names.take("cafe-1", (), |_| String::new()).is_none(), "another letter is another name");
-        let error = names.take("cafe\u{301}-1", (), |_| ", first in line 3".into()).expect("it prints alike");
+        assert!(names.take("caf\u{e9}-1", (), |_| None).is_none());
+        assert!(names.take("cafe-1", (), |_| None).is_none(), "another letter is another name");
+        let error = names.take("cafe\u{301}-1", (), |_| Some(3)).expect("it prints alike");
         assert_eq!(error.code, "scene.duplicate_name");
         assert!(error.message.contains("U+0065 U+0301 here and U+00E9 there"), "{error}");
-        let twice = names.take("cafe-1", (), |_| String::new()).expect("it is there");
+        let twice = names.take("cafe-1", (), |_| None).expect("it is there");
         assert_eq!(twice.message, "two bodies are called `cafe-1`");
     }
 }

@@ -1,6 +1,7 @@
 //! The parameter that a `set` command changes while the scene runs: its path is resolved when the scene is read.
 
 use super::body_list::Bodies;
+use super::errors::{CommandError, SceneAllowed, SceneHint};
 use super::place_of;
 use super::reader::{Reader, join, listed};
 use crate::catalogue;
@@ -22,26 +23,16 @@ pub(crate) struct Known<'a, const D: usize> {
 
 /// Why a path leads nowhere.
 struct Lost {
-    message: String,
-    allowed: String,
+    about: CommandError,
+    /// The words that it may name; none where the message says what is allowed.
+    allowed: Option<String>,
     nearest: Option<String>,
-    /// What does what the path seems to want.
-    hint: Option<&'static str>,
+    /// Whether it wants to change the kind of a part, which a command does.
+    is_kind: bool,
 }
 
-/// What changes the kind of a part.
-const CHANGE: &str = "the command `do = \"change\"` gives a body other models or another integrator";
-
-fn lost<'w>(what: &str, word: &str, words: impl Iterator<Item = &'w str> + Clone) -> Lost {
-    Lost {
-        message: format!("there is no {what} `{}`", visible(word)),
-        allowed: match listed(words.clone()) {
-            none if none.is_empty() => "none, there is nothing to change".into(),
-            words => words,
-        },
-        nearest: nearest(word, words),
-        hint: None,
-    }
+fn lost<'w>(about: CommandError, word: &str, words: impl Iterator<Item = &'w str> + Clone) -> Lost {
+    Lost { about, allowed: Some(listed(words.clone())), nearest: nearest(word, words), is_kind: false }
 }
 
 /// The value, fit for the parameter that the path names; or a report.
@@ -57,23 +48,25 @@ pub(crate) fn check<const D: usize>(
         Ok(Some(field)) => match field.range.accept(suited(value, &field.range), D) {
             Ok(value) => Some(value),
             Err((value, allowed)) => {
-                let error = SceneError::new("scene.range", format!("`{}` cannot be {value}", visible(parameter)))
-                    .path(join(path, "value"));
-                reader.report(place_of(node, "value"), error.value(value).allowed(allowed));
+                let error = SceneError::of(CommandError::CannotBe { parameter: visible(parameter), value });
+                reader.report(place_of(node, "value"), error.path(join(path, "value")).allows(allowed));
                 None
             }
         },
         // A parameter of a body that is not there yet: checked when the command acts.
         Ok(None) => Some(value),
         Err(lost) => {
-            let error = SceneError::new("scene.unknown_parameter", lost.message)
-                .path(join(path, "path"))
-                .value(visible(parameter));
-            let error = match lost.hint {
-                Some(hint) => error.hint(hint),
-                None => error.nearest(lost.nearest),
+            let error = SceneError::of(lost.about).path(join(path, "path")).value(visible(parameter));
+            let error = match lost.is_kind {
+                true => error.advice(SceneHint::Change {}),
+                false => error.nearest(lost.nearest),
             };
-            reader.report(place_of(node, "path"), error.allowed(lost.allowed));
+            let error = match lost.allowed {
+                Some(none) if none.is_empty() => error.allows(SceneAllowed::NothingToChange {}),
+                Some(words) => error.allowed(words),
+                None => error,
+            };
+            reader.report(place_of(node, "path"), error);
             None
         }
     }
@@ -110,7 +103,7 @@ fn field<const D: usize>(
             | ["body", _, "models", _]
             | ["body", _, "models", _, "kind"]
     );
-    found.map_err(|lost| Lost { hint: is_kind.then_some(CHANGE), ..lost })
+    found.map_err(|lost| Lost { is_kind, ..lost })
 }
 
 fn resolve<const D: usize>(
@@ -123,7 +116,10 @@ fn resolve<const D: usize>(
         ["world", name] => find(schema::WORLD.spec, name).map(Some),
         ["contact", name] => find(schema::CONTACT.spec, name).map(Some),
         ["time", "substeps"] => find(schema::TIME.spec, "substeps").map(Some),
-        ["time", ..] => Err(lost("parameter that changes in the run", parameter, ["time.substeps"].into_iter())),
+        ["time", ..] => {
+            let about = CommandError::NotInRun { parameter: visible(parameter) };
+            Err(lost(about, parameter, ["time.substeps"].into_iter()))
+        }
         ["integrator", name] => {
             match known.integrator.and_then(|v| catalogue::find(&catalogue.integrators, v.kind(), D)) {
                 Some(spec) => find(spec, name).map(Some),
@@ -136,7 +132,8 @@ fn resolve<const D: usize>(
                 Some(spec) => find(spec, name).map(Some),
                 None => {
                     let numbers: Vec<String> = (0..known.colliders.len().min(20)).map(|k| k.to_string()).collect();
-                    Err(lost("collider", number, numbers.iter().map(String::as_str)))
+                    let about = CommandError::NoCollider { collider: visible(number) };
+                    Err(lost(about, number, numbers.iter().map(String::as_str)))
                 }
             }
         }
@@ -144,12 +141,10 @@ fn resolve<const D: usize>(
             let Some(body) = body(name, known)? else { return Ok(None) };
             match body.integrator.as_ref().and_then(|v| catalogue::find(&catalogue.integrators, v.kind(), D)) {
                 Some(spec) => find(spec, field).map(Some),
-                None => Err(Lost {
-                    message: format!("body `{}` has no integrator of its own", visible(name)),
-                    allowed: "integrator.FIELD".into(),
-                    nearest: None,
-                    hint: None,
-                }),
+                None => {
+                    let about = CommandError::NoIntegrator { body: visible(name) };
+                    Err(Lost { about, allowed: None, nearest: None, is_kind: false })
+                }
             }
         }
         ["body", name, "models", kind, field] => {
@@ -163,7 +158,7 @@ fn resolve<const D: usize>(
                 .or_else(|| kinds.clone().find(|k| k == kind));
             match model.and_then(|k| catalogue::find(&catalogue.models, k, D)) {
                 Some(spec) => find(spec, field).map(Some),
-                None => Err(lost("model of this body", kind, kinds)),
+                None => Err(lost(CommandError::NoModel { model: visible(kind) }, kind, kinds)),
             }
         }
         _ => {
@@ -179,12 +174,8 @@ fn resolve<const D: usize>(
             const HEADS: [&str; 6] = ["world", "contact", "time", "integrator", "collider", "body"];
             let near =
                 nearest(parts.first().unwrap_or(&""), HEADS.into_iter()).filter(|n| Some(&n.as_str()) != parts.first());
-            Err(Lost {
-                message: format!("`{}` is no parameter", visible(parameter)),
-                allowed: FORMS.join(", "),
-                nearest: near,
-                hint: None,
-            })
+            let about = CommandError::NotAParameter { parameter: visible(parameter) };
+            Err(Lost { about, allowed: Some(FORMS.join(", ")), nearest: near, is_kind: false })
         }
     }
 }
@@ -202,15 +193,15 @@ fn body<'a, const D: usize>(
     }
     let names = known.bodies.list.iter().take(20).map(|b| b.name.as_str()).chain(known.added.iter().copied());
     let names: Vec<&str> = names.collect();
-    Err(lost("body", name, names.iter().copied()))
+    Err(lost(CommandError::NoBodyOfPath { body: visible(name) }, name, names.iter().copied()))
 }
 
 fn find(spec: &'static Spec, name: &str) -> Result<&'static Field, Lost> {
     match spec.fields.iter().find(|f| f.name == name) {
         Some(field) => Ok(field),
         None => {
-            let lost = lost("parameter", name, spec.fields.iter().map(|f| f.name));
-            Err(Lost { message: format!("{} of `{}`", lost.message, spec.kind), ..lost })
+            let about = CommandError::NoParameter { parameter: visible(name), kind: spec.kind };
+            Err(lost(about, name, spec.fields.iter().map(|f| f.name)))
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Parts of bodies that loads act on: sides of the boundary, and cells.
 
 use super::body_list::Bodies;
+use super::errors::ReferenceError;
 use super::place_of;
 use super::reader::{Reader, join};
 use crate::document::Node;
@@ -22,19 +23,11 @@ pub(super) fn hold_sides<const D: usize>(
         return true;
     }
     let name = visible(body.common_name());
-    let message = format!("the nodes that the load selects on `{name}` hold no whole facet of its boundary");
-    let mut error = SceneError::new("scene.selects_nothing", message).path(join(path, "select"));
-    if let Some(select) = node.get("select") {
-        error = error.value(select.shown());
-    }
-    let (allowed, hint) = match body.mesh.facets.is_empty() {
-        true => ("bodies that have a boundary", "a chain has none; `kind = \"force\"` acts on nodes"),
-        false => (
-            "all nodes of one facet at least: an edge of the outline, or a triangle of the surface",
-            "`side`, `group` and `boundary` select whole sides; `kind = \"force\"` acts on nodes",
-        ),
+    let about = match body.mesh.facets.is_empty() {
+        true => ReferenceError::NoBoundary { body: name },
+        false => ReferenceError::NoFacet { body: name },
     };
-    reader.report(place_of(node, "select"), error.allowed(allowed).hint(hint));
+    report(reader, node, path, about);
     false
 }
 
@@ -54,19 +47,19 @@ pub(super) fn hold_cells<const D: usize>(
     }
     let name = visible(body.common_name());
     if body.mesh.cells.is_empty() {
-        let message = format!("the load acts on the volume of cells, and `{name}` has no cells");
-        let error = SceneError::new("scene.selects_nothing", message).path(join(path, "kind")).value("\"body_force\"");
-        let error = error.allowed("bodies that are filled: `grid`, shapes with a `filling`, volume meshes");
-        let hint = "`kind = \"force\"` acts on nodes; `world.gravity` on whatever has a mass";
-        reader.report(place_of(node, "kind"), error.hint(hint));
+        let error = SceneError::of(ReferenceError::NoCellsToLoad { body: name }).path(join(path, "kind"));
+        reader.report(place_of(node, "kind"), error);
         return false;
     }
-    let message = format!("the nodes that the load selects on `{name}` hold no whole cell of it");
-    let mut error = SceneError::new("scene.selects_nothing", message).path(join(path, "select"));
+    report(reader, node, path, ReferenceError::NoCell { body: name });
+    false
+}
+
+/// Reports what a selector of a load holds none of.
+fn report(reader: &mut Reader<'_>, node: &Node, path: &str, about: ReferenceError) {
+    let mut error = SceneError::of(about).path(join(path, "select"));
     if let Some(select) = node.get("select") {
         error = error.value(select.shown());
     }
-    let hint = "without `select` the load acts on all cells; `group` selects those of a mesh file";
-    reader.report(place_of(node, "select"), error.allowed("all nodes of one cell at least").hint(hint));
-    false
+    reader.report(place_of(node, "select"), error);
 }

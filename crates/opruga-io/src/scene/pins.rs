@@ -1,5 +1,6 @@
 //! `pin` of a body: nodes that are held, and pins that want the same node in two places.
 
+use super::errors::BodyError;
 use super::reader::{Reader, join};
 use super::{place_of, selectors};
 use crate::document::{Node, Place};
@@ -18,9 +19,8 @@ pub(crate) type Placed<const D: usize> = (PinBlueprint<D>, Place, String);
 pub(crate) fn axes<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str, values: &Values) -> [bool; D] {
     let Some(letters) = values.text("axes") else { return [true; D] };
     if D == 2 && letters.contains('z') {
-        let error =
-            SceneError::new("scene.range", format!("`axes` is \"{letters}\"")).path(join(path, "axes")).value(letters);
-        reader.report(place_of(node, "axes"), error.allowed("one of \"x\", \"y\", \"xy\"").hint("there is no z in 2D"));
+        let error = SceneError::of(BodyError::Axes { letters: letters.into() }).path(join(path, "axes"));
+        reader.report(place_of(node, "axes"), error);
     }
     core::array::from_fn(|a| letters.contains(['x', 'y', 'z'][a]))
 }
@@ -55,20 +55,12 @@ pub(super) fn conflicts<const D: usize>(reader: &mut Reader<'_>, pins: &[Placed<
                 let Some((time, axis)) = parted(first, pin, size) else { continue };
                 told.push([other, number]);
                 let line = match at {
-                    Place::Bytes(start, _) => format!(" in line {}", reader.source.position(*start).0),
-                    Place::Override(_) => String::new(),
+                    Place::Bytes(start, _) => Some(reader.source.position(*start).0),
+                    Place::Override(_) => None,
                 };
-                let message = format!(
-                    "node {node} of body `{}` is held by `{first_path}`{line} too, which leads it elsewhere along {} at t = {time} s",
-                    body.name,
-                    ["x", "y", "z"][axis],
-                );
-                let error = SceneError::new("scene.conflict", message).path(path.as_str());
-                let error = error.allowed("one motion for every node along every axis");
-                reader.report(
-                    *place,
-                    error.hint("let the selectors have no nodes in common, or the pins different `axes`"),
-                );
+                let (body, pin, axis) = (body.name.clone(), first_path.clone(), ["x", "y", "z"][axis]);
+                let about = BodyError::PinnedTwice { node, body, pin, line, axis, time };
+                reader.report(*place, SceneError::of(about).path(path.as_str()));
             }
             others.push(number);
         }

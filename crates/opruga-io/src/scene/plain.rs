@@ -1,10 +1,17 @@
 //! Values of plain fields: types are never converted, numbers are finite, rows have the length that they need.
 
+use super::errors::{FieldError, SceneAllowed, SceneHint};
 use super::reader::{Reader, join};
 use crate::document::{Data, Node};
 use crate::problem::{SceneError, visible};
 use opruga_core::spec::{Allowed, Value, nearest};
+use opruga_math::message::AnyMessage;
 use opruga_world::schema::LARGEST_WHOLE;
+
+/// The last name of a path that is not an index.
+fn name_of(path: &str) -> String {
+    visible(path.rsplit('.').find(|part| part.parse::<usize>().is_err()).unwrap_or(path))
+}
 
 /// Angles beyond this are rounded by more than 1e-10 [rad].
 const LARGEST_ANGLE: f64 = 1e6;
@@ -26,11 +33,9 @@ impl Reader<'_> {
             Allowed::Choice(words) => match &node.data {
                 Data::Text(text) if words.contains(&text.as_str()) => Value::Text(text.clone()),
                 Data::Text(text) => {
-                    let error = SceneError::new("scene.unknown_word", format!("`{name}` is {}", node.shown()))
-                        .path(path)
-                        .value(node.shown())
-                        .allowed(range.describe(self.dimension))
-                        .nearest(nearest(text, words.iter().copied()));
+                    let about = FieldError::Word { field: name.into(), value: node.shown() };
+                    let near = nearest(text, words.iter().copied());
+                    let error = SceneError::of(about).path(path).allows(range.describe(self.dimension)).nearest(near);
                     self.report(node.place, error);
                     return None;
                 }
@@ -40,8 +45,9 @@ impl Reader<'_> {
             Allowed::Direction => {
                 let row = self.row(node, path, self.dimension, range)?;
                 if row.iter().all(|x| *x == 0.0) {
-                    let error = SceneError::new("scene.range", format!("`{name}` is {}", node.shown())).path(path);
-                    self.report(node.place, error.value(node.shown()).allowed(range.describe(self.dimension)));
+                    let about = FieldError::Is { field: name.into(), value: node.shown() };
+                    let error = SceneError::of(about).path(path).allows(range.describe(self.dimension));
+                    self.report(node.place, error);
                     return None;
                 }
                 Value::Numbers(row)
@@ -58,25 +64,22 @@ impl Reader<'_> {
         match range.accept(value, self.dimension) {
             Ok(value) => Some(value),
             Err((_, allowed)) => {
-                let shown = node.shown();
-                let text = if name.is_empty() { shown.clone() } else { format!("`{name}` is {shown}") };
-                self.report(node.place, SceneError::new("scene.range", text).path(path).value(shown).allowed(allowed));
+                let field = if name.is_empty() { name_of(path) } else { name.into() };
+                let error = SceneError::of(FieldError::Is { field, value: node.shown() });
+                self.report(node.place, error.path(path).allows(allowed));
                 None
             }
         }
     }
 
     fn refuse_type<T>(&mut self, node: &Node, path: &str, range: &Allowed) -> Option<T> {
-        let name = path.rsplit('.').find(|s| s.parse::<usize>().is_err()).unwrap_or(path);
-        let mut error =
-            SceneError::new("scene.type", format!("`{}` is {}", visible(name), node.kind())).path(visible(path));
-        error.value = Some(node.shown());
-        error.allowed = Some(range.describe(self.dimension));
+        let about = FieldError::Type { field: name_of(path), kind: node.kind(), value: node.shown() };
+        let mut error = SceneError::of(about).path(visible(path)).allows(range.describe(self.dimension));
         if let Data::Text(text) = &node.data
             && !matches!(range, Allowed::Choice(_) | Allowed::Text)
             && (text.trim().parse::<f64>().is_ok() || text == "true" || text == "false")
         {
-            error.hint = Some("write it without quotes".into());
+            error = error.advice(SceneHint::NoQuotes {});
         }
         self.report(node.place, error);
         None
@@ -86,15 +89,13 @@ impl Reader<'_> {
     pub(crate) fn number(&mut self, node: &Node, path: &str, range: &Allowed) -> Option<f64> {
         match &node.data {
             Data::Number(x, text) if !x.is_finite() => {
-                let name = path.rsplit('.').find(|s| s.parse::<usize>().is_err()).unwrap_or(path);
-                let why = if text.contains("nan") || text.contains("inf") {
-                    "is not finite"
-                } else {
-                    "is too large for a 64-bit number"
+                let (field, value) = (name_of(path), node.shown());
+                let about = match text.contains("nan") || text.contains("inf") {
+                    true => FieldError::NotFiniteField { field, value },
+                    false => FieldError::TooLarge { field, value },
                 };
-                let error =
-                    SceneError::new("scene.not_finite", format!("`{name}` {why}")).path(path).value(node.shown());
-                self.report(node.place, error.allowed(range.describe(self.dimension)));
+                let error = SceneError::of(about).path(path).allows(range.describe(self.dimension));
+                self.report(node.place, error);
                 None
             }
             Data::Number(x, _) => Some(*x + 0.0),
@@ -107,28 +108,24 @@ impl Reader<'_> {
         match &node.data {
             Data::Integer(Some(x), _) if x.abs() <= LARGEST_WHOLE => Some(*x),
             // A decimal point would make it another type, and no number of the range.
-            Data::Integer(..) => self.whole(node, path, range.describe(self.dimension), None),
+            Data::Integer(..) => self.whole(node, path, range.describe(self.dimension).into(), None),
             _ => self.refuse_type(node, path, range),
         }
     }
 
     /// A whole number where any number may stand.
     fn whole_for_real(&mut self, node: &Node, path: &str) -> Option<i64> {
-        let allowed = "whole numbers between -9007199254740992 and 9007199254740992 (2^53)".into();
-        self.whole(node, path, allowed, Some("write a larger number with a decimal point"))
+        self.whole(node, path, SceneAllowed::Wholes {}.into(), Some(SceneHint::DecimalPoint {}))
     }
 
     /// A whole number that a 64-bit float holds exactly.
-    fn whole(&mut self, node: &Node, path: &str, allowed: String, hint: Option<&str>) -> Option<i64> {
+    fn whole(&mut self, node: &Node, path: &str, allowed: AnyMessage, hint: Option<SceneHint>) -> Option<i64> {
         match &node.data {
             Data::Integer(Some(x), _) if x.unsigned_abs() <= LARGEST_WHOLE as u64 => Some(*x),
             _ => {
-                let name = path.rsplit('.').find(|s| s.parse::<usize>().is_err()).unwrap_or(path);
-                let error = SceneError::new("scene.range", format!("`{name}` is {}", node.shown()))
-                    .path(path)
-                    .value(node.shown())
-                    .allowed(allowed);
-                self.report(node.place, SceneError { hint: hint.map(Into::into), ..error });
+                let about = FieldError::Is { field: name_of(path), value: node.shown() };
+                let error = SceneError::of(about).path(path).allows(allowed);
+                self.report(node.place, hint.map_or(error.clone(), |hint| error.advice(hint)));
                 None
             }
         }
@@ -138,12 +135,9 @@ impl Reader<'_> {
     pub(crate) fn row(&mut self, node: &Node, path: &str, length: usize, range: &Allowed) -> Option<Vec<f64>> {
         let Data::Array(items) = &node.data else { return self.refuse_type(node, path, range) };
         if items.len() != length {
-            let name = path.rsplit('.').find(|s| s.parse::<usize>().is_err()).unwrap_or(path);
-            let numbers = if items.len() == 1 { "number" } else { "numbers" };
-            let error = SceneError::new("scene.length", format!("`{}` has {} {numbers}", visible(name), items.len()))
-                .path(path)
-                .value(node.shown());
-            self.report(node.place, error.allowed(range.describe(self.dimension)));
+            let about = FieldError::Length { field: name_of(path), count: items.len(), value: node.shown() };
+            let error = SceneError::of(about).path(path).allows(range.describe(self.dimension));
+            self.report(node.place, error);
             return None;
         }
         let before = self.count();
@@ -174,10 +168,9 @@ impl Reader<'_> {
                 && let Some(last) = rows.last()
                 && row[0] <= last[0]
             {
-                let error = SceneError::new("scene.range", format!("t does not rise: {} follows {}", row[0], last[0]))
-                    .path(here)
-                    .value(item.shown());
-                self.report(item.place, error.allowed(range.describe(self.dimension)));
+                let about = FieldError::NotRising { time: row[0], before: last[0], value: item.shown() };
+                let error = SceneError::of(about).path(here).allows(range.describe(self.dimension));
+                self.report(item.place, error);
             }
             rows.push(row);
         }
@@ -190,11 +183,9 @@ impl Reader<'_> {
         if items.len() > 1 && items.iter().all(|item| matches!(item.data, Data::Array(_))) {
             // One slip, and not as many as there are triangles.
             let name = path.rsplit('.').next().unwrap_or(path);
-            let error = SceneError::new("scene.type", format!("`{}` is a list of lists", visible(name)))
-                .path(path)
-                .value(node.shown())
-                .allowed(range.describe(self.dimension));
-            self.report(node.place, error.hint("write the numbers of all of them one after another, in one list"));
+            let about = FieldError::Lists { field: visible(name), value: node.shown() };
+            let error = SceneError::of(about).path(path).allows(range.describe(self.dimension));
+            self.report(node.place, error);
             return None;
         }
         let before = self.count();
@@ -206,8 +197,7 @@ impl Reader<'_> {
     /// A whole number not below zero.
     pub(crate) fn natural(&mut self, node: &Node, path: &str) -> Option<u32> {
         let range = Allowed::Integer { least: 0, greatest: i64::from(u32::MAX) };
-        let name = path.rsplit('.').find(|s| s.parse::<usize>().is_err()).unwrap_or(path).to_string();
-        match self.plain(node, path, &name, &range)? {
+        match self.plain(node, path, &name_of(path), &range)? {
             Value::Integer(x) => u32::try_from(x).ok(),
             _ => None,
         }
@@ -223,34 +213,19 @@ impl Reader<'_> {
             1 => self.number(node, path, &Allowed::ANY).map(|x| vec![x]),
             _ => self.row(node, path, 3, &Allowed::Vector),
         };
-        let (what, unit) = if path.ends_with("velocity") || path.ends_with("angular") {
-            ("speed of turning", "rad/s")
-        } else {
-            ("angle", "radians")
-        };
-        for error in self.errors.iter_mut().skip(before) {
-            let (allowed, example) = match (parts, unit) {
-                (1, _) => (format!("the {what} in {unit}, counter-clockwise"), "1.5708 is a quarter of a turn (90°)"),
-                (_, "radians") => (
-                    format!("the axis times the {what} about it in {unit}: three numbers"),
-                    "[0, 0, 1.5708] turns by 90° about z, [0.5236, 0, 0] by 30° about x; 1° is 0.0174533",
-                ),
-                _ => (
-                    format!("the axis times the {what} about it in {unit}: three numbers"),
-                    "[0, 0, 6.2832] turns once a second about z",
-                ),
+        let spins = path.ends_with("velocity") || path.ends_with("angular");
+        for k in before..self.errors.len() {
+            let (allowed, example) = match (parts, spins) {
+                (1, false) => (SceneAllowed::Angle {}, SceneHint::QuarterTurn {}),
+                (1, true) => (SceneAllowed::Spin {}, SceneHint::QuarterTurn {}),
+                (_, false) => (SceneAllowed::AngleInSpace {}, SceneHint::TurnsInSpace {}),
+                (_, true) => (SceneAllowed::SpinInSpace {}, SceneHint::SpinsInSpace {}),
             };
-            error.allowed = Some(allowed);
-            error.hint = Some(example.into());
+            self.errors[k] = self.errors[k].clone().allows(allowed).advice(example);
         }
         let angle = read.iter().flatten().map(|x| x.abs()).fold(0.0, |most: f64, x| if x > most { x } else { most });
-        if unit == "radians" && angle > LARGEST_ANGLE {
-            let error = SceneError::new(
-                "scene.range",
-                format!("`rotation` is {}: where in its turn so large an angle ends is lost in rounding", node.shown()),
-            );
-            let error = error.path(path).value(node.shown()).allowed("angles within 1e6 radians");
-            self.report(node.place, error.hint("whole turns of 6.283185307179586 radians change nothing"));
+        if !spins && angle > LARGEST_ANGLE {
+            self.report(node.place, SceneError::of(FieldError::Angle { value: node.shown() }).path(path));
             return zero;
         }
         read.unwrap_or(zero)

@@ -2,12 +2,13 @@
 
 use super::bodies;
 use super::body_list::Bodies;
+use super::errors::{ReferenceError, Wanted};
 use super::names::{Names, What};
 use super::reader::{Reader, join, listed};
 use super::{place_of, selectors};
 use crate::document::{Data, Node};
 use crate::problem::{SceneError, visible};
-use opruga_core::spec::{Role, Spec, nearest};
+use opruga_core::spec::{Role, Spec, nearest, quoted};
 use opruga_world::blueprint::{BodyBlueprint, ProbeBlueprint, Recorded};
 use opruga_world::schema;
 
@@ -24,7 +25,7 @@ pub(crate) fn probes<const D: usize>(
         let name = values.text("name").unwrap_or("").to_string();
         if let Some(at) = node.get("name").filter(|_| values.text("name").is_some()) {
             bodies::check_name(reader, at, &join(&path, "name"), &name);
-            if let Some(error) = names.take(&name, (), |_| String::new()) {
+            if let Some(error) = names.take(&name, (), |_| None) {
                 reader.report(at.place, error.path(join(&path, "name")));
             }
         }
@@ -45,39 +46,25 @@ fn recorded(reader: &mut Reader<'_>, node: &Node, path: &str) -> Vec<Recorded> {
     let here = join(path, "record");
     let Some(value) = node.get("record") else { return Vec::new() };
     let Data::Array(items) = &value.data else {
-        reader.wrong_type(value, &here, "a list of position, velocity, reaction, contact, stress, volume_ratio");
+        reader.wrong_type(value, &here, Wanted::Recorded);
         return Vec::new();
     };
     if items.is_empty() {
-        reader.report(
-            value.place,
-            SceneError::new("scene.length", "`record` is empty")
-                .path(here.clone())
-                .value("[]")
-                .allowed(listed(words())),
-        );
+        let error = SceneError::of(ReferenceError::RecordsNothing {}).path(here.clone()).allowed(listed(words()));
+        reader.report(value.place, error);
     }
     let mut out: Vec<Recorded> = Vec::new();
     for (k, item) in items.iter().enumerate() {
         let place = join(&here, &k.to_string());
         match item.text().and_then(|text| Recorded::ALL.iter().find(|(w, _)| *w == text)) {
             Some((word, recorded)) if out.contains(recorded) => {
-                reader.report(
-                    item.place,
-                    SceneError::new("scene.duplicate_name", format!("`{word}` is recorded twice"))
-                        .path(place)
-                        .value(*word),
-                );
+                reader.report(item.place, SceneError::of(ReferenceError::RecordedTwice { word }).path(place));
             }
             Some((_, recorded)) => out.push(*recorded),
             None => {
-                let error = SceneError::new("scene.unknown_word", format!("`record` contains {}", item.shown()))
-                    .path(place)
-                    .value(item.shown());
-                reader.report(
-                    item.place,
-                    error.allowed(listed(words())).nearest(nearest(item.text().unwrap_or(""), words())),
-                );
+                let near = nearest(item.text().unwrap_or(""), words());
+                let error = SceneError::of(ReferenceError::Records { value: item.shown() }).path(place);
+                reader.report(item.place, error.allowed(listed(words())).nearest(near));
             }
         }
     }
@@ -112,10 +99,7 @@ fn refuse_without_cells<const D: usize>(
     if later || body.models.iter().any(|model| knows(model.spec())) {
         return;
     }
-    let name = visible(body.common_name());
-    let message = format!("`{word}` is recorded of `{name}`, none of whose models knows a stress");
     let kinds: Vec<&str> = models.iter().filter(|spec| knows(spec)).map(|spec| spec.kind).collect();
-    let error = SceneError::new("scene.no_stress", message).path(join(path, "record")).value(*word);
-    let error = error.allowed(format!("bodies with a model `{}`", kinds.join("`, `")));
-    reader.report(place_of(node, "record"), error.hint("`reaction` and `contact` are forces, which every body has"));
+    let about = ReferenceError::NoStress { word, body: visible(body.common_name()), kinds: quoted(&kinds) };
+    reader.report(place_of(node, "record"), SceneError::of(about).path(join(path, "record")));
 }

@@ -1,11 +1,12 @@
 //! The reader's common ground: reports, tables by specification, words and their nearest neighbours.
 
 use super::Options;
+use super::errors::{FieldError, Part, SceneAllowed, SceneHint, Wanted};
 use crate::catalogue::{Catalogue, find};
 use crate::document::{Data, Entry, Node, Place};
 use crate::problem::{MOST_SHOWN, Notice, SceneError, visible};
 use crate::source::Source;
-use opruga_core::spec::{Default, ONE_OF, Spec, Values, nearest, one_of};
+use opruga_core::spec::{ChoiceError, Default, Spec, Values, nearest, quoted};
 use opruga_world::schema::{self, Child, Section};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -153,21 +154,16 @@ impl<'a> Reader<'a> {
         match root.get("format") {
             Some(node) if node.text() == Some(schema::FORMAT) => {}
             Some(node) => {
-                let error = SceneError::new("scene.format", format!("the format is {}", node.shown()))
-                    .path("format")
-                    .value(node.shown())
-                    .allowed(readable)
-                    .hint("this version reads opruga-1 only; another version of the program may read this scene");
-                self.report(node.place, error);
+                let about = FieldError::Format { value: node.shown(), readable };
+                self.report(node.place, SceneError::of(about).path("format"));
                 return false;
             }
             None => {
                 let near = nearest("format", root.entries().iter().map(|e| e.key.as_str()));
-                let mut error =
-                    SceneError::new("scene.format", "the format is missing").path("format").allowed(readable);
-                error.hint = Some(match near {
-                    Some(word) => format!("`{}` is misspelt", visible(&word)),
-                    None => format!("begin the file with format = \"{}\"", schema::FORMAT),
+                let error = SceneError::of(FieldError::NoFormat { readable }).path("format");
+                let error = error.advice(match near {
+                    Some(word) => SceneHint::Misspelt { word: visible(&word) },
+                    None => SceneHint::BeginFormat { format: schema::FORMAT },
                 });
                 self.report(Place::Bytes(0, 0), error);
                 return false;
@@ -181,7 +177,7 @@ impl<'a> Reader<'a> {
     pub(crate) fn fields(&mut self, node: &Node, path: &str, section: &Section, tag: Option<&'static str>) -> Values {
         let mut values = Values::defaults(section.spec, self.dimension);
         if !matches!(node.data, Data::Table(_)) {
-            self.wrong_type(node, path, "a table");
+            self.wrong_type(node, path, Wanted::Table);
             return values;
         }
         let names = || names(section, tag);
@@ -191,7 +187,7 @@ impl<'a> Reader<'a> {
                 if let Some(value) = self.plain(&entry.value, &here, field.name, &field.range)
                     && let Err(e) = values.set(section.spec, field.name, value, self.dimension)
                 {
-                    self.report(entry.value.place, SceneError::new("scene.range", e.to_string()).path(here));
+                    self.report(entry.value.place, SceneError::of(e).path(here));
                 }
             } else if !names().any(|n| n == entry.key) {
                 self.unknown_field(node, entry, &here, section, tag);
@@ -208,30 +204,25 @@ impl<'a> Reader<'a> {
     fn unknown_field(&mut self, node: &Node, entry: &Entry, here: &str, section: &Section, tag: Option<&'static str>) {
         let names = || names(section, tag);
         let error = || {
-            let known =
-                if section.spec.kind == "scene" { String::new() } else { format!(" in `{}`", section.spec.kind) };
-            let mut error =
-                SceneError::new("scene.unknown_field", format!("there is no field `{}`{known}", visible(&entry.key)))
-                    .path(visible(here))
-                    .value(visible(&entry.key))
-                    .nearest(nearest(&entry.key, names()));
+            let (field, kind) = (visible(&entry.key), section.spec.kind);
+            let about = match kind {
+                "scene" => FieldError::NoFieldInScene { field },
+                table => FieldError::NoField { field, table },
+            };
+            let mut error = SceneError::of(about).path(visible(here)).nearest(nearest(&entry.key, names()));
             error.allowed = Some(listed(names()));
             // The field was one of the kind that an override has put another in the place of.
             if let Some(Place::Override(_)) = tag.and_then(|tag| node.get(tag)).map(|kind| kind.place)
                 && let (Place::Bytes(..), Some((table, _))) = (entry.place, here.rsplit_once('.'))
             {
-                let kind = section.spec.kind;
                 // An integrator may be a word alone; others are tables with all that has no default.
-                error.hint = Some(if table == "integrator" {
-                    format!(
-                        "`{table}.kind` was set to `{kind}`, and the other fields stayed; --set {table}={kind} takes its defaults"
-                    )
+                let table = table.to_string();
+                error = error.advice(if table == "integrator" {
+                    SceneHint::KindSet { table, kind }
                 } else {
                     let needed = section.spec.fields.iter().filter(|field| field.default == Default::Required);
-                    let needed: String = needed.map(|field| format!(", {}=…", field.name)).collect();
-                    format!(
-                        "`{table}.kind` was set to `{kind}`, and the other fields stayed; --set '{table}={{kind=\"{kind}\"{needed}}}' replaces them"
-                    )
+                    let needed = needed.map(|field| format!(", {}=…", field.name)).collect();
+                    SceneHint::KindSetWith { table, kind, needed }
                 });
             }
             error
@@ -260,9 +251,9 @@ impl<'a> Reader<'a> {
         for entry in node.entries() {
             let Some(field) = spec.fields.iter().find(|field| field.name == entry.key) else { continue };
             let Some(condition) = field.without_effect(values, self.dimension) else { continue };
-            let message = format!("`{}` has no effect here; it has one only {condition}", field.name);
-            let about =
-                SceneError::new("scene.no_effect", message).path(join(path, field.name)).value(entry.value.shown());
+            let (field, value) = (field.name, entry.value.shown());
+            let about = FieldError::NoEffect { field, condition: condition.text(), value };
+            let about = SceneError::of(about).path(join(path, field));
             self.notice(entry.place, about);
         }
     }
@@ -278,14 +269,14 @@ impl<'a> Reader<'a> {
         if missing.is_empty() {
             return;
         }
-        let words = missing.iter().map(|m| format!("`{m}`")).collect::<Vec<_>>().join(", ");
-        let verb = if missing.len() == 1 { "is" } else { "are" };
-        let whole = if path.is_empty() { "the scene".to_string() } else { format!("`{}`", section.spec.kind) };
-        let mut error =
-            SceneError::new("scene.missing", format!("{words} {verb} missing in {whole}")).path(join(path, missing[0]));
+        let (fields, count) = (quoted(&missing), missing.len());
+        let about = match path.is_empty() {
+            true => FieldError::MissingInScene { fields, count },
+            false => FieldError::Missing { fields, count, table: section.spec.kind },
+        };
+        let mut error = SceneError::of(about).path(join(path, missing[0]));
         if let Some(field) = section.spec.fields.iter().find(|f| f.name == missing[0] && missing.len() == 1) {
-            error.allowed = Some(field.range.describe(self.dimension));
-            error.hint = Some(field.documentation.to_string());
+            error = error.allows(field.range.describe(self.dimension)).hint(field.documentation);
         }
         self.report(node.place, error);
     }
@@ -299,15 +290,20 @@ impl<'a> Reader<'a> {
                 [] => (node.place, set[0]),
                 [_, second, ..] => (super::place_of(node, second), **second),
             };
-            let words = given.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(" and ");
-            let here = if words.is_empty() { "none of them".into() } else { words };
-            let error = SceneError::new(ONE_OF, format!("{}; here are {here}", one_of(set))).path(join(path, name));
-            self.report(place, error.allowed(format!("exactly one of {}", set.join(", "))));
+            let about = match given.as_slice() {
+                [] => ChoiceError::None { fields: quoted(set) },
+                given => {
+                    let given: Vec<&str> = given.iter().map(|name| **name).collect();
+                    ChoiceError::Several { fields: quoted(set), given: quoted(&given) }
+                }
+            };
+            let allowed = SceneAllowed::OneOf { fields: set.join(", ") };
+            self.report(place, SceneError::of(about).path(join(path, name)).allows(allowed));
         }
     }
 
     /// A table whose `kind` names one of several specifications.
-    pub(crate) fn kind_table(&mut self, node: &Node, path: &str, what: &str, list: &[&'static Spec]) -> Option<Values> {
+    pub(crate) fn kind_table(&mut self, node: &Node, path: &str, what: Part, list: &[&'static Spec]) -> Option<Values> {
         let word = node.get("kind").and_then(Node::text);
         let Some(spec) = word.and_then(|word| find(list, word, self.dimension)) else {
             let here = list.iter().filter(|spec| spec.dimensions.contains(&self.dimension));
@@ -316,15 +312,9 @@ impl<'a> Reader<'a> {
         };
         if !spec.dimensions.contains(&self.dimension) {
             let place = super::place_of(node, "kind");
-            let error =
-                SceneError::new("scene.dimension", format!("`{}` does not exist in {}D", spec.kind, self.dimension))
-                    .path(join(path, "kind"))
-                    .value(spec.kind)
-                    .allowed(format!(
-                        "dimension {}",
-                        spec.dimensions.iter().map(usize::to_string).collect::<Vec<_>>().join(" or ")
-                    ));
-            self.report(place, error);
+            let dimensions = spec.dimensions.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");
+            let about = FieldError::KindDimension { kind: spec.kind, dimension: self.dimension, dimensions };
+            self.report(place, SceneError::of(about).path(join(path, "kind")));
             return None;
         }
         Some(self.fields(node, path, &Section { spec, children: &[] }, Some("kind")))
@@ -335,36 +325,33 @@ impl<'a> Reader<'a> {
         let value = node.get("integrator")?;
         let list = self.catalogue.integrators.clone();
         let here = join(path, "integrator");
-        let Data::Text(_) = &value.data else { return self.kind_table(value, &here, "integrator", &list) };
+        let Data::Text(_) = &value.data else { return self.kind_table(value, &here, Part::Integrator, &list) };
         let kind = Entry { key: "kind".into(), place: value.place, value: value.clone() };
         let table = Node { place: value.place, data: Data::Table(vec![kind]) };
-        self.kind_table(&table, &here, "integrator", &list)
+        self.kind_table(&table, &here, Part::Integrator, &list)
     }
 
     /// The word that says what a table is.
-    pub(crate) fn tag(&mut self, node: &Node, path: &str, tag: &str, what: &str, words: &[&str]) -> Option<String> {
+    pub(crate) fn tag(&mut self, node: &Node, path: &str, tag: &str, what: Part, words: &[&str]) -> Option<String> {
         if !matches!(node.data, Data::Table(_)) {
-            self.wrong_type(node, path, "a table");
+            self.wrong_type(node, path, Wanted::Table);
             return None;
         }
         let here = join(path, tag);
         let Some(value) = node.get(tag) else {
-            let error = SceneError::new("scene.missing", format!("`{tag}` is missing in `{what}`"))
-                .path(here)
-                .allowed(listed(words.iter().copied()));
-            self.report(node.place, error);
+            let error = SceneError::of(FieldError::NoTag { tag: tag.into(), table: what });
+            self.report(node.place, error.path(here).allowed(listed(words.iter().copied())));
             return None;
         };
         let Some(word) = value.text() else {
-            self.wrong_type(value, &here, "a text");
+            self.wrong_type(value, &here, Wanted::Text);
             return None;
         };
         if words.contains(&word) {
             return Some(word.to_string());
         }
-        let error = SceneError::new("scene.unknown_kind", format!("there is no {what} `{}`", visible(word)))
+        let error = SceneError::of(FieldError::NoKind { table: what, word: visible(word) })
             .path(here)
-            .value(visible(word))
             .allowed(listed(words.iter().copied()))
             .nearest(nearest(word, words.iter().copied()));
         self.report(value.place, error);
@@ -378,16 +365,15 @@ impl<'a> Reader<'a> {
         match &value.data {
             Data::Array(items) => items.iter().enumerate().map(|(k, item)| (item, format!("{here}.{k}"))).collect(),
             _ => {
-                self.wrong_type(value, &here, "a list of tables");
+                self.wrong_type(value, &here, Wanted::Tables);
                 if matches!(value.data, Data::Table(_))
                     && let Some(error) = self.errors.last_mut()
                 {
-                    let hint = if path.is_empty() {
-                        format!("write [[{name}]]")
-                    } else {
-                        format!("write {name} = [ {{ … }} ]")
-                    };
-                    error.hint = Some(hint);
+                    let name = name.to_string();
+                    *error = error.clone().advice(match path.is_empty() {
+                        true => SceneHint::Sections { name },
+                        false => SceneHint::Inline { name },
+                    });
                 }
                 Vec::new()
             }
@@ -395,17 +381,15 @@ impl<'a> Reader<'a> {
     }
 
     /// Reports a value of another type than wanted.
-    pub(crate) fn wrong_type(&mut self, node: &Node, path: &str, wanted: &str) {
-        let name = if path.is_empty() { "the scene" } else { path };
-        let mut error =
-            SceneError::new("scene.type", format!("`{}` is {}", visible(name), node.kind())).path(visible(path));
-        error.value = Some(node.shown());
-        error.allowed = Some(wanted.to_string());
+    pub(crate) fn wrong_type(&mut self, node: &Node, path: &str, wanted: Wanted) {
+        let field = visible(if path.is_empty() { "the scene" } else { path });
+        let about = FieldError::Type { field, kind: node.kind(), value: node.shown() };
+        let mut error = SceneError::of(about).path(visible(path)).allows(wanted);
         if let Data::Text(text) = &node.data
-            && wanted.contains("number")
+            && wanted.takes_numbers()
             && text.trim().parse::<f64>().is_ok()
         {
-            error.hint = Some("write it without quotes".into());
+            error = error.advice(SceneHint::NoQuotes {});
         }
         self.report(node.place, error);
     }

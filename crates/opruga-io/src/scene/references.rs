@@ -1,6 +1,7 @@
 //! Names of bodies in other tables: which body is meant, and what is said where none is.
 
 use super::body_list::Bodies;
+use super::errors::{ReferenceError, SceneAllowed, SceneHint, Wanted};
 use super::reader::{Reader, join, listed};
 use crate::document::{Data, Node, Place};
 use crate::problem::{SceneError, visible};
@@ -28,10 +29,8 @@ impl<const D: usize> Bodies<D> {
                     return Some(k);
                 }
                 if self.broken.is_empty() {
-                    let error = SceneError::new("scene.unknown_name", format!("there is no body {k}"))
-                        .path(here)
-                        .value(k.to_string());
-                    reader.report(node.place, error.allowed(self.allowed()));
+                    let error = SceneError::of(ReferenceError::NoBodyAt { index: *k }).path(here);
+                    reader.report(node.place, self.with_allowed(error));
                 }
                 None
             }
@@ -43,7 +42,7 @@ impl<const D: usize> Bodies<D> {
                 }
             },
             _ => {
-                reader.wrong_type(node, &here, "the name of a body or its number");
+                reader.wrong_type(node, &here, Wanted::Body);
                 None
             }
         }
@@ -59,15 +58,13 @@ impl<const D: usize> Bodies<D> {
         if self.broken.iter().any(|b| b.is_empty() || b == name || name.starts_with(&format!("{b}["))) {
             return; // the body is there, but has errors of its own
         }
-        let mut error = SceneError::new("scene.unknown_name", format!("there is no body `{}`", visible(name)))
-            .path(path)
-            .value(visible(name));
-        error.allowed = Some(self.allowed());
+        let error = SceneError::of(ReferenceError::NoBodyCalled { body: visible(name) }).path(path);
+        let error = self.with_allowed(error);
         let base = name.split('[').next().unwrap_or(name);
-        error = match self.copied.get(base) {
+        let error = match self.copied.get(base) {
             Some((_, copies)) => {
                 let count = copies.len();
-                error.hint(format!("`{base}` has {count} copies: `{base}[0]` … `{base}[{}]`", count - 1))
+                error.advice(SceneHint::Copies { name: base.into(), count, last: count - 1 })
             }
             None => error.nearest(nearest(
                 name,
@@ -77,12 +74,13 @@ impl<const D: usize> Bodies<D> {
         reader.report(place, error);
     }
 
-    fn allowed(&self) -> String {
+    /// The error with the bodies that there are.
+    fn with_allowed(&self, error: SceneError) -> SceneError {
         match self.list.len() {
-            0 if !self.broken.is_empty() => listed(self.broken.iter().map(String::as_str)),
-            0 => "the scene has no bodies".into(),
-            n if n <= 8 => listed(self.list.iter().map(|b| b.name.as_str())),
-            n => format!("{n} bodies, by name or by number from 0 to {}", self.initial.saturating_sub(1)),
+            0 if !self.broken.is_empty() => error.allowed(listed(self.broken.iter().map(String::as_str))),
+            0 => error.allows(SceneAllowed::NoBodies {}),
+            n if n <= 8 => error.allowed(listed(self.list.iter().map(|b| b.name.as_str()))),
+            count => error.allows(SceneAllowed::Bodies { count, last: self.initial.saturating_sub(1) }),
         }
     }
 }

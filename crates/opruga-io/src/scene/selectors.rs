@@ -1,6 +1,7 @@
 //! Sets of nodes: reading them, and refusing those that select nothing.
 
 use super::body_list::Bodies;
+use super::errors::{ReferenceError, SceneHint, Wanted};
 use super::reader::{Reader, join, listed};
 use crate::document::{Data, Node, Place};
 use crate::problem::{SceneError, visible};
@@ -24,18 +25,13 @@ fn one<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str) -> Opti
     let entries = match &node.data {
         Data::Table(entries) => entries,
         _ => {
-            reader.wrong_type(node, path, "a table such as { all = true }");
+            reader.wrong_type(node, path, Wanted::Selector);
             return None;
         }
     };
     if entries.len() != 1 {
-        let error =
-            SceneError::new("scene.selector", format!("a selector has exactly one key, here are {}", entries.len()))
-                .path(path)
-                .value(node.shown())
-                .allowed(listed(words()))
-                .hint("combine sets with { and = [ … ] } or { or = [ … ] }");
-        reader.report(node.place, error);
+        let about = ReferenceError::Keys { count: entries.len(), value: node.shown() };
+        reader.report(node.place, SceneError::of(about).path(path).allowed(listed(words())));
         return None;
     }
     let (key, value) = (entries[0].key.as_str(), &entries[0].value);
@@ -44,10 +40,8 @@ fn one<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str) -> Opti
         "box" => {
             let rows = reader.rows(value, &here, D, false, &Allowed::Points)?;
             let [a, b] = rows.as_slice() else {
-                let error = SceneError::new("scene.length", format!("`box` has {} corners", rows.len()))
-                    .path(here)
-                    .value(value.shown());
-                reader.report(value.place, error.allowed("two opposite corners"));
+                let about = ReferenceError::Corners { count: rows.len(), value: value.shown() };
+                reader.report(value.place, SceneError::of(about).path(here));
                 return None;
             };
             Selector::Box(fixed(a), fixed(b))
@@ -64,9 +58,7 @@ fn one<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str) -> Opti
             } else {
                 let normal: [f64; D] = values.vector("normal");
                 if normal.iter().all(|n| *n == 0.0) {
-                    let error = SceneError::new("scene.range", "`normal` is zero")
-                        .path(join(&here, "normal"))
-                        .allowed("a vector that is not zero");
+                    let error = SceneError::of(ReferenceError::NoNormal {}).path(join(&here, "normal"));
                     reader.report(super::place_of(value, "normal"), error);
                     return None;
                 }
@@ -92,22 +84,20 @@ fn one<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str) -> Opti
         },
         "boundary" | "all" => {
             if !matches!(value.data, Data::Boolean(true)) {
-                let error = SceneError::new("scene.selector", format!("`{key}` is {}", value.shown()))
-                    .path(here)
-                    .value(value.shown());
-                reader.report(value.place, error.allowed("true"));
+                let about = ReferenceError::NotTrue { field: key.into(), value: value.shown() };
+                reader.report(value.place, SceneError::of(about).path(here));
                 return None;
             }
             if key == "all" { Selector::All } else { Selector::Boundary }
         }
         "and" | "or" => {
             let Data::Array(items) = &value.data else {
-                reader.wrong_type(value, &here, "a list of selectors");
+                reader.wrong_type(value, &here, Wanted::Selectors);
                 return None;
             };
             if items.is_empty() {
-                let error = SceneError::new("scene.length", format!("`{key}` is empty")).path(here).value("[]");
-                reader.report(value.place, error.allowed("a list of one selector at least"));
+                let error = SceneError::of(ReferenceError::NoSelectors { field: key.into() });
+                reader.report(value.place, error.path(here));
                 return None;
             }
             let sets: Vec<Option<Selector<D>>> =
@@ -117,9 +107,8 @@ fn one<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str) -> Opti
         }
         "not" => Selector::Not(Box::new(one(reader, value, &here)?)),
         _ => {
-            let error = SceneError::new("scene.unknown_field", format!("there is no selector `{}`", visible(key)))
+            let error = SceneError::of(ReferenceError::NoSelector { word: visible(key) })
                 .path(visible(&here))
-                .value(visible(key))
                 .allowed(listed(words()))
                 .nearest(nearest(key, words()));
             reader.report(entries[0].place, error);
@@ -141,24 +130,15 @@ pub(crate) fn check<const D: usize>(
     body: &BodyBlueprint<D>,
 ) -> bool {
     let Some(fault) = selector.fault(body) else { return true };
-    let count = body.mesh.positions.len();
-    let name = visible(&body.name);
-    if let SelectorFault::NoNode(node) = fault {
-        let error = SceneError::new("scene.range", format!("body `{name}` has no node {node}"))
-            .path(path)
-            .value(node.to_string());
-        reader.report(place, error.allowed(format!("nodes from 0 to {}", count.saturating_sub(1))));
-        return false;
-    }
-    if let SelectorFault::NoGroup(group) = fault {
-        let groups: Vec<&str> = body.mesh.groups.keys().map(String::as_str).collect();
-        let mut error =
-            SceneError::new("scene.unknown_name", format!("the mesh of `{name}` has no group `{}`", visible(&group)))
-                .path(path);
-        error.value = Some(visible(&group));
-        error.allowed =
-            Some(if groups.is_empty() { "it has no groups".into() } else { listed(groups.iter().copied()) });
-        reader.report(place, error.nearest(nearest(&group, groups.iter().copied())));
+    let groups: Vec<&str> = body.mesh.groups.keys().map(String::as_str).collect();
+    let near = match &fault {
+        SelectorFault::NoGroup(group) => nearest(group, groups.iter().copied()),
+        _ => None,
+    };
+    let is_empty = fault == SelectorFault::Nothing;
+    let error = SceneError::of(fault.about(body, &visible)).path(path).nearest(near);
+    if !is_empty {
+        reader.report(place, error);
         return false;
     }
     let (low, high) = selection::extent(&body.mesh);
@@ -166,10 +146,8 @@ pub(crate) fn check<const D: usize>(
         let x: [f64; D] = core::array::from_fn(|a| x[a] + body.translation[a]);
         format!("{x:?}")
     };
-    let error =
-        SceneError::new("scene.selects_nothing", format!("the selector selects no node of `{name}`")).path(path);
-    let hint = format!("at the start the body lies between {} and {}", corner(low), corner(high));
-    reader.report(place, error.hint(hint));
+    let (low, high) = (corner(low), corner(high));
+    reader.report(place, error.advice(SceneHint::Extent { low, high }));
     false
 }
 

@@ -1,5 +1,6 @@
 //! The shape of a body: its file, if it has one, and its mesh.
 
+use super::errors::{BodyError, Part, SceneAllowed, SceneHint};
 use super::reader::{Reader, join};
 use super::{Options, place_of};
 use crate::catalogue::Catalogue;
@@ -9,6 +10,7 @@ use crate::problem::{Notice, SceneError, visible};
 use crate::shapes::{Loaded, told};
 use crate::source::Source;
 use opruga_core::spec::Values;
+use opruga_mesh::outline::OutlineError;
 use opruga_mesh::{Mesh, MeshError};
 use opruga_world::shapes;
 
@@ -73,8 +75,7 @@ pub(super) fn mesh<const D: usize>(
     }
     // Large factors may leave the range of numbers.
     if let Some(x) = mesh.positions.iter().flatten().find(|x| !x.is_finite()) {
-        let error = SceneError::new("scene.shape", format!("a coordinate of the shape is {x}")).path(&at.path);
-        reader.report(at.place, error.allowed("finite coordinates"));
+        reader.report(at.place, SceneError::of(BodyError::NotFiniteShape { value: *x }).path(&at.path));
         return None;
     }
     Some(mesh)
@@ -88,24 +89,19 @@ fn generated<const D: usize>(
 ) -> Result<(Mesh<D>, Vec<SceneError>), SceneError> {
     let made = shapes::mesh::<D>(shape, transform);
     let made = made.map_err(|refusal| {
-        let error = SceneError::new("scene.shape", refusal.to_string());
+        let error = SceneError::of(OutlineError::Mesh { error: refusal.clone() });
         match refusal {
-            MeshError::RingsMeet { .. } => error
-                .allowed("rings apart from each other, or one inside the other")
-                .hint("they are counted from 0; `centers` moves them"),
-            MeshError::RingsAlike { .. } => error
-                .allowed("in a ring holes, of negative radius, and in a hole rings")
-                .hint("they are counted from 0; a hole between them, or a body of its own, keeps two chambers of gas apart"),
-            MeshError::HoleInNothing { .. } => error
-                .allowed("holes inside a ring of positive radius")
-                .hint("rings are counted from 0; `centers` moves them"),
+            MeshError::RingsMeet { .. } => error.allows(SceneAllowed::RingsApart {}).advice(SceneHint::Centers {}),
+            MeshError::RingsAlike { .. } => {
+                error.allows(SceneAllowed::HolesInRings {}).advice(SceneHint::TwoChambers {})
+            }
+            MeshError::HoleInNothing { .. } => error.allows(SceneAllowed::HolesInside {}).advice(SceneHint::Centers {}),
             _ => error,
         }
     })?;
     let mut notices = Vec::new();
     if made.flipped {
-        let notice = SceneError::new("shape.flipped", format!("the points of `{}` run clockwise", visible(name)));
-        notices.push(notice.hint("its edges run against them"));
+        notices.push(SceneError::of(BodyError::Clockwise { body: visible(name) }));
     }
     notices.extend(made.loss.map(|loss| told::lost_volume(&made.mesh, loss, 1.0)));
     Ok((made.mesh, notices))
@@ -132,7 +128,7 @@ pub fn of_fields(
     }
     let mut reader = Reader::new(&source, &catalogue, &options, Vec::new());
     reader.dimension = dimension;
-    let values = reader.kind_table(&table, "", "shape", &shapes::all());
+    let values = reader.kind_table(&table, "", Part::Shape, &shapes::all());
     match (values, reader.finish()) {
         (Some(values), (errors, notices)) if errors.is_empty() => Ok((values, notices)),
         (_, (errors, _)) => Err(errors),

@@ -1,5 +1,6 @@
 //! The velocity of a body at the start: one vector, or a field.
 
+use super::errors::{BodyError, SceneAllowed, SceneHint};
 use super::place_of;
 use super::reader::{Reader, join};
 use crate::document::{Data, Node};
@@ -40,9 +41,7 @@ pub(super) fn at_the_start<const D: usize>(reader: &mut Reader<'_>, node: &Node,
     if let Some(spin) = value.get("angular") {
         let angular = join(&here, "angular");
         if node.get("angular_velocity").is_some() {
-            let error = SceneError::new("scene.conflict", "the body has `angular_velocity` and `velocity.angular`");
-            let error = error.path(angular).value(spin.shown()).allowed("one of them");
-            reader.report(spin.place, error);
+            reader.report(spin.place, SceneError::of(BodyError::TwoSpins { value: spin.shown() }).path(angular));
             return out;
         }
         out.angular = reader.turn(Some(spin), &angular);
@@ -53,17 +52,11 @@ pub(super) fn at_the_start<const D: usize>(reader: &mut Reader<'_>, node: &Node,
             to.copy_from_slice(row);
         }
     } else if !rows.is_empty() {
-        let count = rows.len();
-        let message = format!("`gradient` has {count} {}", if count == 1 { "row" } else { "rows" });
-        let error = SceneError::new("scene.length", message).path(join(&here, "gradient"));
-        let error = error
-            .allowed(format!("{D} rows of {D} finite numbers: how each axis of the velocity changes along every axis"));
-        let hint = match D {
-            2 => "[[0.1, 0], [0, 0]] stretches along x, [[0, 1], [0, 0]] shears",
-            _ => "[[0.1, 0, 0], [0, 0, 0], [0, 0, 0]] stretches along x",
-        };
-        let shown = value.get("gradient").map_or(String::new(), Node::shown);
-        reader.report(place_of(value, "gradient"), error.value(shown).hint(hint));
+        let value_shown = value.get("gradient").map_or(String::new(), Node::shown);
+        let about = BodyError::Gradient { count: rows.len(), dimension: D, value: value_shown };
+        let hint = if D == 2 { SceneHint::Gradient {} } else { SceneHint::GradientInSpace {} };
+        let error = SceneError::of(about).path(join(&here, "gradient")).advice(hint);
+        reader.report(place_of(value, "gradient"), error);
     }
     out
 }
@@ -83,61 +76,44 @@ impl<const D: usize> Velocities<D> {
         rotation: &[f64],
     ) -> Result<Arc<[[f64; D]]>, SceneError> {
         let Some(name) = &self.of_nodes else { return Ok(Arc::from([])) };
-        let shown = format!("`{}`", visible(name));
-        let axes = if D == 2 { "2, or 3 of which the last is 0" } else { "3" };
+        let shown = || visible(name);
         let fits = |field: &NodeValues| field.components == 3 || field.components == D;
         let Some(field) = all.get(name) else {
             let known: Vec<String> =
                 all.iter().filter(|(_, f)| fits(f)).map(|(known, _)| format!("`{}`", visible(known))).collect();
-            let known = if known.is_empty() { "there are none".into() } else { known.join(", ") };
-            let (message, hint) = if kind == "mesh" {
-                (format!("the nodes of the mesh have no vectors {shown}"), NAMED)
-            } else {
-                (
-                    format!("{shown} would stand in a mesh file, and the shape is a `{kind}`"),
-                    "`kind = \"mesh\"` reads one",
-                )
-            };
-            let error = SceneError::new("scene.no_values", message).value(visible(name));
-            return Err(error.allowed(known).hint(hint));
+            let error = SceneError::of(match kind {
+                "mesh" => BodyError::NoNodeVectors { name: shown() },
+                kind => BodyError::NotAMeshFile { name: shown(), kind: kind.into() },
+            });
+            return Err(match known.is_empty() {
+                true => error.allows(SceneAllowed::ThereAreNone {}),
+                false => error.allowed(known.join(", ")),
+            });
         };
         if !fits(field) {
-            let count = field.components;
-            let message = if count == 1 {
-                format!("{shown} has {count} number a node")
-            } else {
-                format!("{shown} has {count} numbers a node")
-            };
-            let error = SceneError::new("scene.length", message).value(field.components.to_string());
-            return Err(error.allowed(axes).hint("a velocity is a vector"));
+            let (name, components) = (shown(), field.components);
+            return Err(SceneError::of(match D {
+                2 => BodyError::ComponentsInPlane { name, components },
+                _ => BodyError::ComponentsInSpace { name, components },
+            }));
         }
         let mut rows = Vec::with_capacity(field.values.len() / field.components);
         for (node, row) in field.values.chunks_exact(field.components).enumerate() {
             if let Some(x) = row.iter().find(|x| !x.is_finite()) {
-                let message = format!("{shown} of node {node} is {x}");
-                let error = SceneError::new("scene.not_finite", message).value(x.to_string());
-                return Err(error.allowed("finite numbers for every node").hint("nodes are counted from 0"));
+                return Err(SceneError::of(BodyError::NodeValue { name: shown(), node, value: x.to_string() }));
             }
             if let Some(z) = row.get(D).filter(|z| **z != 0.0) {
-                let message = format!("{shown} of node {node} leaves the plane");
-                let error = SceneError::new("scene.dimension", message).value(z.to_string()).allowed("0 along z");
-                return Err(error.hint("nodes are counted from 0; `dimension = 3` at the head of a scene in space"));
+                return Err(SceneError::of(BodyError::LeavesPlane { name: shown(), node, z: *z }));
             }
             rows.push(core::array::from_fn(|d| row[d]));
         }
         // They turn as positions do, about zero.
         let mut turned = Mesh::<D> { positions: rows, ..Mesh::default() };
-        let refused = |error: opruga_mesh::MeshError| SceneError::new("scene.range", visible(&error.to_string()));
+        let refused = |problem| SceneError::of(BodyError::Rotation { problem });
         shapes::place(&mut turned, &shapes::Transform { scale: 1.0, rotation }).map_err(refused)?;
         match turned.positions.iter().flatten().find(|x| !x.is_finite()) {
-            Some(x) => {
-                let error = SceneError::new("scene.range", format!("{shown}, turned with the body, is {x}"));
-                Err(error.value(x.to_string()).allowed("finite numbers"))
-            }
+            Some(x) => Err(SceneError::of(BodyError::Turned { name: shown(), value: *x })),
             None => Ok(Arc::from(turned.positions)),
         }
     }
 }
-
-/// What is said to those who name vectors that are not there.
-const NAMED: &str = "vectors of nodes are `$NodeData` of Gmsh, `POINT_DATA` of VTK and `<PointData>` of VTU files";

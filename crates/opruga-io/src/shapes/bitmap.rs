@@ -5,6 +5,7 @@
 
 use super::curves::Curves;
 use super::drawing::Drawing;
+use super::drawing_errors::LetterError;
 use crate::budget::{LimitHint, OUTLINES, PIXELS, POINTS};
 use crate::problem::{SceneError, visible};
 use opruga_core::spec::Values;
@@ -22,9 +23,8 @@ pub(super) fn read<'a>(bytes: &[u8], shape: &Values) -> Result<Drawing<'a>, Scen
     let (contours, points) = lines.contours(&mut curves);
     OUTLINES.check(contours).and(POINTS.check(points)).map_err(|e| e.advice(LimitHint::Picture))?;
     if f64::from(most) <= threshold {
-        let error = SceneError::new("shape.no_area", format!("no pixel is more {inside} than the threshold"));
-        let error = error.value(format!("at most {most:.3}")).allowed(format!("pixels above {threshold}"));
-        return Err(error.hint("take a smaller `threshold`, or another `inside`: dark, bright or opaque"));
+        let (inside, most) = (inside.to_string(), format!("{most:.3}"));
+        return Err(SceneError::of(LetterError::NoPixel { inside, most, threshold }));
     }
     let (places, painted, rules, notices) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     Ok(Drawing { curves, y_down: true, source: None, places, painted, rules, notices })
@@ -37,9 +37,7 @@ fn pixels(
     mut take: impl FnMut(&[f32]) -> Result<(), SceneError>,
 ) -> Result<f32, SceneError> {
     let refuse = |e: png::DecodingError| {
-        let error =
-            SceneError::new("png.syntax", format!("this is no PNG that can be read: {}", visible(&e.to_string())));
-        error.value(format!("{} bytes", bytes.len())).allowed("a picture in PNG")
+        SceneError::of(LetterError::Png { reason: visible(&e.to_string()), bytes: bytes.len() })
     };
     let mut decoder = png::Decoder::new(std::io::Cursor::new(bytes));
     decoder.set_transformations(png::Transformations::normalize_to_color8() | png::Transformations::ALPHA);

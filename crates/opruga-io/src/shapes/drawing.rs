@@ -1,6 +1,7 @@
 //! From the curves of a drawing to rings of the wanted size and spacing.
 
 use super::curves::{Curves, larger};
+use super::errors::{ShapeError, ShapeHint, ShapeNotice};
 use super::rules::{self, Rule};
 use super::{Content, Loaded, Problem, told};
 use crate::budget::{LimitHint, OUTLINES, POINTS};
@@ -8,7 +9,7 @@ use crate::problem::SceneError;
 use crate::scene::shown;
 use crate::source::Source;
 use opruga_core::spec::Values;
-use opruga_math::words::{counted, number, rounded};
+use opruga_math::words::rounded;
 use opruga_mesh::outline::{self, OutlineError, Overlap, Painted, Ring};
 use opruga_mesh::{MAXIMUM_NODES, Mesh, MeshError};
 
@@ -96,8 +97,7 @@ pub(super) fn loaded(mut drawing: Drawing<'_>, shape: &Values) -> Result<Loaded,
     let size = shape.number("size").unwrap_or(1.0);
     let extent = drawing.curves.extent();
     if !(extent > 0.0 && extent.is_finite() && extent > 1e-150 && extent < 1e150) {
-        let error = SceneError::new("shape.no_area", "the file holds no closed outline").value(format!("{extent:e}"));
-        return Err(error.allowed("outlines that enclose area, of an extent from 1e-150 to 1e150").into());
+        return Err(SceneError::of(ShapeError::NoOutline { extent: format!("{extent:e}") }).into());
     }
     OUTLINES.check(drawing.curves.closed() as u64)?;
     let tolerance = TOLERANCE * spacing * extent / size;
@@ -112,8 +112,7 @@ pub(super) fn loaded(mut drawing: Drawing<'_>, shape: &Values) -> Result<Loaded,
     rings.retain(|ring| encloses_more(ring, 1e-12 * extent * extent));
     if rings.len() < before {
         let count = before - rings.len();
-        let left = counted(count as u64, "outline without area is", "outlines without area are");
-        drawing.notices.push(SceneError::new("shape.no_area", format!("{left} left out")).value(count.to_string()));
+        drawing.notices.push(SceneError::of(ShapeNotice::LeftOut { count }));
     }
     let how = match shape.text("overlap") {
         Some("union") => Some(Overlap::Union),
@@ -142,12 +141,10 @@ pub(super) fn loaded(mut drawing: Drawing<'_>, shape: &Values) -> Result<Loaded,
     rings.retain(|ring| ring.area().abs() >= least);
     if rings.len() < before {
         let count = before - rings.len();
-        let (have, are) = if count == 1 { ("has", "is") } else { ("have", "are") };
-        let message = format!("{count} of {before} outlines {have} less than {} m² and {are} left out", number(least));
-        drawing.notices.push(SceneError::new("shape.dropped", message).value(count.to_string()));
+        drawing.notices.push(SceneError::of(ShapeNotice::Dropped { count, outlines: before, least }));
     }
     if rings.is_empty() {
-        let error = SceneError::new("shape.no_area", "no outline is left").value(least.to_string());
+        let error = SceneError::of(ShapeError::NoneLeft { least });
         return Err(Problem::new(if before > 0 { "drop_below" } else { "file" }, error));
     }
     let inside = match shape.text("filling") {
@@ -165,8 +162,7 @@ pub(super) fn loaded(mut drawing: Drawing<'_>, shape: &Values) -> Result<Loaded,
     let given = if drawing.source.is_some() { drawing.curves.points() } else { 0 };
     let before = rings;
     let rings = outline::resampled(&before, spacing).map_err(|e| {
-        let hint = "take a smaller `spacing`, a larger `size`, `drop_below`, or `filling = \"lattice\"`";
-        Problem::new("spacing", refused(&e).value(spacing.to_string()).hint(hint))
+        Problem::new("spacing", refused(&e).value(spacing.to_string()).advice(ShapeHint::FinerOutline {}))
     })?;
     drawing.notices.extend(told::thinned(given, &before, &rings, spacing));
     let outline = Outline { rings, inside, painted };
@@ -187,12 +183,9 @@ fn too_fine(rings: &[Ring], spacing: f64, inside: Inside) -> Result<(), Problem>
         return Ok(());
     }
     let least = (length + (length * length + 4.0 * most * area / each).sqrt()) / (2.0 * most);
-    let message = format!("nodes {} m apart would be {}", number(spacing), shown(nodes));
-    let error = SceneError::new("limit.nodes", message).value(number(spacing));
-    Err(Problem::new(
-        "spacing",
-        error.allowed(format!("from {} m on: at most {MAXIMUM_NODES} nodes", rounded(least, 3))),
-    ))
+    let (nodes, least) = (shown(nodes), rounded(least, 3));
+    let error = SceneError::of(ShapeError::TooFineOutline { spacing, nodes, least, most: MAXIMUM_NODES });
+    Err(Problem::new("spacing", error))
 }
 
 /// Whether a ring encloses more than an area: halves of a figure of eight add, though their signed areas cancel.
@@ -204,21 +197,12 @@ fn encloses_more(ring: &Ring, least: f64) -> bool {
 
 /// How many outlines are no more as they were since they cross, touch or cover one another.
 fn told_of_overlap(rings: &[Ring], together: &[Ring], how: Overlap) -> Option<SceneError> {
-    let changed = changed(rings, together);
-    (changed > 0).then(|| {
-        let (what, rule) = match how {
-            Overlap::Union => ("what any of them covers is inside", "union"),
-            Overlap::EvenOdd => ("what an odd number of them encloses is inside", "even_odd"),
-        };
-        let message = format!(
-            "{} or touch{} others or {} (`overlap = \"{rule}\"`): {what}, {}",
-            counted(changed as u64, "outline crosses, covers", "outlines cross, cover"),
-            if changed == 1 { "es" } else { "" },
-            if changed == 1 { "itself" } else { "themselves" },
-            counted(together.len() as u64, "outline is left", "outlines are left"),
-        );
-        SceneError::new("shape.overlap", message).value(changed.to_string())
-    })
+    let (count, left) = (changed(rings, together), together.len());
+    let notice = match how {
+        Overlap::Union => ShapeNotice::Union { count, left },
+        Overlap::EvenOdd => ShapeNotice::EvenOdd { count, left },
+    };
+    (count > 0).then(|| SceneError::of(notice))
 }
 
 /// How many rings are not among those that were made of all of them: neither area nor box is the same.
@@ -263,8 +247,7 @@ fn place(
 ) -> Result<Vec<Ring>, Problem> {
     outline::nest(&mut rings).map_err(|e| match &e {
         OutlineError::Meeting { parts, .. } if shape.text("overlap") == Some("refuse") => {
-            let hint = "`overlap = \"union\"` keeps what any of them covers, `overlap = \"even_odd\"` what an odd number encloses";
-            Problem::from(drawing.at(parts[1], refused(&e).hint(hint)))
+            Problem::from(drawing.at(parts[1], refused(&e).advice(ShapeHint::Overlap {})))
         }
         OutlineError::NoArea { part, .. } | OutlineError::NotFinite { part, .. } => {
             drawing.at(*part, refused(&e)).into()

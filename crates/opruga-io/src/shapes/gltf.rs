@@ -8,15 +8,17 @@
 //! The Khronos Group, glTF 2.0 Specification (2021).
 
 use super::Open;
+use super::gltf_errors::{GltfError, GltfNotice};
 use super::gltf_json::{Accessor, Asset, Buffer, Mesh, Node, Primitive, Root, View};
 use super::json::{Raw, parse, refuse, span};
+use super::surface_errors::{SurfaceError, SurfaceNotice};
 use super::triangles::{Places, Triangles};
 use crate::base64;
 use crate::budget::{INSTANCES, LimitHint};
 use crate::problem::{SceneError, visible};
 use crate::rounding::Stored;
 use crate::source::Source;
-use opruga_math::words::counted;
+use opruga_math::message::AnyMessage;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -81,15 +83,14 @@ pub(super) fn read<'a>(
     let root: Root<'a> = parse(source, source.text)?;
     let asset: Asset = parse(source, root.asset.get())?;
     if asset.version != "2.0" {
-        let error = SceneError::new("gltf.version", format!("version {}", visible(&asset.version)));
-        return Err(refuse(source, root.asset.get(), error.value(visible(&asset.version)).allowed("2.0")));
+        let version = visible(&asset.version);
+        return Err(refuse(source, root.asset.get(), SceneError::of(GltfError::Version { version })));
     }
     if let Some(extension) =
         root.extensions.iter().find(|e| !e.starts_with("KHR_materials") && *e != "KHR_texture_transform")
     {
-        let error = SceneError::new("gltf.unsupported", format!("the file needs `{}`", visible(extension)));
-        let error = error.value(visible(extension)).allowed("no compression and no other required extension");
-        return Err(refuse(source, root.asset.get(), error.hint("export without compression")));
+        let extension = visible(extension);
+        return Err(refuse(source, root.asset.get(), SceneError::of(GltfError::Extension { extension })));
     }
     let buffers = vec![None; root.buffers.len()];
     let (nodes, meshes) = (root.nodes.len(), root.meshes.len());
@@ -121,12 +122,7 @@ pub(super) fn read<'a>(
             }
         }
         None if nodes > 0 => {
-            let asset = reader.root.asset.get();
-            return Err(refuse(
-                source,
-                asset,
-                SceneError::new("gltf.syntax", "the file names no scene").allowed("`scenes` with `nodes`"),
-            ));
+            return Err(refuse(source, reader.root.asset.get(), SceneError::of(GltfError::NoScene {})));
         }
         None => {
             for mesh in 0..meshes {
@@ -134,67 +130,42 @@ pub(super) fn read<'a>(
             }
         }
     }
-    if reader.others > 0 {
-        let message = format!("{} left out", counted(reader.others as u64, "line or point is", "lines and points are"));
-        reader.found.notices.push(SceneError::new("mesh.strokes", message).value(reader.others.to_string()));
-    }
-    for (count, code, one, many) in [
-        (scenes.saturating_sub(1), "gltf.scenes", "other scene is", "other scenes are"),
-        (
-            reader.skinned,
-            "gltf.skin",
-            "skin, by which vertices follow bones, is",
-            "skins, by which vertices follow bones, are",
-        ),
-        (
-            reader.morphed,
-            "gltf.morph",
-            "part with shapes to morph into has them",
-            "parts with shapes to morph into have them",
-        ),
-        (animations, "gltf.animation", "animation is", "animations are"),
-    ] {
+    let mut tell = |count: usize, notice: fn(usize) -> AnyMessage| {
         if count > 0 {
-            let message = format!("{} left out", counted(count as u64, one, many));
-            reader.found.notices.push(SceneError::new(code, message).value(count.to_string()));
+            reader.found.notices.push(SceneError::of(notice(count)));
         }
-    }
+    };
+    tell(reader.others, |count| SurfaceNotice::Strokes { count }.into());
+    tell(scenes.saturating_sub(1), |count| GltfNotice::Scenes { count }.into());
+    tell(reader.skinned, |count| GltfNotice::Skins { count }.into());
+    tell(reader.morphed, |count| GltfNotice::Morphs { count }.into());
+    tell(animations, |count| GltfNotice::Animations { count }.into());
     reader.found.places = Places::Lines(reader.starts);
     Ok(reader.found)
 }
 
 impl<'a> Reader<'a, '_, '_, '_> {
     /// An entry of a list, by number.
-    fn entry(&self, list: &[Raw<'a>], index: usize, what: &str) -> Result<Raw<'a>, SceneError> {
+    fn entry(&self, list: &[Raw<'a>], index: usize, what: &'static str) -> Result<Raw<'a>, SceneError> {
         list.get(index).copied().ok_or_else(|| {
-            let error = SceneError::new("gltf.index", format!("there is no {what} {index}")).value(index.to_string());
-            let error = error.allowed(format!("below {}", list.len()));
+            let error = SceneError::of(GltfError::NoEntry { what, index, count: list.len() });
             refuse(self.source, self.root.asset.get(), error)
         })
+    }
+
+    /// An error at an object.
+    fn refuse(&self, raw: Raw<'_>, error: impl Into<AnyMessage>) -> SceneError {
+        refuse(self.source, raw.get(), SceneError::of(error))
     }
 
     fn node(&mut self, index: usize, map: &Map, depth: usize) -> Result<(), SceneError> {
         let raw = self.entry(&self.root.nodes, index, "node")?;
         // Else a short list of nodes could stand for a tree without end.
         if std::mem::replace(&mut self.placed[index], true) {
-            let error = SceneError::new("gltf.tree", format!("node {index} has two parents, or is its own"));
-            let error = error.value(index.to_string()).allowed("one parent for every node");
-            return Err(refuse(
-                self.source,
-                raw.get(),
-                error.hint("give each place a node of its own that names the same mesh"),
-            ));
+            return Err(self.refuse(raw, GltfError::Parents { node: index }));
         }
         if depth > DEEPEST {
-            let error = SceneError::new(
-                "gltf.depth",
-                format!("nodes are nested more than {DEEPEST} deep, or contain themselves"),
-            );
-            return Err(refuse(
-                self.source,
-                raw.get(),
-                error.value(index.to_string()).allowed(format!("at most {DEEPEST} levels")),
-            ));
+            return Err(self.refuse(raw, GltfError::Depth { deepest: DEEPEST, node: index }));
         }
         let node: Node = parse(self.source, raw.get())?;
         let own = match node.matrix {
@@ -269,23 +240,20 @@ impl<'a> Reader<'a, '_, '_, '_> {
                 return Ok(());
             }
             Some(mode) => {
-                let error = SceneError::new("gltf.unsupported", format!("primitives of mode {mode} cannot be read"));
-                return Err(refuse(self.source, raw.get(), error.value(mode.to_string()).allowed("4 (triangles)")));
+                return Err(self.refuse(raw, GltfError::Mode { mode }));
             }
         }
         self.morphed += usize::from(!primitive.targets.is_empty());
         let Some(place) = primitive.attributes.get("POSITION") else {
-            let error = SceneError::new("gltf.syntax", "a primitive has no POSITION");
-            return Err(refuse(self.source, raw.get(), error.allowed("an attribute POSITION")));
+            return Err(self.refuse(raw, GltfError::NoPosition {}));
         };
         let first = self.found.positions.len();
         let rows = self.accessor(*place, "VEC3", &[5126])?;
         for p in &rows {
             let q = core::array::from_fn(|i| (0..3).map(|k| map[i][k] * p[k]).sum::<f64>() + map[i][3]);
             if q.iter().any(|x: &f64| !x.is_finite()) {
-                let message = format!("a coordinate of vertex {} is not finite", self.found.positions.len() - first);
-                let error = SceneError::new("scene.not_finite", message).value(format!("{q:?}"));
-                return Err(refuse(self.source, raw.get(), error.allowed("finite numbers")));
+                let (vertex, place) = (self.found.positions.len() - first, format!("{q:?}"));
+                return Err(self.refuse(raw, GltfError::NotFinitePlace { vertex, place }));
             }
             self.found.positions.push(q);
         }
@@ -297,9 +265,7 @@ impl<'a> Reader<'a, '_, '_, '_> {
             None => (0..count as u32).collect(),
         };
         if !indices.len().is_multiple_of(3) {
-            let error = SceneError::new("gltf.syntax", format!("a primitive has {} corners", indices.len()));
-            let error = error.value(indices.len().to_string()).allowed("three for every triangle");
-            return Err(refuse(self.source, raw.get(), error));
+            return Err(self.refuse(raw, GltfError::Corners { corners: indices.len() }));
         }
         // What nodes do to them is not rounded by the file.
         let stored = Stored::of(&rows, indices.chunks_exact(3), true);
@@ -311,18 +277,12 @@ impl<'a> Reader<'a, '_, '_, '_> {
             + map[0][2] * (map[1][0] * map[2][1] - map[1][1] * map[2][0]);
         for (k, corners) in indices.chunks_exact(3).enumerate() {
             if let Some(far) = corners.iter().find(|c| **c as usize >= count) {
-                let error =
-                    SceneError::new("mesh.index", format!("triangle {k} names vertex {far}")).value(far.to_string());
-                return Err(refuse(self.source, raw.get(), error.allowed(format!("below {count}"))));
+                return Err(self.refuse(raw, SurfaceError::NoVertexOfTriangle { triangle: k, vertex: *far, count }));
             }
             let [a, b, c] = [corners[0], corners[1], corners[2]].map(|c| c + first as u32);
             if a == b || b == c || c == a {
-                let error = SceneError::new("mesh.degenerate_face", format!("triangle {k} names a vertex twice"));
-                return Err(refuse(
-                    self.source,
-                    raw.get(),
-                    error.value(format!("{corners:?}")).allowed("three different vertices"),
-                ));
+                let corners = format!("{corners:?}");
+                return Err(self.refuse(raw, SurfaceError::VertexTwice { triangle: k, corners }));
             }
             self.found.triangles.push(if det < 0.0 { [a, c, b] } else { [a, b, c] });
             self.starts.push(start);
@@ -331,21 +291,21 @@ impl<'a> Reader<'a, '_, '_, '_> {
     }
 
     /// The rows of an accessor: three numbers or one, as the kind says.
-    fn accessor(&mut self, index: usize, kind: &str, components: &[u32]) -> Result<Vec<[f64; 3]>, SceneError> {
+    fn accessor(&mut self, index: usize, kind: &'static str, components: &[u32]) -> Result<Vec<[f64; 3]>, SceneError> {
         let source = self.source;
         let raw = self.entry(&self.root.accessors, index, "accessor")?;
-        let bad = |code, message: String| refuse(source, raw.get(), SceneError::new(code, message));
+        let bad = |error: GltfError| Err(refuse(source, raw.get(), SceneError::of(error)));
         let accessor: Accessor<'a> = parse(source, raw.get())?;
         if accessor.sparse.is_some() {
-            return Err(bad("gltf.unsupported", "sparse accessors cannot be read".into()).value("sparse"));
+            return bad(GltfError::Sparse {});
         }
         if accessor.kind != kind || !components.contains(&accessor.component) {
-            let found = format!("{} of type {}", visible(&accessor.kind), accessor.component);
-            let allowed = format!("{kind} of type {components:?}");
-            return Err(bad("gltf.syntax", format!("the accessor holds {found}")).value(found).allowed(allowed));
+            let (found, component, components) =
+                (visible(&accessor.kind), accessor.component, format!("{components:?}"));
+            return bad(GltfError::Accessor { kind: found, component, wanted: kind, components });
         }
         let Some(view) = accessor.view else {
-            return Err(bad("gltf.unsupported", "the accessor has no bufferView".into()).value("none"));
+            return bad(GltfError::NoView {});
         };
         let view_raw = self.entry(&self.root.views, view, "bufferView")?;
         let view: View = parse(source, view_raw.get())?;
@@ -365,14 +325,7 @@ impl<'a> Reader<'a, '_, '_, '_> {
             (last <= view.length && end <= bytes.len() as u64 && stride >= each).then_some(())
         };
         if within().is_none() {
-            let message = format!(
-                "{} rows of {each} bytes do not lie within the view and its buffer of {} bytes",
-                accessor.count,
-                bytes.len()
-            );
-            return Err(bad("gltf.size", message)
-                .value(accessor.count.to_string())
-                .hint("the file is cut off, or the view is too short"));
+            return bad(GltfError::Rows { rows: accessor.count, each, bytes: bytes.len() });
         }
         // What describes it is read again too.
         self.draw(accessor.count + (raw.get().len() + view_raw.get().len()) as u64 / 64, raw)?;
@@ -401,19 +354,16 @@ impl<'a> Reader<'a, '_, '_, '_> {
             return Ok(Arc::clone(bytes));
         }
         let buffer: Buffer = parse(source, raw.get())?;
-        let bad = |code, message: String| refuse(source, raw.get(), SceneError::new(code, message));
+        let bad = |error: GltfError| Err(refuse(source, raw.get(), SceneError::of(error)));
         let bytes: Arc<[u8]> = match (&buffer.uri, self.binary) {
             (None, Some(binary)) if index == 0 => Arc::from(binary),
-            (None, _) => return Err(bad("gltf.syntax", "the buffer has neither an address nor a binary chunk".into())),
-            (Some(uri), _) if uri.starts_with("data:") => match uri
-                .split_once(";base64,")
-                .and_then(|(_, t)| base64::decode(t.as_bytes()))
-            {
-                Some(bytes) => bytes.into(),
-                None => {
-                    return Err(bad("gltf.syntax", "the data address is no base64".into()).allowed("data:…;base64,…"));
+            (None, _) => return bad(GltfError::NoBytes {}),
+            (Some(uri), _) if uri.starts_with("data:") => {
+                match uri.split_once(";base64,").and_then(|(_, t)| base64::decode(t.as_bytes())) {
+                    Some(bytes) => bytes.into(),
+                    None => return bad(GltfError::Base64 {}),
                 }
-            },
+            }
             // Relative to the glTF file, by the rules for all files of a scene.
             (Some(uri), _) => {
                 let folder = source.file.rsplit_once('/').map_or(String::new(), |(folder, _)| format!("{folder}/"));
@@ -421,10 +371,7 @@ impl<'a> Reader<'a, '_, '_, '_> {
             }
         };
         if (bytes.len() as u64) < buffer.length {
-            let message = format!("the buffer promises {} bytes and has {}", buffer.length, bytes.len());
-            return Err(bad("gltf.size", message)
-                .value(bytes.len().to_string())
-                .allowed(format!("{} bytes", buffer.length)));
+            return bad(GltfError::Buffer { promised: buffer.length, bytes: bytes.len() });
         }
         self.buffers[index] = Some(Arc::clone(&bytes));
         Ok(bytes)

@@ -1,5 +1,6 @@
 //! JSON whose values know their place in the file.
 
+use super::drawing_errors::MapError;
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
 use serde::Deserialize;
@@ -26,8 +27,8 @@ pub(super) fn parse<'a, T: Deserialize<'a>>(source: &Source<'_>, raw: &'a str) -
         let text = e.to_string();
         let message = text.rsplit_once(" at line ").map_or(text.as_str(), |(message, _)| message);
         let found: String = source.text.get(at..).unwrap_or("").chars().take(12).collect();
-        let error = source.mark(SceneError::new("json.syntax", visible(message)), at, at + 1);
-        error.value(visible(&found))
+        let (reason, found) = (visible(message), visible(&found));
+        source.mark(SceneError::of(MapError::Json { reason, found }), at, at + 1)
     })
 }
 

@@ -5,13 +5,13 @@
 
 use super::curves::{Curves, Point, larger, smaller};
 use super::drawing::Drawing;
+use super::drawing_errors::{MapError, MapNotice};
 use super::globe::{self, Polygon};
 use super::json::{Raw, parse, refuse, span};
 use crate::budget::POINTS;
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
 use opruga_core::spec::{Values, nearest};
-use opruga_math::words::counted;
 use opruga_mesh::outline::Inside;
 use serde::Deserialize;
 use std::cell::Cell;
@@ -92,8 +92,7 @@ pub(super) fn read<'a>(source: &'a Source<'a>, shape: &'a Values) -> Result<Draw
         let layer = layer(source, raw, &topology, shape.text("layer"))?;
         reader.object(layer, wanted.is_none(), 0)?;
     } else if let Some(layer) = shape.text("layer") {
-        let error = SceneError::new("map.unknown_layer", format!("there is no layer `{}`", visible(layer)));
-        let error = error.value(visible(layer)).allowed("no `layer`: only a topology has some");
+        let error = SceneError::of(MapError::NoLayers { layer: visible(layer) });
         return Err(refuse(source, &text[..1.min(text.len())], error));
     } else {
         reader.object(raw, wanted.is_none(), 0)?;
@@ -118,8 +117,7 @@ pub(super) fn read<'a>(source: &'a Source<'a>, shape: &'a Values) -> Result<Draw
     }
     let mut notices = Vec::new();
     if reader.others > 0 {
-        let message = format!("{} left out", counted(reader.others as u64, "point or line is", "points and lines are"));
-        notices.push(SceneError::new("mesh.strokes", message).value(reader.others.to_string()));
+        notices.push(SceneError::of(MapNotice::PointsAndLines { count: reader.others }));
     }
     notices.extend(reader.told(&laid_out));
     Ok(Drawing { curves, y_down: false, source: Some(source), places, painted: Vec::new(), rules: Vec::new(), notices })
@@ -149,10 +147,7 @@ fn positions(source: &Source<'_>, raw: Raw<'_>) -> Result<Vec<Point>, SceneError
     rows.into_iter()
         .map(|row| match row.as_slice() {
             [x, y, ..] => Ok([*x, *y]),
-            _ => {
-                let error = SceneError::new("map.syntax", format!("a position has {} numbers", row.len()));
-                Err(refuse(source, raw.get(), error.value(row.len().to_string()).allowed("two or three numbers")))
-            }
+            _ => Err(refuse(source, raw.get(), SceneError::of(MapError::Position { count: row.len() }))),
         })
         .collect()
 }
@@ -165,22 +160,18 @@ fn layer<'a>(
     wanted: Option<&str>,
 ) -> Result<Raw<'a>, SceneError> {
     let names = || topology.objects.keys().map(String::as_str);
-    let list = || names().map(visible).collect::<Vec<_>>().join(", ");
     let found = match wanted {
         Some(name) => topology.objects.get(name),
         None if topology.objects.len() == 1 => topology.objects.values().next(),
         None => None,
     };
     found.copied().ok_or_else(|| {
-        let name = wanted.unwrap_or("");
-        let message = match wanted {
-            Some(name) => format!("there is no layer `{}`", visible(name)),
-            None => format!("the map has {} layers", topology.objects.len()),
-        };
-        let error = SceneError::new("map.unknown_layer", message).value(visible(name)).allowed(list());
+        let (count, known) = (topology.objects.len(), names().map(visible).collect::<Vec<_>>().join(", "));
         let error = match wanted {
-            Some(name) => error.nearest(nearest(name, names())),
-            None => error.hint("name one by `layer`"),
+            Some(name) => {
+                SceneError::of(MapError::NoLayer { layer: visible(name), known }).nearest(nearest(name, names()))
+            }
+            None => SceneError::of(MapError::SeveralLayers { count, known }),
         };
         refuse(source, &raw.get()[..1], error)
     })
@@ -190,8 +181,8 @@ impl<'a> Reader<'a, '_> {
     /// An object and what is in it; `taken` where the scene wants all of it.
     fn object(&mut self, raw: Raw<'a>, taken: bool, depth: usize) -> Result<(), SceneError> {
         if depth > DEEPEST {
-            let error = SceneError::new("map.depth", format!("collections are nested more than {DEEPEST} deep"));
-            return Err(refuse(self.source, &raw.get()[..1], error.allowed(format!("at most {DEEPEST} levels"))));
+            let error = SceneError::of(MapError::Depth { deepest: DEEPEST });
+            return Err(refuse(self.source, &raw.get()[..1], error));
         }
         if raw.get() == "null" {
             self.empty += usize::from(taken);
@@ -231,10 +222,7 @@ impl<'a> Reader<'a, '_> {
             }
             "Point" | "MultiPoint" | "LineString" | "MultiLineString" => self.others += usize::from(taken),
             kind => {
-                let error = SceneError::new("map.syntax", format!("`{}` is no type that is read here", visible(kind)));
-                let error = error
-                    .value(visible(kind))
-                    .allowed("FeatureCollection, Feature, GeometryCollection, Polygon, MultiPolygon, Topology");
+                let error = SceneError::of(MapError::Kind { kind: visible(kind) });
                 return Err(refuse(self.source, &raw.get()[..1], error));
             }
         }
@@ -268,8 +256,8 @@ impl<'a> Reader<'a, '_> {
         let (field, name) =
             if self.arcs.is_some() { (object.arcs, "arcs") } else { (object.coordinates, "coordinates") };
         field.ok_or_else(|| {
-            let error = SceneError::new("map.syntax", format!("a {} has no `{name}`", object.kind)).allowed(name);
-            refuse(self.source, raw.get(), error)
+            let kind = visible(&object.kind);
+            refuse(self.source, raw.get(), SceneError::of(MapError::NoField { kind, field: name }))
         })
     }
 
@@ -286,14 +274,9 @@ impl<'a> Reader<'a, '_> {
                         // ~k is arc k backwards.
                         let (place, backwards) = if index < 0 { (!index, true) } else { (index, false) };
                         let Some(arc) = usize::try_from(place).ok().and_then(|k| arcs.get(k)) else {
-                            let error =
-                                SceneError::new("map.arc", format!("there is no arc {index}")).value(index.to_string());
                             let n = arcs.len() as i64;
-                            return Err(refuse(
-                                self.source,
-                                geometry.get(),
-                                error.allowed(format!("{} to {}", -n, n - 1)),
-                            ));
+                            let error = SceneError::of(MapError::NoArc { arc: index, least: -n, most: n - 1 });
+                            return Err(refuse(self.source, geometry.get(), error));
                         };
                         // The first point of an arc repeats the last of the one before.
                         points.pop();
@@ -310,9 +293,8 @@ impl<'a> Reader<'a, '_> {
                 }
             };
             if points.first() != points.last() || points.len() < 4 {
-                let error = SceneError::new("map.syntax", "a ring is not closed").value(points.len().to_string());
-                let allowed = "four or more positions, the last like the first";
-                return Err(refuse(self.source, ring.get(), error.allowed(allowed)));
+                let error = SceneError::of(MapError::OpenRing { count: points.len() });
+                return Err(refuse(self.source, ring.get(), error));
             }
             points.pop();
             out.push(points);
@@ -325,10 +307,8 @@ impl<'a> Reader<'a, '_> {
             && let Some(k) = lies_outside((outer, holes))
             && self.checks_holes(outer)
         {
-            let error = SceneError::new("map.hole", format!("hole {} lies outside of its polygon", k + 1));
-            let at = holes[k].first().map_or(String::new(), |p| format!("{}, {}", p[0], p[1]));
-            let error = error.value(at).allowed("holes inside of the first ring of a polygon");
-            return Err(refuse(self.source, geometry.get(), error.hint("islands are polygons of their own")));
+            let place = holes[k].first().map_or(String::new(), |p| format!("{}, {}", p[0], p[1]));
+            return Err(refuse(self.source, geometry.get(), SceneError::of(MapError::Hole { hole: k + 1, place })));
         }
         Ok(out)
     }
@@ -341,27 +321,18 @@ impl<'a> Reader<'a, '_> {
     /// What was done that the map does not say by itself.
     fn told(&self, done: &globe::LaidOut) -> Vec<SceneError> {
         let mut told = Vec::new();
-        let mut tell = |count: usize, code, [one, many]: [&str; 2]| {
+        let mut tell = |count: usize, notice: fn(usize) -> MapNotice| {
             if count > 0 {
-                let message = format!("{count} {}", if count == 1 { one } else { many });
-                told.push(SceneError::new(code, message).value(count.to_string()));
+                told.push(SceneError::of(notice(count)));
             }
         };
-        tell(self.empty, "map.empty", ["feature has no geometry", "features have no geometry"]);
-        let over = [
-            "outline crosses the antimeridian and is in one piece",
-            "outlines cross the antimeridian and are in one piece",
-        ];
-        tell(done.over, "map.antimeridian", over);
-        let cut = ["", "polygons that were cut along the antimeridian are one again"];
-        tell(done.cut, "map.antimeridian", cut);
-        let beside = ["polygon is moved by 360° beside the others", "polygons are moved by 360° beside the others"];
-        tell(done.beside, "map.antimeridian", beside);
-        let polar = ["outline around a pole is cut along the antimeridian and closed along the pole"; 2];
-        tell(done.polar, "map.pole", polar);
+        tell(self.empty, |count| MapNotice::Empty { count });
+        tell(done.over, |count| MapNotice::Over { count });
+        tell(done.cut, |count| MapNotice::Cut { count });
+        tell(done.beside, |count| MapNotice::Beside { count });
+        tell(done.polar, |count| MapNotice::Polar { count });
         if let (2.., Some(name)) = (self.meant, self.wanted) {
-            let message = format!("{} features belong to `{}` and are read together", self.meant, visible(name));
-            told.push(SceneError::new("map.features", message).value(self.meant.to_string()));
+            told.push(SceneError::of(MapNotice::Features { count: self.meant, feature: visible(name) }));
         }
         told
     }
@@ -370,19 +341,16 @@ impl<'a> Reader<'a, '_> {
     fn nothing(&self, raw: Raw<'_>) -> SceneError {
         let error = match self.wanted {
             Some(name) if self.meant > 0 => {
-                let what = match (self.others, self.empty) {
-                    (0, 0) => "nothing",
-                    (0, _) => "a feature without geometry",
-                    _ => "nothing but points and lines",
-                };
-                let error = SceneError::new("map.unknown_feature", format!("`{}` is {what}", visible(name)));
-                error.value(visible(name)).allowed("features with polygons")
+                let feature = visible(name);
+                SceneError::of(match (self.others, self.empty) {
+                    (0, 0) => MapError::Nothing { feature },
+                    (0, _) => MapError::NoGeometry { feature },
+                    _ => MapError::PointsAndLines { feature },
+                })
             }
-            Some(name) => SceneError::new("map.unknown_feature", format!("no polygon belongs to `{}`", visible(name)))
-                .value(visible(name))
-                .allowed("the `id` of a feature, or a text among its properties")
+            Some(name) => SceneError::of(MapError::NoFeature { feature: visible(name) })
                 .nearest(nearest(name, self.names.iter().map(String::as_str))),
-            None => SceneError::new("shape.no_area", "the map holds no polygon").value("0"),
+            None => SceneError::of(MapError::NoPolygon {}),
         };
         refuse(self.source, &raw.get()[..1], error)
     }
@@ -404,12 +372,8 @@ fn projection(
     for (rings, raw) in polygons {
         for point in rings.iter().flatten() {
             if !(point[1].abs() <= most && point[0].abs() <= 540.0) {
-                let error =
-                    SceneError::new("map.range", format!("({}, {}) is no place on the globe", point[0], point[1]));
-                let error = error.value(format!("{}, {}", point[0], point[1]));
-                let allowed = format!("latitudes from -{most} to {most}, longitudes from -540 to 540");
-                let hint = "`projection = \"none\"` takes coordinates as they are";
-                return Err(refuse(source, raw.get(), error.allowed(allowed).hint(hint)));
+                let error = SceneError::of(MapError::Range { x: point[0], y: point[1], most });
+                return Err(refuse(source, raw.get(), error));
             }
             low = smaller(low, point[1]);
             high = larger(high, point[1]);

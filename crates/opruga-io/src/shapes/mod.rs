@@ -11,10 +11,13 @@ mod bitmap;
 mod composite;
 mod curves;
 mod drawing;
+mod drawing_errors;
 mod entities;
+mod errors;
 mod glb;
 mod globe;
 mod gltf;
+mod gltf_errors;
 mod gltf_json;
 mod json;
 mod map;
@@ -23,6 +26,7 @@ mod ply;
 mod remeshing;
 mod rules;
 mod stl;
+mod surface_errors;
 mod svg;
 mod svg_clip;
 mod svg_elements;
@@ -46,11 +50,39 @@ use crate::meshes;
 use crate::problem::{SceneError, visible};
 use crate::scene::Cost;
 use crate::source::Source;
+use errors::ShapeError;
 use opruga_core::spec::Values;
+use opruga_mesh::outline::OutlineError;
 use opruga_mesh::{Mesh, MeshError};
 use opruga_world::shapes::{self, Filling, Transform};
 use std::any::Any;
 use std::sync::Arc;
+
+/// All messages about shapes from files.
+pub(crate) const MESSAGES: &[&[opruga_math::message::Variant]] = &[
+    errors::Change::VARIANTS,
+    errors::ThinCause::VARIANTS,
+    errors::ShapeHint::VARIANTS,
+    errors::ShapeError::VARIANTS,
+    errors::ShapeNotice::VARIANTS,
+    surface_errors::FaceProblem::VARIANTS,
+    surface_errors::SurfaceError::VARIANTS,
+    surface_errors::SurfaceNotice::VARIANTS,
+    surface_errors::ObjError::VARIANTS,
+    surface_errors::ObjNotice::VARIANTS,
+    surface_errors::PlyError::VARIANTS,
+    surface_errors::PlyNotice::VARIANTS,
+    surface_errors::StlError::VARIANTS,
+    surface_errors::StlNotice::VARIANTS,
+    gltf_errors::Sized::VARIANTS,
+    gltf_errors::GltfError::VARIANTS,
+    gltf_errors::GltfNotice::VARIANTS,
+    drawing_errors::SvgError::VARIANTS,
+    drawing_errors::SvgNotice::VARIANTS,
+    drawing_errors::MapError::VARIANTS,
+    drawing_errors::MapNotice::VARIANTS,
+    drawing_errors::LetterError::VARIANTS,
+];
 
 /// Gives the bytes of a file by the name that the scene uses.
 type Open<'o> = dyn FnMut(&str) -> Result<Arc<[u8]>, SceneError> + 'o;
@@ -120,7 +152,7 @@ pub(crate) fn load(shape: &Values, dimension: usize, open: &mut Open<'_>) -> Res
         }
         "mesh" => volume::loaded(&name, &bytes, shape, dimension, open),
         "surface" => surface(&name, &bytes, shape, open),
-        kind => Err(SceneError::new("scene.unknown_kind", format!("`{kind}` reads no file")).into()),
+        kind => Err(SceneError::of(ShapeError::ReadsNoFile { kind: kind.into() }).into()),
     }
 }
 
@@ -186,12 +218,8 @@ fn surface(name: &str, bytes: &[u8], shape: &Values, open: &mut Open<'_>) -> Res
         }
         _ if meshes::is_mesh(name) => triangles::loaded(volume::surface(name, bytes, open)?, name, None, shape),
         _ => {
-            let error =
-                SceneError::new("shape.format", format!("files ending in `.{}` cannot be read", visible(&ending)));
-            Err(error
-                .value(visible(name))
-                .allowed(format!("a file ending in .obj, .stl, .ply, .gltf, .glb, {}", meshes::ENDINGS))
-                .into())
+            let error = SceneError::of(ShapeError::Ending { ending: visible(&ending), others: meshes::ENDINGS });
+            Err(error.value(visible(name)).into())
         }
     }
 }
@@ -204,10 +232,8 @@ fn text_of<'a>(name: &'a str, bytes: &'a [u8]) -> Result<Source<'a>, SceneError>
         Err(e) => {
             let good = core::str::from_utf8(&bytes[..e.valid_up_to()]).unwrap_or("");
             let byte = bytes.get(good.len()).copied().unwrap_or(0);
-            let error = SceneError::new("shape.encoding", format!("byte 0x{byte:02x} is no UTF-8"));
-            let error = Source { file: name, text: good }.mark(error, good.len(), good.len());
-            let error = error.value(format!("0x{byte:02x}"));
-            Err(error.allowed("a text in UTF-8").hint("save it as UTF-8"))
+            let error = SceneError::of(ShapeError::Encoding { byte: format!("0x{byte:02x}") });
+            Err(Source { file: name, text: good }.mark(error, good.len(), good.len()))
         }
     }
 }
@@ -232,7 +258,7 @@ impl Loaded {
         &self,
         transform: &Transform<'_>,
     ) -> Result<(Mesh<D>, Vec<SceneError>), SceneError> {
-        let refuse = |refusal: MeshError| SceneError::new("scene.shape", refusal.to_string());
+        let refuse = |error: MeshError| SceneError::of(OutlineError::Mesh { error });
         let mut told = Vec::new();
         let made: Box<dyn Any> = match &self.content {
             Content::Outline(outline) => {
@@ -262,7 +288,7 @@ impl Loaded {
             Content::Space(mesh) => mesh.clone(),
         };
         let Ok(mut mesh) = made.downcast::<Mesh<D>>() else {
-            return Err(SceneError::new("scene.dimension", format!("this shape does not exist in {D}D")));
+            return Err(SceneError::of(ShapeError::Dimension { dimension: D }));
         };
         shapes::place(&mut mesh, transform).map_err(refuse)?;
         Ok((*mesh, told))

@@ -8,10 +8,11 @@
 //! # Source
 //! Wavefront Technologies, Object Files, version 3.0.
 
-use super::triangles::{CORNERS, Places, Triangles};
+use super::surface_errors::{ObjError, ObjNotice, SurfaceNotice};
+use super::triangles::{Places, Triangles};
+use crate::meshes::NumberHint;
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
-use opruga_math::words::counted;
 use std::collections::BTreeMap;
 
 /// A polygon as it stands in the file, before all vertices are known.
@@ -55,21 +56,19 @@ pub(super) fn read(source: &Source<'_>) -> Result<Triangles, SceneError> {
                 let mut position = [0.0; 3];
                 for x in &mut position {
                     let Some(part) = words.next() else {
-                        let error = SceneError::new("obj.syntax", "a vertex has fewer than three coordinates");
-                        return Err(refuse(word, error).value(visible(statement(line).0.trim())).allowed("v x y z"));
+                        let error = refuse(word, SceneError::of(ObjError::FewCoordinates {}));
+                        return Err(error.value(visible(statement(line).0.trim())));
                     };
                     *x = number(part).map_err(|e| refuse(part, e))?;
                 }
                 // A weight or a colour may follow.
                 let more: Vec<&str> = words.collect();
                 if more.len() > 4 {
-                    let error = SceneError::new("obj.syntax", "a vertex has more than seven numbers");
-                    return Err(refuse(more[4], error).allowed("v x y z, with a weight or a colour"));
+                    return Err(refuse(more[4], SceneError::of(ObjError::ManyNumbers {})));
                 }
                 if more.len() == 2 {
-                    let error = SceneError::new("obj.syntax", "a vertex has five numbers");
-                    let allowed = "3 numbers, 4 with a weight, 6 with a colour, 7 with both";
-                    return Err(refuse(more[1], error).value(visible(statement(line).0.trim())).allowed(allowed));
+                    let error = refuse(more[1], SceneError::of(ObjError::FiveNumbers {}));
+                    return Err(error.value(visible(statement(line).0.trim())));
                 }
                 let mut numbers = Vec::with_capacity(more.len());
                 for part in more {
@@ -83,16 +82,13 @@ pub(super) fn read(source: &Source<'_>) -> Result<Triangles, SceneError> {
                 let from = corners.len();
                 for part in words {
                     let index = part.split('/').next().unwrap_or("");
-                    let index: i64 = index.parse().map_err(|_| {
-                        let error = SceneError::new("obj.syntax", "a corner of a face is no whole number");
-                        refuse(part, error).allowed("v, v/vt, v//vn or v/vt/vn")
-                    })?;
+                    let corner = || refuse(part, SceneError::of(ObjError::Corner {}));
+                    let index: i64 = index.parse().map_err(|_| corner())?;
                     let count = found.positions.len() as i64;
                     if index == 0 || index < -count {
-                        let message =
-                            if index == 0 { "indices begin at 1" } else { "the index is before the first vertex" };
-                        let error = SceneError::new("mesh.index", message);
-                        return Err(refuse(part, error).allowed(format!("1 to {count}, or -{count} to -1")));
+                        let zero = index == 0;
+                        let error = if zero { ObjError::Zero { count } } else { ObjError::BeforeFirst { count } };
+                        return Err(refuse(part, SceneError::of(error)));
                     }
                     corners.push(if index < 0 { count + index } else { index - 1 });
                     for (k, text) in part.split('/').skip(1).enumerate() {
@@ -100,10 +96,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<Triangles, SceneError> {
                             continue;
                         }
                         let index = text.parse::<i64>().ok().filter(|index| k < 2 && *index != 0);
-                        let Some(index) = index else {
-                            let error = SceneError::new("obj.syntax", "a corner of a face is no whole number");
-                            return Err(refuse(part, error).allowed("v, v/vt, v//vn or v/vt/vn"));
-                        };
+                        let Some(index) = index else { return Err(corner()) };
                         // Those before the first cannot come any more.
                         let wanted = if index < -extras[k] { i64::MAX } else { index };
                         if wanted > largest[k].0 {
@@ -128,36 +121,24 @@ pub(super) fn read(source: &Source<'_>) -> Result<Triangles, SceneError> {
             "vn" => extras[1] += 1,
             "vp" | "s" | "usemtl" | "mtllib" | "usemap" | "maplib" => {}
             _ => {
-                let error =
-                    SceneError::new("obj.syntax", format!("`{}` is no statement that is read here", visible(word)));
-                return Err(refuse(word, error).allowed("v, vt, vn, vp, f, l, p, o, g, s, usemtl, mtllib, # comments"));
+                return Err(refuse(word, SceneError::of(ObjError::Statement { word: visible(word) })));
             }
         }
     }
     if strokes > 0 {
-        let notice = SceneError::new(
-            "mesh.strokes",
-            format!("{} left out", counted(strokes as u64, "line or point is", "lines and points are")),
-        );
-        found.notices.push(notice.value(strokes.to_string()));
+        found.notices.push(SceneError::of(SurfaceNotice::Strokes { count: strokes }));
     }
     if weighed > 0 {
-        let what = if weighed == 1 { "vertex has a weight" } else { "vertices have weights" };
-        let message = format!("{weighed} {what} other than 1, which triangles do not have");
-        found.notices.push(SceneError::new("obj.weight", message).value(weighed.to_string()));
+        found.notices.push(SceneError::of(ObjNotice::Weights { count: weighed }));
     }
     for (k, name) in ["vt", "vn"].into_iter().enumerate() {
         let (index, from, to) = largest[k];
         if index > extras[k] {
-            let error = SceneError::new("mesh.index", format!("a face names a `{name}` that is not there"));
-            let error = source.mark(error, from, to).value(visible(&source.text[from..to]));
-            let count = extras[k];
-            let allowed = if count == 0 {
-                format!("no `{name}`: the file has none")
-            } else {
-                format!("1 to {count}, or -{count} to -1")
+            let error = match extras[k] {
+                0 => ObjError::NoExtras { what: name },
+                count => ObjError::NoExtra { what: name, count },
             };
-            return Err(error.allowed(allowed));
+            return Err(source.mark(SceneError::of(error), from, to).value(visible(&source.text[from..to])));
         }
     }
     let mut lines = Vec::with_capacity(faces.len());
@@ -168,17 +149,15 @@ pub(super) fn read(source: &Source<'_>) -> Result<Triangles, SceneError> {
         let end = source.text[at..].find(['\n', '\r', '#']).map_or(source.text.len(), |k| at + k);
         let own = &corners[face.corners.0..face.corners.1];
         if let Some(far) = own.iter().find(|c| **c >= count as i64) {
-            let error =
-                SceneError::new("mesh.index", format!("there is no vertex {}", far + 1)).value((far + 1).to_string());
-            return Err(source.mark(error, at, end).allowed(format!("1 to {count}")));
+            let error = SceneError::of(ObjError::NoVertexOfFile { vertex: far + 1, count });
+            return Err(source.mark(error, at, end));
         }
         let own: Vec<u32> = own.iter().map(|c| *c as u32).collect();
         match found.polygon(&own) {
             Ok(n) => lines.extend(std::iter::repeat_n(face.line, n)),
-            Err(why) => {
+            Err(problem) => {
                 let value = visible(source.text[at..end].trim());
-                let error = source.mark(SceneError::new("mesh.degenerate_face", why), at, end).value(value);
-                return Err(error.allowed(CORNERS));
+                return Err(source.mark(SceneError::of(problem), at, end).value(value));
             }
         }
         if let Some(group) = face.group {
@@ -209,10 +188,8 @@ fn statement(line: &str) -> (&str, bool) {
 pub(super) fn number(text: &str) -> Result<f64, SceneError> {
     match text.parse::<f64>() {
         Ok(x) if x.is_finite() => Ok(x),
-        Ok(_) => Err(SceneError::new("scene.not_finite", "a coordinate is not finite").allowed("a finite number")),
-        Err(_) => {
-            let error = SceneError::new("shape.number", "this is no number").allowed("a number such as 1.5 or -2e-3");
-            Err(if text.contains(',') { error.hint("write a point, not a comma") } else { error })
-        }
+        Ok(_) => Err(SceneError::of(ObjError::NotFiniteNumberOfVertex {})),
+        Err(_) if text.contains(',') => Err(SceneError::of(ObjError::NoNumber {}).advice(NumberHint::Comma)),
+        Err(_) => Err(SceneError::of(ObjError::NoNumber {})),
     }
 }

@@ -6,10 +6,12 @@
 //! # Source
 //! G. Turk, The PLY Polygon File Format (1994).
 
-use super::triangles::{CORNERS, Places, Triangles};
+use super::surface_errors::{PlyError, PlyNotice, SurfaceError};
+use super::triangles::{Places, Triangles};
 use crate::meshes::cut_line;
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
+use opruga_math::message::AnyMessage;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Kind {
@@ -74,7 +76,8 @@ enum Format {
 /// allocated; `mesh.index`, `mesh.degenerate_face`, with the number of the element and, in binary files, the byte.
 pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Triangles, SceneError> {
     let (format, elements, body) = header(file, bytes)?;
-    let mut values = Reader { file, bytes, at: body, format };
+    let named = |error: PlyError| SceneError { file: file.into(), ..SceneError::of(error) };
+    let mut values = Reader { file, bytes, at: body, begun: body, format };
     let mut found = Triangles::default();
     let mut starts: Vec<u64> = Vec::new();
     let (mut seen_vertices, mut seen_faces) = (false, false);
@@ -86,28 +89,21 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Triangles, SceneError> {
             .sum();
         let (needed, left) = (u128::from(element.count) * least as u128, (bytes.len() + 1).saturating_sub(values.at));
         if needed > left as u128 {
-            let message = format!(
-                "the header promises {} of `{}`, but only {left} bytes follow",
-                element.count,
-                visible(&element.name)
-            );
-            let error = SceneError::new("ply.size", message).value(element.count.to_string());
-            let most = left / least.max(1);
-            return Err(SceneError { file: file.into(), ..error }
-                .allowed(format!("at most {most}"))
-                .hint("the file is cut off"));
+            let (element_name, most) = (visible(&element.name), left / least.max(1));
+            let (count, element, rest) = (element.count, element_name, left);
+            return Err(named(PlyError::Promised { count, element, rest, most }));
         }
         let place = |name: &str| element.properties.iter().position(|p| p.name == name && p.count.is_none());
         match element.name.as_str() {
             "vertex" => {
                 seen_vertices = true;
                 let (Some(x), Some(y), Some(z)) = (place("x"), place("y"), place("z")) else {
-                    let error = SceneError::new("ply.syntax", "`vertex` has no properties x, y, z").value("vertex");
-                    return Err(SceneError { file: file.into(), ..error });
+                    return Err(named(PlyError::NoCoordinates {}));
                 };
                 found.single |= [x, y, z].into_iter().any(|k| element.properties[k].kind == Kind::F32);
                 for _ in 0..element.count {
                     let mut row = [0.0; 3];
+                    values.begin();
                     for (k, property) in element.properties.iter().enumerate() {
                         let list = values.property(property)?;
                         for (axis, wanted) in [x, y, z].into_iter().enumerate() {
@@ -117,11 +113,8 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Triangles, SceneError> {
                         }
                     }
                     if let Some(bad) = row.iter().find(|x| !x.is_finite()) {
-                        let error = values.error(
-                            "scene.not_finite",
-                            format!("a coordinate of vertex {} is {bad}", found.positions.len()),
-                        );
-                        return Err(error.value(bad.to_string()).allowed("a finite number"));
+                        let (vertex, value) = (found.positions.len(), bad.to_string());
+                        return Err(values.error(SurfaceError::NotFiniteVertex { vertex, value }));
                     }
                     found.positions.push(row);
                 }
@@ -133,12 +126,11 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Triangles, SceneError> {
                     .iter()
                     .position(|p| p.count.is_some() && (p.name == "vertex_indices" || p.name == "vertex_index"));
                 let Some(wanted) = list else {
-                    let error = SceneError::new("ply.syntax", "`face` has no list vertex_indices").value("face");
-                    return Err(SceneError { file: file.into(), ..error });
+                    return Err(named(PlyError::NoIndices {}));
                 };
                 for face in 0..element.count {
-                    values.skip_space();
-                    let start = values.at as u64;
+                    values.begin();
+                    let start = values.begun as u64;
                     for (k, property) in element.properties.iter().enumerate() {
                         let row = values.property(property)?;
                         if k != wanted {
@@ -148,18 +140,16 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Triangles, SceneError> {
                         let mut corners = Vec::with_capacity(row.len());
                         for index in row {
                             if !(index >= 0.0 && index < count as f64) {
-                                let error = values.error("mesh.index", format!("face {face} names vertex {index}"));
-                                return Err(error
-                                    .value(index.to_string())
-                                    .allowed(format!("0 to {}", count.saturating_sub(1))));
+                                let most = count.saturating_sub(1);
+                                return Err(values.error(PlyError::NoVertexOfFace { face, vertex: index, most }));
                             }
                             corners.push(index as u32);
                         }
                         match found.polygon(&corners) {
                             Ok(triangles) => starts.extend(std::iter::repeat_n(start, triangles)),
-                            Err(why) => {
-                                let error = values.error("mesh.degenerate_face", format!("{why}: face {face}"));
-                                return Err(error.value(visible(&format!("{corners:?}"))).allowed(CORNERS));
+                            Err(problem) => {
+                                let corners = visible(&format!("{corners:?}"));
+                                return Err(values.error(SurfaceError::Face { problem, face, corners }));
                             }
                         }
                     }
@@ -168,28 +158,25 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Triangles, SceneError> {
             name => {
                 // Without properties they take no room: however many there are, nothing stands there.
                 for _ in 0..if element.properties.is_empty() { 0 } else { element.count } {
+                    values.begin();
                     for property in &element.properties {
                         values.property(property)?;
                     }
                 }
                 if element.count > 0 {
-                    let are = if element.count == 1 { "is" } else { "are" };
-                    let message = format!("{} of `{}` {are} left out", element.count, visible(name));
-                    found.notices.push(SceneError::new("ply.element", message).value(element.count.to_string()));
+                    let notice = PlyNotice::Element { count: element.count, element: visible(name) };
+                    found.notices.push(SceneError::of(notice));
                 }
             }
         }
     }
     if !seen_vertices || !seen_faces {
-        let missing = if seen_vertices { "face" } else { "vertex" };
-        let error =
-            SceneError::new("ply.syntax", format!("there is no element `{missing}` before its use")).value(missing);
-        return Err(SceneError { file: file.into(), ..error });
+        return Err(named(PlyError::NoElement { element: if seen_vertices { "face" } else { "vertex" } }));
     }
     let rest = bytes.get(values.at..).unwrap_or(&[]);
     if format != Format::Text && !rest.is_empty() || !rest.trim_ascii().is_empty() {
-        let error = values.error("ply.size", format!("{} bytes follow the last element", rest.len()));
-        return Err(error.value(rest.len().to_string()).allowed("0 bytes"));
+        values.begin();
+        return Err(values.error(PlyError::Behind { count: rest.len() }));
     }
     // Of an index that is cut off, what is left looks whole.
     if format == Format::Text && bytes.last().is_some_and(|b| !b.is_ascii_whitespace()) {
@@ -205,13 +192,12 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Triangles, SceneError> {
 
 /// Format, elements, and where they begin.
 fn header(file: &str, bytes: &[u8]) -> Result<(Format, Vec<Element>, usize), SceneError> {
-    let refuse = |from: usize, end: usize, message: String, allowed: &str| {
+    let refuse = |from: usize, end: usize, error: PlyError| {
         // Binary contents may follow; the header itself is a text.
         let good = bytes[..end].iter().position(|b| !b.is_ascii()).unwrap_or(end);
         let text = core::str::from_utf8(&bytes[..good]).unwrap_or("");
         let value = text.get(from..).unwrap_or("").trim().to_string();
-        let error = Source { file, text }.mark(SceneError::new("ply.syntax", message), from, end);
-        error.value(visible(&value)).allowed(allowed)
+        Source { file, text }.mark(SceneError::of(error), from, end).value(visible(&value))
     };
     let (mut format, mut elements): (Option<Format>, Vec<Element>) = (None, Vec::new());
     let mut at = 0;
@@ -219,14 +205,14 @@ fn header(file: &str, bytes: &[u8]) -> Result<(Format, Vec<Element>, usize), Sce
     loop {
         let from = at;
         let Some(length) = bytes[at..].iter().take(4096).position(|b| *b == b'\n') else {
-            return Err(refuse(from, bytes.len().min(from + 80), "the header has no end".into(), "end_header"));
+            return Err(refuse(from, bytes.len().min(from + 80), PlyError::NoEnd {}));
         };
         at += length + 1;
         let line = core::str::from_utf8(&bytes[from..at - 1]).unwrap_or("\u{fffd}").trim();
         let words: Vec<&str> = line.split_ascii_whitespace().collect();
-        let bad = |message: &str, allowed: &str| refuse(from, at - 1, message.into(), allowed);
+        let bad = |error: PlyError| Err(refuse(from, at - 1, error));
         if first && line != "ply" {
-            return Err(bad("the file does not begin with `ply`", "ply"));
+            return bad(PlyError::NoMagic {});
         }
         match words.as_slice() {
             ["ply"] if first => {}
@@ -235,41 +221,41 @@ fn header(file: &str, bytes: &[u8]) -> Result<(Format, Vec<Element>, usize), Sce
                     "ascii" => Format::Text,
                     "binary_little_endian" => Format::Little,
                     "binary_big_endian" => Format::Big,
-                    _ => return Err(bad("the format is unknown", "ascii, binary_little_endian, binary_big_endian")),
+                    _ => return bad(PlyError::Format {}),
                 });
             }
             ["comment" | "obj_info", ..] => {}
             ["element", name, count] => {
-                let Ok(count) = count.parse() else { return Err(bad("the count is no whole number", "0 or more")) };
+                let Ok(count) = count.parse() else { return bad(PlyError::Count {}) };
                 elements.push(Element { name: (*name).to_string(), count, properties: Vec::new() });
             }
             ["property", "list", count, kind, name] => {
                 let (Some(count), Some(kind), Some(element)) =
                     (Kind::named(count), Kind::named(kind), elements.last_mut())
                 else {
-                    return Err(bad("the property cannot be read", "property list TYPE TYPE name, below an element"));
+                    return bad(PlyError::ListProperty {});
                 };
                 if matches!(count, Kind::F32 | Kind::F64) {
-                    return Err(bad("the count of a list is no whole number", "a whole type"));
+                    return bad(PlyError::ListCount {});
                 }
                 element.properties.push(Property { name: (*name).to_string(), count: Some(count), kind });
             }
             ["property", kind, name] => {
                 let (Some(kind), Some(element)) = (Kind::named(kind), elements.last_mut()) else {
-                    return Err(bad("the property cannot be read", "property TYPE name, below an element"));
+                    return bad(PlyError::Property {});
                 };
                 element.properties.push(Property { name: (*name).to_string(), count: None, kind });
             }
             ["end_header"] => break,
-            _ => return Err(bad("this line cannot be read", "format, comment, element, property, end_header")),
+            _ => return bad(PlyError::Line {}),
         }
         first = false;
         if elements.len() > 1000 || elements.iter().map(|e| e.properties.len()).sum::<usize>() > 10_000 {
-            return Err(bad("the header is too long", "at most 1000 elements and 10000 properties"));
+            return bad(PlyError::LongHeader {});
         }
     }
     let Some(format) = format else {
-        return Err(refuse(0, 3, "the header names no format".into(), "format ascii 1.0"));
+        return Err(refuse(0, 3, PlyError::NoFormat {}));
     };
     Ok((format, elements, at))
 }
@@ -279,13 +265,15 @@ struct Reader<'a> {
     file: &'a str,
     bytes: &'a [u8],
     at: usize,
+    /// Where the element begins that is read.
+    begun: usize,
     format: Format,
 }
 
 impl Reader<'_> {
     /// An error where the reader is: a line of a text, a byte of a binary file.
-    fn error(&self, code: &'static str, message: String) -> SceneError {
-        self.placed(SceneError::new(code, message))
+    fn error(&self, error: impl Into<AnyMessage>) -> SceneError {
+        self.placed(SceneError::of(error))
     }
 
     fn placed(&self, error: SceneError) -> SceneError {
@@ -295,15 +283,15 @@ impl Reader<'_> {
             let from = text.trim_end().rfind('\n').map_or(0, |k| k + 1);
             return Source { file: self.file, text }.mark(error, from, text.trim_end().len());
         }
-        let message = format!("{}, before byte {}", error.message, self.at);
-        SceneError { file: self.file.to_string(), message, ..error }
+        SceneError { file: self.file.to_string(), byte: Some(self.begun), ..error }
     }
 
-    /// Goes to the next word of a text.
-    fn skip_space(&mut self) {
+    /// Goes to where the next element begins: to the next word of a text.
+    fn begin(&mut self) {
         if self.format == Format::Text {
             self.at += self.bytes[self.at..].iter().take_while(|b| b.is_ascii_whitespace()).count();
         }
+        self.begun = self.at;
     }
 
     /// The values of one property: one, or those of a list.
@@ -313,8 +301,7 @@ impl Reader<'_> {
         let least = if self.format == Format::Text { 1 } else { property.kind.size() };
         let most = self.bytes.len().saturating_sub(self.at) / least + 1;
         if !(length >= 0.0 && length <= most as f64) {
-            let error = self.error("ply.size", format!("a list of `{}` has {length} values", visible(&property.name)));
-            return Err(error.value(length.to_string()).allowed(format!("0 to {most}, as many as the file can hold")));
+            return Err(self.error(PlyError::ListLength { property: visible(&property.name), length, most }));
         }
         (0..length as u64).map(|_| self.value(property.kind)).collect()
     }
@@ -325,8 +312,7 @@ impl Reader<'_> {
         }
         let size = kind.size();
         let Some(bytes) = self.bytes.get(self.at..self.at + size) else {
-            let error = self.error("ply.size", "the file ends in the middle of an element".into());
-            return Err(error.value(self.bytes.len().to_string()).hint("the file is cut off"));
+            return Err(self.error(PlyError::Ends { length: self.bytes.len() }));
         };
         let mut word = [0u8; 8];
         word[..size].copy_from_slice(bytes);
@@ -354,20 +340,18 @@ impl Reader<'_> {
         let word = core::str::from_utf8(&rest[skipped..skipped + length]).unwrap_or("\u{fffd}").to_string();
         self.at += skipped + length;
         if word.is_empty() {
-            return Err(self
-                .error("ply.size", "the file ends in the middle of an element".into())
-                .value("end of file"));
+            return Err(self.error(PlyError::TextEnds {}));
         }
         let parsed = match kind {
             Kind::F32 | Kind::F64 => word.parse::<f64>().ok(),
             _ => word.parse::<i64>().ok().map(|x| x as f64),
         };
         parsed.ok_or_else(|| {
-            let allowed =
-                if matches!(kind, Kind::F32 | Kind::F64) { "a number with a decimal point" } else { "a whole number" };
-            self.error("shape.number", format!("`{}` is no number", visible(&word)))
-                .value(visible(&word))
-                .allowed(allowed)
+            let word = visible(&word);
+            self.error(match kind {
+                Kind::F32 | Kind::F64 => PlyError::NoDecimalNumber { word },
+                _ => PlyError::NotWhole { word },
+            })
         })
     }
 }

@@ -1,8 +1,9 @@
 //! Surfaces of files made anew of triangles of a wanted size, and which size would do where that does not.
 
+use super::errors::{ShapeError, ShapeHint};
 use crate::problem::SceneError;
-use opruga_math::words::number;
 use opruga_mesh::Mesh;
+use opruga_mesh::outline::OutlineError;
 
 /// A surface that is remeshed may lose or win this part of its volume.
 const DRIFT: f64 = 0.25;
@@ -27,25 +28,18 @@ enum TooCoarse {
 /// `scene.shape` for a length that makes too many nodes, or so few that the surface would cross itself or lose its shape; the
 /// hint has the largest of the lengths below it, in steps of a tenth, that was tried and works.
 pub(super) fn remeshed(mesh: &Mesh<3>, length: f64) -> Result<Mesh<3>, SceneError> {
-    let refuse = |message: String| SceneError::new("scene.shape", message).value(length.to_string());
-    let why = match made(mesh, length).map_err(|e| refuse(e.to_string()))? {
+    let refuse = |error| SceneError::of(OutlineError::Mesh { error }).value(length.to_string());
+    let error = match made(mesh, length).map_err(refuse)? {
         Ok(made) => return Ok(made),
-        Err(why) => why,
-    };
-    let error = match why {
-        TooCoarse::Crosses => refuse(format!("with edges of {length} m the surface would cross itself"))
-            .allowed("a length below the finest parts of the surface"),
-        TooCoarse::Encloses(part) => {
-            refuse(format!("with edges of {length} m the surface would enclose {part:.2} of its volume"))
-                .allowed(format!("a length that keeps the volume within {} %", 100.0 * DRIFT))
+        Err(TooCoarse::Crosses) => ShapeError::RemeshCrosses { length },
+        Err(TooCoarse::Encloses(part)) => {
+            ShapeError::RemeshEncloses { length, part: format!("{part:.2}"), percent: 100.0 * DRIFT }
         }
     };
-    Err(match coarsest(mesh, length) {
-        Ok(works) => error.hint(format!("`remesh = {}` works", number(works))),
-        Err(tried) => {
-            error.hint(format!("take a smaller `remesh`: no length from {} m on that was tried works", number(tried)))
-        }
-    })
+    Err(SceneError::of(error).advice(match coarsest(mesh, length) {
+        Ok(length) => ShapeHint::RemeshWorks { length },
+        Err(length) => ShapeHint::NoRemeshWorks { length },
+    }))
 }
 
 /// The surface with edges of a length, or why that is too coarse for it.

@@ -1,5 +1,6 @@
 //! By which rule the parts of a drawing are filled.
 
+use super::drawing_errors::SvgNotice;
 use crate::problem::SceneError;
 use opruga_mesh::outline::{self, Overlap, Ring};
 
@@ -41,10 +42,5 @@ pub(super) fn follow(rings: &mut Vec<Ring>, rules: &[Rule]) -> Option<SceneError
         }
     }
     *rings = followed;
-    (differing > 0).then(|| {
-        let what = if differing == 1 { "shape names" } else { "shapes name" };
-        let message = format!("{differing} {what} no `fill-rule` and would have fewer holes by the non-zero rule");
-        let hint = "`fill-rule=\"evenodd\"` or `fill-rule=\"nonzero\"` in the file says which is meant";
-        SceneError::new("svg.fill_rule", message).value(differing.to_string()).hint(hint)
-    })
+    (differing > 0).then(|| SceneError::of(SvgNotice::FillRule { count: differing }))
 }

@@ -8,6 +8,7 @@
 //! 3D Systems, StereoLithography Interface Specification (1989).
 
 use super::obj::number;
+use super::surface_errors::{StlError, StlNotice, SurfaceError};
 use super::triangles::{Places, Triangles};
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
@@ -39,18 +40,10 @@ pub(super) fn read_binary(bytes: &[u8]) -> Result<Triangles, SceneError> {
     match promised(bytes) {
         Some(size) if size == bytes.len() as u64 => {}
         Some(size) => {
-            let count = (size - HEAD as u64) / EACH as u64;
-            let message =
-                format!("at byte 80 the header promises {count} triangles, but the file has {} bytes", bytes.len());
-            let error = SceneError::new("stl.size", message).value(bytes.len().to_string());
-            return Err(error.allowed(format!("{size} bytes")).hint("the file is cut off, or it is no STL"));
+            let (triangles, length) = ((size - HEAD as u64) / EACH as u64, bytes.len());
+            return Err(SceneError::of(StlError::Promised { triangles, length, promised: size }));
         }
-        None => {
-            let error = SceneError::new("stl.size", format!("the file has {} bytes", bytes.len()));
-            return Err(error
-                .value(bytes.len().to_string())
-                .allowed("84 bytes and 50 for every triangle, or a text that begins with `solid`"));
-        }
+        None => return Err(SceneError::of(StlError::Short { length: bytes.len() })),
     }
     let count = (bytes.len() - HEAD) / EACH;
     let mut found = Triangles {
@@ -69,8 +62,8 @@ pub(super) fn read_binary(bytes: &[u8]) -> Result<Triangles, SceneError> {
                 let x = f32::from_le_bytes([word[0], word[1], word[2], word[3]]);
                 if !x.is_finite() {
                     let byte = HEAD + EACH * k + 12 + 12 * corner + 4 * axis;
-                    let error = SceneError::new("scene.not_finite", format!("a coordinate is {x}, at byte {byte}"));
-                    return Err(error.value(x.to_string()).allowed("a finite number"));
+                    let error = SceneError::of(SurfaceError::NotFiniteCoordinate { value: x.to_string() });
+                    return Err(SceneError { byte: Some(byte), ..error });
                 }
                 position[axis] = f64::from(x);
             }
@@ -109,17 +102,9 @@ impl Normals {
     }
 
     fn told(&self) -> Vec<SceneError> {
-        let mut told = Vec::new();
-        let mut tell = |count: usize, one: &str, many: &str| {
-            if count > 0 {
-                let message =
-                    format!("{count} {}: the order of the corners tells the side", if count == 1 { one } else { many });
-                told.push(SceneError::new("stl.normal", message).value(count.to_string()));
-            }
-        };
-        tell(self.broken, "normal is no number", "normals are no numbers");
-        tell(self.against, "normal points against its triangle", "normals point against their triangles");
-        told
+        let broken = (self.broken > 0).then(|| StlNotice::Broken { count: self.broken });
+        let against = (self.against > 0).then(|| StlNotice::Against { count: self.against });
+        broken.into_iter().chain(against).map(SceneError::of).collect()
     }
 }
 
@@ -175,8 +160,7 @@ pub(super) fn read_text(source: &Source<'_>) -> Result<Triangles, SceneError> {
                     count += 1;
                 }
                 if count != 3 {
-                    let error = SceneError::new("stl.syntax", format!("a vertex has {count} coordinates"));
-                    return Err(refuse(error.value(count.to_string()).allowed("vertex x y z")));
+                    return Err(refuse(SceneError::of(StlError::Coordinates { count })));
                 }
                 found.positions.push(position);
                 corners += 1;
@@ -191,17 +175,19 @@ pub(super) fn read_text(source: &Source<'_>) -> Result<Triangles, SceneError> {
                 "facet"
             }
             _ => {
-                let error = SceneError::new("stl.syntax", format!("`{}` does not belong here", visible(text)));
-                let allowed = if state == "facet" { "facet normal … or endsolid".into() } else { state.to_string() };
-                return Err(refuse(error.value(visible(text)).allowed(allowed)));
+                let line = visible(text);
+                return Err(refuse(SceneError::of(match state {
+                    "facet" => StlError::NoFacet { line },
+                    wanted => StlError::Other { line, wanted },
+                })));
             }
         };
         state = next;
     }
     if state != "solid" {
         let end = source.text.trim_end().len();
-        let error = source.mark(SceneError::new("stl.syntax", "the file ends in the middle"), end, end);
-        return Err(error.value("end of file").allowed(if state == "facet" { "endsolid" } else { state }));
+        let wanted = if state == "facet" { "endsolid" } else { state };
+        return Err(source.mark(SceneError::of(StlError::Ends { wanted }), end, end));
     }
     found.notices.extend(normals.told());
     found.places = Places::Lines(lines);

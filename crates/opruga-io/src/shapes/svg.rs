@@ -11,6 +11,7 @@
 
 use super::curves::{Affine, Curves, IDENTITY, Point, after};
 use super::drawing::Drawing;
+use super::drawing_errors::{SvgError, SvgNotice};
 use super::svg_fill::{Fill, Fills};
 use super::svg_sheets::Sheets;
 use super::svg_style::{ANIMATIONS, animations_of};
@@ -20,7 +21,6 @@ use crate::budget::OUTLINES;
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
 use opruga_core::spec::nearest;
-use opruga_math::words::counted;
 use roxmltree::{Document, Node};
 
 /// Elements may be nested this deep, `use` included.
@@ -69,30 +69,22 @@ pub(super) fn read<'a>(source: &'a Source<'a>, id: Option<&str>, colours: bool) 
         }
     }
     let mut notices = Vec::new();
-    let mut notice = |count: usize, code, [one, many]: [&str; 2], what: &str| {
+    let mut notice = |count: usize, notice: fn(usize) -> SvgNotice| {
         if count > 0 {
-            let message = format!("{} {what}", counted(count as u64, one, many));
-            notices.push(SceneError::new(code, message).value(count.to_string()));
+            notices.push(SceneError::of(notice(count)));
         }
     };
-    notice(reader.open, "svg.open_path", ["open path is", "open paths are"], "closed by a straight line");
-    let unfilled = ["shape without fill is read by its outline", "shapes without fill are read by their outlines"];
-    notice(reader.unfilled, "svg.stroke", unfilled, "instead of strokes");
-    let empty = ["shape without a path or points is", "shapes without a path or points are"];
-    notice(reader.empty, "svg.empty", empty, "left out");
-    notice(reader.images, "svg.image", ["image is", "images are"], "left out");
-    let hidden = ["element that cannot be seen is", "elements that cannot be seen are"];
-    notice(reader.hidden, "svg.hidden", hidden, "left out");
-    notice(reader.markers, "svg.marker", ["element has markers", "elements have markers"], "which are left out");
-    let filters = ["element has a filter", "elements have a filter"];
-    notice(reader.filters, "svg.filter", filters, "which is not applied");
-    let strokes = ["filled shape has a stroke", "filled shapes have a stroke"];
-    notice(reader.strokes, "svg.stroke", strokes, "which is left out: the outline runs along its middle");
-    notice(reader.animations, "svg.animation", ["animation is", "animations are"], "left out");
-    let gradients = ["gradient is", "gradients are"];
-    notice(reader.fills.gradients, "svg.gradient", gradients, "painted in the mean of the colours");
-    let styled = ["shape has a rule of a style sheet", "shapes have rules of style sheets"];
-    notice(reader.fills.styled, "svg.style", styled, "behind a selector that is not read: other colours may be meant");
+    notice(reader.open, |count| SvgNotice::OpenPaths { count });
+    notice(reader.unfilled, |count| SvgNotice::Unfilled { count });
+    notice(reader.empty, |count| SvgNotice::Empty { count });
+    notice(reader.images, |count| SvgNotice::Images { count });
+    notice(reader.hidden, |count| SvgNotice::Hidden { count });
+    notice(reader.markers, |count| SvgNotice::Markers { count });
+    notice(reader.filters, |count| SvgNotice::Filters { count });
+    notice(reader.strokes, |count| SvgNotice::Strokes { count });
+    notice(reader.animations, |count| SvgNotice::Animations { count });
+    notice(reader.fills.gradients, |count| SvgNotice::Gradients { count });
+    notice(reader.fills.styled, |count| SvgNotice::Styled { count });
     let (painted, rules) = (reader.fills.painted, reader.fills.rules);
     let (curves, places) = (reader.curves, reader.places);
     Ok(Drawing { curves, y_down: true, source: Some(source), places, painted, rules, notices })
@@ -148,8 +140,8 @@ impl<'a, 'd> Reader<'a, 'd> {
         }
     }
 
-    pub(super) fn error(&self, node: Node<'_, '_>, code: &'static str, message: String) -> SceneError {
-        self.marked(node, SceneError::new(code, message))
+    pub(super) fn error(&self, node: Node<'_, '_>, error: SvgError) -> SceneError {
+        self.marked(node, SceneError::of(error))
     }
 
     /// An error at the tag of an element.
@@ -160,20 +152,15 @@ impl<'a, 'd> Reader<'a, 'd> {
         self.source.mark(error, range.start, end)
     }
 
-    fn unknown(&self, node: Node<'_, '_>, id: &str, code: &'static str) -> SceneError {
-        let near = nearest(id, self.sheets.index.ids());
-        self.error(node, code, format!("no element has the id `{}`", visible(id))).value(visible(id)).nearest(near)
-    }
-
     /// The only element with an id.
     pub(super) fn named(&self, node: Node<'_, '_>, id: &str) -> Result<Node<'d, 'a>, SceneError> {
         match self.sheets.index.named(self.document, id) {
-            [None, _] => Err(self.unknown(node, id, "svg.unknown_id")),
-            [Some(first), None] => Ok(first),
-            [_, Some(second)] => {
-                let message = format!("two elements have the id `{}`", visible(id));
-                Err(self.error(second, "svg.same_id", message).value(visible(id)).allowed("ids that differ"))
+            [None, _] => {
+                let near = nearest(id, self.sheets.index.ids());
+                Err(self.error(node, SvgError::UnknownId { id: visible(id) }).nearest(near))
             }
+            [Some(first), None] => Ok(first),
+            [_, Some(second)] => Err(self.error(second, SvgError::SameId { id: visible(id) })),
         }
     }
 
@@ -189,10 +176,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         let stretched = root.attribute("preserveAspectRatio").is_some_and(|value| value.trim().starts_with("none"))
             && size.is_some_and(|size| (ratio(size) / ratio([view.w, view.h]) - 1.0).abs() > 1e-6);
         if stretched {
-            let error =
-                self.error(root, "svg.unsupported", "the drawing is stretched more one way than the other".into());
-            let error = error.value("preserveAspectRatio=\"none\"");
-            return Err(error.allowed("a width and a height in proportion to the `viewBox`"));
+            return Err(self.error(root, SvgError::Stretched {}));
         }
         Ok(Some([view.w, view.h]))
     }
@@ -201,8 +185,7 @@ impl<'a, 'd> Reader<'a, 'd> {
     fn chosen<'n, 'i>(&self, node: Node<'n, 'i>) -> Result<Option<Node<'n, 'i>>, SceneError> {
         for child in node.children().filter(Node::is_element) {
             if child.has_attribute("systemLanguage") {
-                let error = self.error(child, "svg.unsupported", "which language is meant is not known".into());
-                return Err(error.value("systemLanguage").hint("leave one element in the <switch>"));
+                return Err(self.error(child, SvgError::Language {}));
             }
             if child.attribute("requiredExtensions").is_none_or(|value| value.trim().is_empty()) {
                 return Ok(Some(child));
@@ -246,8 +229,7 @@ impl<'a, 'd> Reader<'a, 'd> {
 
     /// That a property of an element cannot be read.
     pub(super) fn not_read(&self, node: Node<'_, '_>, word: &str, value: &str) -> SceneError {
-        let error = self.error(node, "svg.unsupported", format!("`{word}` cannot be read"));
-        error.value(visible(value)).hint("apply it in the drawing program")
+        self.error(node, SvgError::Property { property: word.into(), value: visible(value) })
     }
 
     pub(super) fn children(
@@ -279,11 +261,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         // Elements that `use` draws are counted again.
         self.sheets.index.element().map_err(|e| self.marked(node, e))?;
         if path.len() >= DEEPEST {
-            let message = format!("elements are nested more than {DEEPEST} deep");
-            return Err(self
-                .error(node, "svg.depth", message)
-                .value(name)
-                .allowed(format!("at most {DEEPEST} levels")));
+            return Err(self.error(node, SvgError::Depth { deepest: DEEPEST, element: name.into() }));
         }
         if NOT_DRAWN.contains(&name) || ANIMATIONS.contains(&name) {
             return Ok(());
@@ -332,17 +310,9 @@ impl<'a, 'd> Reader<'a, 'd> {
             "line" => self.unfilled += 1,
             "image" => self.images += 1,
             "text" | "foreignObject" => {
-                let error = self.error(node, "svg.unsupported", format!("<{name}> has no outline here"));
-                return Err(error
-                    .value(name)
-                    .hint("turn text into paths in the drawing program, or use `kind = \"text\"`"));
+                return Err(self.error(node, SvgError::NoOutline { element: name.into() }));
             }
-            _ => {
-                let error = self.error(node, "svg.unsupported", format!("<{}> cannot be read", visible(name)));
-                return Err(error
-                    .value(visible(name))
-                    .allowed("path, rect, circle, ellipse, polygon, polyline in svg, g, a, switch, use"));
-            }
+            _ => return Err(self.error(node, SvgError::Element { element: visible(name) })),
         }
         self.clipped(node, &map, begun, path)?;
         path.pop();
@@ -354,16 +324,11 @@ impl<'a, 'd> Reader<'a, 'd> {
         let link =
             node.attribute("href").or_else(|| node.attribute(("http://www.w3.org/1999/xlink", "href"))).unwrap_or("");
         let Some(id) = link.strip_prefix('#') else {
-            let error = self.error(node, "svg.outside", format!("`{}` is no element of this file", visible(link)));
-            return Err(error
-                .value(visible(link))
-                .allowed("href = \"#id\" of this file")
-                .hint("other files are never read"));
+            return Err(self.error(node, SvgError::Outside { link: visible(link) }));
         };
         let goal = self.named(node, id)?;
         if path.contains(&goal.id().get_usize()) {
-            let error = self.error(node, "svg.cycle", format!("`#{}` contains itself", visible(id)));
-            return Err(error.value(visible(id)).hint("an element cannot be drawn inside of itself"));
+            return Err(self.error(node, SvgError::Cycle { id: visible(id) }));
         }
         let moved = [1.0, 0.0, 0.0, 1.0, self.number(node, "x", 0.0)?, self.number(node, "y", 0.0)?];
         let map = after(map, &moved);
@@ -378,8 +343,7 @@ impl<'a, 'd> Reader<'a, 'd> {
             return Ok(());
         }
         if goal.tag_name().name() == "svg" && (node.has_attribute("width") || node.has_attribute("height")) {
-            let error = self.error(node, "svg.unsupported", "a <use> cannot give an <svg> another size".into());
-            return Err(error.value("use").hint("give the <svg> itself its `width` and `height`"));
+            return Err(self.error(node, SvgError::SizeOfUse {}));
         }
         self.element_at(goal, &map, path, fill)
     }

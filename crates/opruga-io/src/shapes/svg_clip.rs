@@ -4,6 +4,7 @@
 //! W3C, Scalable Vector Graphics 1.1, chapter 14.
 
 use super::curves::{Affine, Curves, after, larger};
+use super::drawing_errors::SvgError;
 use super::rules::{self, Rule};
 use super::svg::Reader;
 use super::svg_fill::Fill;
@@ -37,8 +38,7 @@ impl<'a, 'd> Reader<'a, 'd> {
             return Err(self.not_read(node, "clip-path", value));
         }
         if path.contains(&clip.id().get_usize()) {
-            let error = self.error(node, "svg.cycle", format!("`#{}` contains itself", visible(id)));
-            return Err(error.value(visible(id)).hint("an element cannot be drawn inside of itself"));
+            return Err(self.error(node, SvgError::Cycle { id: visible(id) }));
         }
 
         // What the clip path leaves, read as a drawing of its own.
@@ -53,10 +53,8 @@ impl<'a, 'd> Reader<'a, 'd> {
         path.push(clip.id().get_usize());
         reader.children(clip, &map, path, Fill::CLIP)?;
         path.pop();
-        let Some(part) = self.cut_off(begun, &reader.curves, &reader.fills.rules) else { return Ok(()) };
-        let error = self.error(node, "svg.unsupported", format!("`clip-path` cuts {part} % of what is drawn off"));
-        let error = error.value(visible(value)).allowed("clip paths around all that is drawn");
-        Err(error.hint("apply it in the drawing program"))
+        let Some(percent) = self.cut_off(begun, &reader.curves, &reader.fills.rules) else { return Ok(()) };
+        Err(self.error(node, SvgError::Clipped { percent, value: visible(value) }))
     }
 
     /// The map from the unit square to the box around what was drawn from a contour on, in coordinates that `map` leads out of; none where that has no area.

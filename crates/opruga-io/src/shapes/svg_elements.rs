@@ -1,6 +1,7 @@
 //! The basic shapes of a drawing, with their attributes: lengths, transforms, points and paths.
 
 use super::curves::{Affine, Curves, IDENTITY, Point, after, smaller};
+use super::drawing_errors::SvgError;
 use super::svg::Reader;
 use super::svg_path::Pen;
 use super::svg_units::units;
@@ -10,12 +11,8 @@ use svgtypes::{LengthUnit, PathParser, PointsParser, TransformListParser, Transf
 
 impl Reader<'_, '_> {
     /// Where a part of an attribute's value stands in the file.
-    pub(super) fn in_attribute(
-        &self,
-        attribute: &Attribute<'_, '_>,
-        at: Option<usize>,
-        error: SceneError,
-    ) -> SceneError {
+    pub(super) fn in_attribute(&self, attribute: &Attribute<'_, '_>, at: Option<usize>, error: SvgError) -> SceneError {
+        let error = SceneError::of(error);
         let range = attribute.range_value();
         match at {
             // Positions count characters from 1.
@@ -42,8 +39,8 @@ impl Reader<'_, '_> {
             Some(k) => attribute.value().chars().skip(k.saturating_sub(1)).take(12).collect(),
             None => attribute.value().chars().take(40).collect(),
         };
-        let message = format!("`{}` cannot be read: {}", attribute.name(), visible(what));
-        self.in_attribute(attribute, at, SceneError::new("svg.syntax", message)).value(visible(&found))
+        let (reason, found) = (visible(what), visible(&found));
+        self.in_attribute(attribute, at, SvgError::Attribute { attribute: attribute.name().into(), reason, found })
     }
 
     pub(super) fn transform(&self, node: Node<'_, '_>) -> Result<Affine, SceneError> {
@@ -65,8 +62,8 @@ impl Reader<'_, '_> {
             map = after(&map, &next);
         }
         if map.iter().any(|x| !x.is_finite()) {
-            let error = SceneError::new("svg.number", "the transform leaves the range of numbers");
-            return Err(self.in_attribute(&attribute, None, error).value(visible(attribute.value())));
+            let value = visible(attribute.value());
+            return Err(self.in_attribute(&attribute, None, SvgError::Transform { value }));
         }
         Ok(map)
     }
@@ -86,11 +83,8 @@ impl Reader<'_, '_> {
         };
         let value = unit.map(|unit| unit * length.number).filter(|value| value.is_finite());
         value.ok_or_else(|| {
-            let error = SceneError::new("svg.unsupported", format!("`{name}` is no length that can be read"));
-            let error = self.in_attribute(&attribute, None, error).value(visible(attribute.value()));
-            error.allowed(
-                "a finite number without unit, or in px, pt, pc, mm, cm, in, or in % of a drawing with a `viewBox`",
-            )
+            let value = visible(attribute.value());
+            self.in_attribute(&attribute, None, SvgError::Length { attribute: name.into(), value })
         })
     }
 
@@ -99,8 +93,7 @@ impl Reader<'_, '_> {
         let value = self.number(node, name, 0.0)?;
         match node.attribute_node(name) {
             Some(attribute) if value < 0.0 => {
-                let error = SceneError::new("svg.number", format!("`{name}` is negative"));
-                Err(self.in_attribute(&attribute, None, error).value(value.to_string()).allowed("0 or more"))
+                Err(self.in_attribute(&attribute, None, SvgError::Negative { attribute: name.into(), value }))
             }
             _ => Ok(value),
         }
@@ -158,11 +151,7 @@ impl Reader<'_, '_> {
             count += 1;
         }
         if count != 2 * points.len() {
-            let error = SceneError::new("svg.syntax", format!("`points` has {count} numbers, which is odd"));
-            return Err(self
-                .in_attribute(&attribute, None, error)
-                .value(count.to_string())
-                .allowed("pairs of numbers"));
+            return Err(self.in_attribute(&attribute, None, SvgError::OddPoints { count }));
         }
         if name == "polyline" && points.first() != points.last() {
             self.open += 1;
@@ -184,8 +173,7 @@ impl Reader<'_, '_> {
         pen.leave();
         self.open += pen.open;
         if !pen.at.iter().all(|x| x.is_finite()) {
-            let error = SceneError::new("svg.number", "the path leaves the range of numbers");
-            return Err(self.in_attribute(&attribute, None, error).value("inf"));
+            return Err(self.in_attribute(&attribute, None, SvgError::Path {}));
         }
         Ok(())
     }

@@ -1,5 +1,6 @@
 //! Fill colours of a drawing: inherited from element to element, as the standard says.
 
+use super::drawing_errors::SvgError;
 use super::rules::Rule;
 use super::svg_sheets::Sheets;
 use crate::problem::{SceneError, visible};
@@ -93,8 +94,7 @@ impl<'a, 'd> Fills<'a, 'd> {
             Some("evenodd") => fill.rule = Rule::EvenOdd,
             Some("nonzero") => fill.rule = Rule::NonZero,
             Some(other) => {
-                let error = self.mark(node, SceneError::new("svg.unsupported", "this is no `fill-rule`"));
-                return Err(error.value(visible(other)).allowed("evenodd, nonzero"));
+                return Err(self.mark(node, SvgError::FillRule { value: visible(other) }));
             }
         }
         if !self.wanted {
@@ -188,25 +188,18 @@ impl<'a, 'd> Fills<'a, 'd> {
         let (number, unit) = text.strip_suffix('%').map_or((text, 1.0), |number| (number, 100.0));
         match number.trim().parse::<f64>() {
             Ok(x) if x.is_finite() => Ok((x / unit).clamp(0.0, 1.0)),
-            _ => {
-                let error = SceneError::new("svg.colour", format!("`{name}` is no number"));
-                Err(self.mark(node, error).value(visible(text)).allowed("0 to 1"))
-            }
+            _ => Err(self.mark(node, SvgError::Share { property: name.into(), value: visible(text) })),
         }
     }
 
     fn refused(&self, node: Node<'_, '_>, text: &str) -> SceneError {
-        let error = SceneError::new("svg.colour", "the fill is no colour that can be painted");
-        let error = self.mark(node, error).value(visible(text));
-        error
-            .allowed("a colour such as #ffac33 or gold, a gradient of this file, none")
-            .hint("`colours = false` reads the outline alone")
+        self.mark(node, SvgError::Colour { value: visible(text) })
     }
 
     /// An error at the tag of an element.
-    fn mark(&self, node: Node<'_, '_>, error: SceneError) -> SceneError {
+    fn mark(&self, node: Node<'_, '_>, error: SvgError) -> SceneError {
         let range = node.range();
         let end = self.source.text[range.clone()].find('>').map_or(range.end, |k| range.start + k + 1);
-        self.source.mark(error, range.start, end)
+        self.source.mark(SceneError::of(error), range.start, end)
     }
 }

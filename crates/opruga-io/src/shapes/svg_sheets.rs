@@ -6,6 +6,7 @@
 //! # Source
 //! W3C, Cascading Style Sheets, level 2 revision 1, chapters 5 and 6.
 
+use super::drawing_errors::SvgError;
 use super::svg_index::Index;
 use super::svg_outlines::changes_outlines;
 use super::svg_xml::is_drawing;
@@ -201,11 +202,8 @@ impl Sheets {
         for rule in self.rules.iter().filter(|rule| rule.perhaps.iter().any(|word| fits(word, node))) {
             about = true;
             let Some(said) = rule.said.iter().find(|said| changes_outlines(&said.name, &said.value)) else { continue };
-            let message = format!("a style sheet may set `{}` here, which changes outlines", visible(&said.name));
-            let error = source.mark(SceneError::new("svg.style", message), rule.sheet.0, rule.sheet.1);
-            let error = error.value(visible(&format!("{}: {}", said.name, said.value)));
-            let error = error.allowed("rules without conditions, behind names, `.class` and `#id`");
-            return Err(error.hint("let the drawing program write attributes instead of a sheet"));
+            let error = SvgError::Style { property: visible(&said.name), value: visible(&said.value) };
+            return Err(source.mark(SceneError::of(error), rule.sheet.0, rule.sheet.1));
         }
         Ok(about)
     }

@@ -4,6 +4,7 @@
 //! W3C, Scalable Vector Graphics 1.1, chapter 7.
 
 use super::curves::{Affine, Curves, Point, after, larger, smaller};
+use super::drawing_errors::SvgError;
 use super::rules::Rule;
 use super::svg::Reader;
 use super::svg_fill::Fill;
@@ -26,8 +27,8 @@ impl Reader<'_, '_> {
     pub(super) fn view_box(&self, node: Node<'_, '_>) -> Result<Option<ViewBox>, SceneError> {
         let Some(attribute) = node.attribute_node("viewBox") else { return Ok(None) };
         let view: ViewBox = attribute.value().parse().map_err(|e: svgtypes::ViewBoxError| {
-            let error = SceneError::new("svg.syntax", format!("`viewBox` cannot be read: {}", visible(&e.to_string())));
-            self.in_attribute(&attribute, None, error).value(visible(attribute.value())).allowed("x y width height")
+            let (reason, value) = (visible(&e.to_string()), visible(attribute.value()));
+            self.in_attribute(&attribute, None, SvgError::ViewBox { reason, value })
         })?;
         Ok(Some(view))
     }
@@ -59,8 +60,7 @@ impl Reader<'_, '_> {
             return Ok(Some(Viewport { map: [1.0, 0.0, 0.0, 1.0, x, y], frame, canvas }));
         };
         let Some((w, h)) = size else {
-            let error = self.error(node, "svg.unsupported", "it is not known how large a `viewBox` is drawn".into());
-            return Err(error.value(node.tag_name().name()).hint("give its element `width` and `height`"));
+            return Err(self.error(node, SvgError::SizeOfView { element: node.tag_name().name().into() }));
         };
         let ratio = match node.attribute_node("preserveAspectRatio") {
             Some(attribute) => attribute.value().parse::<AspectRatio>().map_err(|e| self.refused(&attribute, &e))?,
@@ -125,10 +125,7 @@ impl Reader<'_, '_> {
         own.polygon(frame);
         let mut clip = Curves::default();
         clip.append(own, map);
-        let Some(part) = self.cut_off(begun, &clip, &[Rule::NonZero]) else { return Ok(()) };
-        let name = node.tag_name().name();
-        let message = format!("<{name}> has a frame that cuts {part} % of what is in it off");
-        let error = self.error(node, "svg.unsupported", message).value(name);
-        Err(error.allowed("contents inside of the frame").hint("`overflow=\"visible\"` shows all of it"))
+        let Some(percent) = self.cut_off(begun, &clip, &[Rule::NonZero]) else { return Ok(()) };
+        Err(self.error(node, SvgError::Framed { element: node.tag_name().name().into(), percent }))
     }
 }

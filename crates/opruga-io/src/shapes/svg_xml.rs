@@ -1,5 +1,6 @@
 //! The XML of a drawing.
 
+use super::drawing_errors::SvgError;
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
 use roxmltree::{Document, Node, ParsingOptions};
@@ -22,12 +23,8 @@ pub(super) fn document<'a>(source: &Source<'a>) -> Result<Document<'a>, SceneErr
     let document = Document::parse_with_options(source.text, options).map_err(|e| syntax(source, &e))?;
     let root = document.root_element();
     if root.tag_name().name() != "svg" {
-        let error =
-            SceneError::new("svg.syntax", format!("the file is no drawing but <{}>", visible(root.tag_name().name())));
-        return Err(source
-            .mark(error, root.range().start, root.range().start + 1)
-            .value(visible(root.tag_name().name()))
-            .allowed("<svg>"));
+        let error = SceneError::of(SvgError::NoDrawing { element: visible(root.tag_name().name()) });
+        return Err(source.mark(error, root.range().start, root.range().start + 1));
     }
     Ok(document)
 }
@@ -36,19 +33,16 @@ pub(super) fn document<'a>(source: &Source<'a>) -> Result<Document<'a>, SceneErr
 fn syntax(source: &Source<'_>, error: &roxmltree::Error) -> SceneError {
     let place = error.pos();
     let at = source.offset(place.row as usize, place.col as usize);
-    let (code, hint) = match error {
-        roxmltree::Error::UnknownEntityReference(..) | roxmltree::Error::EntityResolver(..) => {
-            ("svg.entity", Some("entities from outside of the file are never read"))
-        }
-        roxmltree::Error::EntityReferenceLoop(_) => ("svg.entity", Some("entities may not contain one another")),
-        roxmltree::Error::NodesLimitReached => ("limit.elements", None),
-        _ => ("svg.syntax", None),
-    };
     let text = error.to_string();
-    let message = text.split(" at ").next().unwrap_or(&text);
-    let found: String = source.text[at..].chars().take(1).collect();
-    let error =
-        source.mark(SceneError::new(code, format!("this is no well-formed XML: {}", visible(message))), at, at + 1);
-    let error = error.value(visible(&found));
-    hint.map_or(error.clone(), |hint| error.hint(hint))
+    let reason = visible(text.split(" at ").next().unwrap_or(&text));
+    let found = visible(&source.text[at..].chars().take(1).collect::<String>());
+    let error = match error {
+        roxmltree::Error::UnknownEntityReference(..) | roxmltree::Error::EntityResolver(..) => {
+            SvgError::OutsideEntity { reason, found }
+        }
+        roxmltree::Error::EntityReferenceLoop(_) => SvgError::EntityLoop { reason, found },
+        roxmltree::Error::NodesLimitReached => SvgError::Elements { reason, found },
+        _ => SvgError::Xml { reason, found },
+    };
+    source.mark(SceneError::of(error), at, at + 1)
 }

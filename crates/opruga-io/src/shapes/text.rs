@@ -4,6 +4,7 @@ use super::Problem;
 use super::composite;
 use super::curves::Curves;
 use super::drawing::Drawing;
+use super::drawing_errors::LetterError;
 use crate::budget::{EXPANSION, LimitHint, POINTS};
 use crate::problem::{SceneError, visible};
 use opruga_core::spec::Values;
@@ -71,36 +72,23 @@ impl OutlineBuilder for Pen {
 /// letter from left to right, `shape.no_area` for a text without outlines.
 pub(super) fn read<'a>(file: &str, bytes: &[u8], shape: &Values) -> Result<Drawing<'a>, Problem> {
     let named = |error: SceneError| Problem::from(SceneError { file: file.to_string(), ..error });
-    let face = Face::parse(bytes, 0).map_err(|e| {
-        let error = SceneError::new("font.syntax", format!("this is no font that can be read: {e}"));
-        named(error.value(format!("{} bytes", bytes.len())).allowed("OpenType or TrueType (.ttf, .otf)"))
-    })?;
+    let face = Face::parse(bytes, 0)
+        .map_err(|e| named(SceneError::of(LetterError::Font { reason: e.to_string(), bytes: bytes.len() })))?;
     let text = shape.text("text").unwrap_or("");
     let mut pen = Pen { curves: Curves::default(), from: 0.0, start: [0.0; 2] };
     let mut last: Option<GlyphId> = None;
     let (mut read, mut points) = (0u64, 0u64);
     for (part, letter) in text.chars().enumerate() {
-        let refuse = |code, message: String| {
-            Problem::new("text", SceneError::new(code, message).value(visible(&letter.to_string())))
-        };
+        let refuse = |error: LetterError| Problem::new("text", SceneError::of(error));
+        let shown = || visible(&letter.to_string());
         if letter.is_control() {
-            return Err(refuse("font.no_glyph", format!("`{}` is no letter", visible(&letter.to_string()))));
+            return Err(refuse(LetterError::NoLetter { letter: shown() }));
         }
         if SHAPED.iter().any(|(from, to)| (*from..=*to).contains(&letter)) {
-            let message = format!(
-                "`{}` is of a script whose letters are not set one by one from left to right",
-                visible(&letter.to_string())
-            );
-            let Problem { field, about } = refuse("font.script", message);
-            let about = about.allowed("letters such as Latin, Greek or Cyrillic ones, without marks of their own");
-            return Err(Problem::new(
-                field,
-                about.hint("draw the text in a drawing program and turn it into paths for `kind = \"svg\"`"),
-            ));
+            return Err(refuse(LetterError::Script { letter: shown() }));
         }
         let Some(glyph) = face.glyph_index(letter) else {
-            let message = format!("the font `{}` has no letter `{}`", visible(file), visible(&letter.to_string()));
-            return Err(refuse("font.no_glyph", message));
+            return Err(refuse(LetterError::NoGlyph { font: visible(file), letter: shown() }));
         };
         if let Some(last) = last {
             let tables = face.tables().kern.iter().flat_map(|kern| kern.subtables);
@@ -119,9 +107,9 @@ pub(super) fn read<'a>(file: &str, bytes: &[u8], shape: &Values) -> Result<Drawi
         last = Some(glyph);
     }
     if pen.curves.extent() <= 0.0 {
-        let message = if text.is_empty() { "the text is empty" } else { "the text has no letter with an outline" };
-        let about = SceneError::new("shape.no_area", message).value(visible(text));
-        return Err(Problem::new("text", about.allowed("at least one letter that is drawn")));
+        let empty = text.is_empty();
+        let error = if empty { LetterError::EmptyText {} } else { LetterError::NoLetters { text: visible(text) } };
+        return Err(Problem::new("text", SceneError::of(error)));
     }
     let (places, painted, rules, notices) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     Ok(Drawing { curves: pen.curves, y_down: false, source: None, places, painted, rules, notices })

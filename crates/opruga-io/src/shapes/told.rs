@@ -1,7 +1,8 @@
 //! What the making of a body has lost, and where it is worse than promised: said in figures.
 
+use super::errors::{Change, ShapeHint, ShapeNotice, ThinCause};
 use crate::problem::SceneError;
-use opruga_math::words::{counted, number, rounded};
+use opruga_math::words::rounded;
 use opruga_mesh::Mesh;
 use opruga_mesh::outline::{self, Cause, Ring, SMALLEST_ANGLE, Thin};
 use opruga_world::shapes::{LOST_AND_TOLD, Loss};
@@ -9,34 +10,35 @@ use opruga_world::shapes::{LOST_AND_TOLD, Loss};
 /// An outline that has so many times more points in its file than nodes loses detail that one may look for.
 const THINNED: usize = 4;
 
-/// How much of an area or a volume is gone, or has come: `0.012 m³ (6.3 %) of 0.19 m³ is lost`.
-fn difference(before: f64, after: f64, unit: &str) -> String {
+/// How much of an area or a volume is gone, or has come: `0.012 m³ (6.3 %) of 0.19 m³ lost`.
+fn difference(before: f64, after: f64, unit: &'static str) -> Change {
     let off = (after - before).abs();
-    let what = if after < before { "lost" } else { "added" };
-    let part = rounded(100.0 * off / before, 2);
-    format!("{} {unit} ({part} %) of {} {unit} {what}", rounded(off, 3), rounded(before, 3))
+    let (off, percent, whole) = (rounded(off, 3), rounded(100.0 * off / before, 2), rounded(before, 3));
+    match after < before {
+        true => Change::Lost { off, unit, percent, whole },
+        false => Change::Added { off, unit, percent, whole },
+    }
 }
 
 /// That tetrahedra have not the volume of the surface that they fill; `scale` is a factor on all lengths that is still to come.
 pub(crate) fn lost_volume<const D: usize>(filling: &Mesh<D>, loss: Loss, scale: f64) -> SceneError {
     let after = filling.measure().map_or(0.0, |measure| measure.value()) * (scale * scale * scale).abs();
-    let what = difference(after / loss.kept, after, "m³");
-    let error = SceneError::new("shape.lost_volume", format!("the filling leaves {what}"));
+    let change = difference(after / loss.kept, after, "m³");
+    let warned = 100.0 * LOST_AND_TOLD;
     let hint = match loss.finer {
-        Some(spacing) => format!("`spacing = {}` keeps the volume within {} %", number(spacing), 100.0 * LOST_AND_TOLD),
-        None => "take a smaller `spacing`".to_string(),
+        Some(spacing) => ShapeHint::SpacingKeeps { spacing, percent: warned },
+        None => ShapeHint::SmallerSpacing {},
     };
-    let allowed = format!("{} % of the volume, above 25 % is an error", 100.0 * LOST_AND_TOLD);
-    error.value(rounded(loss.kept, 3)).allowed(allowed).hint(hint)
+    SceneError::of(ShapeNotice::Filling { change, kept: rounded(loss.kept, 3), warned }).advice(hint)
 }
 
 /// That a surface made anew does not enclose the volume that it had.
 pub(super) fn remeshed(made: &Mesh<3>, before: &Mesh<3>, length: f64, scale: f64) -> Option<SceneError> {
     let cube = (scale * scale * scale).abs();
     let (after, before) = (made.enclosed_volume() * cube, before.enclosed_volume() * cube);
-    let what = format!("edges of {} m leave {}", number(length), difference(before, after, "m³"));
-    let error = SceneError::new("shape.lost_volume", what).value(rounded(after / before, 3));
-    ((after / before - 1.0).abs() > LOST_AND_TOLD).then(|| error.hint("take a smaller `remesh`"))
+    let (change, kept) = (difference(before, after, "m³"), rounded(after / before, 3));
+    let notice = ShapeNotice::Remeshed { length, change, kept };
+    ((after / before - 1.0).abs() > LOST_AND_TOLD).then(|| SceneError::of(notice).advice(ShapeHint::SmallerRemesh {}))
 }
 
 /// That most points of an outline are left out, or much of its area, as the spacing of its nodes wants it: `given` points in the file, and the rings
@@ -46,20 +48,13 @@ pub(super) fn thinned(given: usize, before: &[Ring], rings: &[Ring], spacing: f6
     let area = |rings: &[Ring]| rings.iter().map(Ring::area).sum::<f64>();
     let (whole, left) = (area(before), area(rings));
     let (many, much) = (given > THINNED * nodes, (left / whole - 1.0).abs() > LOST_AND_TOLD);
-    (many || much).then(|| {
-        let points = counted(given as u64, "point of the file becomes", "points of the file become");
-        let points = if many { format!("{points} ") } else { String::new() };
-        let message = format!(
-            "{points}{nodes} nodes{} {} m apart{} {}",
-            if many { "," } else { "" },
-            number(spacing),
-            if many { ":" } else { " leave" },
-            difference(whole, left, "m²")
-        );
-        let hint = "a smaller `spacing` keeps finer detail, `filling = \"lattice\"` carries all of it";
-        let value = if many { given.to_string() } else { rounded(left / whole, 3) };
-        SceneError::new("shape.thinned", message).value(value).hint(hint)
-    })
+    let change = || difference(whole, left, "m²");
+    let notice = match (many, much) {
+        (true, _) => ShapeNotice::Thinned { given, nodes, spacing, change: change() },
+        (false, true) => ShapeNotice::Coarse { nodes, spacing, change: change(), kept: rounded(left / whole, 3) },
+        (false, false) => return None,
+    };
+    Some(SceneError::of(notice))
 }
 
 /// How many outlines of a drawing are holes since they lie within one of another element, which paints there too; and the first of these
@@ -73,43 +68,19 @@ pub(super) fn nested(rings: &[Ring]) -> Option<(u32, SceneError)> {
         .map(|number| rings[number].part)
         .collect();
     let first = *foreign.first()?;
-    let count = foreign.len();
-    let message = if count == 1 {
-        format!("{count} outline lies within one of another element and is a hole there")
-    } else {
-        format!("{count} outlines lie within those of other elements and are holes there")
-    };
-    let hint =
-        "`overlap = \"union\"` keeps what any element paints, `overlap = \"even_odd\"` says that holes are meant";
-    Some((first, SceneError::new("shape.nested", message).value(count.to_string()).hint(hint)))
+    Some((first, SceneError::of(ShapeNotice::Nested { count: foreign.len() })))
 }
 
 /// That triangles have sharper angles than fillings promise.
 pub(super) fn thin(mesh: &Mesh<2>, thin: &Thin) -> SceneError {
-    let (why, hint) = match thin.cause {
-        Cause::Corner(angle) => {
-            let why = format!("the outline itself has a corner of {}° there", rounded(angle, 3));
-            (why, "round it off in the drawing, or take `filling = \"lattice\"`")
-        }
-        Cause::Finer => {
-            ("the outline is finer there than `spacing`".into(), "take a smaller `spacing`, or `filling = \"lattice\"`")
-        }
-        Cause::Unfinished => (
-            "the refinement has added as many nodes as it may".into(),
-            "take a larger `spacing`, or `filling = \"lattice\"`",
-        ),
+    let (cause, hint) = match thin.cause {
+        Cause::Corner(angle) => (ThinCause::Corner { angle: rounded(angle, 3) }, ShapeHint::RoundCorner {}),
+        Cause::Finer => (ThinCause::Finer {}, ShapeHint::SmallerOrLattice {}),
+        Cause::Unfinished => (ThinCause::Unfinished {}, ShapeHint::LargerOrLattice {}),
     };
-    let message = format!(
-        "{} of {} {} angles below {SMALLEST_ANGLE}°, the smallest {}° at ({}, {}): {why}",
-        thin.count,
-        counted(mesh.cells.len() as u64, "triangle", "triangles"),
-        if thin.count == 1 { "has" } else { "have" },
-        rounded(thin.angle, 3),
-        rounded(thin.place[0], 3),
-        rounded(thin.place[1], 3),
-    );
-    let error = SceneError::new("shape.thin_triangles", message).value(rounded(thin.angle, 3));
-    error.allowed(format!("angles from {SMALLEST_ANGLE}°")).hint(hint)
+    let [angle, x, y] = [thin.angle, thin.place[0], thin.place[1]].map(|number| rounded(number, 3));
+    let (count, triangles, least) = (thin.count, mesh.cells.len(), SMALLEST_ANGLE);
+    SceneError::of(ShapeNotice::ThinTriangles { count, triangles, least, angle, x, y, cause }).advice(hint)
 }
 
 /// Vertices that lie exactly where another one lies.

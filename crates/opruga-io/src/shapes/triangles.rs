@@ -1,12 +1,15 @@
 //! Triangles as a file gives them, and what becomes of them: a closed surface, cloth, or a filled body.
 
 use super::curves::larger;
+use super::errors::ShapeHint;
+use super::surface_errors::{FaceProblem, SurfaceError, SurfaceNotice};
 use super::{Content, Loaded, Problem, told};
-use crate::problem::{SceneError, visible};
+use crate::meshes::MeshFileError;
+use crate::problem::SceneError;
 use crate::rounding::Stored;
 use crate::source::Source;
 use opruga_core::spec::Values;
-use opruga_math::words::{counted, number, rounded};
+use opruga_math::words::{number, rounded};
 use opruga_mesh::{FaceError, Mesh, MeshError, cut_face};
 use opruga_world::shapes;
 use std::collections::BTreeMap;
@@ -21,10 +24,6 @@ const SLIVER: f64 = 1e-3;
 const USUAL: [f64; 2] = [1e-4, 1e2];
 /// How much larger or smaller a surface may be for another unit to explain it.
 const UNITS: f64 = 1e5;
-
-/// What corners of a face have to be.
-pub(super) const CORNERS: &str =
-    "at least three different corners, of a face that is nearly flat and does not cross itself";
 
 /// What a reader found.
 #[derive(Debug, Default)]
@@ -76,12 +75,12 @@ impl Triangles {
     }
 
     /// Adds a polygon as triangles inside it, and says how many; or why there are none.
-    pub(super) fn polygon(&mut self, corners: &[u32]) -> Result<usize, String> {
+    pub(super) fn polygon(&mut self, corners: &[u32]) -> Result<usize, FaceProblem> {
         if corners.len() < 3 {
-            return Err("a face has fewer than three corners".into());
+            return Err(FaceProblem::Few {});
         }
         if has_twins(corners) {
-            return Err("a face names a vertex twice".into());
+            return Err(FaceProblem::Twice {});
         }
         if let [a, b, c] = *corners {
             self.triangles.push([a, b, c]);
@@ -89,10 +88,8 @@ impl Triangles {
         }
         let places: Vec<[f64; 3]> = corners.iter().map(|corner| self.positions[*corner as usize]).collect();
         let cut = cut_face(&places).map_err(|error| match error {
-            FaceError::Crossing => "a face crosses or touches itself, or encloses nothing".to_string(),
-            FaceError::Folded(off) => {
-                format!("a face is far from flat: a corner lies {} of its size off its plane", rounded(off, 2))
-            }
+            FaceError::Crossing => FaceProblem::Crossing {},
+            FaceError::Folded(off) => FaceProblem::Bent { off: rounded(off, 2) },
         })?;
         self.polygons.count += 1;
         self.polygons.concave += usize::from(cut.concave);
@@ -104,27 +101,11 @@ impl Triangles {
 
     /// Of which polygons the triangles are not what every program would make of them.
     fn cut(&self) -> Vec<SceneError> {
-        let mut told = Vec::new();
-        let mut tell = |count: usize, code, [one, many]: [&str; 2], what: String| {
-            let faces = counted(self.polygons.count as u64, "face", "faces");
-            let message = format!(
-                "{count} of {faces} with more than three corners {}{what}",
-                if count == 1 { one } else { many }
-            );
-            if count > 0 {
-                told.push(SceneError::new(code, message).value(count.to_string()));
-            }
-        };
-        tell(
-            self.polygons.concave,
-            "mesh.concave_face",
-            ["is concave", "are concave"],
-            ": cut along diagonals inside".into(),
-        );
-        let what =
-            format!(", by up to {} of their size: cut along the better diagonals", rounded(self.polygons.most_bent, 2));
-        tell(self.polygons.bent, "mesh.bent_face", ["is not flat", "are not flat"], what);
-        told
+        let Polygons { count: faces, concave, bent, most_bent } = self.polygons;
+        let concave = (concave > 0).then(|| SceneError::of(SurfaceNotice::Concave { count: concave, faces }));
+        let off = rounded(most_bent, 2);
+        let bent = (bent > 0).then(|| SceneError::of(SurfaceNotice::BentFaces { count: bent, faces, off }));
+        concave.into_iter().chain(bent).collect()
     }
 
     /// An error at a triangle.
@@ -183,8 +164,7 @@ pub(super) fn loaded(
 ) -> Result<Loaded, Problem> {
     let named = |error: SceneError| Problem::from(SceneError { file: file.to_string(), ..error });
     if found.triangles.is_empty() {
-        let error = SceneError::new("mesh.empty", "the file holds no triangles").value("0");
-        return Err(named(error.allowed("at least one triangle")));
+        return Err(named(SceneError::of(SurfaceError::NoTriangles {})));
     }
     let stored = found.stored.unwrap_or_else(|| found.as_stored());
     let mut notices = std::mem::take(&mut found.notices);
@@ -198,24 +178,20 @@ pub(super) fn loaded(
         groups: std::mem::take(&mut found.groups),
         ..Mesh::default()
     };
-    mesh.validate().map_err(|e| named(SceneError::new("mesh.index", e.to_string())))?;
+    mesh.validate().map_err(|problem| named(SceneError::of(SurfaceError::Index { problem })))?;
     if let Some([first, second]) = mesh.duplicate_facets() {
-        let message = format!("triangles {first} and {second} have the same corners");
-        let error = SceneError::new("mesh.duplicate_element", message).value(second.to_string());
-        return Err(named(found.at(source, second, error.hint("leave one of them out"))));
+        let error = SceneError::of(SurfaceError::SameCorners { first, second });
+        return Err(named(found.at(source, second, error)));
     }
     if let Some((facet, area)) = mesh.thin_facet(THIN) {
-        let message = format!("triangle {facet} has no area for its size");
-        let error = SceneError::new("mesh.degenerate_face", message).value(format!("{area:e}"));
-        let allowed = format!("an area above {THIN:e} of its longest edge squared");
-        return Err(named(found.at(source, facet, error.allowed(allowed))));
+        let (area, least) = (format!("{area:e}"), format!("{THIN:e}"));
+        let error = SceneError::of(SurfaceError::NoArea { triangle: facet, area, least });
+        return Err(named(found.at(source, facet, error)));
     }
     notices.extend(slivers(&mesh));
     let unused = mesh.drop_unreferenced();
     if unused > 0 {
-        let (one, many) = ("vertex that no triangle names is left out", "vertices that no triangle names are left out");
-        let message = counted(unused as u64, one, many);
-        notices.push(SceneError::new("mesh.unreferenced", message).value(unused.to_string()));
+        notices.push(SceneError::of(SurfaceNotice::UnreferencedVertices { count: unused }));
     }
     orient(&mut mesh, &found, source, shape, &mut notices).map_err(named)?;
     if !mesh.facets.is_empty() {
@@ -228,17 +204,15 @@ pub(super) fn loaded(
     place(&mut mesh, shape).map_err(named)?;
     let filling = match shapes::filling(shape) {
         Ok(Some(_)) if mesh.facets.is_empty() => {
-            let error = SceneError::new("mesh.open", "an open surface has no inside to fill");
-            let error = error.value(shape.text("filling").unwrap_or(""));
-            return Err(Problem::new("filling", error.hint("close it with `open = \"cap\"`")));
+            let filling = shape.text("filling").unwrap_or("").to_string();
+            return Err(Problem::new("filling", SceneError::of(SurfaceError::NothingToFill { filling })));
         }
         Ok(filling) => filling,
-        Err(refusal) => return Err(Problem::new("filling", SceneError::new("scene.missing", refusal.to_string()))),
+        Err(problem) => return Err(Problem::new("filling", SceneError::of(SurfaceError::Filling { problem }))),
     };
     let remesh = shape.number("remesh");
     if remesh.is_some() && mesh.facets.is_empty() {
-        let error = SceneError::new("mesh.open", "an open surface cannot be remeshed").allowed("a closed surface");
-        return Err(Problem::new("remesh", error.hint("close it with `open = \"cap\"`")));
+        return Err(Problem::new("remesh", SceneError::of(SurfaceError::NotRemeshed {})));
     }
     Ok(Loaded { notices, content: Content::Surface { mesh: Box::new(mesh), remesh, filling } })
 }
@@ -257,15 +231,9 @@ fn slivers(mesh: &Mesh<3>) -> Option<SceneError> {
         count += usize::from(thinness < SLIVER);
         worst = if thinness < worst.0 { (thinness, number) } else { worst };
     }
-    let message = format!(
-        "{count} of {} {}; the thinnest is triangle {}, with an area of {} of its longest edge squared",
-        counted(mesh.facets.len() as u64, "triangle", "triangles"),
-        if count == 1 { "is a sliver" } else { "are slivers" },
-        worst.1,
-        number(worst.0)
-    );
-    let about = SceneError::new("mesh.sliver", message).value(count.to_string());
-    (count > 0).then(|| about.allowed(format!("areas from {SLIVER:e}")).hint("`remesh` makes nearly equilateral ones"))
+    let (area, thinnest) = worst;
+    let (triangles, least) = (mesh.facets.len(), format!("{SLIVER:e}"));
+    (count > 0).then(|| SceneError::of(SurfaceNotice::Slivers { count, triangles, thinnest, area, least }))
 }
 
 /// A surface whose file is probably not in metres.
@@ -275,13 +243,14 @@ fn odd_scale(mesh: &Mesh<3>) -> Option<SceneError> {
     if (USUAL[0]..=USUAL[1]).contains(&extent) {
         return None;
     }
-    let size = "`size` gives the length that is meant";
-    let explained = extent < UNITS * USUAL[1] && extent * UNITS > USUAL[0];
-    let unit = if extent > USUAL[1] { "millimetres: `scale = 0.001`" } else { "kilometres: `scale = 1000.0`" };
-    let about =
-        SceneError::new("mesh.scale", format!("the surface is {} m large", number(extent))).value(extent.to_string());
-    let about = about.allowed(format!("{} m to {} m, where `size` is not given", number(USUAL[0]), number(USUAL[1])));
-    Some(about.hint(if explained { format!("perhaps it is in {unit}; {size}") } else { size.to_string() }))
+    let [least, most] = USUAL;
+    let explained = extent < UNITS * most && extent * UNITS > least;
+    let hint = match (explained, extent > most) {
+        (false, _) => ShapeHint::Size {},
+        (true, true) => ShapeHint::Millimetres {},
+        (true, false) => ShapeHint::Kilometres {},
+    };
+    Some(SceneError::of(SurfaceNotice::Scale { extent, least, most }).advice(hint))
 }
 
 /// Joins vertices where the scene or the format asks for it.
@@ -301,11 +270,10 @@ fn weld(
     let joined = match opruga_mesh::weld(&mut positions, &mut triangles, distance) {
         Ok(joined) => joined,
         Err(MeshError::RepeatedNode { index, .. }) => {
-            let message = format!("triangle {index} names a place twice where vertices within {distance} m are joined");
-            let error = SceneError::new("mesh.degenerate_face", message).value(distance.to_string());
-            return Err(found.at(source, index, error.hint("take a smaller `weld`, or leave the triangle out")));
+            let error = SceneError::of(SurfaceError::Joined { triangle: index, distance });
+            return Err(found.at(source, index, error));
         }
-        Err(e) => return Err(SceneError::new("scene.range", e.to_string()).value(distance.to_string())),
+        Err(problem) => return Err(SceneError::of(SurfaceError::Weld { problem }).value(distance.to_string())),
     };
     if joined > 0 && !found.groups.is_empty() {
         // Groups follow their vertices by the corners of the triangles.
@@ -322,9 +290,7 @@ fn weld(
     }
     // A format that repeats every corner is welded as a matter of course.
     if joined > 0 && !found.soup {
-        let message =
-            format!("{joined} of {before} vertices {} joined to others", if joined == 1 { "is" } else { "are" });
-        notices.push(SceneError::new("mesh.welded", message).value(joined.to_string()));
+        notices.push(SceneError::of(SurfaceNotice::Welded { count: joined, vertices: before }));
     }
     (found.positions, found.triangles) = (positions, triangles);
     Ok(())
@@ -344,26 +310,21 @@ fn orient(
     if let (Err(MeshError::Open { .. }), "cap" | "sheet") = (&turned, open) {
         if open == "sheet" {
             let against = mesh.orient_alike().map_err(|e| refuse(mesh, e))?;
-            flipped(notices, against, AGAINST);
+            flipped(notices, against);
             mesh.sheets = std::mem::take(&mut mesh.facets);
             return Ok(());
         }
         let closed = mesh.cap().map_err(|e| refuse(mesh, e))?;
-        let what = if closed == 1 { "free boundary is" } else { "free boundaries are" };
-        let message = format!("{closed} {what} closed by fans of triangles");
-        notices.push(SceneError::new("mesh.capped", message).value(closed.to_string()));
+        notices.push(SceneError::of(SurfaceNotice::Capped { count: closed }));
         turned = mesh.orient_components();
     }
     let turned = turned.map_err(|e| refuse(mesh, e))?;
-    flipped(notices, turned.against, AGAINST);
-    flipped(
-        notices,
-        turned.inside_out,
-        ["component that is inside out is turned", "components that are inside out are turned"],
-    );
+    flipped(notices, turned.against);
+    if turned.inside_out > 0 {
+        notices.push(SceneError::of(SurfaceNotice::InsideOut { count: turned.inside_out }));
+    }
     if let Some((facet, volume)) = turned.flat {
-        let error = SceneError::new("mesh.dimension", "a closed surface is flat: it encloses no volume");
-        let error = error.value(format!("{volume:e}")).allowed("a volume above 1e-12 of its extent cubed");
+        let error = SceneError::of(SurfaceError::Flat { volume: format!("{volume:e}") });
         return Err(found.at(source, facet, error));
     }
     let pinched = mesh.pinched_nodes();
@@ -372,11 +333,8 @@ fn orient(
             .iter()
             .take(8)
             .map(|node| format!("({})", mesh.positions[*node as usize].map(|x| x.to_string()).join(", ")));
-        let message =
-            format!("parts of the surface hang together by a vertex: {}", shown.collect::<Vec<_>>().join(", "));
-        let error = SceneError::new("mesh.non_manifold", message).value(pinched.len().to_string());
-        let error = error.allowed("triangles that go once around every vertex");
-        let error = error.hint("move the parts apart, or give each a vertex of its own");
+        let places = shown.collect::<Vec<_>>().join(", ");
+        let error = SceneError::of(SurfaceError::Pinched { places, count: pinched.len() });
         let facet = mesh.facets.iter().position(|facet| facet.contains(first)).unwrap_or(0);
         return Err(found.at(source, facet as u32, error));
     }
@@ -396,18 +354,16 @@ fn compare(
     let count = crossings.pairs.len();
     let Some([first, second]) = crossings.pairs.first().copied() else {
         if !crossings.complete {
-            let message = "too many triangles lie over one another: not all were compared, and some may cross";
-            notices.push(SceneError::new("mesh.not_compared", message));
+            notices.push(SceneError::of(SurfaceNotice::NotCompared {}));
         }
         return Ok(());
     };
-    let among = match crossings.complete {
-        true => counted(count as u64, "pair", "pairs"),
-        false => format!("{count} pairs and more"),
-    };
+    let complete = crossings.complete;
     if shape.text("overlap") == Some("keep") {
-        let message = format!("{among} of triangles cross, touch or overlap");
-        notices.push(SceneError::new("mesh.self_intersection", message).value(count.to_string()));
+        notices.push(SceneError::of(match complete {
+            true => SurfaceNotice::Crossings { count },
+            false => SurfaceNotice::ManyCrossings { count },
+        }));
         return Ok(());
     }
     let middle = |facet: u32| {
@@ -415,14 +371,9 @@ fn compare(
         let mean: [f64; 3] = core::array::from_fn(|d| (corners[0][d] + corners[1][d] + corners[2][d]) / 3.0);
         mean.map(number).join(", ")
     };
-    let message = format!(
-        "the surface meets itself: triangle {first} around ({}) crosses, touches or overlaps triangle {second} around ({})",
-        middle(first),
-        middle(second)
-    );
-    let error = SceneError::new("mesh.self_intersection", message).value(among);
-    let error = error.allowed("triangles that meet at common vertices and edges only");
-    let error = error.hint("`overlap = \"keep\"` takes the surface as it is");
+    let (first_place, second_place) = (middle(first), middle(second));
+    let error = SurfaceError::MeetsItself { first, first_place, second, second_place, count, complete };
+    let error = SceneError::of(error);
     // Those that close a free boundary stand nowhere in the file.
     Err(match [second, first].into_iter().find(of_file) {
         Some(facet) => found.at(source, facet, error),
@@ -430,49 +381,32 @@ fn compare(
     })
 }
 
-const AGAINST: [&str; 2] =
-    ["triangle that faces against its neighbours is turned", "triangles that face against their neighbours are turned"];
-
-/// Tells of what was turned, by one and by many.
-fn flipped(notices: &mut Vec<SceneError>, count: usize, [one, many]: [&str; 2]) {
+/// Tells of triangles that were turned to face as their neighbours do.
+fn flipped(notices: &mut Vec<SceneError>, count: usize) {
     if count > 0 {
-        let message = counted(count as u64, one, many);
-        notices.push(SceneError::new("mesh.flipped", message).value(count.to_string()));
+        notices.push(SceneError::of(SurfaceNotice::Against { count }));
     }
 }
 
 /// What the topology of a surface forbids.
 fn refused(mesh: &Mesh<3>, found: &Triangles, source: Option<&Source<'_>>, error: MeshError) -> SceneError {
     let place = |node: u32| mesh.positions[node as usize].map(number).join(", ");
-    match &error {
+    match error {
         MeshError::Open { loops, nodes } => {
-            let shown: Vec<String> = nodes.iter().take(8).map(|n| format!("({})", place(*n))).collect();
-            let free = counted(*loops as u64, "free boundary", "free boundaries");
-            let message = format!("the surface is not closed: {free}, through {}", shown.join(", "));
+            let places: Vec<String> = nodes.iter().take(8).map(|n| format!("({})", place(*n))).collect();
             let hint = match told::seams(mesh) {
-                0 => "`open = \"cap\"` closes it, `open = \"sheet\"` keeps it as cloth".to_string(),
-                n => format!(
-                    "{} at the place of another: `weld = 0` joins them; or `open = \"cap\"`, `open = \"sheet\"`",
-                    counted(n as u64, "vertex lies", "vertices lie")
-                ),
+                0 => ShapeHint::CapOrSheet {},
+                count => ShapeHint::Weld { count },
             };
-            SceneError::new("mesh.open", message).value(loops.to_string()).allowed("a closed surface").hint(hint)
+            SceneError::of(SurfaceError::Open { loops, places: places.join(", ") }).advice(hint)
         }
         MeshError::NonManifoldEdges { edges } => {
-            let shown: Vec<String> =
+            let places: Vec<String> =
                 edges.iter().take(8).map(|[a, b]| format!("({}) – ({})", place(*a), place(*b))).collect();
-            let message = format!(
-                "more than two triangles meet at {}: {}",
-                counted(edges.len() as u64, "edge", "edges"),
-                shown.join("; ")
-            );
-            SceneError::new("mesh.non_manifold", message).value(edges.len().to_string()).allowed("at most two")
+            SceneError::of(SurfaceError::CrowdedEdges { count: edges.len(), places: places.join("; ") })
         }
-        MeshError::NonOrientable { facet } => {
-            let error = SceneError::new("mesh.non_orientable", "the surface has only one side, as a Möbius band");
-            found.at(source, *facet, error.value(facet.to_string()))
-        }
-        other => SceneError::new("mesh.topology", visible(&other.to_string())),
+        MeshError::NonOrientable { facet } => found.at(source, facet, SceneError::of(SurfaceError::OneSided { facet })),
+        problem => SceneError::of(MeshFileError::Topology { problem }),
     }
 }
 
@@ -484,8 +418,7 @@ fn place(mesh: &mut Mesh<3>, shape: &Values) -> Result<(), SceneError> {
     let (low, high) = mesh.bounds();
     let extent = (0..3).map(|d| high[d] - low[d]).fold(0.0, larger);
     if !(extent > 1e-150 && extent < 1e150) {
-        let error = SceneError::new("mesh.size", "the surface has no extent, or one out of range");
-        return Err(error.value(format!("{extent:e}")).allowed("an extent from 1e-150 to 1e150"));
+        return Err(SceneError::of(SurfaceError::Extent { extent: format!("{extent:e}") }));
     }
     let factor = shape.number("size").map_or(1.0, |size| size / extent);
     let center: [f64; 3] = shape.vector("center");

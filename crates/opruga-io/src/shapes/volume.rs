@@ -1,6 +1,7 @@
 //! Bodies of cells from mesh files, and surfaces from the triangles of such files.
 
-use super::triangles::{CORNERS, Triangles};
+use super::surface_errors::SurfaceError;
+use super::triangles::Triangles;
 use super::{Content, Loaded, Open, Problem};
 use crate::meshes::{self, Kind, Mending, MeshFileError};
 use crate::problem::{SceneError, visible};
@@ -54,9 +55,13 @@ pub(super) fn surface(name: &str, bytes: &[u8], open: &mut Open<'_>) -> Result<T
         match (item.kind, item.nodes()) {
             (Kind::QuadraticTriangle, &[a, b, c, d, e, f]) => out.triangles.extend(triangle_parts(&[a, b, c, d, e, f])),
             (Kind::Triangle | Kind::Quadrilateral, corners) => {
-                if let Err(why) = out.polygon(corners) {
-                    let error = SceneError::new("mesh.degenerate_face", format!("{why}: element {}", item.number));
-                    return Err(named(error.value(visible(&format!("{corners:?}"))).allowed(CORNERS)));
+                if let Err(problem) = out.polygon(corners) {
+                    let corners = visible(&format!("{corners:?}"));
+                    return Err(named(SceneError::of(SurfaceError::Element {
+                        problem,
+                        element: item.number,
+                        corners,
+                    })));
                 }
             }
             _ => {}

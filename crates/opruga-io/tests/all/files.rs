@@ -28,7 +28,7 @@ fn a_failing_disk_leaves_the_old_file_whole() {
     for k in 0..new.len() as u64 {
         let error = safe_write_through(&path, true, |file| Failing::after(k, file), |w| w.write_all(&new))
             .expect_err("the disk is full");
-        assert_eq!((error.code, error.bytes, error.exit_code(), &error.path), ("write.failed", k, 4, &path));
+        assert_eq!((error.code(), error.bytes, error.exit_code(), &error.path), ("write.failed", k, 4, &path));
         assert_eq!(std::fs::read(&path).expect("still there"), b"old");
         assert_eq!(std::fs::read_dir(&folder).expect("a folder").count(), 1, "nothing is left aside");
     }
@@ -107,7 +107,7 @@ fn a_full_disk_leaves_no_half_export() {
         safe_write(&path, false, |w| w.write_all(b"old")).expect("the first");
         for k in 0..whole.len() as u64 {
             let error = safe_write_through(&path, true, |file| Failing::after(k, file), &writer).expect_err("full");
-            assert_eq!((error.code, error.bytes, error.exit_code()), ("write.failed", k, 4), "{name}");
+            assert_eq!((error.code(), error.bytes, error.exit_code()), ("write.failed", k, 4), "{name}");
         }
         assert_eq!(std::fs::read(&path).expect("still there"), b"old", "{name}");
         assert_eq!(std::fs::read_dir(&folder).expect("a folder").count(), 1, "nothing is left aside");
@@ -134,8 +134,8 @@ fn a_drive_that_goes_away_at_any_byte_leaves_the_old_file_whole() {
         writer(&mut whole).expect("memory does not fail");
         safe_write(&path, false, |w| w.write_all(b"old")).expect("the first");
         let refused = |error: opruga_io::safe_write::WriteError, bytes: u64, text: &str| {
-            assert_eq!((error.code, error.bytes, error.exit_code(), &error.path), ("write.failed", bytes, 4, &path));
-            assert!(error.message.contains(text), "{error}");
+            assert_eq!((error.code(), error.bytes, error.exit_code(), &error.path), ("write.failed", bytes, 4, &path));
+            assert!(error.about.to_string().contains(text), "{error}");
             assert_eq!(std::fs::read(&path).expect("still there"), b"old", "{name} after {bytes} bytes");
         };
         for (number, text) in FAULTS {
@@ -233,7 +233,7 @@ fn a_second_name_keeps_the_older_file() {
         Err(std::io::ErrorKind::StorageFull.into())
     };
     let failed = out.together().write_keeping("checkpoint", "checkpoint.previous", full).expect_err("full");
-    assert_eq!(failed.code, "write.failed");
+    assert_eq!(failed.code(), "write.failed");
     assert_eq!(
         (read("checkpoint"), read("checkpoint.previous")),
         (Some(vec![3]), Some(vec![2])),
@@ -271,7 +271,7 @@ fn files_that_belong_together_change_together() {
         w.write_all(b"half")?;
         Err(std::io::ErrorKind::StorageFull.into())
     };
-    assert_eq!(together.write("state", full).expect_err("full").code, "write.failed");
+    assert_eq!(together.write("state", full).expect_err("full").code(), "write.failed");
     drop(together);
     assert_eq!(names(), before, "nothing has changed, and nothing is left aside");
     let mut together = out.together();
@@ -287,7 +287,7 @@ fn files_that_belong_together_change_together() {
     together.write("state", |w| w.write_all(b"newest")).expect("written");
     std::fs::remove_file(out.path("table")).expect("the file is there");
     std::fs::create_dir(out.path("table")).expect("a folder");
-    assert_eq!(together.finish().expect_err("a folder").code, "write.failed");
+    assert_eq!(together.finish().expect_err("a folder").code(), "write.failed");
     assert_eq!(std::fs::read(out.path("state")).expect("a file"), b"new", "what comes behind it is as it was");
     drop(out);
     std::fs::remove_dir_all(folder).expect("the folder is there");
@@ -298,12 +298,12 @@ fn files_that_belong_together_change_together() {
 fn output_folders() {
     let folder = folder("output");
     let out = folder.join("out");
-    let code = |path: &PathBuf, existing| OutputFolder::open(path, existing).map(|_| ()).expect_err("refused").code;
+    let code = |path: &PathBuf, existing| OutputFolder::open(path, existing).map(|_| ()).expect_err("refused").code();
 
     let first = OutputFolder::open(&out, Existing::Refuse).expect("new");
     assert_eq!(code(&out, Existing::Replace), "write.locked");
     first.write("final.csv", false, |w| w.write_all(b"x")).expect("written");
-    assert_eq!(first.write("final.csv", false, |w| w.write_all(b"y")).expect_err("there").code, "write.exists");
+    assert_eq!(first.write("final.csv", false, |w| w.write_all(b"y")).expect_err("there").code(), "write.exists");
     drop(first);
     assert_eq!(code(&out, Existing::Refuse), "write.exists");
     let again = OutputFolder::open(&out, Existing::Replace).expect("replaced");
@@ -315,7 +315,7 @@ fn output_folders() {
     assert_eq!(code(&out.join("final.csv/out"), Existing::Refuse), "write.folder");
     assert_eq!(code(&out.join("final.csv"), Existing::Refuse), "write.folder");
     assert_eq!(code(&folder.join("x".repeat(300)), Existing::Refuse), "write.folder");
-    assert_eq!(safe_write(&folder, true, |_| Ok(())).expect_err("a folder").code, "write.failed");
+    assert_eq!(safe_write(&folder, true, |_| Ok(())).expect_err("a folder").code(), "write.failed");
     std::fs::remove_dir_all(folder).expect("the folder is there");
 }
 
@@ -340,7 +340,7 @@ fn damaged_checkpoints() {
     let mut newer = bytes.clone();
     newer[8] = 9;
     assert_eq!(Checkpoint::read(&newer), Err(CheckpointError::Version { found: 9 }));
-    assert_eq!(Checkpoint::read(b"PK\x03\x04"), Err(CheckpointError::NotOne));
+    assert_eq!(Checkpoint::read(b"PK\x03\x04"), Err(CheckpointError::NotOne {}));
     // A head that promises more than memory holds.
     let mut huge = bytes;
     huge[20..28].copy_from_slice(&u64::MAX.to_le_bytes());

@@ -33,8 +33,10 @@
 //! | E10 | the text has the ramp restore pressure and spare vertices from gravity; the code ramps once, for all | P follows from nRT/V at every instant |
 //! | E11 | n is called the number of particles, with R | n is an amount in moles |
 
+mod refusals;
 mod spec;
 
+pub use refusals::Refusal;
 pub use spec::SPEC;
 
 use opruga_core::error::{BuildError, StepError};
@@ -87,19 +89,18 @@ impl<const D: usize> Model<D> for AsPublishedModel {
         Views { energy: false, hessian: false, symmetric: false, damping: true }
     }
     fn build(&self, ingredients: &Ingredients<D>) -> Result<Box<dyn Potential<D>>, BuildError> {
-        let refuse = |code, message: &str| Err(BuildError::new(SPEC.kind, code, message));
         if D != 2 {
-            return refuse("model.dimension", "the published program is plane; allowed: dimension = 2");
+            return Err(Refusal::Dimension {}.into());
         }
         let mesh = ingredients.mesh;
         if mesh.facets.is_empty() {
-            return refuse("model.open_surface", "the body has no outline");
+            return Err(Refusal::NoOutline {}.into());
         }
         if ingredients.values.iter().any(|v| v.rows("pointer").is_empty() && !v.rows("held").is_empty()) {
-            return refuse("model.one_of", "`held` needs `pointer`");
+            return Err(Refusal::NoPointer {}.into());
         }
         if ingredients.values.iter().any(|v| v.rows("held").iter().any(|row| row[1] <= row[0])) {
-            return refuse("model.interval", "each row of `held` is [press, release] with press < release");
+            return Err(Refusal::Interval {}.into());
         }
         let springs: Vec<[u32; 2]> = mesh.facets.iter().map(|f| [f[1], f[0]]).collect();
         let length = |&[i, j]: &[u32; 2]| {
@@ -250,8 +251,7 @@ impl<const D: usize> Potential<D> for AsPublished {
         for body in 0..self.layout.stride() {
             numbers[body] = self.step(view, body, memory[body], forces);
             if numbers[body] == 0.0 {
-                let message = "the published \"volume\" Σ ½ |Δx| |Δy| is zero: every edge lies along an axis; hint: turn the body a little";
-                return Err(StepError::Model { model: SPEC.kind, message: message.into() });
+                return Err(StepError::of(SPEC.kind, Refusal::NoPublishedVolume {}));
             }
             let (press, vertex) = self.mouse(view, body, memory, forces);
             numbers[WIDTH + body] = press as f64;

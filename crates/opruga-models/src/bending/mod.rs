@@ -20,9 +20,11 @@
 
 mod angle;
 pub(crate) mod hinge;
+mod refusals;
 mod spec;
 mod turn;
 
+pub use refusals::Refusal;
 pub use spec::SPEC;
 
 use crate::vectors::{cross, dot, in_space, minus};
@@ -30,7 +32,7 @@ use hinge::Hinge;
 use opruga_core::error::BuildError;
 use opruga_core::memory::{Counts, Need};
 use opruga_core::potential::{Definiteness, Ingredients, Model, Observe, Potential, Properties, Sink, Views};
-use opruga_core::spec::{ONE_OF, Spec, Values};
+use opruga_core::spec::{Spec, Values};
 use opruga_core::state::View;
 use opruga_core::stencil::Stencils;
 use opruga_core::tile::Tile;
@@ -59,23 +61,19 @@ impl<const D: usize> Model<D> for BendingModel {
         Need { bytes: 60.0 * counts.hinges, couplings: counts.hinges }
     }
     fn build(&self, ingredients: &Ingredients<D>) -> Result<Box<dyn Potential<D>>, BuildError> {
-        let refuse = |code, message: String| BuildError::new(SPEC.kind, code, message);
         let mesh = ingredients.mesh;
         for values in ingredients.values {
             values.check_choices(&SPEC)?;
             match (values.number("modulus"), values.number("thickness")) {
-                (Some(_), None) => return Err(refuse(ONE_OF, "`modulus` needs `thickness`".into())),
-                (None, Some(_)) => {
-                    return Err(refuse(ONE_OF, "`thickness` goes with `modulus`, not with `stiffness`".into()));
-                }
+                (Some(_), None) => return Err(Refusal::NoThickness {}.into()),
+                (None, Some(_)) => return Err(Refusal::Thickness {}.into()),
                 _ => {}
             }
         }
-        let turns = mesh.bends().map_err(|e| refuse("model.mesh", e.to_string()))?;
-        let hinges = mesh.hinges().map_err(|e| refuse("model.not_manifold", e.to_string()))?;
+        let turns = mesh.bends().map_err(|problem| Refusal::Bends { problem })?;
+        let hinges = mesh.hinges().map_err(|problem| Refusal::Hinges { problem })?;
         if turns.is_empty() && hinges.is_empty() {
-            let message = "the body has nothing to bend: no node between two edges of an outline or chain, no edge between two triangles";
-            return Err(refuse("model.no_hinges", message.into()));
+            return Err(Refusal::NoHinges {}.into());
         }
 
         // The rest shape: for each hinge cos θ₀ and sin θ₀, and k per E t³/12 (E π t⁴/64 for a chain in space).
@@ -104,8 +102,7 @@ impl<const D: usize> Model<D> for BendingModel {
         }
         let shapes = turn_shapes.iter().chain(&hinge_shapes);
         if let Some(number) = shapes.clone().position(|s| !(s.cosine.is_finite() && s.factor.is_finite())) {
-            let message = format!("hinge {number} has an edge without length or a triangle without area at rest");
-            return Err(refuse("model.zero_length", message));
+            return Err(Refusal::NoHingeLength { hinge: number }.into());
         }
 
         let values = |body: usize| ingredients.values[body.min(ingredients.values.len() - 1)];

@@ -88,6 +88,6 @@ fn a_preparation_ends_when_somebody_asks() {
     let break_off = BreakOff::default();
     break_off.ask(true);
     let ended = Stiffness::new(&surface, 0.3, false, &[], &break_off).map(|_| ());
-    assert_eq!(ended, Err(Refusal::BrokenOff {}));
+    assert_eq!(ended, Err(Refusal::Ended {}));
     assert_eq!(break_off.prepared(), None);
 }

@@ -48,7 +48,7 @@ impl<'a> Progress<'a> {
         let part = self.part as usize;
         let done = self.costs[..part].iter().sum::<f64>() + self.share * self.costs[part];
         self.break_off.set_prepared(Some(done / self.costs.iter().sum::<f64>()));
-        if self.break_off.is_asked() { Err(Refusal::BrokenOff {}) } else { Ok(()) }
+        if self.break_off.is_asked() { Err(Refusal::Ended {}) } else { Ok(()) }
     }
 }
 
@@ -78,7 +78,7 @@ mod tests {
         }
         assert!((last - 1.0).abs() < 1e-12);
         break_off.ask(true);
-        assert_eq!(progress.step(0.0), Err(Refusal::BrokenOff {}));
+        assert_eq!(progress.step(0.0), Err(Refusal::Ended {}));
         drop(progress);
         assert_eq!(break_off.prepared(), None);
     }

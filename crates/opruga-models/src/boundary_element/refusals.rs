@@ -12,55 +12,71 @@ messages! {
     pub enum Refusal {
         /// No facets.
         "model.no_surface"
-        #[error("the body has no closed boundary: it is a line, a sheet, a chain or a node; allowed: closed outlines in the plane, closed surfaces in space")]
+        #[error("the body has no closed boundary: it is a line, a sheet, a chain or a node")]
+        #[allowed("closed outlines in the plane, closed surfaces in space")]
         NoSurface {},
         /// An open boundary.
         "model.open_surface"
-        #[error("{problem}; allowed: a closed boundary; hint: `cap = true` closes a surface from a file")]
-        Open { problem: String },
+        #[error("{problem}")]
+        #[allowed("a closed boundary")]
+        #[hint("`cap = true` closes a surface from a file")]
+        Open { problem: MeshError },
         /// A boundary that is none at some places.
         "model.not_manifold"
-        #[error("{problem}; allowed: a boundary that has an inside and an outside everywhere")]
-        NotManifold { problem: String },
+        #[error("{problem}")]
+        #[allowed("a boundary that has an inside and an outside everywhere")]
+        NotManifold { problem: MeshError },
         /// Facets that face against one another.
         "model.orientation"
-        #[error("{problem}; allowed: facets that all face the same way")]
-        Orientation { problem: String },
+        #[error("{problem}")]
+        #[allowed("facets that all face the same way")]
+        Orientation { problem: MeshError },
         /// Facets that cross.
         "model.crossing_surface"
-        #[error("{count} pairs of facets cross or touch, the first of them facets {first} and {second}; allowed: a boundary that does not meet itself")]
+        #[error("{count} pairs of facets cross or touch, the first of them facets {first} and {second}")]
+        #[allowed("a boundary that does not meet itself")]
         Crossing { count: usize, first: u32, second: u32 },
         /// A facet without a normal.
         "model.degenerate_facet"
-        #[error("facet {facet} has a measure of {} with an edge of {} m; allowed: more than 1e-10 of the edge (in space, of its square)", number(*measure), number(*edge))]
+        #[error("facet {facet} has a measure of {} with an edge of {} m", number(*measure), number(*edge))]
+        #[allowed("more than 1e-10 of the edge (in space, of its square)")]
         Degenerate { facet: usize, measure: f64, edge: f64 },
         /// Nodes that are not on the surface.
         "model.inner_nodes"
-        #[error("{count} of {nodes} nodes are not on the boundary, the first of them node {first}; allowed: nodes of the boundary alone, since the method knows no others; hint: the surface without its filling, such as `polygon` or `svg` in the plane and `box`, `icosphere` or `surface` in space")]
+        #[error("{count} of {nodes} nodes are not on the boundary, the first of them node {first}")]
+        #[allowed("nodes of the boundary alone, since the method knows no others")]
+        #[hint("the surface without its filling, such as `polygon` or `svg` in the plane and `box`, `icosphere` or `surface` in space")]
         InnerNodes { count: usize, nodes: usize, first: usize },
         /// Several solids.
         "model.several_solids"
-        #[error("the boundary encloses {solids} solids that do not touch; allowed: one, with cavities; hint: a body for each")]
+        #[error("the boundary encloses {solids} solids that do not touch")]
+        #[allowed("one, with cavities")]
+        #[hint("a body for each")]
         SeveralSolids { solids: usize },
         /// A boundary in a boundary, outside of which all is filled.
         "model.nested_exterior"
-        #[error("`exterior` is true, and facet {facet} belongs to a boundary inside another one; allowed: cavities beside one another")]
+        #[error("`exterior` is true, and facet {facet} belongs to a boundary inside another one")]
+        #[allowed("cavities beside one another")]
         NestedExterior { facet: u32 },
         /// More vertices than a dense matrix is made for.
         "limit.memory"
-        #[error("the boundary has {nodes} vertices, whose dense matrices take about {} bytes while they are made; allowed: at most {most} vertices; hint: a coarser surface (`spacing`), or `fem` on its filling", number(*bytes))]
+        #[error("the boundary has {nodes} vertices, whose dense matrices take about {} bytes while they are made", number(*bytes))]
+        #[allowed("at most {most} vertices")]
+        #[hint("a coarser surface (`spacing`), or `fem` on its filling")]
         TooMany { nodes: usize, bytes: f64, most: usize },
         /// The page has no dense systems.
         "model.not_on_the_page"
-        #[error("the page does not compute boundary elements; hint: the studio and the command line do")]
+        #[error("the page does not compute boundary elements")]
+        #[hint("the studio and the command line do")]
         Page {},
         /// Somebody has asked for the end of the preparation.
         "run.broken_off"
         #[error("the preparation was broken off")]
-        BrokenOff {},
+        Ended {},
         /// A system without a solution.
         "model.singular"
-        #[error("the equations of the boundary have no solution: {reason}; hint: facets of more even size")]
+        #[error("the equations of the boundary have no solution: {reason}")]
+        #[hint("facets of more even size")]
         Singular { reason: String },
     }
 }
@@ -84,11 +100,11 @@ impl From<Refusal> for BuildError {
 
 impl From<MeshError> for Refusal {
     fn from(error: MeshError) -> Refusal {
-        let problem = error.to_string();
-        match error {
+        let problem = error;
+        match problem {
             MeshError::Open { .. } => Refusal::Open { problem },
             MeshError::InconsistentOrientation { .. } | MeshError::InsideOut { .. } => Refusal::Orientation { problem },
-            _ => Refusal::NotManifold { problem },
+            problem => Refusal::NotManifold { problem },
         }
     }
 }

@@ -1,11 +1,12 @@
 //! From the cells of a mesh to a solid, and what is refused on the way.
 
 use super::elements::{Cell, Shape, rest_gradient};
+use super::mass;
 use super::nodal_volume::NodalVolumes;
 use super::numbers::{Numbers, beyond};
+use super::refusals::{Refusal, Simplices};
 use super::section::{Plan, Section};
 use super::solid::{Built, Solid};
-use super::{mass, refuse};
 use crate::materials;
 use crate::materials::law::Law;
 use opruga_core::error::BuildError;
@@ -30,29 +31,22 @@ impl<'a, const D: usize> Builder<'a, D> {
     pub(super) fn new(ingredients: &'a Ingredients<'a, D>) -> Result<Self, BuildError> {
         let (mesh, first) = (ingredients.mesh, ingredients.values[0]);
         if mesh.cells.is_empty() {
-            let message = "the body has no cells: it is an outline, a surface or a chain. Filled shapes are `grid`, shapes from \
-                           files with a `filling`, and volume meshes";
-            return Err(refuse("model.no_cells", message));
+            return Err(Refusal::NoCellsAtAll {}.into());
         }
         let mut chosen = vec![true; mesh.cells.len()];
         if let Some(name) = first.text("cells") {
             let Some(group) = mesh.cell_groups.get(name) else {
-                return Err(refuse(
-                    "model.no_group",
-                    format!("the mesh has no group of cells `{name}`; {}", known(mesh)),
-                ));
+                return Err(no_group(mesh, name).into());
             };
             chosen.fill(false);
             group.iter().for_each(|cell| chosen[*cell as usize] = true);
             if group.is_empty() {
-                return Err(refuse("model.no_cells", format!("the group of cells `{name}` is empty")));
+                return Err(Refusal::EmptyGroup { name: name.into() }.into());
             }
         }
         let numbers = Numbers::new(ingredients, &chosen)?;
         if numbers.heated && first.text("locking") == Some("nodal_volume") {
-            let message = "`locking` is \"nodal_volume\", and the body expands by heat, which the volumes of nodes do not know; allowed: \
-                           \"refuse\" or \"accept\"; hint: `order = 2` for the body, or quadrilaterals and hexahedra, do not lock either";
-            return Err(refuse("model.locking", message));
+            return Err(Refusal::NodalVolumeAndHeat {}.into());
         }
         Ok(Builder {
             ingredients,
@@ -66,7 +60,9 @@ impl<'a, const D: usize> Builder<'a, D> {
     pub(super) fn laws(&self) -> Result<&'static materials::Laws, BuildError> {
         let name = self.ingredients.values[0].text("material").unwrap_or("");
         let found = materials::ALL.iter().find(|entry| entry.name == name);
-        let entry = found.ok_or_else(|| refuse("scene.unknown_name", format!("there is no material `{name}`")))?;
+        let entry = found.ok_or_else(|| {
+            BuildError::of(super::SPEC.kind, materials::Refusal::Unknown { name: name.into(), nearest: None })
+        })?;
         Ok(if self.numbers.heated { &entry.heated } else { &entry.cold })
     }
 
@@ -105,7 +101,7 @@ impl<'a, const D: usize> Builder<'a, D> {
         let nodal = E::SIMPLEX && self.locking() == "nodal_volume";
         let turns = law.turns();
         if E::SIMPLEX && !nodal && !self.stress {
-            let kind = if D == 2 { "triangles" } else { "tetrahedra" };
+            let kind = if D == 2 { Simplices::Triangles } else { Simplices::Tetrahedra };
             self.numbers.refuse_what_locks(&mut cells.iter().map(|cell| cell.number), kind)?;
         }
         let plan = Plan {
@@ -168,37 +164,32 @@ impl<'a, const D: usize> Builder<'a, D> {
         for (slopes, weight) in E::SLOPES.iter().chain(&middle).zip(E::WEIGHTS.iter().chain(&[0.0])) {
             let (_, determinant) = rest_gradient(&rest, slopes);
             if !(determinant.is_finite() && determinant > least) {
-                let what = if determinant < -least { "is turned inside out" } else { "has no volume" };
-                let message = format!(
-                    "cell {} with the nodes {:?} {what} at rest: det ∂X/∂ξ = {determinant:e}; allowed: more than {least:e}",
-                    cell.number, cell.nodes
-                );
-                return Err(refuse("model.inverted_cell", message));
+                let (cell, nodes) = (cell.number, format!("{:?}", cell.nodes));
+                let (inverted, least) = (determinant < -least, format!("{least:e}"));
+                let determinant = format!("{determinant:e}");
+                return Err(match inverted {
+                    true => Refusal::Inverted { cell, nodes, determinant, least }.into(),
+                    false => Refusal::FlatCell { cell, nodes, determinant, least }.into(),
+                });
             }
             measure += weight * determinant;
         }
         // A quadratic cell may be folded where no point of its own lies.
         let folded = if E::BOX || E::SIMPLEX { None } else { opruga_mesh::least_jacobian(&rest) };
         if let Some(found) = folded.map(|jacobian| jacobian.found).filter(|found| *found < -least) {
-            let message = format!(
-                "cell {} with the nodes {:?} is turned inside out at rest: det ∂X/∂ξ = {found:e}; allowed: more than {least:e}",
-                cell.number, cell.nodes
-            );
-            return Err(refuse("model.inverted_cell", message));
+            let (cell, nodes) = (cell.number, format!("{:?}", cell.nodes));
+            let (determinant, least) = (format!("{found:e}"), format!("{least:e}"));
+            return Err(Refusal::Inverted { cell, nodes, determinant, least }.into());
         }
         Ok(measure)
     }
 
     pub(super) fn finish(self, built: Built<D>) -> Result<Box<Solid<D>>, BuildError> {
         if self.locking() == "nodal_volume" && (self.stress || built.volumes.is_none()) {
-            let message = if self.stress {
-                "`locking` is \"nodal_volume\" in plane stress, where the thickness is free and nothing locks; allowed: \"refuse\" or \
-                 \"accept\"; hint: leave `locking` out"
-            } else {
-                "`locking` is \"nodal_volume\", but the cells are no linear triangles or tetrahedra, and do not lock; allowed: \
-                 \"refuse\" or \"accept\"; hint: leave `locking` out"
-            };
-            return Err(refuse("model.locking", message));
+            return Err(match self.stress {
+                true => Refusal::NodalVolumeInPlaneStress {}.into(),
+                false => Refusal::NodalVolumeOfOthers {}.into(),
+            });
         }
         let (layout, nodes) = (self.ingredients.layout, self.ingredients.mesh.positions.len());
         Ok(Box::new(Solid::new(layout, nodes, built, self.numbers.damped)))
@@ -211,7 +202,7 @@ fn densities<const D: usize>(ingredients: &Ingredients<D>) -> Result<Vec<f64>, B
         let depth = if D == 2 { ingredients.thickness } else { 1.0 };
         return Ok(densities.iter().map(|density| depth * density).collect());
     }
-    let measure = ingredients.mesh.measure().map_err(|e| refuse("model.mass", e.to_string()))?.value();
+    let measure = ingredients.mesh.measure().map_err(|problem| Refusal::Measure { problem })?.value();
     let nodes = 0..ingredients.mesh.nodes();
     Ok(vec![
         nodes.map(|node| ingredients.mass.at(ingredients.layout.place(node, 0))).sum::<f64>() / measure;
@@ -219,8 +210,11 @@ fn densities<const D: usize>(ingredients: &Ingredients<D>) -> Result<Vec<f64>, B
     ])
 }
 
-/// The names of the groups of cells of a mesh.
-fn known<const D: usize>(mesh: &Mesh<D>) -> String {
-    let names: Vec<_> = mesh.cell_groups.keys().map(|n| format!("`{n}`")).collect();
-    if names.is_empty() { "it has none".into() } else { format!("known: {}", names.join(", ")) }
+/// That a mesh has no group of cells of a name.
+fn no_group<const D: usize>(mesh: &Mesh<D>, name: &str) -> Refusal {
+    let (name, names) = (name.to_string(), mesh.cell_groups.keys().map(|n| format!("`{n}`")).collect::<Vec<_>>());
+    match names.is_empty() {
+        true => Refusal::NoGroupsOfCells { name },
+        false => Refusal::NoGroupOfCells { name, known: names.join(", ") },
+    }
 }

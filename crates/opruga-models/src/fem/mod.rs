@@ -37,12 +37,14 @@ mod numbers;
 mod part;
 mod pass;
 mod pressures;
+mod refusals;
 mod section;
 mod solid;
 mod spec;
 mod totals;
 mod work;
 
+pub use refusals::{Refusal, Simplices};
 pub use solid::Solid;
 pub use spec::{SPEC, own_fields};
 
@@ -57,10 +59,6 @@ use solid::Built;
 /// The kind `fem`.
 #[derive(Debug)]
 pub struct FemModel;
-
-fn refuse(code: &'static str, message: impl Into<String>) -> BuildError {
-    BuildError::new(SPEC.kind, code, message)
-}
 
 impl Model<2> for FemModel {
     fn spec(&self) -> &'static Spec {

@@ -1,6 +1,7 @@
 //! The numbers of the material of every cell: of the scene, or of the cells of the mesh.
 
-use super::{SPEC, refuse};
+use super::SPEC;
+use super::refusals::{Refusal, Simplices};
 use crate::materials::moduli::{lame, refuse_what_is_not_convex};
 use opruga_core::error::BuildError;
 use opruga_core::potential::Ingredients;
@@ -69,7 +70,7 @@ impl<'a> Numbers<'a> {
             for cell in cells() {
                 let growth = numbers.growth(cell, body);
                 if !(growth > 0.0 && growth.is_finite()) {
-                    return Err(refuse("model.temperature", numbers.no_growth(cell, body)));
+                    return Err(numbers.no_growth(cell, body).into());
                 }
             }
             cells().try_for_each(|cell| refuse_what_is_not_convex(values, numbers.ratio(cell, body)))?;
@@ -92,19 +93,13 @@ impl<'a> Numbers<'a> {
     pub(super) fn refuse_what_locks(
         &self,
         cells: &mut dyn Iterator<Item = u32>,
-        kind: &'static str,
+        kind: Simplices,
     ) -> Result<(), BuildError> {
         let refusing = |body: &usize| self.values[*body].text("locking") != Some("accept");
         let bodies: Vec<usize> = (0..self.values.len()).filter(refusing).collect();
         let mut ratios = cells.flat_map(|cell| bodies.iter().map(move |body| self.ratio(cell, *body)));
         let Some(ratio) = ratios.find(|ratio| *ratio > LOCKS_ABOVE) else { return Ok(()) };
-        Err(refuse(
-            "model.locking",
-            format!(
-                "`poissons_ratio` is {ratio} for linear {kind}, which lock near incompressibility; allowed: at most {LOCKS_ABOVE}; \
-                 hint: `order = 2` for the body, or `locking = \"nodal_volume\"`"
-            ),
-        ))
+        Err(Refusal::LinearCellsLock { ratio, cells: kind, most: LOCKS_ABOVE }.into())
     }
 
     fn ratio(&self, cell: u32, body: usize) -> f64 {
@@ -122,13 +117,10 @@ impl<'a> Numbers<'a> {
         1.0 + self.number(EXPANSION[0], self.expansions, cell, body) * (now - reference)
     }
     /// Why the growth of a cell is refused.
-    fn no_growth(&self, cell: u32, body: usize) -> String {
+    fn no_growth(&self, cell: u32, body: usize) -> Refusal {
         let ([now, reference], growth) = (self.temperatures(cell, body), self.growth(cell, body));
         let expansion = self.number(EXPANSION[0], self.expansions, cell, body);
-        format!(
-            "cell {cell} would be {growth} times as long by `thermal_expansion` = {expansion} 1/K from {reference} K to {now} K; \
-             allowed: more than 0; hint: steel has 1.2e-5 1/K, rubber 2e-4 1/K"
-        )
+        Refusal::NoGrowth { cell, growth, expansion, reference, now }
     }
     fn time(&self, cell: u32, body: usize) -> f64 {
         self.number(DAMPING[0], self.times, cell, body)
@@ -149,22 +141,17 @@ fn of_cells<'a, const D: usize>(
     let all = &ingredients.mesh.cell_values;
     let Some(numbers) = all.get(name) else {
         let names: Vec<_> = all.keys().map(|n| format!("`{n}`")).collect();
-        let names = if names.is_empty() { "none, the mesh has no numbers of cells".into() } else { names.join(", ") };
-        let message = format!(
-            "`{of_cells}` is \"{name}\", and the cells of the mesh have no such numbers; allowed: {names}; hint: `{field}` gives one \
-             number for all cells"
-        );
-        return Err(refuse("model.no_values", message));
+        let (field, instead, name) = (of_cells, field, name.to_string());
+        return Err(match names.is_empty() {
+            true => Refusal::NoValuesAtAll { field, name, instead }.into(),
+            false => Refusal::NoValues { field, name, known: names.join(", "), instead }.into(),
+        });
     };
     let range = super::SPEC.fields.iter().find(|known: &&Field| known.name == field).map(|known| known.range);
     for (cell, number) in numbers.iter().enumerate().filter(|(cell, _)| chosen[*cell]) {
         let value = opruga_core::spec::Value::Number(*number);
         if let Some(Err((value, allowed))) = range.map(|range| range.accept(value, D)) {
-            let message = format!(
-                "`{of_cells}` of cell {cell} is {value}; allowed: {allowed}; hint: the numbers are in the file of the mesh; `{field}` \
-                 gives one for all cells"
-            );
-            return Err(refuse("model.cell_value", message));
+            return Err(Refusal::CellValue { field: of_cells, cell, value, allowed, instead: field }.into());
         }
     }
     Ok(Some(numbers.as_slice()))

@@ -15,6 +15,7 @@ use super::boxes::{self, Boxes};
 use super::elements::{Cell, Shape, rest_gradient};
 use super::group::Group;
 use super::numbers::{NUMBERS, beyond};
+use super::refusals::Refusal;
 use super::work::Nodes;
 use crate::materials::law::Law;
 use core::fmt::Debug;
@@ -301,13 +302,9 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
             let (element, body) = self.item(pack, l);
             let cell = self.cells.get(element)?;
             let at = cell.nodes.map(|n| view.position(self.layout.place(n as usize, body)));
-            at.iter().flatten().all(|x| x.is_finite()).then(|| StepError::Model {
-                model: super::SPEC.kind,
-                message: format!(
-                    "cell {} has no positive thickness without stress across the plane at t = {} s: it is stretched or \
-                     turned inside out beyond what its material can follow in plane stress",
-                    cell.number, view.time
-                ),
+            at.iter().flatten().all(|x| x.is_finite()).then(|| {
+                let refusal = Refusal::NoThicknessLeft { cell: cell.number, time: view.time };
+                StepError::of(super::SPEC.kind, refusal)
             })
         })
     }

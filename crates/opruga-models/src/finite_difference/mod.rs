@@ -65,19 +65,23 @@ opruga_math::messages! {
     pub enum FiniteDifferenceError {
         /// The body has no regular grid.
         "model.not_a_grid"
-        #[error("the body is not a regular grid; allowed: line, ring, polyline, sheet, and a grid of quadrilaterals or hexahedra")]
+        #[error("the body is not a regular grid")]
+        #[allowed("line, ring, polyline, sheet, and a grid of quadrilaterals or hexahedra")]
         NotAGrid {},
         /// A cell is no rectangle or box; how far off it is, as a part of its least spacing.
         "model.not_rectangular"
-        #[error("cell {cell} deviates from a rectangle by {} of its spacing; allowed: at most 1e-6", number(*deviation))]
+        #[error("cell {cell} deviates from a rectangle by {} of its spacing", number(*deviation))]
+        #[allowed("at most 1e-6")]
         NotRectangular { cell: usize, deviation: f64 },
         /// The cells of a surface differ in their spacing.
         "model.uneven_grid"
-        #[error("cell {cell} has a spacing of {} m where cell 0 has {} m; allowed: equal spacings", number(*spacing), number(*first))]
+        #[error("cell {cell} has a spacing of {} m where cell 0 has {} m", number(*spacing), number(*first))]
+        #[allowed("equal spacings")]
         Uneven { cell: usize, spacing: f64, first: f64 },
         /// A curve or a surface needs a thickness.
         "model.no_thickness"
-        #[error("a curve or a surface needs `thickness`; allowed: > 0 m")]
+        #[error("a curve or a surface needs `thickness`")]
+        #[allowed("> 0 m")]
         NoThickness {},
         /// A solid has no thickness of its own.
         "model.solid_thickness"
@@ -89,11 +93,13 @@ opruga_math::messages! {
         TorsionOfSurface {},
         /// A curve without curvature has no torsion.
         "model.no_torsion"
-        #[error("the curve is straight at node {node}, where its torsion has no value; hint: leave `torsion` out, or bend the rest shape")]
+        #[error("the curve is straight at node {node}, where its torsion has no value")]
+        #[hint("leave `torsion` out, or bend the rest shape")]
         NoFrame { node: u32 },
         /// An edge has no length at rest.
         "model.zero_length"
-        #[error("edge {edge} has no length at rest; allowed: > 0 m")]
+        #[error("edge {edge} has no length at rest")]
+        #[allowed("> 0 m")]
         NoLength { edge: usize },
     }
 }
@@ -114,8 +120,7 @@ use FiniteDifferenceError as Refusal;
 
 impl From<FiniteDifferenceError> for BuildError {
     fn from(refusal: FiniteDifferenceError) -> BuildError {
-        let code = opruga_math::message::Message::code(&refusal);
-        BuildError::new(KIND, code, refusal.to_string())
+        BuildError::of(KIND, refusal)
     }
 }
 

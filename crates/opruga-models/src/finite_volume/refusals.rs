@@ -11,19 +11,25 @@ messages! {
     pub enum Refusal {
         /// Nothing to fill.
         "model.no_cells"
-        #[error("the body has no cells: it is an outline, a surface or a chain; allowed: triangles, quadrilaterals, tetrahedra and hexahedra, as `grid`, shapes from files with a `filling` and volume meshes have")]
+        #[error("the body has no cells: it is an outline, a surface or a chain")]
+        #[allowed("triangles, quadrilaterals, tetrahedra and hexahedra, as `grid`, shapes from files with a `filling` and volume meshes have")]
         NoCells {},
         /// Cells with nodes in the middle of edges.
         "model.quadratic_cells"
-        #[error("the body has {count} quadratic cells, which have no dual faces here; allowed: linear cells; hint: `order = 1` for the body")]
+        #[error("the body has {count} quadratic cells, which have no dual faces here")]
+        #[allowed("linear cells")]
+        #[hint("`order = 1` for the body")]
         Quadratic { count: usize },
         /// A cell without volume, or inside out.
         "model.inverted_cell"
-        #[error("cell {cell} has no volume or is turned inside out at rest: det ∂X/∂ξ = {} of a cell {} m long; allowed: more than 1e-12 of its size", number(*determinant), number(*size))]
+        #[error("cell {cell} has no volume or is turned inside out at rest: det ∂X/∂ξ = {} of a cell {} m long", number(*determinant), number(*size))]
+        #[allowed("more than 1e-12 of its size")]
         InvertedCell { cell: usize, determinant: f64, size: f64 },
         /// Linear cells near incompressibility.
         "model.locking"
-        #[error("`poissons_ratio` is {} for triangles or tetrahedra, which lock near incompressibility; allowed: at most {}; hint: `locking = \"accept\"` takes them as they are, and `fem` has `order = 2` and `locking = \"nodal_volume\"`", number(*ratio), number(*most))]
+        #[error("`poissons_ratio` is {} for triangles or tetrahedra, which lock near incompressibility", number(*ratio))]
+        #[allowed("at most {}", number(*most))]
+        #[hint("`locking = \"accept\"` takes them as they are, and `fem` has `order = 2` and `locking = \"nodal_volume\"`")]
         Locks { ratio: f64, most: f64 },
         /// A material that is not there.
         "scene.unknown_name"

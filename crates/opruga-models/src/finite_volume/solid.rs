@@ -67,7 +67,7 @@ impl<const D: usize> Potential<D> for Solid<D> {
         forces.fill(0.0);
         for part in &self.parts {
             part.evaluate(&self.matter, simd, view, rows, forces, energy)
-                .map_err(|refusal| StepError::Model { model: SPEC.kind, message: refusal.to_string() })?;
+                .map_err(|refusal| StepError::of(SPEC.kind, refusal))?;
         }
         Ok(())
     }

@@ -9,9 +9,11 @@
 //! axis; the clamped Hessian drops it. −∂f_a/∂v_a = c n nᵀ. Springs resist neither bending nor a change of enclosed area.
 
 mod law;
+mod refusals;
 mod spec;
 
 use law::SpringLaw;
+pub use refusals::Refusal;
 pub use spec::SPEC;
 
 use opruga_core::error::BuildError;
@@ -47,7 +49,6 @@ impl<const D: usize> Model<D> for MassSpring {
         Need { bytes: 110.0 * counts.edges, couplings: counts.edges }
     }
     fn build(&self, ingredients: &Ingredients<D>) -> Result<Box<dyn Potential<D>>, BuildError> {
-        let refuse = |code, message: String| Err(BuildError::new("mass_spring", code, message));
         let mesh = ingredients.mesh;
         let set = match ingredients.values[0].text("edges") {
             Some("boundary") => EdgeSet::Boundary,
@@ -56,7 +57,7 @@ impl<const D: usize> Model<D> for MassSpring {
         };
         let edges = mesh.edges(set);
         if edges.is_empty() {
-            return refuse("model.no_edges", format!("the body has no {set:?} edges to carry springs"));
+            return Err(Refusal::NoEdges { edges: format!("{set:?}") }.into());
         }
         let lengths: Vec<f64> =
             edges.iter().map(|&[a, b]| distance(&mesh.positions[a as usize], &mesh.positions[b as usize])).collect();
@@ -65,15 +66,12 @@ impl<const D: usize> Model<D> for MassSpring {
             if values.number("modulus").is_some()
                 && let Some(k) = lengths.iter().position(|l| *l == 0.0)
             {
-                return refuse("model.zero_length", format!("edge {k} has no length; `modulus` needs one"));
+                return Err(Refusal::NoLengthOfSpring { edge: k }.into());
             }
         }
-        let areas = mesh.edge_areas(&edges).map_err(|e| BuildError::new("mass_spring", "model.mesh", e.to_string()))?;
+        let areas = mesh.edge_areas(&edges).map_err(|problem| Refusal::Mesh { problem })?;
         if ingredients.values[0].number("modulus").is_some() && areas.iter().all(|a| *a == 0.0) {
-            return refuse(
-                "model.no_area",
-                "`modulus` needs triangles next to the edges; give `stiffness` for a chain or outline".into(),
-            );
+            return Err(Refusal::NoTriangles {}.into());
         }
         let table = PairTable::new(ingredients.layout, mesh.positions.len(), &edges, true);
         let values = |body: usize| ingredients.values[body.min(ingredients.values.len() - 1)];

@@ -3,7 +3,7 @@
 use super::law::Law;
 use super::moduli::{lame, refuse_what_is_not_convex};
 use super::points::{PARAMETERS, Points};
-use super::{ALL, Entry, NAMES};
+use super::{ALL, Entry, NAMES, Refusal};
 use opruga_core::error::BuildError;
 use opruga_core::potential::Definiteness;
 use opruga_core::spec::{Values, nearest};
@@ -50,8 +50,7 @@ fn entry(values: &Values) -> Result<&'static Entry, BuildError> {
     let name = values.text("material").unwrap_or("");
     ALL.iter().find(|entry| entry.name == name).ok_or_else(|| {
         let meant = nearest(name, NAMES.iter().copied());
-        let hint = meant.map_or(String::new(), |meant| format!("; did you mean `{meant}`?"));
-        BuildError::new(values.kind(), "scene.unknown_name", format!("there is no material `{name}`{hint}"))
+        BuildError::of(values.kind(), Refusal::Unknown { name: name.into(), nearest: meant })
     })
 }
 
@@ -72,17 +71,13 @@ fn ask<const D: usize>(law: &dyn Law<D>, values: &Values, gradient: &[[f64; D]; 
     law.tangent(simd, points, Definiteness::Exact, &mut tangent);
     let found = law.thickness(simd, points, &mut across);
     if energy[..1].iter().chain(&stress).chain(&tangent).any(|x| !x.is_finite()) {
-        let why = match (found, across[0].is_nan()) {
-            (true, true) => "no positive thickness is without stress across the plane",
-            _ => "the numbers are too large",
+        let determinant = opruga_math::matrix::determinant::<f64, D>(gradient);
+        let material = values.text("material").unwrap_or("").to_string();
+        let refusal = match (found, across[0].is_nan()) {
+            (true, true) => Refusal::NoThicknessAcross { material, determinant },
+            _ => Refusal::TooLarge { material, determinant },
         };
-        let det = opruga_math::matrix::determinant::<f64, D>(gradient);
-        let message = format!(
-            "`{}` has no value at this deformation gradient, whose determinant is {det}: {why}; allowed: det F > 0, and stretches \
-             that the law can follow",
-            values.text("material").unwrap_or("")
-        );
-        return Err(BuildError::new(values.kind(), "model.no_value", message));
+        return Err(BuildError::of(values.kind(), refusal));
     }
     let row = |row: usize| (0..D * D).map(|column| tangent[(row * D * D + column) * WIDTH]).collect();
     Ok(AtPoint {

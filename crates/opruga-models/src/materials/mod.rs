@@ -21,6 +21,7 @@ mod neo_hookean;
 mod plane_stress;
 pub(crate) mod points;
 mod principal_frame;
+mod refusals;
 mod st_venant_kirchhoff;
 mod stable_neo_hookean;
 
@@ -31,6 +32,7 @@ pub use fixed_corotated::FixedCorotated;
 pub use linear::Linear;
 pub use mooney_rivlin::MooneyRivlin;
 pub use neo_hookean::NeoHookean;
+pub use refusals::Refusal;
 pub use st_venant_kirchhoff::StVenantKirchhoff;
 pub use stable_neo_hookean::StableNeoHookean;
 

@@ -14,11 +14,13 @@
 mod chamber;
 mod curved;
 mod gas;
+mod refusals;
 mod spec;
 
 use chamber::{Boundary, NodeRings};
 use curved::CurvedSides;
 use gas::Gas;
+pub use refusals::Refusal;
 pub use spec::SPEC;
 
 use opruga_core::error::{BuildError, StepError};
@@ -84,8 +86,7 @@ impl<const D: usize> Model<D> for PressureModel {
             values.check_choices(&SPEC)?;
         }
         if mesh.facets.is_empty() {
-            let message = "the body has no closed boundary to hold a gas";
-            return Err(BuildError::new("pressure", "model.open_surface", message));
+            return Err(Refusal::NoBoundary {}.into());
         }
         let parts = chambers(mesh, ingredients.values)?;
         let depth = if D == 2 { ingredients.thickness } else { 1.0 };
@@ -103,8 +104,7 @@ impl<const D: usize> Model<D> for PressureModel {
                     None => opruga_mesh::signed_volume(facets, &mesh.positions),
                 };
             if rest_volume.is_nan() || rest_volume <= 0.0 {
-                let message = format!("chamber {number} encloses {rest_volume} m³; allowed: > 0 (is it inside out?)");
-                return Err(BuildError::new("pressure", "model.volume", message));
+                return Err(Refusal::NoVolume { chamber: number, volume: rest_volume }.into());
             }
             let boundary = if let Some(sides) = curved {
                 Boundary::Curved(sides)
@@ -119,8 +119,7 @@ impl<const D: usize> Model<D> for PressureModel {
                     facets: triangles.clone(),
                     ..Mesh::default()
                 };
-                let rings =
-                    skin.node_rings().map_err(|e| BuildError::new("pressure", "model.not_manifold", e.to_string()))?;
+                let rings = skin.node_rings().map_err(|problem| Refusal::Branches { problem })?;
                 Boundary::Space(NodeRings::new(&rings, triangles))
             };
             let area_len = boundary.area_len::<D>(ingredients.layout, nodes);
@@ -135,7 +134,7 @@ impl<const D: usize> Model<D> for PressureModel {
 
 /// The facets around each chamber, facing outwards.
 fn chambers<const D: usize>(mesh: &Mesh<D>, values: &[&Values]) -> Result<Vec<Vec<[u32; D]>>, BuildError> {
-    let open = |e: MeshError| BuildError::new("pressure", "model.open_surface", e.to_string());
+    let open = |problem: MeshError| Refusal::OpenBoundary { problem };
     let facets = |numbers: &[u32]| -> Vec<[u32; D]> { numbers.iter().map(|&f| mesh.facets[f as usize]).collect() };
     // Bodies that are stepped together differ in numbers only.
     if values.first().and_then(|v| v.text("inside")) != Some("cavities") {
@@ -145,9 +144,7 @@ fn chambers<const D: usize>(mesh: &Mesh<D>, values: &[&Values]) -> Result<Vec<Ve
     let holes = mesh.components().map_err(open)?.into_iter().filter(|component| component.signed_volume < 0.0);
     let mut parts: Vec<Vec<[u32; D]>> = holes.map(|hole| facets(&hole.facets)).collect();
     if parts.is_empty() {
-        let message =
-            "the boundary has no holes, so there is no cavity to hold a gas; `inside = \"boundary\"` fills the body";
-        return Err(BuildError::new("pressure", "model.no_cavity", message));
+        return Err(Refusal::NoCavity {}.into());
     }
     for facet in parts.iter_mut().flatten() {
         facet.swap(0, 1);

@@ -175,7 +175,7 @@ impl<const D: usize> Potential<D> for Matching<D> {
             && let Some(now) = memory.iter().take(WIDTH).find(|now| **now != declared)
         {
             let refusal = Refusal::StepChanged { now: *now, declared, stiffness: self.law.stiffness.at(0) };
-            return Err(StepError::Model { model: SPEC.kind, message: refusal.to_string() });
+            return Err(StepError::of(SPEC.kind, refusal));
         }
         let (clusters, stored, law) = (&self.clusters, self.stored, &self.law);
         if let Some(pieces) = &self.pieces {

@@ -11,23 +11,33 @@ messages! {
     pub enum Refusal {
         /// A group that the mesh lacks.
         "model.no_group"
-        #[error("the mesh has no group of nodes `{name}`; allowed: {known}; hint: `region` makes clusters of any body")]
+        #[error("the mesh has no group of nodes `{name}`")]
+        #[allowed("{known}")]
+        #[hint("`region` makes clusters of any body")]
         NoGroup { name: String, known: String },
         /// Nodes without a cluster.
         "model.cluster_misses"
-        #[error("{missed} of {nodes} nodes are in no cluster, the first of them node {first}; allowed: every node in one at least; hint: name a group of all others too")]
+        #[error("{missed} of {nodes} nodes are in no cluster, the first of them node {first}")]
+        #[allowed("every node in one at least")]
+        #[hint("name a group of all others too")]
         Misses { missed: usize, nodes: usize, first: usize },
         /// Regions far smaller than the distance of nodes.
         "model.region"
-        #[error("`region` is {} m, which makes {} boxes of {nodes} nodes; allowed: at most {most} boxes; hint: a region holds some nodes along each axis", number(*region), number(*boxes))]
+        #[error("`region` is {} m, which makes {} boxes of {nodes} nodes", number(*region), number(*boxes))]
+        #[allowed("at most {most} boxes")]
+        #[hint("a region holds some nodes along each axis")]
         TooManyRegions { region: f64, boxes: f64, nodes: usize, most: usize },
         /// A step-dependent stiffness with a potential.
         "model.goal_step"
-        #[error("`goal_step` is {}, and `scheme` is \"potential\", whose stiffness does not depend on the step; allowed: `stiffness`; hint: at this step, `stiffness = {}` means the same, and `scheme = \"as_published\"` takes `goal_step`", number(*share), number(*stiffness))]
+        #[error("`goal_step` is {}, and `scheme` is \"potential\", whose stiffness does not depend on the step", number(*share))]
+        #[allowed("`stiffness`")]
+        #[hint("at this step, `stiffness = {}` means the same, and `scheme = \"as_published\"` takes `goal_step`", number(*stiffness))]
         GoalStep { share: f64, stiffness: f64 },
         /// A step that has changed.
         "model.step_changed"
-        #[error("the substep is {} s, and `goal_step` counts for the {} s that the scene declared; allowed: that step; hint: `stiffness = {}` means the same at any step", number(*now), number(*declared), number(*stiffness))]
+        #[error("the substep is {} s, and `goal_step` counts for the {} s that the scene declared", number(*now), number(*declared))]
+        #[allowed("that step")]
+        #[hint("`stiffness = {}` means the same at any step", number(*stiffness))]
         StepChanged { now: f64, declared: f64, stiffness: f64 },
         /// What the published scheme lacks, as a part of a refusal.
         "part.no_potential"

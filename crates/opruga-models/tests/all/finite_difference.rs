@@ -255,7 +255,7 @@ fn refused<const D: usize>(mesh: &Mesh<D>, values: &Values) -> Option<String> {
         step: 1e-3,
         break_off: &Default::default(),
     };
-    FiniteDifference.build(&ingredients).err().map(|error| error.code.to_string())
+    FiniteDifference.build(&ingredients).err().map(|error| error.code().to_string())
 }
 
 #[test]

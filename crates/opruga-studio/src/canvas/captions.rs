@@ -54,7 +54,7 @@ impl Captions {
         let (spot, align) = if below { (high, Align2::LEFT_TOP) } else { (low(second), Align2::CENTER_BOTTOM) };
         let told = caption(spot, align, format!("{words}{far}"), paper.ink, room);
         if let Some(reason) = &beside.stopped {
-            let text = format!("{}\n{}", language.right_stopped(), language.detail(reason));
+            let text = format!("{}\n{}", language.right_stopped(), language.said(reason));
             let middle = Pos2::new(0.5 * (second.left() + free), second.top() + 70.0);
             let under = Pos2::new(told.left(), told.bottom() + 12.0);
             let (spot, align) = if below { (under, Align2::LEFT_TOP) } else { (middle, Align2::CENTER_TOP) };

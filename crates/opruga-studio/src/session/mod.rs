@@ -341,7 +341,7 @@ impl Session {
                 self.message = self.message.take().filter(|message| message.severity != Severity::Refused);
             }
             Ok(()) => {}
-            Err(Said::World(WorldError::BrokenOff)) => self.broken_off(again),
+            Err(Said::World(WorldError::BrokenOff {})) => self.broken_off(again),
             Err(Said::World(error)) => self.refuse(&error, Some(again)),
             Err(said) => self.tell(Severity::Refused, said, None),
         }
@@ -357,7 +357,7 @@ impl Session {
                 if self.engine.frames() >= goal {
                     self.arrive();
                 } else if let Err(error) = self.frame() {
-                    if error == WorldError::BrokenOff {
+                    if error == (WorldError::BrokenOff {}) {
                         return self.broken_off(Request::Seek(goal));
                     }
                     self.goal = None;
@@ -382,7 +382,7 @@ impl Session {
         });
         self.pacing = pacing;
         match outcome {
-            Err(Some(WorldError::BrokenOff)) => self.broken_off(Request::Play(true)),
+            Err(Some(WorldError::BrokenOff {})) => self.broken_off(Request::Play(true)),
             Err(Some(error)) => {
                 self.playing = false;
                 self.refuse(&error, None);

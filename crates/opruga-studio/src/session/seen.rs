@@ -36,7 +36,7 @@ impl Session {
         let pins = self.pins_shown();
         let titles = self.titles();
         if let Some(stopped) = shown.beside.as_mut().and_then(|beside| beside.stopped.as_mut()) {
-            *stopped = titles.in_text(stopped);
+            *stopped = titles.in_said(stopped.clone());
         }
         if let Some(right) = shown.beside.as_mut().and_then(|beside| Arc::get_mut(&mut beside.right)) {
             give_titles(right, &titles);

@@ -2,8 +2,10 @@
 
 use crate::exploded::Exploded;
 use crate::said::Said;
+use opruga::core::error::StepError;
 use opruga::io::SceneError;
 use opruga::math::message::AnyMessage;
+use opruga::world::error::Place;
 use opruga::{Warning, WorldError};
 
 /// How bodies were renamed, and which there are.
@@ -81,7 +83,7 @@ impl Titles {
     fn in_scene_error(&self, mut error: SceneError) -> SceneError {
         let texts = [Some(&mut error.message), error.allowed.as_mut(), error.hint.as_mut()];
         texts.into_iter().flatten().for_each(|text| *text = self.in_text(text));
-        for message in [&mut error.about, &mut error.advice].into_iter().flatten() {
+        for message in [&mut error.about, &mut error.advice, &mut error.allowance].into_iter().flatten() {
             *message = self.in_message(message);
         }
         error
@@ -102,23 +104,26 @@ impl Titles {
             WorldError::UnstableStep { body, .. } | WorldError::Diverged { body, .. } => {
                 *body = self.of(body).to_string()
             }
-            WorldError::NotConverged { body, message, .. } | WorldError::Step { body, message } => {
-                (*body, *message) = (self.of(body).to_string(), self.in_text(message));
+            WorldError::NotConverged { body, cause } | WorldError::Step { body, cause } => {
+                *body = self.of(body).to_string();
+                if let StepError::Model { about, .. } = cause {
+                    *about = self.in_message(about);
+                }
             }
             WorldError::Build { place, source } => {
-                (*place, source.message) = (self.in_text(place), self.in_text(&source.message));
-                source.about = source.about.take().map(|message| self.in_message(&message));
+                if let Place::Body { name } | Place::IntegratorOf { name } = place {
+                    *name = self.of(name).to_string();
+                }
+                source.about = self.in_message(&source.about);
             }
             WorldError::Meet { first, second, .. } | WorldError::LedThrough { first, second, .. } => {
                 (*first, *second) = (self.of(first).to_string(), self.of(second).to_string());
             }
-            WorldError::Path { path, message } => {
-                (*path, *message) = (self.in_path(path), self.in_text(message));
-            }
-            WorldError::Snapshot(_)
+            WorldError::Path { path, about } => (*path, *about) = (self.in_path(path), self.in_message(about)),
+            WorldError::Snapshot { .. }
             | WorldError::Overflow { .. }
             | WorldError::TooManyContacts { .. }
-            | WorldError::BrokenOff => {}
+            | WorldError::BrokenOff {} => {}
         }
         error
     }
@@ -127,6 +132,7 @@ impl Titles {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use opruga::world::PathFault;
 
     fn names(list: &[&str]) -> Vec<String> {
         list.iter().map(|name| name.to_string()).collect()
@@ -143,8 +149,11 @@ mod tests {
         let text = "body `ball-3`: `body.ball-3.models.0.damping` and ball-3, `ball-33`, `box`";
         assert_eq!(known.in_text(text), "body `ball`: `body.ball.models.0.damping` and ball-3, `ball-33`, `box`");
         assert_eq!(known.in_path("body.ball-33.models"), "body.ball-33.models");
-        let error = WorldError::Step { body: "ball-3".into(), message: "`ball-3` is flat".into() };
-        let told = WorldError::Step { body: "ball".into(), message: "`ball` is flat".into() };
+        let lost = |body: &str| WorldError::Path {
+            path: "load".into(),
+            about: PathFault::NoBodyCalled { name: body.into(), nearest: None }.into(),
+        };
+        let (error, told) = (lost("ball-3"), lost("ball"));
         assert_eq!(known.in_said(Said::World(error)), Said::World(told));
         assert_eq!(known.in_said(Said::SetDown), Said::SetDown);
     }

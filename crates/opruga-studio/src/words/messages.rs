@@ -1,15 +1,11 @@
 //! Messages in words.
 
-use super::{Language, Part, details, scene_errors};
+use super::{Language, Part};
 use crate::differences::Difference;
 use crate::exploded::Exploded;
 use crate::said::{Said, Step};
-use opruga::WorldError;
 use opruga::core::spec::Value;
 use opruga::draw::ArrowKind;
-use opruga::math::words::number;
-use opruga::words::Translation;
-use opruga::world::schema::MOST_SUBSTEPS;
 
 /// A sentence of both languages, the right one of which is taken.
 macro_rules! either {
@@ -80,14 +76,12 @@ impl Language {
         match said {
             Said::Because(text) => match self {
                 Language::English => text.clone(),
-                Language::Croatian => {
-                    details::croatian(text).unwrap_or_else(|| format!("Poruka je na engleskom:\n{text}"))
-                }
+                Language::Croatian => format!("Poruka je na engleskom:\n{text}"),
             },
             Said::Scene(errors) => {
-                errors.iter().map(|error| scene_errors::text(self, error)).collect::<Vec<_>>().join("\n")
+                errors.iter().map(|error| error.text(self.translation())).collect::<Vec<_>>().join("\n")
             }
-            Said::World(error) => self.world_error(error),
+            Said::World(error) => self.in_full(error),
             Said::Exploded(Exploded { body, integrator, unstable: true }) => {
                 let integrator = self.kind(Part::Integrator, integrator);
                 either!(
@@ -231,97 +225,6 @@ impl Language {
         }
     }
 
-    /// What a world refuses.
-    fn world_error(self, error: &WorldError) -> String {
-        if self == Language::English {
-            return error.to_string();
-        }
-        match error {
-            WorldError::UnstableStep { integrator, body, h, limit, substeps, .. } => {
-                let way_out = match *substeps {
-                    ..=MOST_SUBSTEPS => format!("Treba najmanje {substeps} podkoraka"),
-                    _ => format!(
-                        "Sličica ima najviše {MOST_SUBSTEPS} podkoraka: pomaže kraća sličica, mekše ili teže tijelo, ili drugi \
-                         integrator"
-                    ),
-                };
-                let (h, limit) = (number(*h), number(*limit));
-                format!(
-                    "Korak h = {h} s integratora „{}” nestabilan je za tijelo `{body}`: najveći stabilni korak je \
-                     {limit} s. {way_out}",
-                    self.kind(Part::Integrator, integrator)
-                )
-            }
-            WorldError::Diverged { body, node, time, last, range } => format!(
-                "Tijelo `{body}` je divergiralo: čvor {node}{}, u podkoraku od t = {} s. Svijet je na zadnjoj dobroj sličici, \
-                 t = {} s",
-                range.map_or(String::new(), |range| format!(
-                    " dalje od {} m od ishodišta, gdje položaji gube znamenke",
-                    number(range)
-                )),
-                number(*time),
-                number(*last),
-            ),
-            WorldError::NotConverged { body, message, hint } => format!(
-                "Tijelo `{body}`: kraj koraka nije nađen; svijet je na zadnjoj dobroj sličici\n{}",
-                match (details::croatian(message), details::croatian(hint)) {
-                    (Some(message), Some(hint)) => format!("{message}; savjet: {hint}"),
-                    _ => self.english(&format!("{message}; hint: {hint}")),
-                }
-            ),
-            WorldError::Step { body, message } => format!(
-                "Tijelo `{body}`: model u tom stanju nema smisla; svijet je na zadnjoj dobroj sličici\n{}",
-                of_model(message).unwrap_or_else(|| self.english(message))
-            ),
-            WorldError::Build { place, source } => {
-                let why = match source.code {
-                    "model.open_surface" => "treba zatvoreni obris ili zatvorenu plohu",
-                    "model.no_cavity" => "tijelo nema šupljine",
-                    "model.no_area" | "model.volume" => "tijelo ne obuhvaća ništa",
-                    "model.dimension" => "ne postoji u toj dimenziji",
-                    "model.mesh" => "treba drukčiju mrežu",
-                    "model.one_of" => "od parametara koji se isključuju treba točno jedan",
-                    "model.not_manifold" => "ploha se grana",
-                    "integrator.no_matrix" => "model ne zna matricu koju treba implicitni integrator",
-                    "integrator.real_time" => "to pravilo ne može biti točno samo „u stvarnom vremenu”",
-                    "static.rigid_modes" => "tijelo ništa ne drži",
-                    _ => "ne može",
-                };
-                let place = croatian_place(place);
-                let known = source.about.as_ref().and_then(|about| Translation::croatian().in_full(&**about));
-                match known.or_else(|| details::croatian(&source.message)) {
-                    Some(known) => format!("{place}: {known}"),
-                    None => format!("{place}: {why}\n{}", self.english(&source.to_string())),
-                }
-            }
-            WorldError::Overflow { last } => format!(
-                "Energija ili količina gibanja svih tijela zajedno prerasla je konačne brojeve u sličici od t = {} s\n\
-                 Svijet je na zadnjoj dobroj sličici; jesu li mase, krutosti i brzine u jedinicama koje idu zajedno (metri, kilogrami, sekunde)?",
-                number(*last)
-            ),
-            WorldError::TooManyContacts { found, most, last } => format!(
-                "U jednom koraku moglo bi se dodirnuti više od {most} parova vrhova, bridova i ploha (nađeno ih je {found}), u sličici od \
-                 t = {} s\nSvijet je na zadnjoj dobroj sličici; pomaže veći `most_pairs` u `[contact]` ili grublje plohe",
-                number(*last)
-            ),
-            WorldError::Meet { first, second, time } => format!(
-                "Plohe `{first}` i {} dodiruju se u t = {} s, a barijera treba razmak\n\
-                 Svijet je na zadnjoj dobroj sličici; pomažu tijela koja počinju odvojena, manji `thickness`, ili `response = \"constraint\"`",
-                if first == second { "njega samog".into() } else { format!("`{second}`") },
-                number(*time)
-            ),
-            WorldError::LedThrough { first, second, time } => format!(
-                "Učvršćenja i prepreke vode `{first}` kroz {} u t = {} s\n\
-                 Svijet je na zadnjoj dobroj sličici; pomaže drugi put onoga što ih vodi, ili `touch = false` za taj par",
-                if first == second { "samo sebe".into() } else { format!("`{second}`") },
-                number(*time)
-            ),
-            WorldError::BrokenOff => "Sličica je prekinuta; svijet je na zadnjoj dobroj sličici".into(),
-            WorldError::Path { path, message } => format!("`{path}` ne može: {}", self.detail(message)),
-            WorldError::Snapshot(why) => format!("Snimljeno stanje ne može se vratiti\n{}", self.english(why)),
-        }
-    }
-
     /// The name of a quantity in the legend of a picture.
     pub fn quantity(self, label: &str) -> &str {
         match (self, label) {
@@ -333,51 +236,6 @@ impl Language {
             (Language::Croatian, "von Mises stress") => "naprezanje (von Mises)",
             (Language::Croatian, "volume over that at rest") => "obujam / početni",
             (Language::Croatian, label) => label,
-        }
-    }
-}
-
-/// What a model says, after its name, and before a hint of the rule that steps it.
-fn of_model(message: &str) -> Option<String> {
-    let known = |said: &str| {
-        details::croatian(said).or_else(|| {
-            let (said, hint) = said.split_once("; hint: ")?;
-            Some(format!("{}; savjet: {}", details::croatian(said)?, details::croatian(hint)?))
-        })
-    };
-    known(message).or_else(|| {
-        let (model, said) = message.split_once(": ")?;
-        Some(format!("{model}: {}", known(said)?))
-    })
-}
-
-/// What of a world refuses: a body, its integrator, a part of the world.
-fn croatian_place(place: &str) -> String {
-    match place.strip_prefix("body ").or_else(|| place.strip_prefix("integrator of body ")) {
-        Some(name) if place.starts_with("body") => format!("tijelo {name}"),
-        Some(name) => format!("integrator tijela {name}"),
-        None => match place {
-            "collider" => "prepreka",
-            "world" => "svijet",
-            other => other,
-        }
-        .into(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_a_model_refuses_in_a_step_is_said_in_croatian_with_its_hint() {
-        let model = "fem: cell 3 has no positive thickness without stress across the plane at t = 0.75 s: it is stretched or turned \
-                     inside out beyond what its material can follow in plane stress";
-        let hint = "; hint: `when_not_converged = \"halve\"`, more `load_steps`, or more `iterations`";
-        for (message, wanted) in [(model.to_string(), "u ravninskom"), (format!("{model}{hint}"), "; savjet: ")] {
-            let said = Language::Croatian.said(&Said::World(WorldError::Step { body: "b".into(), message }));
-            assert!(said.contains("fem: ćelija 3 u t = 0.75 s") && said.contains(wanted), "{said}");
-            assert!(!said.contains("na engleskom"), "{said}");
         }
     }
 }

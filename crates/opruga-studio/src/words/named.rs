@@ -2,9 +2,9 @@
 //! they say of themselves; in Croatian what stands in [`croatian`]. A kind of which nothing stands there, because a program has
 //! added it, is called as in the scene file, and its English sentence is marked as such.
 
-use super::{Language, croatian, details, scene_titles};
+use super::{Language, croatian, scene_titles};
 use opruga::Warning;
-use opruga::core::spec::{Allowed, Bound, Condition, Default as Unset, Field, Spec};
+use opruga::core::spec::{Allowed, Condition, Default as Unset, Field, Spec};
 
 /// What a kind is a kind of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -115,7 +115,7 @@ impl Language {
     /// What must hold for a field to have an effect.
     pub fn effect_only(self, part: Part, of: &str, condition: &Condition) -> String {
         if self == Language::English {
-            return format!("Has an effect only {condition}.");
+            return format!("Has an effect only {}.", condition.text());
         }
         let field = |name: &str| self.field(part, of, name);
         let condition = match *condition {
@@ -163,49 +163,13 @@ impl Language {
         if let Allowed::Choice(choices) = range {
             return choices.iter().map(|word| self.choice(word)).collect::<Vec<_>>().join(", ");
         }
-        if self == Language::English {
-            return range.describe(dimension);
-        }
-        match range {
-            Allowed::Number { least, greatest } => {
-                let end = |bound: &Bound, closed: &str, open: &str| match bound {
-                    Bound::None => None,
-                    Bound::Closed(x) => Some(format!("{closed} {x}")),
-                    Bound::Open(x) => Some(format!("{open} {x}")),
-                };
-                let ends: Vec<String> =
-                    [end(least, ">=", ">"), end(greatest, "<=", "<")].into_iter().flatten().collect();
-                if ends.is_empty() { "konačan broj".into() } else { format!("broj {}", ends.join(" i ")) }
-            }
-            Allowed::Integer { least, greatest } => format!("cijeli broj od {least} do {greatest}"),
-            Allowed::Boolean => "da ili ne".into(),
-            Allowed::Text => "tekst od najviše 256 bajtova".into(),
-            Allowed::Vector => format!("{dimension} konačna broja"),
-            Allowed::Direction => format!("{dimension} konačna broja koji nisu svi nula"),
-            Allowed::Numbers => "popis konačnih brojeva".into(),
-            Allowed::Integers => "popis cijelih brojeva od 0".into(),
-            Allowed::Points => format!("popis točaka od {dimension} konačna broja"),
-            Allowed::Curve => "krivulja [[t, vrijednost], …] konačnih brojeva, t raste".into(),
-            Allowed::CurveNotNegative => {
-                "krivulja [[t, vrijednost], …] konačnih brojeva, t raste, vrijednosti >= 0".into()
-            }
-            Allowed::Path | Allowed::Choice(_) => "put [[t, x, y, …], …] konačnih brojeva, t raste".into(),
-        }
-    }
-
-    /// What a part of the program says in English; in Croatian where that is known, and told to be English else.
-    pub fn detail(self, text: &str) -> String {
-        match self {
-            Language::English => text.into(),
-            Language::Croatian => details::croatian(text).unwrap_or_else(|| self.english(text)),
-        }
+        let range = range.describe(dimension);
+        self.translation().map_or_else(|| range.to_string(), |known| known.text_or_english(&range))
     }
 
     /// A warning.
     pub fn warning_text(self, warning: &Warning) -> String {
-        let known = self.translation().zip(warning.about.as_ref());
-        let known = known.and_then(|(translation, about)| translation.in_full(&**about));
-        known.unwrap_or_else(|| self.detail(&warning.message))
+        warning.about.as_ref().map_or_else(|| warning.message.clone(), |about| self.in_full(&**about))
     }
 
     /// Words of which there are English ones alone, told as such.
@@ -220,6 +184,7 @@ impl Language {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use opruga::core::spec::Bound;
     use std::collections::BTreeSet;
 
     /// Everything that the program knows, in both dimensions.

@@ -3,6 +3,8 @@
 use opruga::core::error::BuildError;
 use opruga::core::spec::{Value, Values};
 use opruga::io::Files;
+use opruga::math::message::Message;
+use opruga::world::error::Place;
 use opruga::{Options, WorldError};
 use opruga_studio::said::Said;
 use opruga_studio::session::{Edit, Request, Session};
@@ -118,22 +120,35 @@ fn places_and_numbers_of_the_world_are_said_in_croatian_as_in_english() {
     for (error, numbers) in
         [(diverged, ["0.101042 s", "0.1 s", "1.23457e7 m"]), (unstable, ["0.000520833 s", "8.10045e-5 s", "220"])]
     {
-        let (english, croatian) = (error.to_string(), Language::Croatian.said(&Said::World(error)));
+        let (english, croatian) = (error.in_full(), Language::Croatian.said(&Said::World(error)));
         for number in numbers {
             assert!(english.contains(number) && croatian.contains(number), "{number}: {english}\n{croatian}");
         }
     }
     for (place, wanted) in [
-        ("body `lopta`", "tijelo `lopta`:"),
-        ("integrator of body `lopta`", "integrator tijela `lopta`:"),
-        ("integrator", "integrator:"),
-        ("collider", "prepreka:"),
-        ("world", "svijet:"),
+        (Place::body("lopta"), "tijelo `lopta`:"),
+        (Place::IntegratorOf { name: "lopta".into() }, "integrator tijela `lopta`:"),
+        (Place::Section { path: "integrator" }, "integrator:"),
+        (Place::Collider {}, "prepreka:"),
+        (Place::Section { path: "world" }, "svijet:"),
     ] {
         let source = BuildError::new("pressure", "model.no_cavity", "the body has no cavity that nobody has heard of");
-        let said = Language::Croatian.said(&Said::World(WorldError::Build { place: place.into(), source }));
+        let said = Language::Croatian.said(&Said::World(WorldError::Build { place, source }));
         assert!(said.starts_with(wanted), "{said}");
     }
+}
+
+#[test]
+fn what_is_wrong_with_a_scene_is_said_in_croatian_with_its_places_values_and_limits() {
+    let ball = opruga::scenes::find("ball").expect("a scene");
+    let wrong = ball.replace("mass = 1.0", "mass = -1.0").replace("radius = 0.5", "raduis = 0.5");
+    let refused = Session::open("ball", &wrong, Files::default(), Options::default()).expect_err("it is wrong");
+    let told = Language::Croatian.said(&refused);
+    for part in ["greška[scene.range]: `mass` je -1.0", "greška[scene.unknown_field]: nema polja `raduis`"] {
+        assert!(told.contains(part), "{part}: {told}");
+    }
+    assert!(told.contains("dopušteno: ") && told.contains("savjet: "), "{told}");
+    assert_eq!(told.lines().count(), refused.to_string().lines().count());
 }
 
 #[test]

@@ -333,7 +333,7 @@ fn a_balance_is_the_same_with_consistent_and_lumped_masses() {
 fn what_moves_nodes_by_their_own_masses_refuses_consistent_ones_and_says_what_helps() {
     let mesh = || Mesh::<2>::grid([0.0; 2], [1.0, 0.5], [2, 1]).unwrap();
     let refusal = |blueprint: Blueprint<2>| match World::new(blueprint, Options::default()) {
-        Err(WorldError::Build { source, .. }) => (source.code.to_string(), source.to_string()),
+        Err(WorldError::Build { source, .. }) => (source.code().to_string(), source.to_string()),
         Err(other) => panic!("{other}"),
         Ok(_) => panic!("no refusal"),
     };

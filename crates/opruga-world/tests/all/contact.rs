@@ -1,6 +1,7 @@
 //! Bodies that touch one another.
 
 use opruga_core::spec::{Value, Values};
+use opruga_math::message::Message as _;
 use opruga_mesh::Mesh;
 use opruga_world::blueprint::*;
 use opruga_world::schema::{BODY_CONTACT, CONTACT, CONTACT_PAIR};
@@ -324,7 +325,7 @@ fn what_contact_cannot_do_is_refused() {
     }
     let error = World::new(implicit.clone(), Options::default()).expect_err("refused");
     assert_eq!(error.code(), "contact.implicit");
-    assert!(error.to_string().contains("body `a`") && error.to_string().contains("hint"), "{error}");
+    assert!(error.to_string().contains("body `a`") && error.in_full().contains("hint"), "{error}");
     let mut apart = Values::defaults(BODY_CONTACT.spec, 2);
     apart.set(BODY_CONTACT.spec, "touch", Value::Boolean(false), 2).expect("a field");
     implicit.bodies.iter_mut().for_each(|body| body.contact = Some(apart.clone()));
@@ -512,7 +513,7 @@ fn contact_changes_while_bodies_move() {
         assert_eq!(world.frame_hash(), end);
     }
     let refused = smooth.set("contact.friction", Value::Number(-1.0)).expect_err("refused");
-    assert!(refused.to_string().contains("allowed"), "{refused}");
+    assert!(refused.in_full().contains("allowed"), "{refused}");
     scene.contact = None;
     let refused = world(&scene).set("contact.friction", 0.5.into()).expect_err("refused");
     assert!(refused.to_string().contains("[contact]"), "{refused}");

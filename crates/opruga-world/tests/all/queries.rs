@@ -1,6 +1,7 @@
 //! Rays and nearest points on bodies as they are now.
 
 use opruga_core::spec::Value;
+use opruga_math::message::Message as _;
 use opruga_mesh::Mesh;
 use opruga_world::blueprint::*;
 use opruga_world::{AnyWorld, Options, Registry, World};
@@ -118,6 +119,6 @@ fn queries_without_meaning_are_refused() {
     ];
     for outcome in refused {
         let error = outcome.expect_err("refused");
-        assert!(error.to_string().contains("allowed"), "{error}");
+        assert!(error.in_full().contains("allowed"), "{error}");
     }
 }

@@ -4,6 +4,7 @@ use crate::common;
 
 use common::{solid, text};
 use opruga_core::spec::{Spec, Value, Values};
+use opruga_math::message::Message as _;
 use opruga_mesh::Mesh;
 use opruga_world::blueprint::*;
 use opruga_world::{Options, Registry, World, WorldError};
@@ -99,9 +100,9 @@ fn every_part_that_is_refused_is_found_once() {
     let found: Vec<String> = World::problems(&blueprint, &Options::default())
         .iter()
         .map(|problem| match problem {
-            WorldError::Build { place, source } => format!("{place}: {}: {}", source.kind, source.code),
+            WorldError::Build { place, source } => format!("{place}: {}: {}", source.kind, source.code()),
             WorldError::UnstableStep { body, .. } => format!("unstable: {body}"),
-            other => other.code().to_string() + ": " + &other.to_string(),
+            other => other.code().to_string() + ": " + &other.in_full(),
         })
         .collect();
     assert_eq!(

@@ -6,6 +6,7 @@ use common::{clamp, solid, text};
 use opruga_core::spec::Value;
 use opruga_math::Lane;
 use opruga_math::matrix::determinant;
+use opruga_math::message::Message as _;
 use opruga_mesh::Mesh;
 use opruga_world::blueprint::{Blueprint, PinBlueprint};
 use opruga_world::{Options, World};
@@ -83,9 +84,9 @@ fn end<const D: usize>(
     let mut told = None;
     for frame in 0..900 {
         if let Err(error) = world.frame() {
-            let reason = error.to_string();
+            let reason = error.in_full();
             assert!(reason.contains("did not converge") && reason.contains("hint"), "{name}: {reason}");
-            assert!(frame > 0 || reason.contains("cells flat or inside out"), "{name}: {reason}");
+            assert!(frame > 0 || reason.contains("cells degenerate or inverted"), "{name}: {reason}");
             return End::Reasoned(reason);
         }
         let (whole, least) = measure(&world);

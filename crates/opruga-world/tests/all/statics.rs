@@ -27,8 +27,9 @@ fn refusal<const D: usize>(blueprint: &Blueprint<D>) -> Option<String> {
     match World::new(blueprint.clone(), Options::default()) {
         Ok(_) => None,
         Err(WorldError::Build { source, .. }) => {
-            assert_eq!(source.code, "static.rigid_modes", "{source}");
-            let told = source.message.split(';').next().unwrap_or_default();
+            assert_eq!(source.code(), "static.rigid_modes", "{source}");
+            let told = source.about.to_string();
+            let told = told.split(';').next().unwrap_or_default();
             Some(told.trim_start_matches("nothing holds the body against ").to_string())
         }
         Err(other) => panic!("{other}"),

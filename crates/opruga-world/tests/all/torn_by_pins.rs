@@ -6,6 +6,7 @@ use crate::common;
 
 use common::{solid, text};
 use opruga_core::spec::Value;
+use opruga_math::message::Message as _;
 use opruga_mesh::Mesh;
 use opruga_world::blueprint::{Blueprint, PinBlueprint, Selector, Time};
 use opruga_world::{Options, World};
@@ -118,7 +119,7 @@ fn a_way_that_a_model_refuses_is_gone_in_halves_where_that_is_asked_for() {
         let rule = ("equilibrium", &of_rule[..]);
         let mut world =
             World::new(drawn_by(1, rule, "st_venant_kirchhoff", 0.4, 1.8, 1), Options::default()).expect("a world");
-        (world.frame().map_err(|error| (error.code().to_string(), error.to_string())), world)
+        (world.frame().map_err(|error| (error.code().to_string(), error.in_full())), world)
     };
     let (outcome, mut world) = lead("error");
     let (code, told) = outcome.expect_err("a refusal");

@@ -1,5 +1,6 @@
 //! Which values a sweep takes: lists and ranges of parameters, and the points that are made of them.
 
+use super::errors::{RangeFault, SweepError};
 use opruga_core::check::Random;
 use opruga_io::SceneError;
 use opruga_io::problem::visible;
@@ -77,19 +78,11 @@ impl Axis {
             return Ok(Some(Axis { path, values: Values::Range(range) }));
         }
         if text.contains(char::is_control) {
-            return Err(refuse(
-                SceneError::new("sweep.values", "a value holds a control character")
-                    .value(visible(&text))
-                    .allowed("values on one line"),
-            ));
+            return Err(refuse(SceneError::of(SweepError::ControlCharacter { text: visible(&text) })));
         }
         let values = split_list(&text);
         if values.len() > 1 && values.iter().any(String::is_empty) {
-            return Err(refuse(
-                SceneError::new("sweep.values", "a value of the list is missing")
-                    .value(visible(&text))
-                    .allowed("values with single commas between them"),
-            ));
+            return Err(refuse(SceneError::of(SweepError::NoValue { text: visible(&text) })));
         }
         Ok((values.len() > 1).then_some(Axis { path, values: Values::Listed(values) }))
     }
@@ -161,37 +154,28 @@ impl Range {
         if text.starts_with(['"', '\'', '[', '{']) {
             return Ok(None);
         }
-        let refuse = |message: String| {
-            SceneError::new("sweep.range", message)
-                .value(visible(text))
-                .allowed("LOW..HIGH:COUNT, with :log for equal ratios and :whole for whole numbers")
-                .hint("for example 10..1000:log:7 or 0.1..0.9:5")
-        };
+        let refuse = |fault| SceneError::of(SweepError::InvalidRange { text: visible(text), fault });
         let (Some(low), Some(high)) = (number(low.trim()), number(high.trim())) else {
-            return Err(refuse("the ends of the range are no numbers".into()));
+            return Err(refuse(RangeFault::Ends));
         };
         let mut range = Range { low, high, count: None, logarithmic: false, whole: false };
         for part in parts {
             match (part, part.parse::<usize>()) {
-                ("log", _) if range.logarithmic => return Err(refuse("`log` is said twice".into())),
-                ("whole", _) if range.whole => return Err(refuse("`whole` is said twice".into())),
-                (_, Ok(_)) if range.count.is_some() => {
-                    return Err(refuse("the number of values is said twice".into()));
-                }
+                ("log", _) if range.logarithmic => return Err(refuse(RangeFault::TwoLogs)),
+                ("whole", _) if range.whole => return Err(refuse(RangeFault::TwoWholes)),
+                (_, Ok(_)) if range.count.is_some() => return Err(refuse(RangeFault::TwoCounts)),
                 ("log", _) => range.logarithmic = true,
                 ("whole", _) => range.whole = true,
                 (_, Ok(count)) if (2..=MOST_POINTS).contains(&count) => range.count = Some(count),
-                (_, Ok(count)) => {
-                    return Err(refuse(format!("{count} is no number of values; allowed: one, from 2 up")));
-                }
-                _ => return Err(refuse(format!("`{}` says nothing about a range", visible(part)))),
+                (_, Ok(_)) => return Err(refuse(RangeFault::Count)),
+                _ => return Err(refuse(RangeFault::Word)),
             }
         }
         if low >= high {
-            return Err(refuse("the lower end is not below the upper one".into()));
+            return Err(refuse(RangeFault::Order));
         }
         if range.logarithmic && low <= 0.0 {
-            return Err(refuse("a range of equal ratios begins above 0".into()));
+            return Err(refuse(RangeFault::Ratios));
         }
         Ok(Some(range))
     }
@@ -241,30 +225,22 @@ fn split_list(text: &str) -> Vec<String> {
 /// `sweep.too_many` above [`MOST_POINTS`].
 pub(super) fn points(axes: &[Axis], design: Design) -> Result<Vec<Point>, SceneError> {
     if axes.is_empty() {
-        return Err(SceneError::new("sweep.axes", "no parameter varies")
-            .hint("for example --set body.ball.mass=1,2,4 or --set body.ball.mass=1..4:7"));
+        return Err(SceneError::of(SweepError::NothingVaries {}));
     }
     for (place, axis) in axes.iter().enumerate() {
         if axes[..place].iter().any(|other| other.path == axis.path) {
-            return Err(SceneError::new("sweep.axes", "a parameter varies twice").path(visible(&axis.path)));
+            return Err(SceneError::of(SweepError::VariesTwice {}).path(visible(&axis.path)));
         }
         let Values::Range(range) = &axis.values else { continue };
-        let message = match (design, range.count) {
-            (Design::Sample { .. }, Some(_)) => "a sample chooses how many values it takes",
-            (Design::Grid | Design::Each, None) => "how many values are there?",
+        let range_shown = || format!("{}..{}", range.low, range.high);
+        let about = match (design, range.count) {
+            (Design::Sample { .. }, Some(_)) => SweepError::SampleWithCount { range: range_shown() },
+            (Design::Grid | Design::Each, None) => SweepError::NoCount { range: range_shown() },
             _ => continue,
         };
-        let shown = format!("{}..{}", range.low, range.high);
-        return Err(SceneError::new("sweep.range", message)
-            .path(visible(&axis.path))
-            .value(shown.clone())
-            .allowed(if range.count.is_some() { shown } else { format!("{shown}:COUNT, or --sample COUNT") }));
+        return Err(SceneError::of(about).path(visible(&axis.path)));
     }
-    let too_many = |count: String| {
-        SceneError::new("sweep.too_many", format!("the sweep has {count} points"))
-            .value(count)
-            .allowed(format!("at most {MOST_POINTS}"))
-    };
+    let too_many = |count| SceneError::of(SweepError::TooManyPoints { count, most: MOST_POINTS });
     match design {
         Design::Grid => {
             let listed: Vec<Vec<String>> = axes.iter().map(Axis::listed).collect();
@@ -301,10 +277,7 @@ pub(super) fn points(axes: &[Axis], design: Design) -> Result<Vec<Point>, SceneE
                 })
             })
             .collect()),
-        Design::Sample { count: 0, .. } => {
-            let error = SceneError::new("sweep.range", "a sample of 0 points visits nothing").value("--sample 0");
-            Err(error.allowed(format!("1 to {MOST_POINTS}")).hint("for example --sample 20"))
-        }
+        Design::Sample { count: 0, .. } => Err(SceneError::of(SweepError::EmptySample { most: MOST_POINTS })),
         Design::Sample { count, .. } if count > MOST_POINTS => Err(too_many(count.to_string())),
         Design::Sample { count, seed, independent } => {
             let mut random = Random::new(seed);

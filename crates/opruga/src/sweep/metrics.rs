@@ -1,5 +1,6 @@
 //! What a sweep measures of every run.
 
+use super::errors::{SweepAllowed, SweepError};
 use opruga_core::spec::nearest;
 use opruga_io::SceneError;
 use opruga_io::problem::visible;
@@ -85,31 +86,34 @@ impl Metric {
     /// # Errors
     /// `sweep.metric` where there is no such body or no such column of a probe.
     pub fn check(&self, scene: &dyn AnyScene) -> Result<(), SceneError> {
-        let missing = |what: &str, name: &str, known: Vec<String>| {
-            let allowed = if known.is_empty() { "the scene has none".to_string() } else { known.join(", ") };
-            Err(SceneError::new("sweep.metric", format!("there is no {what} `{}`", visible(name)))
-                .value(visible(&self.name))
-                .allowed(visible(&allowed))
-                .nearest(nearest(name, known.iter().map(String::as_str))))
+        let metric = || visible(&self.name);
+        let missing = |about: SweepError, name: &str, known: Vec<String>| {
+            let error = SceneError::of(about).nearest(nearest(name, known.iter().map(String::as_str)));
+            Err(match known.is_empty() {
+                true => error.allows(SweepAllowed::SceneHasNone),
+                false => error.allowed(visible(&known.join(", "))),
+            })
         };
+        let no_body = |name: &str| SweepError::NoBodyToMeasure { body: visible(name), metric: metric() };
         match &self.quantity {
             Quantity::BounceHeight(body) | Quantity::EquilibriumRadius(body) => {
                 let names: Vec<String> = scene.bodies().map(|body| body.name().to_string()).collect();
                 match body {
-                    Some(name) if !names.contains(name) => return missing("body", name, names),
-                    None if names.is_empty() => return missing("body", "", names),
+                    Some(name) if !names.contains(name) => return missing(no_body(name), name, names),
+                    None if names.is_empty() => return missing(no_body(""), "", names),
                     _ => {}
                 }
                 if matches!(self.quantity, Quantity::BounceHeight(_)) && upwards(scene).is_none() {
-                    return Err(SceneError::new("sweep.metric", "nothing says what is up")
-                        .value(visible(&self.name))
-                        .allowed("scenes with gravity or a half-space"));
+                    return Err(SceneError::of(SweepError::NoUp { metric: metric() }));
                 }
                 Ok(())
             }
             Quantity::Probe(column, _) => {
                 let columns = scene.probe_columns().concat();
-                if columns.contains(column) { Ok(()) } else { missing("column of a probe", column, columns) }
+                if columns.contains(column) {
+                    return Ok(());
+                }
+                missing(SweepError::NoColumn { column: visible(column), metric: metric() }, column, columns)
             }
             _ => Ok(()),
         }
@@ -148,9 +152,7 @@ impl Metric {
 
 fn unknown(text: &str) -> SceneError {
     let words: Vec<&str> = WORDS.iter().map(|w| w.0).collect();
-    SceneError::new("sweep.metric", format!("there is no metric `{}`", visible(text)))
-        .value(visible(text))
-        .allowed(format!("{}, and PROBE.COLUMN.min, .max, .mean, .last", words.join(", ")))
+    SceneError::of(SweepError::NoMetric { metric: visible(text), words: words.join(", ") })
         .nearest(nearest(text.split('.').next().unwrap_or(text), words.iter().copied()))
 }
 

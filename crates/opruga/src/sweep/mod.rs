@@ -29,6 +29,8 @@
 
 #![allow(clippy::result_large_err, reason = "errors are rare, and say much")]
 
+#[doc(hidden)]
+pub mod errors;
 mod grid;
 mod metrics;
 mod plots;
@@ -43,8 +45,10 @@ pub use question::Question;
 pub use table::{Row, Status, head, line, read_rows};
 
 use crate::{Options, Simd, WorldError};
+use errors::SweepError;
 use metrics::Meter;
 use opruga_io::{Files, SceneError, scene};
+use opruga_math::message::Message;
 use opruga_world::blueprint::AnyBlueprint;
 use opruga_world::{AnyScene, AnyWorld};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -89,15 +93,11 @@ impl Sweep {
         let mut errors = Vec::new();
         if self.metrics.is_empty() {
             let words: Vec<&str> = WORDS.iter().map(|w| w.0).collect();
-            errors.push(
-                SceneError::new("sweep.metric", "nothing is measured")
-                    .allowed(format!("--metric {}, and PROBE.COLUMN.min, .max, .mean, .last", words.join(", ")))
-                    .hint("for example --metric bounce_height --metric settling_time"),
-            );
+            errors.push(SceneError::of(SweepError::NothingMeasured { words: words.join(", ") }));
         }
         for (place, metric) in self.metrics.iter().enumerate() {
             if self.metrics[..place].contains(metric) {
-                errors.push(SceneError::new("sweep.metric", "a metric is asked for twice").value(&metric.name));
+                errors.push(SceneError::of(SweepError::MetricTwice { metric: metric.name.clone() }));
             }
         }
         let points = grid::points(&self.axes, self.design).map_err(|e| errors.push(e)).unwrap_or_default();
@@ -190,7 +190,7 @@ impl From<SceneError> for Failed {
 
 impl From<WorldError> for Failed {
     fn from(error: WorldError) -> Failed {
-        Failed::of(error.code(), &error.to_string())
+        Failed::of(error.code(), &error.in_full())
     }
 }
 

@@ -1,5 +1,6 @@
 //! What was asked of a sweep, as it lies in the sweep's folder, so that it can go on.
 
+use super::errors::SweepError;
 use super::{Axis, Design, Metric, Sweep};
 use opruga_io::problem::visible;
 use opruga_io::{Files, SceneError, overrides};
@@ -52,14 +53,11 @@ impl Question {
     /// # Errors
     /// `sweep.damaged` where it is none, or one of another version.
     pub fn read(bytes: &[u8]) -> Result<Question, SceneError> {
-        let damaged = |why: String| {
-            SceneError::new("sweep.damaged", format!("the question of the sweep cannot be read: {}", visible(&why)))
-                .hint("--force begins the sweep anew")
-        };
-        let question: Question = serde_json::from_slice(bytes).map_err(|e| damaged(e.to_string()))?;
+        let damaged = |reason: &serde_json::Error| SweepError::Question { reason: visible(&reason.to_string()) };
+        let question: Question = serde_json::from_slice(bytes).map_err(|e| SceneError::of(damaged(&e)))?;
         match question.schema {
             Question::SCHEMA => Ok(question),
-            other => Err(damaged(format!("it has version {other}; this program reads {}", Question::SCHEMA))),
+            found => Err(SceneError::of(SweepError::QuestionVersion { found, version: Question::SCHEMA })),
         }
     }
 
@@ -86,10 +84,7 @@ impl Question {
         for (name, digits) in &self.files {
             match from_digits(digits) {
                 Some(bytes) => _ = files.insert(name.clone(), bytes.into()),
-                None => {
-                    let message = format!("the file `{}` of the sweep cannot be read", visible(name));
-                    errors.push(SceneError::new("sweep.damaged", message).hint("--force begins the sweep anew"));
-                }
+                None => errors.push(SceneError::of(SweepError::FileOfSweep { name: visible(name) })),
             }
         }
         if !errors.is_empty() {

@@ -5,6 +5,7 @@
 //! replace what somebody has written there; who deletes the line asks for that.
 
 use super::Sweep;
+use super::errors::{RowFault, SweepError};
 use super::grid::Point;
 use opruga_io::SceneError;
 use opruga_io::problem::visible;
@@ -90,22 +91,11 @@ pub fn read_rows(sweep: &Sweep, points: &[Point], text: &str, file: &str) -> Res
         column: Some(1),
         ..error
     };
-    let damaged = |line: usize, what: &str, content: &str| {
-        let error = SceneError::new("sweep.damaged", what).value(visible(content));
-        placed(line, error.hint("--force begins the sweep anew, --out takes another folder"))
+    let damaged = |line: usize, fault: RowFault, content: &str| {
+        placed(line, SceneError::of(SweepError::Table { fault, content: visible(content) }))
     };
-    let changed = |line: usize, content: &str| {
-        let error = SceneError::new(
-            "sweep.changed_row",
-            "the row was changed after the sweep wrote it: its checksum is another",
-        );
-        placed(
-            line,
-            error.value(visible(content)).allowed("the row as it was written").hint(
-                "without its line the point is computed anew; --force begins the whole sweep anew, --out takes another folder",
-            ),
-        )
-    };
+    let changed =
+        |line: usize, content: &str| placed(line, SceneError::of(SweepError::ChangedRow { content: visible(content) }));
     let own = head(sweep);
     let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
     let mut lines = whole.lines();
@@ -113,10 +103,9 @@ pub fn read_rows(sweep: &Sweep, points: &[Point], text: &str, file: &str) -> Res
         None => return Ok(Vec::new()),
         Some(first) if first == own.trim_end() => {}
         Some(first) if format!("{first},{CHECKSUM}") == own.trim_end() => {
-            let what = "the rows have no checksums: an earlier version of the program wrote the table";
-            return Err(vec![damaged(1, what, first)]);
+            return Err(vec![damaged(1, RowFault::NoChecksums, first)]);
         }
-        Some(first) => return Err(vec![damaged(1, "the head of the table is not that of this sweep", first)]),
+        Some(first) => return Err(vec![damaged(1, RowFault::Head, first)]),
     }
     let mut rows: Vec<Option<Row>> = vec![None; points.len()];
     let mut errors = Vec::new();
@@ -134,33 +123,33 @@ pub fn read_rows(sweep: &Sweep, points: &[Point], text: &str, file: &str) -> Res
         }
         let place = row.number;
         if rows[place].replace(row).is_some() {
-            errors.push(damaged(number + 2, "this point has two rows", content));
+            errors.push(damaged(number + 2, RowFault::TwoRows, content));
         }
     }
     if errors.is_empty() { Ok(rows.into_iter().flatten().collect()) } else { Err(errors) }
 }
 
-fn read_row(sweep: &Sweep, points: &[Point], line: &str) -> Result<Row, &'static str> {
-    let cells = split(line).ok_or("a quote is not closed")?;
+fn read_row(sweep: &Sweep, points: &[Point], line: &str) -> Result<Row, RowFault> {
+    let cells = split(line).ok_or(RowFault::Quote)?;
     let (axes, metrics) = (sweep.axes.len(), sweep.metrics.len());
     if cells.len() != axes + metrics + 4 {
-        return Err("the row has another number of cells than the head");
+        return Err(RowFault::Cells);
     }
-    let number: usize = cells[0].parse().map_err(|_| "the number of the point is none")?;
-    let point = points.get(number).ok_or("the sweep has no such point")?;
+    let number: usize = cells[0].parse().map_err(|_| RowFault::PointNumber)?;
+    let point = points.get(number).ok_or(RowFault::NoPoint)?;
     if point.iter().zip(&cells[1..]).any(|(value, cell)| value.as_deref().unwrap_or("") != cell) {
-        return Err("the values are not those of the point");
+        return Err(RowFault::Values);
     }
     let numbers = cells[axes + 2..axes + 2 + metrics].iter().map(|cell| match cell.as_str() {
         "" => Ok(None),
-        text => text.parse().map(Some).map_err(|_| "a number cannot be read"),
+        text => text.parse().map(Some).map_err(|_| RowFault::Number),
     });
     Ok(Row {
         number,
         values: point.clone(),
         status: match cells[axes + 1].as_str() {
             "done" => Status::Done,
-            "" => return Err("the status is missing"),
+            "" => return Err(RowFault::Status),
             code => Status::Failed(code.to_string()),
         },
         message: cells[axes + metrics + 2].clone(),

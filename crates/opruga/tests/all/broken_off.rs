@@ -62,12 +62,12 @@ fn a_frame_that_is_broken_off_leaves_the_last_good_one_and_is_made_again_to_the_
         let (mut broken, flag, asked) = world(rule, substeps, begin + 1 + good * (all - begin) / 3);
         (0..good).for_each(|_| broken.frame().expect("the first one"));
         assert_eq!(broken.state_hash(), hash, "{rule}");
-        assert_eq!(broken.frame(), Err(WorldError::BrokenOff), "{rule}");
+        assert_eq!(broken.frame(), Err(WorldError::BrokenOff {}), "{rule}");
         let spent = asked.load(Ordering::Relaxed);
         assert!(spent < all, "{rule}: {spent} of {all}: the frame has ended early");
         assert_eq!((broken.frames(), broken.state_hash()), (u64::from(good), hash), "{rule}");
         // As long as it is wanted nothing goes on.
-        assert_eq!(broken.frame(), Err(WorldError::BrokenOff), "{rule}");
+        assert_eq!(broken.frame(), Err(WorldError::BrokenOff {}), "{rule}");
         flag.ask(false);
         (0..2).for_each(|_| broken.frame().expect("it goes on"));
         assert_eq!(broken.state_hash(), whole.state_hash(), "{rule}");
@@ -94,9 +94,9 @@ fn a_body_whose_preparation_is_broken_off_does_not_come_and_the_world_stays_as_i
     let body = dense().bodies.remove(0);
     let hash = world.state_hash();
     break_off.ask(true);
-    assert_eq!(world.add_body(body.clone()), Err(WorldError::BrokenOff));
+    assert_eq!(world.add_body(body.clone()), Err(WorldError::BrokenOff {}));
     assert_eq!((world.state_hash(), break_off.prepared()), (hash, None));
-    assert!(matches!(World::new(dense(), options), Err(WorldError::BrokenOff)));
+    assert!(matches!(World::new(dense(), options), Err(WorldError::BrokenOff {})));
     break_off.ask(false);
     world.add_body(body).expect("a body");
     world.frame().expect("a frame");

@@ -5,6 +5,7 @@ use crate::common;
 
 use common::{built, frames, head, plane, refused, space};
 use opruga::World;
+use opruga::math::message::Message as _;
 
 /// The rules that step through time.
 const RULES: [&str; 4] = ["backward_euler", "bdf2", "implicit_midpoint", "newmark"];
@@ -280,7 +281,7 @@ fn refusals_say_what_is_wrong_and_what_helps() {
     // Without load, where the curve begins, nothing presses a body onto an obstacle.
     let error = refused(&(format!("{arc}{BLOCK}") + &floor(-5.0, 0.5, 0.0)));
     assert_eq!(error.code(), "static.arc_length_and_obstacles");
-    assert!(error.to_string().contains("allowed: pins that hold it, or the whole load at once"), "{error}");
+    assert!(error.in_full().contains("allowed: pins that hold it, or the whole load at once"), "{error}");
 
     let published = "[[body]]\nname = \"ball\"\nshape = { kind = \"ring\", radius = 100.0, vertices = 20 }\nnode_mass = 1.0\n\
         models = [ { kind = \"as_published\" } ]\n";
@@ -438,7 +439,7 @@ fn an_equilibrium_on_a_floor_names_the_motions_that_it_leaves_free() {
                 assert!((low - 0.1).abs() < 2e-3, "{low} m over the floor");
             }
             Err(error) => {
-                let said = error.to_string();
+                let said = error.in_full();
                 assert!(friction == 0.0 && said.contains("translation along x") && said.contains("hint"), "{said}");
             }
         }

@@ -196,7 +196,7 @@ fn what_cannot_be_recorded_is_an_error_and_the_frames_before_stay() {
     tape.step(&mut world).expect("a frame");
     world.add_force(0, std::sync::Arc::new(|_, _, _, _| [0.0, 1.0])).expect("a law");
     let error = tape.step(&mut world).expect_err("only the program knows the law");
-    assert!(matches!(&error, TapeError::Write(e) if e.code == "recording.input"), "{error}");
+    assert!(matches!(&error, TapeError::Write(e) if e.code() == "recording.input"), "{error}");
     drop(tape);
     let recording = Recording::open(std::fs::File::open(&path).expect("a file")).expect("a recording");
     assert_eq!(recording.frames(), 0..2);

@@ -6,6 +6,7 @@ use crate::common;
 use common::*;
 use opruga::World;
 use opruga::core::spec::Value;
+use opruga::math::message::Message as _;
 
 const LAWS: [&str; 7] = [
     "linear",
@@ -211,14 +212,14 @@ fn what_cannot_be_a_temperature_is_refused_with_a_hint() {
                  models = [{{ kind = \"fem\", youngs_modulus = 1e5, {fields} }}]\n"
             )
     };
-    let error = refused(&scene("thermal_expansion = 0.1, temperature = 200.0", "")).to_string();
+    let error = refused(&scene("thermal_expansion = 0.1, temperature = 200.0", "")).in_full();
     assert!(error.contains("cell 0 would be") && error.contains("hint: steel"), "{error}");
     let nodal = scene(
         "thermal_expansion = 1e-3, temperature = 300.0, poissons_ratio = 0.49, locking = \"nodal_volume\"",
         "simplices = true\norder = 1\n",
     );
-    assert!(refused(&nodal).to_string().contains("hint: `order = 2`"), "{}", refused(&nodal));
-    let unknown = refused(&scene("thermal_expansion = 1e-3, temperature_of_cells = \"T\"", "")).to_string();
+    assert!(refused(&nodal).in_full().contains("hint: `order = 2`"), "{}", refused(&nodal));
+    let unknown = refused(&scene("thermal_expansion = 1e-3, temperature_of_cells = \"T\"", "")).in_full();
     assert!(
         unknown.contains("`temperature_of_cells` is \"T\"") && unknown.contains("`temperature` gives one"),
         "{unknown}"

@@ -38,7 +38,7 @@ fn a_disk_that_fails_at_any_byte_leaves_whole_frames() {
             continue;
         }
         let error = outcome.expect_err("the disk is full");
-        assert_eq!((error.code, error.exit_code(), &error.path), ("write.failed", 4, &path), "{k}");
+        assert_eq!((error.code(), error.exit_code(), &error.path), ("write.failed", 4, &path), "{k}");
         match File::open(&path) {
             // It does not get its name before its head is whole.
             Err(_) => assert!(k < 300 && std::fs::read_dir(&folder).expect("a folder").count() == 0, "{k}"),
@@ -56,10 +56,10 @@ fn a_disk_that_fails_at_any_byte_leaves_whole_frames() {
     // A disk on which nothing lasts: what would take the place of another file is refused at once, a new one at its end.
     let fails = |force| RecordingFile::create_through(&path, force, &header(), |file| Failing::at_sync(5, file));
     let error = fails(false).and_then(RecordingFile::finish).expect_err("it does not last");
-    assert!(error.code == "write.failed" && path.exists(), "{error}");
+    assert!(error.code() == "write.failed" && path.exists(), "{error}");
     std::fs::write(&path, b"earlier").expect("a file");
     let error = fails(true).expect_err("it does not last");
-    assert!(error.code == "write.failed" && std::fs::read(&path).is_ok_and(|there| there == b"earlier"), "{error}");
+    assert!(error.code() == "write.failed" && std::fs::read(&path).is_ok_and(|there| there == b"earlier"), "{error}");
     std::fs::remove_dir_all(folder).expect("the folder is there");
 }
 
@@ -70,19 +70,19 @@ fn an_earlier_file_stays_until_the_new_one_has_begun() {
     let path = folder.join("r");
     std::fs::write(&path, b"old").expect("a file");
     let create = |path: &std::path::Path, force| RecordingFile::create(path, force, &header());
-    assert_eq!(create(&path, false).expect_err("it is there").code, "write.exists");
+    assert_eq!(create(&path, false).expect_err("it is there").code(), "write.exists");
     for k in 0..100 {
         RecordingFile::create_through(&path, true, &header(), |file| Failing::after(k, file)).expect_err("no space");
         assert_eq!(std::fs::read(&path).expect("still there"), b"old");
     }
     let first = create(&path, true).expect("it is replaced");
     let error = create(&path, true).expect_err("it is being written");
-    assert_eq!((error.code, error.hint.is_some()), ("write.locked", true));
+    assert_eq!((error.code(), error.about.hint().is_some()), ("write.locked", true));
     drop(first);
     create(&path, true).and_then(RecordingFile::finish).expect("it is free again");
     for (path, text) in [(folder.as_path(), "a folder"), (path.join("no/r").as_path(), "error[write.failed]")] {
         let error = create(path, true).expect_err("no place for a file");
-        assert!(error.code == "write.failed" && error.to_string().contains(text), "{error}");
+        assert!(error.code() == "write.failed" && error.to_string().contains(text), "{error}");
     }
     let nested = folder.join("some/where/r");
     create(&nested, false).and_then(RecordingFile::finish).expect("the folders around it are made");
@@ -91,7 +91,7 @@ fn an_earlier_file_stays_until_the_new_one_has_begun() {
     {
         let full = std::path::Path::new("/dev/full");
         let error = create(full, true).expect_err("a device");
-        assert!(error.message.contains("no regular file") && full.exists(), "{error}");
+        assert!(error.about.to_string().contains("no regular file") && full.exists(), "{error}");
     }
     assert_eq!(std::fs::read_dir(&folder).expect("a folder").count(), 1, "nothing is left aside");
     std::fs::remove_dir_all(folder).expect("the folder is there");

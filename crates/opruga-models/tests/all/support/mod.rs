@@ -103,7 +103,7 @@ pub(crate) fn refusal<const D: usize>(mesh: &Mesh<D>, model: &dyn Model<D>, valu
     };
     match model.build(&ingredients) {
         Ok(_) => "built".into(),
-        Err(error) => format!("{} {error}", error.code),
+        Err(error) => format!("{} {error}", error.code()),
     }
 }
 

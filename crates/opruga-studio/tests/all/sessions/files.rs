@@ -117,7 +117,7 @@ fn what_is_left_out_of_a_file_is_counted_and_named() {
     let warnings = session.shown().warnings;
     let warning = warnings.iter().find(|warning| warning.code == "svg.image").expect("it is named");
     assert_eq!(warning.message, "2 images are left out");
-    assert_eq!(opruga_studio::words::Language::Croatian.detail(&warning.message), "izostavljeno slika: 2");
+    assert_eq!(opruga_studio::words::Language::Croatian.warning_text(warning), "izostavljeno slika: 2");
     assert!(open("ball").shown().warnings.iter().all(|warning| warning.code != "svg.image"));
 }
 

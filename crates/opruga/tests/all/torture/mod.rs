@@ -11,6 +11,7 @@ mod state;
 mod world;
 
 use common::*;
+use opruga::math::message::Message as _;
 use opruga::{Options, World};
 
 /// A ring above a floor; `more` follows its fields.
@@ -30,7 +31,7 @@ fn said(text: &str) -> String {
     match read(text) {
         Ok(_) => match World::new(plane(text), Options::default()) {
             Ok(_) => "nothing".into(),
-            Err(error) => format!("{}: {error}", error.code()),
+            Err(error) => format!("{}: {}", error.code(), error.in_full()),
         },
         Err(errors) => errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"),
     }

@@ -61,7 +61,7 @@ fn parameters_that_make_no_sense() {
         // 48, 50: steps that are too long, told before the run
         (
             ring(1, BALL, ""),
-            "step.unstable: the step h = 0.0166667 s of `symplectic_euler` is unstable for body `b`: the largest stable step is ",
+            "step.unstable: the step h = 0.0166667 s of `symplectic_euler` is unstable for body `b`; allowed: h <= ",
         ),
         (
             ring(16, "{ kind = \"mass_spring\", stiffness = 1e300 }", ""),
@@ -99,7 +99,7 @@ fn parameters_that_make_no_sense() {
         (ring(64, BALL, "angular_velocity = 1e200"), "hint: are its units mixed (metres, seconds, radians)?"),
         (
             ring(64, BALL, "rotation = 1e200"),
-            "error[scene.range]: `rotation` is 1e200: where in its turn so large an angle",
+            "error[scene.range]: `rotation` is 1e200: rounding loses where so large an angle",
         ),
         (
             ring(64, BALL, "scale = 1e-320"),

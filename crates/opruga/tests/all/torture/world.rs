@@ -1,8 +1,8 @@
 //! Rows 73 and 78: bodies that come and go, threads that change.
 
 use super::*;
-use opruga::WorldError;
 use opruga::math::Lane;
+use opruga::math::message::Message;
 
 /// Row 78: numbers of threads.
 #[test]
@@ -10,10 +10,7 @@ fn numbers_of_threads() {
     let scene = || plane(&ring(32, BALL, FLOOR));
     for threads in [0, 257, 10_000] {
         let error = World::new(scene(), Options { threads, ..Options::default() }).expect_err("no such number");
-        assert_eq!(
-            error,
-            WorldError::Path { path: "threads".into(), message: format!("is {threads}; allowed: 1 to 256") }
-        );
+        assert_eq!(error.in_full(), format!("`threads`: is {threads}; allowed: 1 to 256"));
     }
     let hash = |threads| {
         let mut world = World::new(scene(), Options { threads, ..Options::default() }).expect("a world");

@@ -1,0 +1,203 @@
+//! What readers of drawings, maps, fonts and pictures refuse and leave out.
+
+use opruga_math::messages;
+use opruga_math::words::counted;
+
+messages! {
+    /// What is wrong with a drawing in SVG.
+    #[derive(Clone, Debug, PartialEq)]
+    pub(crate) enum SvgError {
+        "svg.unknown_id" #[error("no element has the id `{id}`")] #[value("{id}")]
+        UnknownId { id: String },
+        "svg.same_id" #[error("two elements have the id `{id}`")] #[value("{id}")] #[allowed("ids that differ")]
+        SameId { id: String },
+        "svg.unsupported" #[error("the drawing is stretched more one way than the other")] #[value("preserveAspectRatio=\"none\"")]
+        #[allowed("a width and a height in proportion to the `viewBox`")]
+        Stretched {},
+        "svg.unsupported" #[error("the language that is meant is unknown")] #[value("systemLanguage")]
+        #[hint("leave one element in the <switch>")]
+        Language {},
+        "svg.unsupported" #[error("`{property}` cannot be read")] #[value("{value}")] #[hint("apply it in the drawing program")]
+        Property { property: String, value: String },
+        "svg.depth" #[error("elements are nested more than {deepest} deep")] #[value("{element}")] #[allowed("at most {deepest} levels")]
+        Depth { deepest: usize, element: String },
+        "svg.unsupported" #[error("<{element}> has no outline here")] #[value("{element}")]
+        #[hint("turn text into paths in the drawing program, or use `kind = \"text\"`")]
+        NoOutline { element: String },
+        "svg.unsupported" #[error("<{element}> cannot be read")] #[value("{element}")]
+        #[allowed("path, rect, circle, ellipse, polygon, polyline in svg, g, a, switch, use")]
+        Element { element: String },
+        "svg.outside" #[error("`{link}` is not an element of this file")] #[value("{link}")]
+        #[allowed("href = \"#id\" of this file")] #[hint("other files are never read")]
+        Outside { link: String },
+        "svg.cycle" #[error("`#{id}` contains itself")] #[value("{id}")] #[hint("an element cannot be drawn inside of itself")]
+        Cycle { id: String },
+        "svg.unsupported" #[error("a <use> cannot give an <svg> another size")] #[value("use")]
+        #[hint("give the <svg> itself its `width` and `height`")]
+        SizeOfUse {},
+        "svg.unsupported" #[error("the size of a `viewBox` is unknown")] #[value("{element}")]
+        #[hint("give its element `width` and `height`")]
+        SizeOfView { element: String },
+        "svg.unsupported" #[error("<{element}> has a frame that cuts {percent} % of what is in it off")] #[value("{element}")]
+        #[allowed("contents inside of the frame")] #[hint("`overflow=\"visible\"` shows all of it")]
+        Framed { element: String, percent: String },
+        "svg.unsupported" #[error("`clip-path` cuts {percent} % of what is drawn off")] #[value("{value}")]
+        #[allowed("clip paths around all that is drawn")] #[hint("apply it in the drawing program")]
+        Clipped { percent: String, value: String },
+        "svg.syntax" #[error("`{attribute}` cannot be read: {reason}")] #[value("{found}")]
+        Attribute { attribute: String, reason: String, found: String },
+        "svg.syntax" #[error("`viewBox` cannot be read: {reason}")] #[value("{value}")] #[allowed("x y width height")]
+        ViewBox { reason: String, value: String },
+        "svg.number" #[error("the transform leaves the range of numbers")] #[value("{value}")]
+        Transform { value: String },
+        "svg.unsupported" #[error("length `{attribute}` cannot be read")] #[value("{value}")]
+        #[allowed("a finite number without unit, or in px, pt, pc, mm, cm, in, or in % of a drawing with a `viewBox`")]
+        Length { attribute: String, value: String },
+        "svg.number" #[error("`{attribute}` is negative")] #[value("{value}")] #[allowed("0 or more")]
+        Negative { attribute: String, value: f64 },
+        "svg.syntax" #[error("`points` has {count} numbers, which is odd")] #[value("{count}")] #[allowed("pairs of numbers")]
+        OddPoints { count: usize },
+        "svg.number" #[error("the path leaves the range of numbers")] #[value("inf")]
+        Path {},
+        "svg.unsupported" #[error("invalid `fill-rule`")] #[value("{value}")] #[allowed("evenodd, nonzero")]
+        FillRule { value: String },
+        "svg.colour" #[error("`{property}` is not a number")] #[value("{value}")] #[allowed("0 to 1")]
+        Share { property: String, value: String },
+        "svg.colour" #[error("the fill cannot be painted")] #[value("{value}")]
+        #[allowed("a colour such as #ffac33 or gold, a gradient of this file, none")] #[hint("`colours = false` reads the outline alone")]
+        Colour { value: String },
+        "svg.style" #[error("a style sheet may set `{property}` here, which changes outlines")] #[value("{property}: {value}")]
+        #[allowed("rules without conditions, behind names, `.class` and `#id`")]
+        #[hint("let the drawing program write attributes instead of a sheet")]
+        Style { property: String, value: String },
+        "svg.syntax" #[error("the file is <{element}>, not a drawing")] #[value("{element}")] #[allowed("<svg>")]
+        NoDrawing { element: String },
+        "svg.syntax" #[error("invalid XML: {reason}")] #[value("{found}")]
+        Xml { reason: String, found: String },
+        "limit.elements" #[error("invalid XML: {reason}")] #[value("{found}")]
+        Elements { reason: String, found: String },
+        "svg.entity" #[error("invalid XML: {reason}")] #[value("{found}")] #[hint("entities from outside of the file are never read")]
+        OutsideEntity { reason: String, found: String },
+        "svg.entity" #[error("invalid XML: {reason}")] #[value("{found}")] #[hint("entities may not contain one another")]
+        EntityLoop { reason: String, found: String },
+    }
+
+    /// What of a drawing in SVG is left out or read otherwise.
+    #[derive(Clone, Debug, PartialEq)]
+    pub(crate) enum SvgNotice {
+        "svg.open_path" #[error("{} closed by a straight line", counted(*count as u64, "open path is", "open paths are"))] #[value("{count}")]
+        OpenPaths { count: usize },
+        "svg.stroke" #[error("{} instead of strokes", counted(*count as u64, "shape without fill is read by its outline", "shapes without fill are read by their outlines"))] #[value("{count}")]
+        Unfilled { count: usize },
+        "svg.empty" #[error("{} left out", counted(*count as u64, "shape without a path or points is", "shapes without a path or points are"))] #[value("{count}")]
+        Empty { count: usize },
+        "svg.image" #[error("{} left out", counted(*count as u64, "image is", "images are"))] #[value("{count}")]
+        Images { count: usize },
+        "svg.hidden" #[error("{} left out", counted(*count as u64, "element that cannot be seen is", "elements that cannot be seen are"))] #[value("{count}")]
+        Hidden { count: usize },
+        "svg.marker" #[error("{} which are left out", counted(*count as u64, "element has markers", "elements have markers"))] #[value("{count}")]
+        Markers { count: usize },
+        "svg.filter" #[error("{} which is not applied", counted(*count as u64, "element has a filter", "elements have a filter"))] #[value("{count}")]
+        Filters { count: usize },
+        "svg.stroke" #[error("{} which is left out: the outline runs along its middle", counted(*count as u64, "filled shape has a stroke", "filled shapes have a stroke"))]
+        #[value("{count}")]
+        Strokes { count: usize },
+        "svg.animation" #[error("{} left out", counted(*count as u64, "animation is", "animations are"))] #[value("{count}")]
+        Animations { count: usize },
+        "svg.gradient" #[error("{} painted in the mean of the colours", counted(*count as u64, "gradient is", "gradients are"))] #[value("{count}")]
+        Gradients { count: usize },
+        "svg.style" #[error("{} behind a selector that is not read: other colours may be meant", counted(*count as u64, "shape has a rule of a style sheet", "shapes have rules of style sheets"))]
+        #[value("{count}")]
+        Styled { count: usize },
+        "svg.fill_rule" #[error("{} no `fill-rule` and would have fewer holes by the non-zero rule", counted(*count as u64, "shape names", "shapes name"))] #[value("{count}")]
+        #[hint("`fill-rule=\"evenodd\"` or `fill-rule=\"nonzero\"` in the file says which is meant")]
+        FillRule { count: usize },
+    }
+
+    /// What is wrong with a map.
+    #[derive(Clone, Debug, PartialEq)]
+    pub(crate) enum MapError {
+        "map.unknown_layer" #[error("there is no layer `{layer}`")] #[value("{layer}")] #[allowed("no `layer`: only a topology has some")]
+        NoLayers { layer: String },
+        "map.unknown_layer" #[error("there is no layer `{layer}`")] #[value("{layer}")] #[allowed("{known}")]
+        NoLayer { layer: String, known: String },
+        "map.unknown_layer" #[error("the map has {count} layers")] #[value("")] #[allowed("{known}")] #[hint("name one by `layer`")]
+        SeveralLayers { count: usize, known: String },
+        "map.syntax" #[error("a position has {count} numbers")] #[value("{count}")] #[allowed("two or three numbers")]
+        Position { count: usize },
+        "map.depth" #[error("collections are nested more than {deepest} deep")] #[allowed("at most {deepest} levels")]
+        Depth { deepest: usize },
+        "map.syntax" #[error("type `{kind}` cannot be read")] #[value("{kind}")]
+        #[allowed("FeatureCollection, Feature, GeometryCollection, Polygon, MultiPolygon, Topology")]
+        Kind { kind: String },
+        "map.syntax" #[error("a {kind} has no `{field}`")] #[allowed("{field}")]
+        NoField { kind: String, field: &'static str },
+        "map.arc" #[error("there is no arc {arc}")] #[value("{arc}")] #[allowed("{least} to {most}")]
+        NoArc { arc: i64, least: i64, most: i64 },
+        "map.syntax" #[error("a ring is not closed")] #[value("{count}")] #[allowed("four or more positions, the last like the first")]
+        OpenRing { count: usize },
+        "map.hole" #[error("hole {hole} lies outside of its polygon")] #[value("{place}")]
+        #[allowed("holes inside of the first ring of a polygon")] #[hint("islands are polygons of their own")]
+        Hole { hole: usize, place: String },
+        "map.unknown_feature" #[error("`{feature}` is nothing")] #[value("{feature}")] #[allowed("features with polygons")]
+        Nothing { feature: String },
+        "map.unknown_feature" #[error("`{feature}` is a feature without geometry")] #[value("{feature}")] #[allowed("features with polygons")]
+        NoGeometry { feature: String },
+        "map.unknown_feature" #[error("`{feature}` is nothing but points and lines")] #[value("{feature}")] #[allowed("features with polygons")]
+        PointsAndLines { feature: String },
+        "map.unknown_feature" #[error("no polygon belongs to `{feature}`")] #[value("{feature}")]
+        #[allowed("the `id` of a feature, or a text among its properties")]
+        NoFeature { feature: String },
+        "shape.no_area" #[error("the map holds no polygon")] #[value("0")]
+        NoPolygon {},
+        "map.range" #[error("({x}, {y}) is not a place on the globe")] #[value("{x}, {y}")]
+        #[allowed("latitudes from -{most} to {most}, longitudes from -540 to 540")] #[hint("`projection = \"none\"` takes coordinates as they are")]
+        Range { x: f64, y: f64, most: f64 },
+        "json.syntax" #[error("{reason}")] #[value("{found}")]
+        Json { reason: String, found: String },
+    }
+
+    /// What of a map is left out or changed.
+    #[derive(Clone, Debug, PartialEq)]
+    pub(crate) enum MapNotice {
+        "mesh.strokes" #[error("{} left out", counted(*count as u64, "point or line is", "points and lines are"))] #[value("{count}")]
+        PointsAndLines { count: usize },
+        "map.empty" #[error("{} no geometry", counted(*count as u64, "feature has", "features have"))] #[value("{count}")]
+        Empty { count: usize },
+        "map.antimeridian" #[error("{} in one piece", counted(*count as u64, "outline crosses the antimeridian and is", "outlines cross the antimeridian and are"))] #[value("{count}")]
+        Over { count: usize },
+        "map.antimeridian" #[error("{count} polygons that were cut along the antimeridian are one again")] #[value("{count}")]
+        Cut { count: usize },
+        "map.antimeridian" #[error("{} moved by 360° beside the others", counted(*count as u64, "polygon is", "polygons are"))] #[value("{count}")]
+        Beside { count: usize },
+        "map.pole" #[error("{} cut along the antimeridian and closed along the pole", counted(*count as u64, "outline around a pole is", "outlines around a pole are"))]
+        #[value("{count}")]
+        Polar { count: usize },
+        "map.features" #[error("{count} features belong to `{feature}` and are read together")] #[value("{count}")]
+        Features { count: usize, feature: String },
+    }
+
+    /// What is wrong with a font, a picture, or what the scene wants of them.
+    #[derive(Clone, Debug, PartialEq)]
+    pub(crate) enum LetterError {
+        "font.syntax" #[error("the font cannot be read: {reason}")] #[value("{bytes} bytes")] #[allowed("OpenType or TrueType (.ttf, .otf)")]
+        Font { reason: String, bytes: usize },
+        "font.no_glyph" #[error("`{letter}` is not a letter")] #[value("{letter}")]
+        NoLetter { letter: String },
+        "font.script" #[error("`{letter}` is of a script whose letters are not set one by one from left to right")] #[value("{letter}")]
+        #[allowed("letters such as Latin, Greek or Cyrillic ones, without marks of their own")]
+        #[hint("draw the text in a drawing program and turn it into paths for `kind = \"svg\"`")]
+        Script { letter: String },
+        "font.no_glyph" #[error("the font `{font}` has no letter `{letter}`")] #[value("{letter}")]
+        NoGlyph { font: String, letter: String },
+        "shape.no_area" #[error("the text is empty")] #[value("")] #[allowed("at least one letter that is drawn")]
+        EmptyText {},
+        "shape.no_area" #[error("the text has no letter with an outline")] #[value("{text}")] #[allowed("at least one letter that is drawn")]
+        NoLetters { text: String },
+        "shape.no_area" #[error("no pixel is more {inside} than the threshold")] #[value("at most {most}")] #[allowed("pixels above {threshold}")]
+        #[hint("use a smaller `threshold`, or another `inside`: dark, bright or opaque")]
+        NoPixel { inside: String, most: String, threshold: f64 },
+        "png.syntax" #[error("the PNG cannot be read: {reason}")] #[value("{bytes} bytes")] #[allowed("a picture in PNG")]
+        Png { reason: String, bytes: usize },
+    }
+}

@@ -1,0 +1,126 @@
+//! What the makers of bodies from shapes refuse, and what they count.
+
+use opruga_math::messages;
+use opruga_math::words::{counted, number};
+
+messages! {
+    /// How much of an area or a volume is gone, or has come.
+    #[derive(Clone, Debug, PartialEq)]
+    pub(crate) enum Change {
+        "part.change" #[error("{off} {unit} ({percent} %) of {whole} {unit} lost")]
+        Lost { off: String, unit: &'static str, percent: String, whole: String },
+        "part.change" #[error("{off} {unit} ({percent} %) of {whole} {unit} added")]
+        Added { off: String, unit: &'static str, percent: String, whole: String },
+    }
+
+    /// Why triangles have sharp angles.
+    #[derive(Clone, Debug, PartialEq)]
+    pub(crate) enum ThinCause {
+        "part.thin_cause" #[error("the outline itself has a corner of {angle}° there")]
+        Corner { angle: String },
+        "part.thin_cause" #[error("the outline is finer there than `spacing`")]
+        Finer {},
+        "part.thin_cause" #[error("the refinement has added as many nodes as it may")]
+        Unfinished {},
+    }
+
+    /// What helps where a shape is refused or changed.
+    #[derive(Clone, Debug, PartialEq)]
+    pub(crate) enum ShapeHint {
+        "part.shape_hint" #[error("use a smaller `spacing`")]
+        SmallerSpacing {},
+        "part.shape_hint" #[error("`spacing = {}` keeps the volume within {percent} %", number(*spacing))]
+        SpacingKeeps { spacing: f64, percent: f64 },
+        "part.shape_hint" #[error("use a smaller `remesh`")]
+        SmallerRemesh {},
+        "part.shape_hint" #[error("`remesh = {}` works", number(*length))]
+        RemeshWorks { length: f64 },
+        "part.shape_hint" #[error("use a smaller `remesh`: no length from {} m on that was tried works", number(*length))]
+        NoRemeshWorks { length: f64 },
+        "part.shape_hint" #[error("round the corner off in the drawing, or use `filling = \"lattice\"`")]
+        RoundCorner {},
+        "part.shape_hint" #[error("use a smaller `spacing`, or `filling = \"lattice\"`")]
+        SmallerOrLattice {},
+        "part.shape_hint" #[error("use a larger `spacing`, or `filling = \"lattice\"`")]
+        LargerOrLattice {},
+        "part.shape_hint" #[error("use a smaller `spacing`, a larger `size`, `drop_below`, or `filling = \"lattice\"`")]
+        FinerOutline {},
+        "part.shape_hint" #[error("`overlap = \"union\"` keeps what any of them covers, `overlap = \"even_odd\"` what an odd number encloses")]
+        Overlap {},
+        "part.shape_hint" #[error("maybe the file is in millimetres: `scale = 0.001`; `size` sets the length")]
+        Millimetres {},
+        "part.shape_hint" #[error("maybe the file is in kilometres: `scale = 1000.0`; `size` sets the length")]
+        Kilometres {},
+        "part.shape_hint" #[error("`size` sets the length")]
+        Size {},
+        "part.shape_hint" #[error("`open = \"cap\"` closes it, `open = \"sheet\"` keeps it as cloth")]
+        CapOrSheet {},
+        "part.shape_hint"
+        #[error("{} at the place of another: `weld = 0` joins them; or `open = \"cap\"`, `open = \"sheet\"`", counted(*count as u64, "vertex lies", "vertices lie"))]
+        Weld { count: usize },
+    }
+
+    /// Why no body can be made of the contents of a file.
+    #[derive(Clone, Debug, PartialEq)]
+    pub(crate) enum ShapeError {
+        "scene.unknown_kind" #[error("`{kind}` reads no file")] #[value("{kind}")]
+        ReadsNoFile { kind: String },
+        "shape.format" #[error("files ending in `.{ending}` cannot be read")]
+        #[allowed("a file ending in .obj, .stl, .ply, .gltf, .glb, {others}")]
+        Ending { ending: String, others: &'static str },
+        "shape.encoding" #[error("byte {byte} is not valid UTF-8")] #[value("{byte}")] #[allowed("a text in UTF-8")] #[hint("save it as UTF-8")]
+        Encoding { byte: String },
+        "scene.dimension" #[error("this shape does not exist in {dimension}D")]
+        Dimension { dimension: usize },
+        "scene.shape" #[error("edges of {length} m make the surface cross itself")] #[value("{length}")]
+        #[allowed("a length below the finest parts of the surface")]
+        RemeshCrosses { length: f64 },
+        "scene.shape" #[error("edges of {length} m make the surface enclose {part} of its volume")] #[value("{length}")]
+        #[allowed("a length that keeps the volume within {percent} %")]
+        RemeshEncloses { length: f64, part: String, percent: f64 },
+        "shape.no_area" #[error("the file holds no closed outline")] #[value("{extent}")]
+        #[allowed("outlines that enclose area, of an extent from 1e-150 to 1e150")]
+        NoOutline { extent: String },
+        "shape.no_area" #[error("no outline is left")] #[value("{least}")]
+        NoneLeft { least: f64 },
+        "limit.nodes" #[error("nodes {} m apart would be {nodes}", number(*spacing))] #[value("{}", number(*spacing))]
+        #[allowed("from {least} m on: at most {most} nodes")]
+        TooFineOutline { spacing: f64, nodes: String, least: String, most: u64 },
+    }
+
+    /// What has changed while a body was made of the contents of a file.
+    #[derive(Clone, Debug, PartialEq)]
+    pub(crate) enum ShapeNotice {
+        "shape.lost_volume" #[error("the filling leaves {change}")] #[value("{kept}")]
+        #[allowed("{warned} % of the volume, above 25 % is an error")]
+        Filling { change: Change, kept: String, warned: f64 },
+        "shape.lost_volume" #[error("edges of {} m leave {change}", number(*length))] #[value("{kept}")]
+        Remeshed { length: f64, change: Change, kept: String },
+        "shape.thinned" #[error("{} {nodes} nodes, {} m apart: {change}", counted(*given as u64, "point of the file becomes", "points of the file become"), number(*spacing))]
+        #[value("{given}")] #[hint("a smaller `spacing` keeps finer detail, `filling = \"lattice\"` carries all of it")]
+        Thinned { given: usize, nodes: usize, spacing: f64, change: Change },
+        "shape.thinned" #[error("{nodes} nodes {} m apart leave {change}", number(*spacing))] #[value("{kept}")]
+        #[hint("a smaller `spacing` keeps finer detail, `filling = \"lattice\"` carries all of it")]
+        Coarse { nodes: usize, spacing: f64, change: Change, kept: String },
+        "shape.nested" #[error("{}", counted(*count as u64, "outline lies within one of another element and is a hole there", "outlines lie within those of other elements and are holes there"))]
+        #[value("{count}")] #[hint("`overlap = \"union\"` keeps what any element paints, `overlap = \"even_odd\"` says that holes are meant")]
+        Nested { count: usize },
+        "shape.thin_triangles"
+        #[error("{count} of {} {} angles below {least}°, the smallest {angle}° at ({x}, {y}): {cause}", counted(*triangles as u64, "triangle", "triangles"), if *count == 1 { "has" } else { "have" })]
+        #[value("{angle}")] #[allowed("angles from {least}°")]
+        ThinTriangles { count: usize, triangles: usize, least: f64, angle: String, x: String, y: String, cause: ThinCause },
+        "shape.no_area" #[error("{} left out", counted(*count as u64, "outline without area is", "outlines without area are"))] #[value("{count}")]
+        LeftOut { count: usize },
+        "shape.dropped" #[error("{count} of {outlines} outlines {} left out: less than {} m²", if *count == 1 { "is" } else { "are" }, number(*least))]
+        #[value("{count}")]
+        Dropped { count: usize, outlines: usize, least: f64 },
+        "shape.overlap"
+        #[error("{} or touch one another: `overlap = \"union\"` keeps what any of them covers, {}", counted(*count as u64, "outline crosses, covers", "outlines cross, cover"), counted(*left as u64, "outline is left", "outlines are left"))]
+        #[value("{count}")]
+        Union { count: usize, left: usize },
+        "shape.overlap"
+        #[error("{} or touch one another: `overlap = \"even_odd\"` keeps what an odd number of them encloses, {}", counted(*count as u64, "outline crosses, covers", "outlines cross, cover"), counted(*left as u64, "outline is left", "outlines are left"))]
+        #[value("{count}")]
+        EvenOdd { count: usize, left: usize },
+    }
+}

@@ -1,0 +1,112 @@
+//! What is wrong with the text of a scene, with overrides and with files, before anything in them is understood.
+
+use crate::scene::ValueKind;
+use opruga_math::{messages, terms};
+
+terms! {
+    /// What has a size.
+    pub(crate) enum Measured = "part.measured" { Scene = "the scene", File = "the file" }
+}
+
+messages! {
+    /// What is wrong with a text.
+    #[derive(Clone, Debug, PartialEq)]
+    pub(crate) enum TextError {
+        "scene.syntax" #[error("the text is not TOML: a value is missing")]
+        NoValue {},
+        "scene.syntax" #[error("the text is not TOML: the list that opens in line {line} is not closed")]
+        OpenList { line: usize },
+        "scene.syntax" #[error("the text is not TOML: the table that opens in line {line} is not closed")]
+        OpenTable { line: usize },
+        "scene.syntax" #[error("the text is not TOML: {reason}")]
+        Syntax { reason: String },
+        "scene.duplicate_key" #[error("`{key}` is given twice, first in line {line}")] #[hint("keep one of the two")]
+        TwiceInLines { key: String, line: usize },
+        "scene.duplicate_key" #[error("`{key}` is given twice")] #[hint("keep one of the two")]
+        Twice { key: String },
+        "scene.encoding" #[error("the scene is written in UTF-16 or UTF-32")] #[allowed("UTF-8")] #[hint("save it as UTF-8")]
+        Wide {},
+        "scene.encoding" #[error("the scene begins with two byte-order marks (U+FEFF)")] #[value("U+FEFF U+FEFF")]
+        #[allowed("UTF-8, with one byte-order mark at most")] #[hint("save it as UTF-8 without a byte-order mark")]
+        TwoMarks {},
+        "scene.encoding" #[error("byte {byte} is not valid UTF-8")] #[allowed("UTF-8")] #[hint("save it as UTF-8")]
+        Byte { byte: String },
+        "scene.empty" #[error("the scene is empty")] #[hint("`opruga new NAME` writes a scene to begin with")]
+        Empty {},
+        "scene.depth" #[error("tables and arrays are nested more than {most} deep")] #[allowed("at most {most} levels")]
+        Depth { most: usize },
+        "scene.too_large" #[error("the text has more values, keys and lines than fit into the memory of its reader")]
+        #[allowed("at most {values} values in lists, or {lines} lines with a key")] #[hint("large shapes belong in mesh files")]
+        Pieces { values: u64, lines: u64 },
+        "scene.too_large" #[error("{what} has {size} bytes")] #[value("{size}")] #[allowed("at most {most} bytes")]
+        Size { what: Measured, size: u64, most: u64 },
+    }
+
+    /// What helps where a text is wrong.
+    #[derive(Clone, Debug, PartialEq)]
+    pub(crate) enum TextHint {
+        "part.text_hint" #[error("a `{bracket}` is missing between here and line {line}")]
+        BracketBefore { bracket: char, line: usize },
+        "part.text_hint" #[error("a `{bracket}` is missing before here")]
+        BracketHere { bracket: char },
+        "part.text_hint" #[error("numbers stand without units: write {bare}; `opruga reference` tells the unit of every field")]
+        Unit { bare: String },
+        "part.text_hint" #[error("texts with spaces need quotes")]
+        Quotes {},
+        "part.text_hint" #[error("`opruga sweep` takes lists (8,16,32) and ranges (0.5..4:log:7), with a run for each value; a vector stands in brackets")]
+        Sweep {},
+    }
+
+    /// What is wrong with a file.
+    #[derive(Clone, Debug, PartialEq)]
+    pub(crate) enum FileError {
+        "read.failed" #[error("the file cannot be read: {reason}")]
+        Failed { reason: String },
+        "read.failed" #[error("there is no file `{name}`")] #[value("{name}")] #[allowed("{known}")]
+        NotHeld { name: String, known: String },
+        "read.failed" #[error("there is no file `{name}`")] #[value("{name}")] #[allowed("a scene without a folder names no files")]
+        NoFolder { name: String },
+        "read.failed" #[error("the file `{name}` is not there")] #[value("{name}")] #[hint("files are looked up in `{folder}`")]
+        NotThere { name: String, folder: String },
+        "read.not_regular_file" #[error("this is a folder")]
+        Folder {},
+        "read.not_regular_file" #[error("this is not a regular file")]
+        NotRegular {},
+        "read.changed" #[error("the file was changed while it was read")] #[hint("try again once it is saved")]
+        Changed {},
+        "shape.outside" #[error("`{name}` leads out of the folder of the scene")] #[value("{name}")]
+        #[allowed("a file in the folder of the scene or below it, named with /")]
+        #[hint("`--allow-outside` lets a scene read files from anywhere")]
+        Outside { name: String },
+    }
+
+    /// What is wrong with an override.
+    #[derive(Clone, Debug, PartialEq)]
+    pub(crate) enum OverrideError {
+        "set.syntax" #[error("`{argument}` is not an override")] #[value("{argument}")] #[allowed("PATH=VALUE")]
+        #[hint("for example --set body.ball.mass=2")]
+        NoOverride { argument: String },
+        "set.value" #[error("the value is missing")] #[allowed("PATH=VALUE")]
+        NoValue {},
+        "set.value" #[error("the value is not TOML: {reason}")]
+        Value { reason: String },
+        "set.value" #[error("the value is not TOML: {reason}")] #[allowed("one value")]
+        SeveralValues { reason: String },
+        "set.path" #[error("`{path}` is not a path")] #[allowed("names separated by single dots")]
+        Path { path: String },
+        "set.path" #[error("`{list}` has no entry {index}")] #[value("{index}")] #[allowed("it is empty")]
+        EmptyList { list: String, index: String },
+        "set.path" #[error("`{list}` has no entry {index}")] #[value("{index}")] #[allowed("numbers from 0 to {last}")]
+        NoEntry { list: String, index: usize, last: usize },
+        "set.path" #[error("`{list}` has no entry `{name}`")] #[value("{name}")] #[allowed("{known}")]
+        NoEntryCalled { list: String, name: String, known: String },
+        "set.path" #[error("`{list}` has {count} entries `{name}`")] #[value("{name}")] #[allowed("their numbers: {indices}")]
+        SeveralEntries { list: String, count: usize, name: String, indices: String },
+        "set.path" #[error("`{value}` is {kind}, it has no fields")] #[value("{field}")]
+        NoFields { value: String, kind: ValueKind, field: String },
+    }
+}
+
+/// All messages of this file.
+pub(crate) const MESSAGES: &[&[opruga_math::message::Variant]] =
+    &[Measured::VARIANTS, TextError::VARIANTS, TextHint::VARIANTS, FileError::VARIANTS, OverrideError::VARIANTS];

@@ -1,0 +1,54 @@
+//! Why a file or a folder could not be written.
+
+use opruga_math::message::AnyMessage;
+use opruga_math::{messages, terms};
+
+terms! {
+    /// What could not be done with a folder.
+    pub enum Doing = "part.doing" { Made = "made", Written = "written", Locked = "locked", Read = "read" }
+}
+
+messages! {
+    /// Why a file or a folder could not be written.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum WriteFault {
+        "write.exists" #[error("the file is already there")] #[hint("--force replaces it")]
+        FileExists {},
+        "write.exists" #[error("the folder already holds {file}")] #[hint("--force replaces them, --out chooses another folder")]
+        HoldsFile { file: String },
+        "write.exists" #[error("the folder already holds {count} files, among them {file}")]
+        #[hint("--force replaces them, --out chooses another folder")]
+        HoldsFiles { count: usize, file: String },
+        "write.failed" #[error("writing stopped after {bytes} bytes: {reason}")]
+        Stopped { bytes: u64, reason: String },
+        "write.failed" #[error("this is a folder")]
+        IsFolder {},
+        "write.failed" #[error("this is no regular file")]
+        NoRegularFile {},
+        "write.failed" #[error("the path has no name of a file")]
+        NoFileName {},
+        "write.failed" #[error("the file cannot be made: {reason}")]
+        FileNotMade { reason: String },
+        "write.failed" #[error("the file cannot be made: {reason}")] #[hint("the folder around it is missing")]
+        NoFolderAround { reason: String },
+        "write.failed" #[error("the folder around it cannot be made: {reason}")]
+        FolderAroundNotMade { reason: String },
+        "write.failed" #[error("the recording has ended before")]
+        RecordingEnded {},
+        "write.locked" #[error("another process writes this file")] #[hint("wait for it, or choose another name")]
+        FileLocked {},
+        "write.locked" #[error("another process writes into this folder")] #[hint("wait for it, or choose another folder with --out")]
+        FolderLocked {},
+        "write.folder" #[error("the folder cannot be {doing}: {reason}")]
+        Folder { doing: Doing, reason: String },
+        "write.folder" #[error("this is a file, no folder")]
+        IsFile {},
+        "write.folder" #[error("{problem}")] #[hint("{}", problem.hint().unwrap_or_default())]
+        Unwritable { problem: AnyMessage },
+        "write.input" #[error("{output} would replace {input}, which is an input of this call")]
+        #[hint("choose another name; --force replaces outputs only, never an input")]
+        ReplacesInput { output: String, input: String },
+        "write.twice" #[error("{one} and {other} are one file: only the last would be left")] #[hint("choose another name for one of them")]
+        OneFile { one: String, other: String },
+    }
+}

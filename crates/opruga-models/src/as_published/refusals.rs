@@ -1,0 +1,33 @@
+//! Why the published program does not take a body.
+
+use super::SPEC;
+use opruga_core::error::BuildError;
+use opruga_math::messages;
+
+messages! {
+    /// Why `as_published` refuses a body, its parameters or a state.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum Refusal {
+        /// A body in space.
+        "model.dimension" #[error("the published program is plane")] #[allowed("dimension = 2")]
+        Dimension {},
+        /// No facets.
+        "model.open_surface" #[error("the body has no outline")]
+        NoOutline {},
+        /// A pointer that is held and goes nowhere.
+        "model.one_of" #[error("`held` needs `pointer`")]
+        NoPointer {},
+        /// Intervals that end before they begin.
+        "model.interval" #[error("each row of `held` is [press, release] with press < release")]
+        Interval {},
+        /// A volume by which nothing can be divided.
+        "run.model" #[error("the published \"volume\" Σ ½ |Δx| |Δy| is zero: every edge lies along an axis")] #[hint("turn the body a little")]
+        NoPublishedVolume {},
+    }
+}
+
+impl From<Refusal> for BuildError {
+    fn from(refusal: Refusal) -> BuildError {
+        BuildError::of(SPEC.kind, refusal)
+    }
+}

@@ -1,0 +1,38 @@
+//! Why a body cannot resist bending.
+
+use super::SPEC;
+use opruga_core::error::BuildError;
+use opruga_math::messages;
+use opruga_mesh::MeshError;
+
+messages! {
+    /// Why `bending` refuses a body or its parameters.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum Refusal {
+        /// A modulus alone.
+        "model.one_of" #[error("`modulus` needs `thickness`")]
+        NoThickness {},
+        /// A thickness beside a stiffness.
+        "model.one_of" #[error("`thickness` goes with `modulus`, not with `stiffness`")]
+        Thickness {},
+        /// A mesh without bends.
+        "model.mesh" #[error("{problem}")]
+        Bends { problem: MeshError },
+        /// A mesh without hinges.
+        "model.not_manifold" #[error("{problem}")]
+        Hinges { problem: MeshError },
+        /// Nothing to bend.
+        "model.no_hinges"
+        #[error("the body has nothing to bend: no node between two edges of an outline or chain, no edge between two triangles")]
+        NoHinges {},
+        /// A hinge without a shape.
+        "model.zero_length" #[error("hinge {hinge} has an edge without length or a triangle without area at rest")]
+        NoHingeLength { hinge: usize },
+    }
+}
+
+impl From<Refusal> for BuildError {
+    fn from(refusal: Refusal) -> BuildError {
+        BuildError::of(SPEC.kind, refusal)
+    }
+}

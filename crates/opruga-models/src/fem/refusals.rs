@@ -1,0 +1,87 @@
+//! Why a body is no solid of finite elements.
+
+use super::SPEC;
+use opruga_core::error::BuildError;
+use opruga_core::spec::AllowedValues;
+use opruga_math::words::number;
+use opruga_math::{messages, terms};
+use opruga_mesh::MeshError;
+
+terms! {
+    /// Linear cells that lock.
+    pub enum Simplices = "part.simplices" { Triangles = "triangles", Tetrahedra = "tetrahedra" }
+}
+
+messages! {
+    /// Why `fem` refuses a body, its parameters or a state.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum Refusal {
+        /// Nothing to fill.
+        "model.no_cells" #[error("the body has no cells: it is an outline, a surface or a chain")]
+        #[allowed("filled shapes: `grid`, shapes from files with a `filling`, and volume meshes")]
+        NoCellsAtAll {},
+        /// An empty group.
+        "model.no_cells" #[error("the group of cells `{name}` is empty")]
+        EmptyGroup { name: String },
+        /// A group that the mesh lacks.
+        "model.no_group" #[error("the mesh has no group of cells `{name}`")] #[allowed("{known}")]
+        NoGroupOfCells { name: String, known: String },
+        /// A mesh without groups.
+        "model.no_group" #[error("the mesh has no group of cells `{name}`")] #[allowed("it has none")]
+        NoGroupsOfCells { name: String },
+        /// Growth by heat that leaves nothing.
+        "model.temperature"
+        #[error("cell {cell} would be {growth} times as long by `thermal_expansion` = {expansion} 1/K from {reference} K to {now} K")]
+        #[allowed("more than 0")] #[hint("steel has 1.2e-5 1/K, rubber 2e-4 1/K")]
+        NoGrowth { cell: u32, growth: f64, expansion: f64, reference: f64, now: f64 },
+        /// Linear cells near incompressibility.
+        "model.locking" #[error("`poissons_ratio` is {ratio} for linear {cells}, which lock near incompressibility")] #[allowed("at most {most}")]
+        #[hint("`order = 2` for the body, or `locking = \"nodal_volume\"`")]
+        LinearCellsLock { ratio: f64, cells: Simplices, most: f64 },
+        /// Volumes of nodes that do not know heat.
+        "model.locking" #[error("`locking` is \"nodal_volume\", and the body expands by heat, which the volumes of nodes do not know")]
+        #[allowed("\"refuse\" or \"accept\"")] #[hint("`order = 2` for the body, or quadrilaterals and hexahedra, do not lock either")]
+        NodalVolumeAndHeat {},
+        /// Volumes of nodes where the thickness is free.
+        "model.locking" #[error("`locking` is \"nodal_volume\" in plane stress, where the thickness is free and nothing locks")]
+        #[allowed("\"refuse\" or \"accept\"")] #[hint("leave `locking` out")]
+        NodalVolumeInPlaneStress {},
+        /// Volumes of nodes of cells that do not lock.
+        "model.locking" #[error("`locking` is \"nodal_volume\", but the cells are no linear triangles or tetrahedra, and do not lock")]
+        #[allowed("\"refuse\" or \"accept\"")] #[hint("leave `locking` out")]
+        NodalVolumeOfOthers {},
+        /// Numbers of cells that the mesh lacks.
+        "model.no_values" #[error("`{field}` is \"{name}\", and the cells of the mesh have no such numbers")] #[allowed("{known}")]
+        #[hint("`{instead}` gives one number for all cells")]
+        NoValues { field: &'static str, name: String, known: String, instead: &'static str },
+        /// A mesh without numbers of cells.
+        "model.no_values" #[error("`{field}` is \"{name}\", and the cells of the mesh have no such numbers")]
+        #[allowed("none, the mesh has no numbers of cells")] #[hint("`{instead}` gives one number for all cells")]
+        NoValuesAtAll { field: &'static str, name: String, instead: &'static str },
+        /// A number of a cell out of range.
+        "model.cell_value" #[error("`{field}` of cell {cell} is {value}")] #[value("{value}")] #[allowed("{allowed}")]
+        #[hint("the numbers are in the file of the mesh; `{instead}` gives one for all cells")]
+        CellValue { field: &'static str, cell: usize, value: String, allowed: AllowedValues, instead: &'static str },
+        /// A cell that is inverted at rest.
+        "model.inverted_cell" #[error("cell {cell} with the nodes {nodes} is inverted at rest: det ∂X/∂ξ = {determinant}")]
+        #[allowed("more than {least}")]
+        Inverted { cell: u32, nodes: String, determinant: String, least: String },
+        /// A cell without volume at rest.
+        "model.inverted_cell" #[error("cell {cell} with the nodes {nodes} has no volume at rest: det ∂X/∂ξ = {determinant}")]
+        #[allowed("more than {least}")]
+        FlatCell { cell: u32, nodes: String, determinant: String, least: String },
+        /// A body without a measure.
+        "model.mass" #[error("{problem}")]
+        Measure { problem: MeshError },
+        /// No thickness without stress across.
+        "run.no_thickness"
+        #[error("cell {cell} has no positive thickness without stress across the plane at t = {} s: it is stretched or inverted beyond what its material can follow in plane stress", number(*time))]
+        NoThicknessLeft { cell: u32, time: f64 },
+    }
+}
+
+impl From<Refusal> for BuildError {
+    fn from(refusal: Refusal) -> BuildError {
+        BuildError::of(SPEC.kind, refusal)
+    }
+}

@@ -1,0 +1,31 @@
+//! Why a body cannot carry springs.
+
+use super::SPEC;
+use opruga_core::error::BuildError;
+use opruga_math::messages;
+use opruga_mesh::MeshError;
+
+messages! {
+    /// Why `mass_spring` refuses a body or its parameters.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum Refusal {
+        /// Nothing to hold springs.
+        "model.no_edges" #[error("the body has no {edges} edges to carry springs")]
+        NoEdges { edges: String },
+        /// An edge between two nodes at one point.
+        "model.zero_length" #[error("edge {edge} has no length; `modulus` needs one")]
+        NoLengthOfSpring { edge: usize },
+        /// A modulus without an area.
+        "model.no_area" #[error("`modulus` needs triangles next to the edges")] #[hint("give `stiffness` for a chain or outline")]
+        NoTriangles {},
+        /// A mesh that has no areas.
+        "model.mesh" #[error("{problem}")]
+        Mesh { problem: MeshError },
+    }
+}
+
+impl From<Refusal> for BuildError {
+    fn from(refusal: Refusal) -> BuildError {
+        BuildError::of(SPEC.kind, refusal)
+    }
+}

@@ -1,0 +1,167 @@
+//! What does not fit where a program or a command names a part of a world, and what is wrong with snapshots, as messages.
+
+use opruga_core::spec::AllowedValues;
+use opruga_math::words::number;
+use opruga_math::{messages, terms};
+
+/// The forms of parameters that may change.
+pub(crate) const FORMS: &str = "body.NAME.models.KIND.FIELD, body.NAME.integrator.FIELD, integrator.FIELD, collider.NUMBER.FIELD, contact.FIELD, world.gravity, world.drag, \
+                     world.largest_force, world.largest_velocity, world.largest_distance, \
+                     world.unfold, time.substeps";
+
+/// The hint that names the nearest word; empty where there is none.
+fn did_you_mean(word: &Option<String>) -> String {
+    word.as_ref().map_or_else(String::new, |word| format!("did you mean `{word}`?"))
+}
+
+messages! {
+    /// Why a path, a name or a value does not fit a world.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum PathFault {
+        "part.path" #[error("there is no such body")]
+        NoBody {},
+        "part.path" #[error("there is no body `{name}`")] #[hint("{}", did_you_mean(nearest))]
+        NoBodyCalled { name: String, nearest: Option<String> },
+        "part.path" #[error("there is no such body at t = {} s, when a command begins", number(*time))]
+        NoBodyThen { time: f64 },
+        "part.path" #[error("body `{body}` has no model `{kind}`")] #[allowed("{known}")]
+        NoModel { body: String, kind: String, known: String },
+        "part.path" #[error("body `{body}` follows the integrator of the scene: integrator.{field}")]
+        FollowsScene { body: String, field: String },
+        "part.path" #[error("there is no such integrator")]
+        NoSuchIntegrator {},
+        "part.path" #[error("there is no collider {collider}")] #[allowed("the scene has none")]
+        NoColliders { collider: String },
+        "part.path" #[error("there is no collider {collider}")] #[allowed("0 to {last}")]
+        NoCollider { collider: String, last: usize },
+        "part.path" #[error("there is no such kind of collider")]
+        NoColliderKind {},
+        "part.path" #[error("the scene has no `[contact]`, without which bodies pass through one another")] #[allowed("in a scene with one")]
+        NoContact {},
+        "part.path" #[error("is {value}")] #[allowed("{allowed}")]
+        Is { value: String, allowed: AllowedValues },
+        "part.path" #[error("is {value}")] #[allowed("{allowed}")]
+        IsText { value: String, allowed: String },
+        "part.path" #[error("is {value}")] #[allowed("a vector with a length above 0")]
+        NoDirection { value: String },
+        "part.path" #[error("is {value}")] #[allowed("finite numbers")]
+        NotFinite { value: String },
+        "part.path" #[error("there is no `{field}` in `world`")] #[allowed("{known}")] #[hint("{}", did_you_mean(nearest))]
+        NoFieldOfWorld { field: String, known: String, nearest: Option<String> },
+        "part.path" #[error("it is not a parameter")] #[allowed("{FORMS}")]
+        NotAParameter {},
+        "part.path" #[error("there is no such node")] #[allowed("0 to {last}")]
+        NoNode { last: usize },
+        "part.path" #[error("{value} is not a position and not a velocity")] #[allowed("finite numbers")]
+        NoPosition { value: f64 },
+        "part.path" #[error("the threads cannot start: {reason}")]
+        Threads { reason: String },
+        "part.path" #[error("the name is taken")]
+        Taken {},
+        "part.path" #[error("the command begins at {at} s, and the world is at {now} s")]
+        NotNow { at: f64, now: f64 },
+        "part.path" #[error("there is no such command")]
+        NoCommand {},
+        "part.path" #[error("it is not a drag, which alone has a path")]
+        NoDrag {},
+        "part.path" #[error("a row of its path is a later time and a point, all of them finite")]
+        Row {},
+        "part.path" #[error("it begins at {at} s and cannot end at {until} s")]
+        CannotEnd { at: f64, until: f64 },
+        "part.path" #[error("a force that only the program knows cannot be recorded")]
+        ForceUnrecorded {},
+        "part.path" #[error("a command that the program leads while it acts cannot be recorded")] #[hint("save the scene with it instead")]
+        ActUnrecorded {},
+        "part.path" #[error("a body that the program adds cannot be recorded")]
+        BodyUnrecorded {},
+        "part.path" #[error("models that the program gives a body cannot be recorded")]
+        ModelsUnrecorded {},
+        "part.path" #[error("this cannot be recorded")]
+        Unrecorded {},
+        "part.path" #[error("it has no form in a scene")]
+        NoForm {},
+        "part.path" #[error("the scene has another dimension")]
+        OtherDimension {},
+        "part.path" #[error("the scene adds nothing now")]
+        AddsNothing {},
+        "part.path" #[error("the selected nodes hold no whole cell of the body")] #[allowed("all nodes of one cell at least")]
+        NoCells {},
+        "part.path" #[error("the selected nodes hold no whole facet of the boundary")] #[allowed("all nodes of one facet at least")]
+        NoFacets {},
+    }
+
+    /// What is wrong with a snapshot.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum SnapshotFault {
+        "part.snapshot" #[error("it promises {count} {what}, more than it holds")]
+        Promises { count: u64, what: Promised },
+        "part.snapshot" #[error("it ends too early")]
+        EndsEarly {},
+        "part.snapshot" #[error("a text is not valid UTF-8")]
+        Text {},
+        "part.snapshot" #[error("a value is of an unknown kind")]
+        Value {},
+        "part.snapshot" #[error("the channel `{channel}` is of an unknown type")]
+        Channel { channel: String },
+        "part.snapshot" #[error("the channel `{channel}` holds {number}")]
+        ChannelNumber { channel: String, number: f64 },
+        "part.snapshot" #[error("it holds {what} of a kind that is unknown here")]
+        Unknown { what: Held },
+        "part.snapshot" #[error("it holds `{kind}` of a kind that is unknown here")]
+        UnknownKind { kind: String },
+        "part.snapshot" #[error("its gravity is missing")]
+        Gravity {},
+        "part.snapshot" #[error("it has more substeps than a frame may have")]
+        Substeps {},
+        "part.snapshot" #[error("it changes an obstacle that is not there")]
+        NoObstacle {},
+        "part.snapshot" #[error("it changes a body that is not there")]
+        NoBody {},
+        "part.snapshot" #[error("it holds a body that no command here adds")]
+        NotAdded {},
+        "part.snapshot" #[error("a body has the mesh of one that is not there")]
+        NoMesh {},
+        "part.snapshot" #[error("a body came from nowhere")]
+        FromNowhere {},
+        "part.snapshot" #[error("in `{kind}`, {problem}")]
+        Field { kind: String, problem: opruga_core::spec::ValueError },
+        "part.snapshot" #[error("what a program did is of an unknown kind")]
+        Input {},
+        "part.snapshot" #[error("its version is not {version}")]
+        Version { version: u64 },
+        "part.snapshot" #[error("it has another dimension")]
+        Dimension {},
+        "part.snapshot" #[error("it has another number of bodies")]
+        BodyCount {},
+        "part.snapshot" #[error("a body is where it cannot be")]
+        BodyPlace {},
+        "part.snapshot" #[error("a body has the generation of one to come")]
+        Generation {},
+        "part.snapshot" #[error("body `{body}` has another shape")]
+        OtherShape { body: String },
+        "part.snapshot" #[error("body `{body}` has a number that is not finite")]
+        NotFinite { body: String },
+        "part.snapshot" #[error("it has another number of commands")]
+        CommandCount {},
+        "part.snapshot" #[error("a command holds what is not there")]
+        CommandHolds {},
+        "part.snapshot" #[error("a command is in an unknown state")]
+        CommandState {},
+        "part.snapshot" #[error("it goes on after its end")]
+        GoesOn {},
+        "part.snapshot" #[error("what it says of the scene goes on after its end")]
+        SceneGoesOn {},
+        "part.snapshot" #[error("it is not that of two scenes side by side")]
+        NoPair {},
+    }
+}
+
+terms! {
+    /// What a snapshot promises.
+    pub enum Promised = "part.promised" { Bytes = "bytes", Numbers = "numbers", Letters = "bytes of a text" }
+}
+
+terms! {
+    /// What a snapshot holds of a kind that is unknown.
+    pub enum Held = "part.held" { Body = "a body", Mass = "a mass", Pin = "a pin", Command = "a command" }
+}

@@ -1,0 +1,129 @@
+//! Why a world refuses its bodies, models and integrators together, as messages.
+
+use opruga_core::error::StepError;
+use opruga_math::message::AnyMessage;
+use opruga_math::messages;
+use opruga_math::words::{number, rounded};
+
+/// Why a model lacks something, behind what it lacks.
+fn because(why: &Option<AnyMessage>) -> String {
+    why.as_ref().map_or_else(String::new, |why| format!(": {why}"))
+}
+
+messages! {
+    /// Why a world refuses what does not go together.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum Refusal {
+        "scene.unknown_name" #[error("there is no such model")]
+        NoModelHere {},
+        "scene.unknown_name" #[error("there is no such integrator")]
+        NoIntegratorHere {},
+        "scene.unknown_name" #[error("there is no such {what}")] #[allowed("{known}")]
+        NoKindHere { what: &'static str, known: String },
+        "scene.missing" #[error("`{name}` is missing")]
+        NoFieldGiven { name: &'static str },
+        "stale_handle" #[error("the body of this handle is not in this world any more, or never was")]
+        #[hint("`World::body` finds a body by its name, `World::handle` gives a handle of it")]
+        StaleHandle {},
+        "model.cells_twice" #[error("cell {cell} belongs to the models {first} and {second} of the body, whose stiffness would add up")]
+        #[allowed("every cell in one `{kind}` model")] #[hint("name groups without common cells by `cells`")]
+        CellsTwice { cell: u32, first: usize, second: usize, kind: &'static str },
+        "model.uncovered_cells"
+        #[error("{count} of {cells} cells, the first of them cell {first}, are in none of the groups {groups} of the models: they would have mass and no stiffness")]
+        #[allowed("every cell in one model")]
+        Uncovered { count: usize, cells: usize, first: usize, groups: String },
+        "integrator.mass_matrix"
+        #[error("`mass` is \"consistent\", which couples the accelerations of the nodes of a cell, and `{integrator}` moves every node by its own mass")]
+        #[allowed("\"lumped\"")] #[hint("consistent masses go with backward_euler, bdf2, implicit_midpoint and newmark")]
+        MassMatrix { integrator: &'static str },
+        "model.mass" #[error("`mass` is \"consistent\", and there are obstacles, whose impacts act on the masses of single nodes")]
+        #[allowed("\"lumped\"")] #[hint("consistent masses go with obstacles in `equilibrium`, which knows no impacts")]
+        MassAndObstacles {},
+        "model.mass" #[error("`mass` is \"consistent\", and `node_mass` = {mass} kg gives every node the same mass, whatever its cells")]
+        #[allowed("\"lumped\"")] #[hint("`mass` or `density` of the body goes with consistent masses")]
+        NodeMass { mass: f64 },
+        "integrator.needs" #[error("the model has no symmetric second derivatives, which `{integrator}` needs{}", because(why))]
+        #[hint("an explicit integrator steps it, such as `symplectic_euler`, and `equilibrium` finds where it comes to rest")]
+        NoSymmetry { integrator: String, why: Option<AnyMessage> },
+        "integrator.needs" #[error("the model has no second derivatives, which `{integrator}` needs{}", because(why))]
+        #[hint("an explicit integrator steps it, such as `symplectic_euler`")]
+        NoDerivatives { integrator: String, why: Option<AnyMessage> },
+        "integrator.needs" #[error("`{model}` has no symmetric second derivatives{}", because(why))]
+        NoSymmetricModes { model: &'static str, why: Option<AnyMessage> },
+        "integrator.needs" #[error("`{model}` has no second derivatives")]
+        NoModes { model: &'static str },
+        "run.model" #[error("{cause}")]
+        State { cause: StepError },
+        "modes.all_held" #[error("all nodes of the body are held along every axis, and nothing of it can swing")]
+        #[allowed("a node that is free along an axis")] #[hint("another body, or fewer pins")]
+        AllHeld {},
+        "modes.no_mass" #[error("node {node} has no mass")] #[allowed("masses above 0 where a node can move")]
+        NoMassOfNode { node: usize },
+        "modes.memory" #[error("{count} modes of a body with {axes} free coordinates take about {bytes} bytes")] #[allowed("at most {most} bytes")]
+        #[hint("fewer modes")]
+        ModesMemory { count: usize, axes: usize, bytes: String, most: String },
+        "modes.indefinite" #[error("the stiffness of this state has no natural frequencies")]
+        Indefinite {},
+        "contact.implicit" #[error("`{integrator}` finds a state at rest, where bodies do not touch one another yet")]
+        #[allowed("an integrator of motion, such as `backward_euler` or `verlet`")]
+        #[hint("or `contact.touch = false` in this body, which then passes through the others")]
+        TouchesInStatics { integrator: &'static str },
+        "contact.barrier" #[error("`{integrator}` does not solve for the end of a step, which a barrier needs")]
+        #[allowed("an implicit integrator, such as `backward_euler`")] #[hint("or `response = \"constraint\"`, which takes every integrator")]
+        NoBarrier { integrator: &'static str },
+        "contact.reach"
+        #[error("the reach is {} m and the shortest edge of the body {} m, so its own features would push one another at rest", number(*reach), number(*shortest))]
+        #[allowed("less than that edge")]
+        Reach { reach: f64, shortest: f64 },
+        "contact.unfold" #[error("`unfold` displaces bodies at random, into others too")] #[allowed("`unfold = false` in a scene with `[contact]`")]
+        Unfold {},
+        "limit.memory" #[error("the bodies of the scene take about {all} bytes, `{body}` {largest} of them")] #[allowed("at most {most} bytes")]
+        #[hint("a coarser mesh, an explicit integrator, or `linear_solver = \"matrix_free\"`")]
+        SceneMemory { all: String, body: String, largest: String, most: u64 },
+        "limit.memory" #[error("the bodies of the scene take about {all} bytes, `{body}` {largest} of them")]
+        #[allowed("what the machine gives to this program")]
+        #[hint("a coarser mesh, an explicit integrator, or `linear_solver = \"matrix_free\"`")]
+        MachineMemory { all: String, body: String, largest: String },
+        "scene.range"
+        #[error("it begins {} m from the origin along an axis, where positions are rounded by {} m", rounded(*farthest, 3), rounded(*farthest * f64::EPSILON, 2))]
+        #[allowed("at most {} m, where that is a millionth of the distance of its nodes", rounded(*range, 3))]
+        #[hint("move the scene to the origin")]
+        FarBody { farthest: f64, range: f64 },
+        "scene.range"
+        #[error("`velocity` and `angular_velocity` let it begin with {} m/s along an axis, {} m in a step of {} s", rounded(*fastest, 3), rounded(*fastest * *h, 3), number(*h))]
+        #[allowed("at most {} m/s, with which a step ends where positions still have digits that tell its nodes apart", rounded(*range / *h, 3))]
+        #[hint("are its units mixed (metres, seconds, radians)?")]
+        FastBody { fastest: f64, h: f64, range: f64 },
+        "scene.range" #[error("`{word}` is {value}, with which node {node} has a mass of {} kg", number(*mass))] #[value("{value}")]
+        #[allowed("such that every node has at least {} kg and at most {} kg", number(f64::MIN_POSITIVE), number(f64::MAX))]
+        #[hint("are its units mixed (metres, kilograms)?")]
+        MassOfNode { word: &'static str, value: String, node: usize, mass: f64 },
+        "scene.range" #[error("a weight of {} m/s² takes the energy of the bodies beyond the finite numbers", number(*weight))]
+        #[allowed("at most {} m/s² along an axis", number(*most))]
+        Weight { weight: f64, most: f64 },
+        "scene.range" #[error("`{word}` is {value}, which takes the energy or the momentum of the body beyond the finite numbers")] #[value("{value}")]
+        #[allowed("numbers whose squares are finite, up to {}", number(*most))]
+        BeyondFinite { word: &'static str, value: String, most: f64 },
+        "scene.range" #[error("its energy or its momentum is beyond the finite numbers")]
+        #[hint("are its units mixed (metres, kilograms, seconds)?")]
+        Sums {},
+        "step.not_finite" #[error("{cause}")]
+        #[allowed("forces, stiffnesses and their ratios to the masses of nodes below 1e300")]
+        #[hint("its lightest node has {} kg", number(*lightest))]
+        NoEstimate { cause: AnyMessage, lightest: f64 },
+        "step.not_finite" #[error("{cause}")]
+        #[allowed("forces, stiffnesses and their ratios to the masses of nodes below 1e300")]
+        #[hint("the largest number of its models is `{field}` = {} of `{kind}`, and its lightest node has {} kg", number(*value), number(*lightest))]
+        NoEstimateOf { cause: AnyMessage, field: String, value: f64, kind: String, lightest: f64 },
+        "run.model" #[error("obstacles push nodes through others that a barrier keeps apart")] #[hint("smaller steps, or finer surfaces")]
+        Pushed {},
+        "run.model" #[error("cell {cell} is inverted (volume ratio {}), where a barrier keeps bodies apart", number(*ratio))]
+        #[hint("a material that resists that, such as `neo_hookean`, or smaller steps")]
+        InvertedByBarrier { cell: u32, ratio: f64 },
+        "run.model" #[error("the matrix of a step with a barrier has no factor")] #[hint("smaller steps, or another material")]
+        NoFactor {},
+        "run.model" #[error("bodies that a barrier keeps apart have no common end of the step after {iterations} iterations")]
+        #[hint("smaller steps, or more `iterations`")]
+        NoCommonEnd { iterations: u32 },
+    }
+}

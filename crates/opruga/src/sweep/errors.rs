@@ -1,0 +1,105 @@
+//! What is wrong with a sweep, its ranges, its metrics and its table.
+
+use opruga_math::{messages, terms};
+
+terms! {
+    /// What is wrong with a range.
+    pub enum RangeFault = "part.range_fault" {
+        Ends = "the ends of the range are not numbers",
+        TwoLogs = "the range has `log` twice",
+        TwoWholes = "the range has `whole` twice",
+        TwoCounts = "the range has two numbers of values",
+        Count = "the range has an invalid number of values; the least is 2",
+        Word = "the range has an unknown part",
+        Order = "the lower end is not below the upper end",
+        Ratios = "a range of equal ratios must begin above 0",
+    }
+}
+
+terms! {
+    /// What is wrong with the table of a sweep or a row of it.
+    pub enum RowFault = "part.row_fault" {
+        NoChecksums = "the rows have no checksums: an earlier version of the program wrote the table",
+        Head = "the head of the table does not belong to this sweep",
+        TwoRows = "the table has two rows of this point",
+        Quote = "the row has a quote without an end",
+        Cells = "the row has another number of cells than the head",
+        PointNumber = "invalid point number",
+        NoPoint = "the sweep has no such point",
+        Values = "the row has values of another point",
+        Status = "the status is missing",
+        Number = "the row has an invalid number",
+    }
+}
+
+messages! {
+    /// Why a sweep is refused.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum SweepError {
+        "sweep.values" #[error("a value contains a control character")] #[value("{text}")] #[allowed("values on one line")]
+        ControlCharacter { text: String },
+        "sweep.values" #[error("the list lacks a value")] #[value("{text}")] #[allowed("values with single commas between them")]
+        NoValue { text: String },
+        "sweep.range" #[error("{fault}")] #[value("{text}")]
+        #[allowed("LOW..HIGH:COUNT, with :log for equal ratios and :whole for whole numbers")]
+        #[hint("for example 10..1000:log:7 or 0.1..0.9:5")]
+        InvalidRange { text: String, fault: RangeFault },
+        "sweep.axes" #[error("no parameter varies")]
+        #[hint("for example --set body.ball.mass=1,2,4 or --set body.ball.mass=1..4:7")]
+        NothingVaries {},
+        "sweep.axes" #[error("the parameter varies twice")]
+        VariesTwice {},
+        "sweep.range" #[error("a sample chooses the number of values itself")] #[value("{range}")] #[allowed("{range}")]
+        SampleWithCount { range: String },
+        "sweep.range" #[error("the range lacks its number of values")] #[value("{range}")] #[allowed("{range}:COUNT, or --sample COUNT")]
+        NoCount { range: String },
+        "sweep.range" #[error("a sample of 0 points visits nothing")] #[value("--sample 0")] #[allowed("1 to {most}")]
+        #[hint("for example --sample 20")]
+        EmptySample { most: usize },
+        "sweep.too_many" #[error("the sweep has {count} points")] #[value("{count}")] #[allowed("at most {most}")]
+        TooManyPoints { count: String, most: usize },
+        "sweep.damaged" #[error("the program cannot read the question of the sweep: {reason}")] #[hint("--force begins the sweep anew")]
+        Question { reason: String },
+        "sweep.damaged" #[error("the question of the sweep has version {found}; this program reads version {version}")]
+        #[hint("--force begins the sweep anew")]
+        QuestionVersion { found: u32, version: u32 },
+        "sweep.damaged" #[error("the program cannot read the file `{name}` of the sweep")] #[hint("--force begins the sweep anew")]
+        FileOfSweep { name: String },
+        "sweep.damaged" #[error("{fault}")] #[value("{content}")] #[hint("--force begins the sweep anew, --out takes another folder")]
+        Table { fault: RowFault, content: String },
+        "sweep.changed_row" #[error("the row was changed after the sweep wrote it: its checksum differs")] #[value("{content}")]
+        #[allowed("the row as it was written")]
+        #[hint("without its line the program computes the point again; --force begins the whole sweep anew, --out takes another folder")]
+        ChangedRow { content: String },
+        "write.exists" #[error("the folder holds a sweep with another question: {difference}")]
+        #[hint("--force begins anew, --out takes another folder")]
+        OtherQuestion { difference: String },
+        "write.failed" #[error("a row of the table cannot be written: {reason}")]
+        #[hint("the rows before it are kept; the same call goes on with the sweep")]
+        RowNotWritten { reason: String },
+        "sweep.metric" #[error("the sweep measures nothing")] #[allowed("--metric {words}, and PROBE.COLUMN.min, .max, .mean, .last")]
+        #[hint("for example --metric bounce_height --metric settling_time")]
+        NothingMeasured { words: String },
+        "sweep.metric" #[error("the metric is there twice")] #[value("{metric}")]
+        MetricTwice { metric: String },
+        "sweep.metric" #[error("there is no metric `{metric}`")] #[value("{metric}")]
+        #[allowed("{words}, and PROBE.COLUMN.min, .max, .mean, .last")]
+        NoMetric { metric: String, words: String },
+        "sweep.metric" #[error("there is no body `{body}`")] #[value("{metric}")]
+        NoBodyToMeasure { body: String, metric: String },
+        "sweep.metric" #[error("there is no column `{column}` of a probe")] #[value("{metric}")]
+        NoColumn { column: String, metric: String },
+        "sweep.metric" #[error("nothing in the scene says what is up")] #[value("{metric}")] #[allowed("scenes with gravity or a half-space")]
+        NoUp { metric: String },
+    }
+}
+
+terms! {
+    /// What is allowed where a scene has nothing of a kind.
+    pub enum SweepAllowed = "part.sweep_allowed" { SceneHasNone = "the scene has none" }
+}
+
+/// All messages of sweeps, for tests of translations.
+#[doc(hidden)]
+pub const MESSAGES: &[&[opruga_math::message::Variant]] =
+    &[RangeFault::VARIANTS, RowFault::VARIANTS, SweepError::VARIANTS, SweepAllowed::VARIANTS];
