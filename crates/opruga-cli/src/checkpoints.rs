@@ -1,5 +1,6 @@
 //! Checkpoints of a run: what is in them, when they are written, and which older one stands in for a damaged one.
 
+use crate::errors::CallError;
 use crate::failure::Failure;
 use crate::source::{Source, argument};
 use opruga::AnyWorld;
@@ -149,9 +150,7 @@ fn read(path: &Path) -> Result<(SavedRun, Source), Box<SceneError>> {
     let limits = scene::Limits { file_bytes: 1 << 40, ..scene::Limits::default() };
     let bytes = scene::bytes_of(path, &limits)?;
     let checkpoint = Checkpoint::read(&bytes).map_err(|e: CheckpointError| SceneError::from(&e))?;
-    let run = SavedRun::read(&checkpoint.payload).ok_or_else(|| {
-        SceneError::new("checkpoint.version", "the checkpoint belongs to another version of the program")
-    })?;
+    let run = SavedRun::read(&checkpoint.payload).ok_or_else(|| SceneError::of(CallError::OtherVersion {}))?;
     let file = format!("scene {} (in {})", run.name, path.display());
     let files = Files::held(run.calling.files.clone());
     let source = Source { name: run.name.clone(), file, path: None, bytes: checkpoint.scene.into_bytes(), files };

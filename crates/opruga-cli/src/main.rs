@@ -4,6 +4,7 @@
 mod arguments;
 mod bench;
 mod checkpoints;
+mod errors;
 mod exports;
 mod failure;
 mod forecast;

@@ -1,6 +1,7 @@
 //! `opruga material`: what a law of the finite elements says at one deformation gradient.
 
 use crate::arguments::Material;
+use crate::errors::CallError;
 use crate::failure::{Failure, print_data};
 use opruga::core::spec::{Value, Values, nearest};
 use opruga::io::problem::{SceneError, visible};
@@ -36,23 +37,17 @@ fn gradient(text: &str) -> Result<Vec<f64>, Failure> {
     let split = |c: char| c == ',' || c == ';' || c.is_whitespace();
     let bare = text.replace(['[', ']'], " ");
     let words: Vec<&str> = bare.split(split).filter(|word| !word.is_empty()).collect();
-    let wrong = |message: String, value: &str| {
-        let error = SceneError::new("material.gradient", message).path("--F").value(visible(value));
-        let error = error.allowed("4 finite numbers (2D) or 9 (3D), row by row");
-        refuse(
-            error.hint("--F 1.1,0,0,1 stretches the plane by a tenth along x; --F 1,0,0,0,1,0,0,0,1 is rest in space"),
-        )
-    };
+    let wrong = |about: CallError| refuse(SceneError::of(about).path("--F"));
     let mut numbers = Vec::with_capacity(words.len());
     for word in &words {
         match word.parse::<f64>() {
             Ok(x) if x.is_finite() => numbers.push(x),
-            _ => return Err(wrong(format!("`--F` has `{}`, which is no finite number", visible(word)), word)),
+            _ => return Err(wrong(CallError::GradientNumber { word: visible(word) })),
         }
     }
     match numbers.len() {
         4 | 9 => Ok(numbers),
-        count => Err(wrong(format!("`--F` has {count} numbers"), text)),
+        count => Err(wrong(CallError::GradientCount { count, text: visible(text) })),
     }
 }
 
@@ -64,15 +59,12 @@ fn rows<const D: usize>(numbers: &[f64]) -> [[f64; D]; D] {
 fn values(call: &Material, dimension: usize) -> Result<Values, Failure> {
     let mut values = Values::defaults(SPEC, dimension);
     if !law::NAMES.contains(&call.name.as_str()) {
-        let message = format!("there is no material `{}`", visible(&call.name));
-        let error = SceneError::new("scene.unknown_name", message).path("NAME").value(visible(&call.name));
-        let error = error.allowed(law::NAMES.join(", "));
+        let (name, known) = (visible(&call.name), law::NAMES.join(", "));
+        let error = SceneError::of(CallError::NoMaterialToAsk { name, known }).path("NAME");
         return Err(refuse(error.nearest(nearest(&call.name, law::NAMES.iter().copied()))));
     }
     if dimension == 3 && call.plane.is_some() {
-        let error =
-            SceneError::new("scene.dimension", "`--plane` is about the plane, and F is of space").path("--plane");
-        return Err(refuse(error.allowed("with 4 numbers in `--F`")));
+        return Err(refuse(SceneError::of(CallError::PlaneInSpace {}).path("--plane")));
     }
     let plane = call.plane.clone().unwrap_or_else(|| "strain".into());
     let mut given: Vec<(&str, &str, Value)> = vec![
@@ -85,10 +77,14 @@ fn values(call: &Material, dimension: usize) -> Result<Values, Failure> {
         let (field, value) = text.split_once('=').unwrap_or((text, ""));
         let own: Vec<&str> = law::own_fields(&call.name).collect();
         let Some(field) = own.iter().find(|own| **own == field.trim()) else {
-            let message = format!("`{}` is no field of `{}`", visible(field), call.name);
-            let error = SceneError::new("scene.unknown_field", message).path("--set").value(visible(text));
-            let allowed = if own.is_empty() { "none: E and ν are all".into() } else { own.join(", ") };
-            return Err(refuse(error.allowed(allowed).nearest(nearest(field, own.iter().copied()))));
+            let (law, text, known) = (call.name.clone(), visible(text), own.join(", "));
+            let near = nearest(field, own.iter().copied());
+            let field = visible(field);
+            let error = SceneError::of(match own.is_empty() {
+                true => CallError::NoFields { field, law, text },
+                false => CallError::NoFieldOfLaw { field, law, text, known },
+            });
+            return Err(refuse(error.path("--set").nearest(near)));
         };
         let number = value.trim().parse::<f64>().map_or_else(|_| Value::Text(value.trim().into()), Value::Number);
         given.push(("--set", field, number));

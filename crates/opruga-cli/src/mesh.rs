@@ -2,6 +2,7 @@
 #![allow(clippy::result_large_err, reason = "errors are rare, and say much")]
 
 use crate::arguments::Mesh as Call;
+use crate::errors::CallError;
 use crate::failure::{Failure, print_data};
 use crate::language::translation;
 use crate::source::overrides;
@@ -120,7 +121,7 @@ fn shape(call: &Call, folder: &Path, name: &str, ending: &str) -> Result<(usize,
             let path = folder.join(name);
             let read = |name: &str| -> Result<Arc<[u8]>, SceneError> {
                 std::fs::read(folder.join(name)).map(Arc::from).map_err(|e| {
-                    let error = SceneError::new("read.failed", format!("the file cannot be read: {e}"));
+                    let error = SceneError::of(CallError::FileUnreadable { reason: e.to_string() });
                     SceneError { file: folder.join(name).display().to_string(), ..error }
                 })
             };

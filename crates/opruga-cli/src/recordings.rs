@@ -1,6 +1,7 @@
 //! `opruga run --record`: what goes into a recording, frame by frame; and how one is opened.
 
 use crate::checkpoints::Calling;
+use crate::errors::CallError;
 use crate::failure::Failure;
 use crate::source::Source;
 use opruga::AnyWorld;
@@ -44,7 +45,7 @@ pub(crate) fn open(path: &Path) -> Result<(Recording<File>, Source), Failure> {
     let about = std::fs::metadata(path).and_then(|about| Ok((about, File::open(path)?)));
     let (about, file) = about.map_err(|e| refuse(SceneError::from(&RecordingError::from(e))))?;
     if !about.is_file() {
-        return Err(refuse(SceneError::new("read.not_regular_file", "this is no regular file")));
+        return Err(refuse(SceneError::of(CallError::NotARegularFile {})));
     }
     let recording = Recording::open(file).map_err(|error| refuse(SceneError::from(&error)))?;
     let header = recording.header();

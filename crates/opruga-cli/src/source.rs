@@ -1,5 +1,6 @@
 //! Scenes by name: a file, or one that comes with the program; and everything that is wrong with one at once.
 
+use crate::errors::CallError;
 use crate::failure::Failure;
 use crate::preparation;
 use opruga::blueprint::AnyBlueprint;
@@ -62,9 +63,7 @@ impl Source {
         })?;
         if let Some(shape) = opruga::io::shapes::kind_of_file(name) {
             let named = visible(&path.file_name().map_or(String::new(), |n| n.to_string_lossy().into_owned()));
-            let error = SceneError::new("scene.no_scene", "this is the file of a shape, no scene").hint(format!(
-                "a scene names it: shape = {{ kind = \"{shape}\", file = \"{named}\", … }}; `opruga mesh` looks at it"
-            ));
+            let error = SceneError::of(CallError::ShapeFile { kind: shape, file: named });
             return Err(Failure::Scene(vec![SceneError { file, ..error }]));
         }
         let name = path.file_stem().map_or("scene".into(), |s| s.to_string_lossy().into_owned());
@@ -171,12 +170,10 @@ fn missing(name: &str) -> SceneError {
     };
     let scenes = || opruga::scenes::names().collect::<Vec<_>>().join(", ");
     let quoted: Vec<String> = near.iter().map(|near| format!("`{}`", visible(near))).collect();
-    SceneError::new("read.failed", "there is no such file, and no such scene comes with the program").hint(match quoted
-        .split_last()
-    {
-        Some((last, [])) => format!("did you mean {last}?"),
-        Some((last, others)) => format!("did you mean {} or {last}?", others.join(", ")),
-        None => format!("scenes that come with the program: {}", scenes()),
+    SceneError::of(match quoted.split_last() {
+        Some((last, [])) => CallError::NoSceneNear { near: last.clone() },
+        Some((last, others)) => CallError::NoSceneNearOf { near: others.join(", "), last: last.clone() },
+        None => CallError::NoScene { scenes: scenes() },
     })
 }
 

@@ -4,6 +4,7 @@ mod findings;
 
 use crate::arguments::Sweep as Call;
 use crate::bench::processor_time;
+use crate::errors::CallError;
 use crate::failure::{Failure, print_data};
 use crate::interrupt;
 use crate::run::{default_folder, simd_from_environment};
@@ -120,8 +121,7 @@ fn said_of(sweep: &Sweep) -> Said {
 
 fn no_sweep(path: &Path) -> Failure {
     let shown = path.display().to_string();
-    let error = SceneError::new("read.failed", format!("there is no sweep: {QUESTION} is missing"));
-    Failure::Scene(vec![SceneError { file: shown, ..error }])
+    Failure::Scene(vec![SceneError { file: shown, ..SceneError::of(CallError::NoSweep { file: QUESTION }) }])
 }
 
 /// The question of a call, with all that the scene names, and the folder for its answer.
@@ -209,7 +209,7 @@ fn known_rows(folder: &OutputFolder, sweep: &Sweep, points: &[Point]) -> Result<
     let text = match std::fs::read_to_string(&path) {
         Ok(text) => text,
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => String::new(),
-        Err(e) => return Err(refuse(SceneError::new("read.failed", format!("the file cannot be read: {e}")))),
+        Err(e) => return Err(refuse(SceneError::of(CallError::FileUnreadable { reason: e.to_string() }))),
     };
     read_rows(sweep, points, &text, &shown).map_err(Failure::Scene)
 }

@@ -103,3 +103,32 @@ write-exists-OtherQuestion = mapa sadrži niz s drugim pitanjem: { $difference }
     .hint = --force počinje iznova, --out uzima drugu mapu
 write-failed-RowNotWritten = redak tablice ne može se zapisati: „{ $reason }”
     .hint = prijašnji redci su sačuvani; isti poziv nastavlja niz
+
+## CallError
+
+read-failed-NoSweep = nema niza: nedostaje { $file }
+read-failed-FileUnreadable = datoteka se ne može pročitati: „{ $reason }”
+read-failed-NoScene = nema takve datoteke, a ni takva prizora u programu
+    .hint = prizori iz programa: { $scenes }
+read-failed-NoSceneNear = nema takve datoteke, a ni takva prizora u programu
+    .hint = misliš li { $near }?
+read-failed-NoSceneNearOf = nema takve datoteke, a ni takva prizora u programu
+    .hint = misliš li { $near } ili { $last }?
+read-not_regular_file-NotARegularFile = ovo nije obična datoteka
+scene-no_scene-ShapeFile = ovo je datoteka oblika, a ne prizor
+    .hint = prizor je imenuje: shape = {"{"} kind = "{ $kind }", file = "{ $file }", … {"}"}; `opruga mesh` je pregledava
+material-gradient-GradientNumber = `--F` ima `{ $word }`, što nije konačan broj
+    .allowed = 4 konačna broja (2D) ili 9 (3D), redak po redak
+    .hint = --F 1.1,0,0,1 rasteže ravninu za desetinu duž x; --F 1,0,0,0,1,0,0,0,1 je mirovanje u prostoru
+material-gradient-GradientCount = `--F` ima brojeva: { $count }
+    .allowed = 4 konačna broja (2D) ili 9 (3D), redak po redak
+    .hint = --F 1.1,0,0,1 rasteže ravninu za desetinu duž x; --F 1,0,0,0,1,0,0,0,1 je mirovanje u prostoru
+scene-unknown_name-NoMaterialToAsk = nema materijala `{ $name }`
+    .allowed = { $known }
+scene-dimension-PlaneInSpace = `--plane` je za ravninu, a F je prostoran
+    .allowed = uz 4 broja u `--F`
+scene-unknown_field-NoFieldOfLaw = `{ $law }` nema polja `{ $field }`
+    .allowed = { $known }
+scene-unknown_field-NoFields = `{ $law }` nema polja `{ $field }`
+    .allowed = nijedno: E i ν su sve
+checkpoint-version-OtherVersion = točka nastavka pripada drugoj inačici programa

@@ -8,6 +8,9 @@ use opruga_words::Translation;
 use opruga_world::WorldError;
 use std::path::Path;
 
+#[path = "../../opruga-cli/src/errors.rs"]
+mod call_errors;
+
 #[test]
 fn every_message_has_a_croatian_text_with_its_fields() {
     let io = opruga_io::messages::MESSAGES.iter().flat_map(|lists| lists.iter());
@@ -18,6 +21,7 @@ fn every_message_has_a_croatian_text_with_its_fields() {
         opruga_world::warnings::MESSAGES,
         opruga::sweep::errors::MESSAGES,
         opruga::recordings::MESSAGES,
+        &[call_errors::CallError::VARIANTS],
         &[opruga_video::VideoError::VARIANTS],
     ];
     let variants = io.chain(others.into_iter().flatten()).flat_map(|list| list.iter());

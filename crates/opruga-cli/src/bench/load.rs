@@ -3,6 +3,7 @@
 
 use super::{Machine, median, processor_time};
 use crate::arguments::BenchLoad;
+use crate::errors::CallError;
 use crate::failure::{Failure, print_data};
 use opruga::io::{Files, SceneError, scene};
 use opruga::mesh::Mesh;
@@ -43,7 +44,7 @@ fn torus(triangles: u32) -> Vec<u8> {
 fn of_file(call: &BenchLoad, path: &Path) -> Result<u8, Failure> {
     let shown = path.display().to_string();
     let unreadable = |e: std::io::Error| {
-        let error = SceneError::new("read.failed", format!("the file cannot be read: {e}"));
+        let error = SceneError::of(CallError::FileUnreadable { reason: e.to_string() });
         Failure::Scene(vec![SceneError { file: shown.clone(), ..error }])
     };
     let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
