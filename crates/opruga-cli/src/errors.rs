@@ -14,12 +14,12 @@ opruga::math::messages! {
         NoSceneNear { near: String },
         "read.failed" #[error("there is no such file, and no such scene comes with the program")] #[hint("did you mean {near} or {last}?")]
         NoSceneNearOf { near: String, last: String },
-        "read.not_regular_file" #[error("this is no regular file")]
+        "read.not_regular_file" #[error("this is not a regular file")]
         NotARegularFile {},
-        "scene.no_scene" #[error("this is the file of a shape, no scene")]
+        "scene.no_scene" #[error("this is the file of a shape, not a scene")]
         #[hint("a scene names it: shape = {{ kind = \"{kind}\", file = \"{file}\", … }}; `opruga mesh` looks at it")]
         ShapeFile { kind: &'static str, file: String },
-        "material.gradient" #[error("`--F` has `{word}`, which is no finite number")] #[value("{word}")]
+        "material.gradient" #[error("`--F` has `{word}`, which is not a finite number")] #[value("{word}")]
         #[allowed("4 finite numbers (2D) or 9 (3D), row by row")]
         #[hint("--F 1.1,0,0,1 stretches the plane by a tenth along x; --F 1,0,0,0,1,0,0,0,1 is rest in space")]
         GradientNumber { word: String },

@@ -35,7 +35,7 @@ messages! {
     #[derive(Clone, Debug, PartialEq)]
     pub enum CheckpointError {
         /// It does not begin as a checkpoint.
-        "checkpoint.not_one" #[error("this is no checkpoint of Opruga")] #[allowed("a whole checkpoint of version {VERSION}")]
+        "checkpoint.not_one" #[error("this is not a checkpoint of Opruga")] #[allowed("a whole checkpoint of version {VERSION}")]
         NotOne {},
         /// Another version of the program wrote it.
         "checkpoint.version" #[error("the checkpoint has version {found}; this program reads version {VERSION}")]

@@ -23,7 +23,7 @@ messages! {
         Stopped { bytes: u64, reason: String },
         "write.failed" #[error("this is a folder")]
         IsFolder {},
-        "write.failed" #[error("this is no regular file")]
+        "write.failed" #[error("this is not a regular file")]
         NoRegularFile {},
         "write.failed" #[error("the path has no name of a file")]
         NoFileName {},
@@ -41,7 +41,7 @@ messages! {
         FolderLocked {},
         "write.folder" #[error("the folder cannot be {doing}: {reason}")]
         Folder { doing: Doing, reason: String },
-        "write.folder" #[error("this is a file, no folder")]
+        "write.folder" #[error("this is a file, not a folder")]
         IsFile {},
         "write.folder" #[error("{problem}")] #[hint("{}", problem.hint().unwrap_or_default())]
         Unwritable { problem: AnyMessage },

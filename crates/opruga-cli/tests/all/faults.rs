@@ -123,7 +123,7 @@ fn bad_output_paths_are_found_before_the_run() {
     std::fs::write(folder.path().join("file"), b"x").expect("a file");
     let long = "x".repeat(300);
     let mut cases = vec![
-        ("file", "this is a file, no folder"),
+        ("file", "this is a file, not a folder"),
         ("file/out", "error[write.folder]"),
         (long.as_str(), "error[write.folder]"),
     ];

@@ -275,7 +275,7 @@ fn faults_of_recordings_are_told() {
     refused(&["replay", "r", "--to", "nan"], 2, "--to is NaN; allowed: 0 to 1e9");
     refused(&["replay", "r", "--fps", "0"], 2, "--fps is 0");
     if Path::new("/dev/full").exists() {
-        refused(&[&run[..5], &["--out", "f", "--record", "/dev/full", "--force"]].concat(), 4, "no regular file");
+        refused(&[&run[..5], &["--out", "f", "--record", "/dev/full", "--force"]].concat(), 4, "not a regular file");
     }
     // The disk is full in mid run: the run ends, says so, and its state is kept.
     let call = format!(

@@ -92,7 +92,7 @@ messages! {
         Promised { count: u64, what: Expected, rest: u64, most: u64 },
         "part.scan" #[error("there is a second section `{section}`")] #[value("{section}")] #[allowed("one")]
         SecondSection { section: String },
-        "part.scan" #[error("`{word}` is no type of numbers")] #[value("{word}")] #[allowed("{allowed}")]
+        "part.scan" #[error("`{word}` is not a type of numbers")] #[value("{word}")] #[allowed("{allowed}")]
         NumberType { word: String, allowed: &'static str },
         "part.scan" #[error("the points have values `{name}` twice")] #[value("{name}")] #[allowed("a name of its own for every array")]
         PointValuesTwice { name: String },
@@ -105,7 +105,7 @@ messages! {
     pub(crate) enum MeshFileError {
         "mesh.empty" #[error("the file is empty")] #[value("0 bytes")] #[allowed("a mesh")]
         Empty {},
-        "mesh.format" #[error("the file is no mesh of MFEM or Medit")] #[value("{word}")]
+        "mesh.format" #[error("the file is not a mesh of MFEM or Medit")] #[value("{word}")]
         #[allowed("`MFEM mesh v1.0` or `MeshVersionFormatted 2` at its head")]
         NeitherMfemNorMedit { word: String },
         "mesh.unsupported_element" #[error("{} (type {number}) cannot be read", one(element))] #[value("{number}")]
@@ -156,7 +156,7 @@ messages! {
         "mesh.duplicate_element" #[error("elements {first} and {second} have the same nodes")] #[value("{second}")]
         #[hint("leave one of them out")]
         SameNodes { first: u64, second: u64 },
-        "mesh.mixed_dimension" #[error("{element} {index} is no part of a cell")] #[value("{index}")]
+        "mesh.mixed_dimension" #[error("{element} {index} is not part of a cell")] #[value("{index}")]
         #[allowed("faces, edges and corners of the cells, or a body of one dimension")]
         NoPartOfCell { element: ElementName, index: u64 },
         "mesh.degenerate_element" #[error("{element} {index} has no area for its size")] #[value("{area}")]

@@ -19,7 +19,7 @@ messages! {
         "msh.version" #[error("version `{version}` cannot be read")] #[value("{version}")] #[allowed("2.2 or 4.1")]
         #[hint("Gmsh writes another version with `-format msh41` or `-format msh22`")]
         Version { version: String },
-        "msh.syntax" #[error("{kind} is no kind of file")] #[value("{kind}")] #[allowed("0 (text) or 1 (binary)")]
+        "msh.syntax" #[error("{kind} is not a kind of file")] #[value("{kind}")] #[allowed("0 (text) or 1 (binary)")]
         FileKind { kind: u32 },
         "msh.version" #[error("numbers have {size} bytes")] #[value("{size}")] #[allowed("8")]
         NumberSize { size: u32 },
@@ -84,7 +84,7 @@ messages! {
         #[allowed("Edges, Triangles, Quadrilaterals, Tetrahedra, Hexahedra")]
         #[hint("triangles of 6 nodes and tetrahedra of 10 are read from Gmsh and VTK files")]
         Quadratic { keyword: String },
-        "medit.syntax" #[error("`{word}` is no keyword that can be read")] #[value("{word}")]
+        "medit.syntax" #[error("`{word}` is not a keyword that can be read")] #[value("{word}")]
         #[allowed("Dimension, Vertices, Triangles, Tetrahedra … or End")]
         Keyword { word: String },
         "medit.syntax" #[error("{section} come before the vertices")] #[value("{section}")] #[allowed("Vertices")]
@@ -107,7 +107,7 @@ messages! {
         "mfem.curved" #[error("curved elements (`nodes`) cannot be read")] #[value("nodes")] #[allowed("`vertices` with coordinates")]
         #[hint("save the mesh without `nodes`, its sides straight; curved cells of second order can be read from Gmsh and VTK files")]
         Curved {},
-        "mfem.syntax" #[error("`{word}` is no section that can be read")] #[value("{word}")] #[allowed("dimension, elements, boundary, vertices")]
+        "mfem.syntax" #[error("`{word}` is not a section that can be read")] #[value("{word}")] #[allowed("dimension, elements, boundary, vertices")]
         Section { word: String },
         "mesh.index" #[error("a boundary element names vertex {vertex}")] #[value("{vertex}")] #[allowed("0 to {most}")]
         NoVertexOfBoundary { vertex: u64, most: usize },

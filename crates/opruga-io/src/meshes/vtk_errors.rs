@@ -30,7 +30,7 @@ messages! {
         NoNodeOfCell { cell: u64, node: i128, most: i128 },
         "vtk.syntax" #[error("the file does not begin as VTK does")] #[value("{head}")] #[allowed("# vtk DataFile Version 3.0")]
         Head { head: String },
-        "vtk.syntax" #[error("`{word}` is no kind of file")] #[value("{word}")] #[allowed("ASCII or BINARY")]
+        "vtk.syntax" #[error("`{word}` is not a kind of file")] #[value("{word}")] #[allowed("ASCII or BINARY")]
         FileKind { word: String },
         "vtk.syntax" #[error("the data set is `{word}`")] #[value("{word}")] #[allowed("UNSTRUCTURED_GRID")]
         DataSet { word: String },
@@ -38,7 +38,7 @@ messages! {
         Cells { there: u64, count: u64 },
         "vtk.size" #[error("there are {there} points, not {count}")] #[value("{count}")] #[allowed("{there}")]
         Points { there: usize, count: u64 },
-        "vtk.syntax" #[error("`{word}` is no keyword")] #[value("{word}")]
+        "vtk.syntax" #[error("`{word}` is not a keyword")] #[value("{word}")]
         #[allowed("POINTS, CELLS, CELL_TYPES, CELL_DATA, POINT_DATA, FIELD, SCALARS …")]
         Keyword { word: String },
         "vtk.size" #[error("the first cell begins at {offset}")] #[value("{offset}")] #[allowed("{wanted}")]
@@ -61,25 +61,25 @@ messages! {
         Texts {},
         "vtk.syntax" #[error("`{word}` stands before CELL_DATA and POINT_DATA")] #[value("{word}")] #[allowed("CELL_DATA or POINT_DATA before it")]
         BeforeData { word: String },
-        "vtk.syntax" #[error("`{word}` is no number of components")] #[value("{word}")] #[allowed("1 to 4")]
+        "vtk.syntax" #[error("`{word}` is not a number of components")] #[value("{word}")] #[allowed("1 to 4")]
         Components { word: String },
     }
 
     /// What is wrong with an XML file of VTK.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum VtuError {
-        "vtu.syntax" #[error("the file is no text in UTF-8")] #[value("byte {byte}")] #[hint("it is cut off, or no VTU")]
+        "vtu.syntax" #[error("the file is not a text in UTF-8")] #[value("byte {byte}")] #[hint("it is cut off, or no VTU")]
         Encoding { byte: usize },
-        "vtu.syntax" #[error("this is no well-formed XML: {reason}")] #[value("XML")] #[hint("the file is cut off, or no VTU")]
+        "vtu.syntax" #[error("this is not well-formed XML: {reason}")] #[value("XML")] #[hint("the file is cut off, or no VTU")]
         Xml { reason: String },
         "vtu.syntax" #[error("the file holds `{kind}`")] #[value("{kind}")] #[allowed("<VTKFile type=\"UnstructuredGrid\">")]
         Kind { kind: String },
         "vtu.compressor" #[error("data compressed by `{name}` cannot be read")] #[value("{name}")]
         #[allowed("vtkZLibDataCompressor, or none")] #[hint("ParaView saves with other compressors too")]
         Compressor { name: String },
-        "vtu.syntax" #[error("`{word}` is no type of headers")] #[value("{word}")] #[allowed("UInt32, UInt64")]
+        "vtu.syntax" #[error("`{word}` is not a type of headers")] #[value("{word}")] #[allowed("UInt32, UInt64")]
         HeaderType { word: String },
-        "vtu.syntax" #[error("`{word}` is no order of bytes")] #[value("{word}")] #[allowed("LittleEndian, BigEndian")]
+        "vtu.syntax" #[error("`{word}` is not an order of bytes")] #[value("{word}")] #[allowed("LittleEndian, BigEndian")]
         ByteOrder { word: String },
         "vtu.syntax" #[error("there is no piece")] #[value("0")] #[allowed("<Piece> in <UnstructuredGrid>")]
         NoPiece {},
@@ -97,23 +97,23 @@ messages! {
         LastOffset { offset: i128 },
         "vtu.size" #[error("cell {cell} reaches from {start} to {end}")] #[value("{end}")] #[allowed("{start} to {most}")]
         Reach { cell: usize, start: i128, end: i128, most: usize },
-        "vtu.syntax" #[error("`{number}` is no whole number")] #[value("{number}")] #[allowed("a whole number")]
+        "vtu.syntax" #[error("`{number}` is not a whole number")] #[value("{number}")] #[allowed("a whole number")]
         NotWhole { number: f64 },
-        "vtu.syntax" #[error("`{word}` is no number of its array")] #[value("{word}")] #[allowed("{range}")]
+        "vtu.syntax" #[error("`{word}` is not a number of its array")] #[value("{word}")] #[allowed("{range}")]
         NotOfArray { word: String, range: super::errors::NumberRange },
         "vtu.size" #[error("there is no appended data")] #[value("appended")] #[allowed("<AppendedData>")] #[hint("the file is cut off")]
         NothingAppended {},
         "vtu.size" #[error("the array begins behind the end of the appended data")] #[value("{offset}")] #[allowed("0 to {most}")]
         #[hint("the file is cut off")]
         BehindAppended { offset: String, most: usize },
-        "vtu.syntax" #[error("`{word}` is no format of arrays")] #[value("{word}")] #[allowed("ascii, binary, appended")]
+        "vtu.syntax" #[error("`{word}` is not a format of arrays")] #[value("{word}")] #[allowed("ascii, binary, appended")]
         ArrayFormat { word: String },
         "vtu.size" #[error("the array has {there} values, not {count}")] #[value("{there}")] #[allowed("{count}")]
         #[hint("the file is cut off, or its counts are wrong")]
         ArraySize { there: u64, count: u64 },
         "vtu.size" #[error("the data of the array is cut off")] #[value("{there} bytes")] #[allowed("{wanted} bytes of numbers")]
         Cut { there: usize, wanted: u64 },
-        "vtu.syntax" #[error("the data of the array is no base64")] #[value("base64")] #[allowed("A–Z a–z 0–9 + / =")]
+        "vtu.syntax" #[error("the data of the array is not base64")] #[value("base64")] #[allowed("A–Z a–z 0–9 + / =")]
         Base64 {},
         "vtu.syntax" #[error("block {block} of the array cannot be decompressed")] #[value("{there} bytes")] #[allowed("{wanted} bytes")]
         Block { block: u64, there: usize, wanted: u64 },

@@ -8,7 +8,7 @@ opruga_math::messages! {
     #[derive(Clone, Debug, PartialEq)]
     pub enum RecordingError {
         /// It does not begin as a recording.
-        "recording.not_one" #[error("this is no recording of Opruga")] #[allowed("a recording of version {VERSION}")]
+        "recording.not_one" #[error("this is not a recording of Opruga")] #[allowed("a recording of version {VERSION}")]
         #[hint("opruga run SCENE --record FILE writes one")]
         NotOne {},
         /// Another version of the program wrote it.

@@ -157,7 +157,7 @@ fn a_right_side_that_diverges_says_where_and_the_left_one_goes_on() {
     }
     assert_eq!(session.frames(), 40);
     let right = beside(&mut session);
-    let said = right.stopped.expect("it has stopped");
+    let said = right.stopped.expect("it has stopped").to_string();
     assert!(said.contains("`ball`") && said.contains("node"), "{said}");
     assert!(right.distances.is_none() && right.right.frames < 40);
     assert!(right.right.picture.bodies[0].positions.iter().flatten().all(|x| !x.is_nan()), "its last good state");

@@ -91,7 +91,7 @@ fn an_earlier_file_stays_until_the_new_one_has_begun() {
     {
         let full = std::path::Path::new("/dev/full");
         let error = create(full, true).expect_err("a device");
-        assert!(error.about.to_string().contains("no regular file") && full.exists(), "{error}");
+        assert!(error.about.to_string().contains("not a regular file") && full.exists(), "{error}");
     }
     assert_eq!(std::fs::read_dir(&folder).expect("a folder").count(), 1, "nothing is left aside");
     std::fs::remove_dir_all(folder).expect("the folder is there");
