@@ -173,7 +173,7 @@ fn wrong_overrides_are_explained() {
             "--set time.substeps=0: error[scene.range]: `substeps` is 0\n  = allowed: a whole number from 1 to 1000000",
         ),
         ("seed.x=1", "--set seed.x=1: error[set.path]: `seed` is a whole number, it has no fields"),
-        ("world.gravity=[1", "--set world.gravity=[1: error[set.value]: the value is no TOML"),
+        ("world.gravity=[1", "--set world.gravity=[1: error[set.value]: the value is not TOML"),
         (
             "body.ball.mass=nan",
             "--set body.ball.mass=nan: error[scene.not_finite]: `mass` is not finite\n  = allowed: a number > 0",
