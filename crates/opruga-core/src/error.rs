@@ -53,7 +53,7 @@ pub fn what_was_left(range: Option<f64>) -> String {
 }
 
 /// How far a step was found, and from what cells.
-fn circumstances(beyond: Option<f64>, inverted: usize, cells: usize) -> String {
+fn circumstances(beyond: Option<f64>, inverted: u32, cells: u32) -> String {
     match (beyond, inverted) {
         (Some(load), _) => format!(", beyond {} of the load", number(load)),
         (None, 0) => String::new(),
@@ -100,8 +100,8 @@ messages! {
             tolerance: f64,
             time: f64,
             beyond: Option<f64>,
-            inverted: usize,
-            cells: usize,
+            inverted: u32,
+            cells: u32,
             hint: AnyMessage,
         },
         /// The step was broken off from outside.

@@ -58,12 +58,12 @@ pub(super) fn accept_or_refuse<const D: usize>(
 }
 
 /// How many cells of the state are degenerate or inverted, and how many there are.
-fn degenerate_cells<const D: usize>(system: &System<D>) -> [usize; 2] {
+fn degenerate_cells<const D: usize>(system: &System<D>) -> [u32; 2] {
     let view = system.view(Stage::Current, system.time);
     let cells = system.members.iter().flat_map(|member| member.potential.cell_states(&view, 0));
     let (mut degenerate, mut all) = (0, 0);
     for cell in cells {
-        degenerate += usize::from(cell.is_degenerate());
+        degenerate += u32::from(cell.is_degenerate());
         all += 1;
     }
     [degenerate, all]
@@ -75,7 +75,7 @@ pub(super) fn refusal<const D: usize>(
     settings: &Settings,
     workspace: &Workspace<D>,
     solved: &Solved,
-    (time, [inverted, cells]): (f64, [usize; 2]),
+    (time, [inverted, cells]): (f64, [u32; 2]),
     hint: StepHint,
 ) -> StepError {
     let (residual, tolerance) = (workspace.largest_residual(), settings.tolerance * workspace.extent);

@@ -102,8 +102,8 @@ impl Normals {
     }
 
     fn told(&self) -> Vec<SceneError> {
-        let broken = (self.broken > 0).then(|| StlNotice::Broken { count: self.broken });
-        let against = (self.against > 0).then(|| StlNotice::Against { count: self.against });
+        let broken = (self.broken > 0).then_some(StlNotice::Broken { count: self.broken });
+        let against = (self.against > 0).then_some(StlNotice::Against { count: self.against });
         broken.into_iter().chain(against).map(SceneError::of).collect()
     }
 }
