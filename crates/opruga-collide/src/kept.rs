@@ -1,5 +1,6 @@
 //! Impulses of pairs by the numbers that features have within their bodies: for those who keep them while clusters change.
 
+use crate::row::OBSTACLE_BIT;
 use crate::rows::key;
 use crate::touching::Touching;
 
@@ -7,9 +8,6 @@ use crate::touching::Touching;
 const VERTEX_FACET: u32 = 0;
 const EDGES: u32 = 1;
 const OF_OBSTACLE: u32 = 2;
-
-/// The bit of pairs of a point and an obstacle.
-pub(crate) const OBSTACLE_BIT: u64 = 1 << 63;
 
 impl<const D: usize> Touching<D> {
     /// What a pair is, by its number: its kind, then body and feature of the first and of the second one. An obstacle that holds nodes is no body,
