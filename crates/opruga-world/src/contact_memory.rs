@@ -31,7 +31,7 @@ pub(crate) struct PairKey {
 const KINDS: u32 = 3;
 
 /// The last of them.
-const HELD: u32 = 2;
+const OF_SURFACE: u32 = 2;
 
 /// Added to the number of an obstacle whose corners and edges are features.
 const OBSTACLE: u32 = 1 << 31;
@@ -140,7 +140,7 @@ impl<const D: usize> Meeting<D> {
         let key = |[kind, first, feature, second, other]: [u32; 5]| PairKey {
             kind,
             first: [bodies(first), feature],
-            second: [if kind == HELD { OBSTACLE } else { bodies(second) }, other],
+            second: [if kind == OF_SURFACE { OBSTACLE } else { bodies(second) }, other],
         };
         match &self.barrier {
             Some(kept) => memory.pairs.extend(kept.multipliers.iter().map(|(id, across)| Kept {
@@ -172,7 +172,7 @@ impl<const D: usize> Meeting<D> {
         };
         let known = |kept: &Kept<D>| {
             let PairKey { kind, first, second } = kept.pair;
-            let other = if kind == HELD { 0 } else { number(second[0])? };
+            let other = if kind == OF_SURFACE { 0 } else { number(second[0])? };
             let id = self.touching.id_of([kind, number(first[0])?, first[1], other, second[1]])?;
             Some((id, kept.along, kept.across))
         };
@@ -215,7 +215,7 @@ mod tests {
             pairs: vec![
                 kept(pair(0, [1, 4], [2, 0])),
                 kept(pair(0, [OBSTACLE, 0], [1, 3])),
-                kept(pair(HELD, [3, 5], [OBSTACLE, 1])),
+                kept(pair(OF_SURFACE, [3, 5], [OBSTACLE, 1])),
             ],
             pushes: vec![
                 Push { body: 1, point: 4, impulse: [2.0, 0.0] },

@@ -63,13 +63,13 @@ impl<const D: usize> SceneContact<D> {
     pub(crate) fn of(scene: &Blueprint<D>, islands: &[Island<D>], made_for: MadeFor<D>) -> Option<SceneContact<D>> {
         let contact = scene.contact.as_ref()?;
         // In the order of the bodies: results depend on no batches.
-        let mut places: Vec<(usize, (usize, usize))> = Vec::new();
+        let mut seated: Vec<(usize, (usize, usize))> = Vec::new();
         for (number, island) in islands.iter().enumerate() {
-            places.extend(island.bodies.iter().enumerate().map(|(lane, body)| (*body, (number, lane))));
+            seated.extend(island.bodies.iter().enumerate().map(|(lane, body)| (*body, (number, lane))));
         }
-        places.retain(|(body, _)| scene.bodies[*body].touches());
-        places.sort_unstable();
-        let (bodies, seats): (Vec<usize>, Vec<_>) = places.into_iter().unzip();
+        seated.retain(|(body, _)| scene.bodies[*body].touches());
+        seated.sort_unstable();
+        let (bodies, seats): (Vec<usize>, Vec<_>) = seated.into_iter().unzip();
         let (mut length, mut edges, mut shortest) = (0.0, 0, f64::INFINITY);
         let mut known: Vec<&Values> = Vec::new();
         let mut rules = Vec::with_capacity(bodies.len());
@@ -204,8 +204,8 @@ impl Partition {
         });
         for (k, first) in order.iter().enumerate() {
             let own = wide(*first);
-            let near = order[k + 1..].iter().take_while(|other| wide(**other)[0][axis] <= own[1][axis]);
-            for other in near {
+            let close = order[k + 1..].iter().take_while(|other| wide(**other)[0][axis] <= own[1][axis]);
+            for other in close {
                 if overlap(&own, &wide(*other)) && scene.laws.meet(*first, *other) {
                     any |= self.join_two(*first, *other);
                 }
