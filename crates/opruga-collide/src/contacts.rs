@@ -72,10 +72,13 @@ impl<const D: usize> Colliders<D> {
     /// Whether any of them may touch something that stays between the corners `min` and `max` [m] of a box of space
     /// from `time0` to `time1` [s]. Never no where one does; it may be yes where none does.
     pub fn reach(&self, time0: f64, time1: f64, min: &[f64; D], max: &[f64; D]) -> bool {
-        self.0.iter().any(|collider| {
-            let reach = collider.reach(time0, time1);
-            collider.parts.iter().any(|part| collider.may_touch(part, &reach, min, max))
-        })
+        (0..self.len()).any(|collider| self.one_reaches(collider, time0, time1, min, max))
+    }
+    /// The same of one of them.
+    pub fn one_reaches(&self, collider: usize, time0: f64, time1: f64, min: &[f64; D], max: &[f64; D]) -> bool {
+        let collider = &self.0[collider];
+        let reach = collider.reach(time0, time1);
+        collider.parts.iter().any(|part| collider.may_touch(part, &reach, min, max))
     }
     /// The collider that a surface belongs to; surfaces are numbered part by part.
     pub fn collider_of(&self, surface: usize) -> usize {

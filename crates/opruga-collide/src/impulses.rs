@@ -3,11 +3,11 @@
 use crate::coupled::Coupled;
 use crate::row::Row;
 use crate::subspace;
-use crate::vector::{dot, scaled};
+use crate::vector::{dot, length, scaled, subtract};
 use core::any::Any;
 use opruga_math::Lane;
 
-/// What is left of the velocities of contacts, relative to the mean approach of the step, where the sweeps end: at rest, where that is
+/// What is left of the velocities of contacts, relative to the mean approach of bodies that hang together, where the sweeps end: at rest, where that is
 /// h g, a contact then creeps by less than a hundredth of what one step of free fall would make. Impulses of the next step start from there and
 /// every contact gets a turn in it, so what is left of a step does not add up; at the beginning of a frame alone all starts anew. A
 /// thousandth needs two to three times the turns, for kinetic energies of a heap that differ by less than a thousandth.
@@ -46,7 +46,43 @@ pub(crate) struct Turns<const D: usize> {
     number: Vec<u32>,
     starts: Vec<u32>,
     joined: Vec<u32>,
+    /// Where every row of the sorted ones stood in the order of features.
+    order: Vec<u32>,
     sorted: Vec<Row<D>>,
+    approach: Approach,
+}
+
+/// The mean approach of the contacts of bodies that hang together by contacts [m/s]: where one pair crashes, others may lie at rest. What bodies
+/// do that these do not touch changes nothing.
+#[derive(Clone, Debug, Default)]
+struct Approach {
+    /// Another body that hangs together with each, or the body itself.
+    parent: Vec<u32>,
+    /// By the root of the bodies: the sum and the number of contacts, then the mean.
+    mean: Vec<(f64, u32)>,
+}
+
+impl Approach {
+    fn root(&self, mut body: u32) -> u32 {
+        while self.parent[body as usize] != body {
+            body = self.parent[body as usize];
+        }
+        body
+    }
+    fn join(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.root(a), self.root(b));
+        let (low, high) = if a < b { (a, b) } else { (b, a) };
+        self.parent[high as usize] = low;
+    }
+}
+
+/// The points of a row that can move.
+fn movable<const D: usize>(row: &Row<D>, inverse_mass: &[[f64; D]]) -> impl Iterator<Item = u32> + use<D> {
+    let (points, mut moves) = (row.points, [false; 4]);
+    for k in 0..=D {
+        moves[k] = row.weights[k] != 0.0 && inverse_mass[points[k] as usize] != [0.0; D];
+    }
+    (0..=D).filter(move |k| moves[*k]).map(move |k| points[k])
 }
 
 impl<const D: usize> Turns<D> {
@@ -74,15 +110,54 @@ impl<const D: usize> Turns<D> {
         self.parent[high as usize] = low;
     }
 
+    /// Where the rows of those that points join begin, and where the last ones end.
+    pub(crate) fn starts(&self) -> &[u32] {
+        &self.starts
+    }
+
+    /// Where every row stood in the order of features.
+    pub(crate) fn order(&self) -> &[u32] {
+        &self.order
+    }
+
+    /// Finds the mean approaches of rows, given the bodies of all points, how many there are, and the velocities before contact [m/s].
+    pub(crate) fn find_approach(
+        &mut self,
+        rows: &[Row<D>],
+        (body, bodies): (&[u32], usize),
+        inverse_mass: &[[f64; D]],
+        v: &[[f64; D]],
+    ) {
+        self.approach.parent.clear();
+        self.approach.parent.extend(0..bodies as u32);
+        self.approach.mean.clear();
+        self.approach.mean.resize(bodies, (0.0, 0));
+        for row in rows {
+            let mut own = movable(row, inverse_mass).map(|p| body[p as usize]);
+            let Some(first) = own.next() else { continue };
+            own.for_each(|other| self.approach.join(first, other));
+        }
+        for row in rows {
+            let Some(first) = movable(row, inverse_mass).next() else { continue };
+            let u = subtract(&row.mean(v), &row.carry);
+            let speed = (row.target - dot(&u, &row.normal)).larger(0.0);
+            let root = self.approach.root(body[first as usize]) as usize;
+            let (sum, count) = &mut self.approach.mean[root];
+            *sum += if row.friction > 0.0 { length(&u).larger(speed) } else { speed };
+            *count += 1;
+        }
+        for (sum, count) in self.approach.mean.iter_mut().filter(|(_, count)| *count > 0) {
+            *sum /= f64::from(*count);
+        }
+    }
+
     /// Sorts rows into those that points join, each in the order of features: what is solved together lies together.
-    fn join(&mut self, rows: &mut Vec<Row<D>>, coupled: &Coupled<D>) {
+    fn join(&mut self, rows: &mut Vec<Row<D>>, inverse_mass: &[[f64; D]], coupled: &Coupled<D>) {
         if !rows.is_sorted_by_key(|row| row.id) {
             rows.sort_by_key(|row| row.id);
         }
-        let points = |row: &Row<D>| {
-            let (points, weights) = (row.points, row.weights);
-            (0..=D).filter(move |k| weights[*k] != 0.0).map(move |k| points[k])
-        };
+        // What cannot move passes nothing on.
+        let points = |row: &Row<D>| movable(row, inverse_mass);
         for row in rows.iter() {
             let mut begin = |p: u32| {
                 self.parent[p as usize] = p;
@@ -121,15 +196,24 @@ impl<const D: usize> Turns<D> {
             sum += *start;
             *start = sum;
         }
-        self.sorted.clone_from(rows);
-        self.heads.resize(rows.len(), ([0; 4], 0));
-        for (row, number) in rows.iter().zip(&self.joined).rev() {
+        self.order.resize(rows.len(), 0);
+        for (k, number) in self.joined.iter().enumerate().rev() {
             let start = &mut self.starts[*number as usize];
             *start -= 1;
-            (self.sorted[*start as usize], self.heads[*start as usize]) = (*row, (row.points, 0));
+            self.order[*start as usize] = k as u32;
         }
         self.starts.push(sum);
+        self.sorted.clear();
+        self.sorted.extend(self.order.iter().map(|k| rows[*k as usize]));
         std::mem::swap(rows, &mut self.sorted);
+        self.heads.clear();
+        self.heads.extend(rows.iter().map(|row| {
+            let mut own = points(row);
+            let first = own.next().unwrap_or(row.points[0]);
+            let mut head = [first; 4];
+            head.iter_mut().skip(1).zip(own).for_each(|(head, p)| *head = p);
+            (head, 0)
+        }));
     }
 }
 
@@ -140,8 +224,8 @@ pub(crate) struct Problem<'a, const D: usize> {
     pub(crate) coupled: &'a mut Coupled<D>,
     pub(crate) v: &'a mut Vec<[f64; D]>,
     pub(crate) turns: &'a mut Turns<D>,
-    /// The mean approach [m/s].
-    pub(crate) approach: f64,
+    /// The body of every point.
+    pub(crate) body: &'a [u32],
 }
 
 impl<const D: usize> Problem<'_, D> {
@@ -156,7 +240,7 @@ impl<const D: usize> Problem<'_, D> {
             coupled: cast(self.coupled)?,
             v: cast(self.v)?,
             turns: cast(self.turns)?,
-            approach: self.approach,
+            body: self.body,
         })
     }
 
@@ -184,13 +268,14 @@ fn solve_in_space(problem: Problem<'_, 3>) -> usize {
 /// A row is passed over while nothing that it holds has changed since its last turn by more than the tolerance: so sweeps cost what is still
 /// on the move.
 fn solve<const D: usize>(problem: Problem<'_, D>) -> usize {
-    let Problem { rows, inverse_mass, coupled, v, turns, approach } = problem;
-    turns.join(rows, coupled);
-    let Turns { stamps, heads, now, starts, .. } = turns;
+    let Problem { rows, inverse_mass, coupled, v, turns, body } = problem;
+    turns.join(rows, inverse_mass, coupled);
+    let Turns { stamps, heads, now, starts, approach, .. } = turns;
     let begin = *now;
     for ends in starts.windows(2) {
         let range = ends[0] as usize..ends[1] as usize;
         let (rows, heads) = (&mut rows[range.clone()], &mut heads[range]);
+        let approach = approach.mean[approach.root(body[heads[0].0[0] as usize]) as usize].0;
         let together = rows.iter().any(|row| row.coupled);
         let (most, tolerance) =
             if together { (MOST_COUPLED_SWEEPS, COUPLED_TOLERANCE) } else { (MOST_SWEEPS, TOLERANCE) };

@@ -30,6 +30,9 @@ pub struct Laws {
     pub rest_speed: f64,
     /// Speed at which bodies that overlap are moved apart [m/s].
     pub recovery_speed: f64,
+    /// The largest distance that surfaces of other bodies of the scene keep in contact [m], and where obstacles are among them: so bodies
+    /// do the same whoever else is there.
+    pub thickest_elsewhere: [f64; 2],
 }
 
 impl Laws {
@@ -43,16 +46,39 @@ impl Laws {
     pub fn meet(&self, a: u32, b: u32) -> bool {
         if a == b { self.itself[self.class[a as usize] as usize] } else { self.of(a, b).touch }
     }
+    /// Whether any two bodies, or one with itself, may touch.
+    pub fn any_meet(&self) -> bool {
+        let bodies = self.class.len() as u32;
+        (0..bodies).any(|a| (a..bodies).any(|b| self.meet(a, b)))
+    }
     /// The largest distance that surfaces keep in contact [m]: of bodies, and where obstacles are among them.
     pub fn largest_thickness(&self) -> [f64; 2] {
         let bodies = self.classes - self.obstacles;
-        let mut most: [f64; 2] = [0.0; 2];
+        let mut most = self.thickest_elsewhere;
         for (k, law) in self.table.iter().enumerate().filter(|(_, law)| law.touch) {
             let obstacle = k / self.classes >= bodies || k % self.classes >= bodies;
             let most = &mut most[usize::from(obstacle)];
             *most = if law.thickness > *most { law.thickness } else { *most };
         }
         most
+    }
+
+    /// The laws of some of these bodies and obstacles, given by their numbers, ascending.
+    pub fn of_some(&self, numbers: &[u32]) -> Laws {
+        let class_of = |number: &u32| self.class[*number as usize];
+        let mut used: Vec<u32> = numbers.iter().map(class_of).collect();
+        used.sort_unstable();
+        used.dedup();
+        let law_of = |a: u32, b: u32| self.table[a as usize * self.classes + b as usize];
+        Laws {
+            class: numbers.iter().map(|number| used.binary_search(&class_of(number)).unwrap_or(0) as u32).collect(),
+            classes: used.len(),
+            obstacles: used.iter().filter(|class| **class as usize >= self.classes - self.obstacles).count(),
+            table: used.iter().flat_map(|a| used.iter().map(|b| law_of(*a, *b))).collect(),
+            itself: used.iter().map(|class| self.itself[*class as usize]).collect(),
+            thickest_elsewhere: self.largest_thickness(),
+            ..*self
+        }
     }
 
     /// Adds an obstacle: all bodies touch it by its law, at half of their own distance more, and no obstacle touches another one.

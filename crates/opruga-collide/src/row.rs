@@ -5,6 +5,9 @@ use crate::gap::Gap;
 use crate::vector::{dot, length, scaled, subtract};
 use opruga_math::Lane;
 
+/// The bit in the number of a row of a point and an obstacle that holds it.
+pub(crate) const OBSTACLE_BIT: u64 = 1 << 63;
+
 /// One contact: a lower bound of its normal velocity, and Coulomb friction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Row<const D: usize> {

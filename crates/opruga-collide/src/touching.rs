@@ -3,11 +3,11 @@
 use crate::candidates::Candidates;
 use crate::coupled::{Coupled, Respond};
 use crate::gap::Gap;
-use crate::impulses::{Problem, Turns, part};
+use crate::impulses::{Problem, Turns};
 use crate::law::Laws;
 use crate::reach::Reach;
 use crate::reports::{self, Report};
-use crate::row::Row;
+use crate::row::{OBSTACLE_BIT, Row};
 use crate::surface::Surface;
 use crate::vector::{dot, length, subtract};
 use crate::zones::Zones;
@@ -24,8 +24,8 @@ use opruga_math::Lane;
 /// position  x = x₀ + h v of every point that got an impulse; overlap is taken apart at `recovery_speed`, by positions alone
 /// ```
 ///
-/// Impulses start from those of the substep before, within a frame; a frame starts without. So no state is kept beside positions and
-/// velocities, and nothing depends on when candidates were looked for.
+/// Impulses start from those of the substep before; those of the last substep of a frame are for the caller to keep
+/// ([`Touching::visit_kept`], [`Touching::keep`]). Nothing depends on when candidates were looked for.
 #[derive(Debug, Default)]
 pub struct Touching<const D: usize> {
     /// What touches.
@@ -63,7 +63,7 @@ pub struct Touching<const D: usize> {
     /// The pairs of one vertex, or of two edges, and whether they meet by themselves.
     pub(crate) around: Vec<(Row<D>, bool)>,
     /// Features and impulses of the last substep, ascending.
-    last: Vec<(u64, f64, [f64; D])>,
+    pub(crate) last: Vec<(u64, f64, [f64; D])>,
     pub(crate) keep: Vec<bool>,
     /// Whether the obstacles of a point are among the rows; and points whose obstacles are asked for.
     known: Vec<bool>,
@@ -83,12 +83,12 @@ pub struct Touching<const D: usize> {
     pub(crate) zones: Zones<D>,
     /// The largest distance that surfaces keep in contact [m]: of bodies, and with obstacles.
     pub(crate) thickest: [f64; 2],
-    wanted: Vec<f64>,
-    multipliers: Vec<f64>,
+    pub(crate) wanted: Vec<f64>,
+    pub(crate) multipliers: Vec<f64>,
     pub(crate) touched: Vec<bool>,
     /// Where a point stands among those that changed.
-    number: Vec<u32>,
-    turns: Turns<D>,
+    pub(crate) number: Vec<u32>,
+    pub(crate) turns: Turns<D>,
     /// What was done since the counts were last taken.
     pub counts: Counts,
 }
@@ -108,6 +108,20 @@ pub struct Counts {
     pub contacts: u64,
     /// How often one of these was solved for.
     pub turns: u64,
+}
+
+impl Counts {
+    /// The sums of these and others.
+    pub fn and(&self, other: &Counts) -> Counts {
+        Counts {
+            steps: self.steps + other.steps,
+            searches: self.searches + other.searches,
+            candidates: self.candidates + other.candidates,
+            pairs: self.pairs + other.pairs,
+            contacts: self.contacts + other.contacts,
+            turns: self.turns + other.turns,
+        }
+    }
 }
 
 /// Why a step cannot be made.
@@ -156,10 +170,17 @@ impl<const D: usize> Touching<D> {
         }
     }
 
-    /// Whether any two bodies, or one with itself, may touch.
-    pub fn may_touch(&self) -> bool {
-        let bodies = self.laws.class.len() as u32;
-        (0..bodies).any(|a| (a..bodies).any(|b| self.laws.meet(a, b)))
+    /// Calls back with the bodies of every contact of the last step that presses, but for those with obstacles.
+    pub fn visit_pairs(&self, mut visit: impl FnMut(u32, u32)) {
+        for row in self.rows.iter().filter(|row| row.normal_impulse > 0.0 && !row.of_obstacle) {
+            let [a, b] = [1.0, -1.0].map(|sign| {
+                let point = (0..=D).find(|k| row.weights[*k] * sign > 0.0);
+                point.map(|k| self.surface.body[row.points[k] as usize]).filter(|body| !self.surface.is_obstacle(*body))
+            });
+            if let (Some(a), Some(b)) = (a, b) {
+                visit(a, b);
+            }
+        }
     }
 
     /// Lets the points touch after a free substep of h [s]: `after` becomes what contact makes of it.
@@ -318,14 +339,6 @@ impl<const D: usize> Touching<D> {
         self.known.clear();
         self.known.resize(self.surface.points(), false);
         self.hold_points(h, obstacles);
-        // The mean approach: where one pair crashes, others may lie at rest.
-        let mut approach: f64 = 0.0;
-        for row in &self.rows {
-            let u = subtract(&row.mean(&self.v), &row.carry);
-            let speed = (row.target - dot(&u, &row.normal)).larger(0.0);
-            approach += if row.friction > 0.0 { length(&u).larger(speed) } else { speed };
-        }
-        approach /= self.rows.len() as f64;
         self.coupled.begin();
         if !self.weigh_coupled(0, &mut respond) {
             return false;
@@ -333,8 +346,9 @@ impl<const D: usize> Touching<D> {
         self.start_warm();
         self.turns.begin(self.surface.points());
         loop {
-            let Touching { rows, inverse_mass, coupled, v, turns, .. } = &mut *self;
-            self.counts.turns += Problem { rows, inverse_mass, coupled, v, turns, approach }.solve() as u64;
+            let Touching { rows, inverse_mass, coupled, v, turns, surface, laws, after: [_, free], .. } = &mut *self;
+            turns.find_approach(rows, (&surface.body, laws.class.len()), inverse_mass, free);
+            self.counts.turns += Problem { rows, inverse_mass, coupled, v, turns, body: &surface.body }.solve() as u64;
             self.touched.clear();
             self.touched.resize(self.surface.points(), false);
             self.coupled.finish(&self.after[1], &mut self.v, &mut self.touched);
@@ -387,9 +401,11 @@ impl<const D: usize> Touching<D> {
     /// Keeps the impulses for the next substep.
     fn keep_impulses(&mut self) {
         self.last.clear();
-        let pressed = self.rows.iter().filter(|row| row.normal_impulse > 0.0);
-        self.last.extend(pressed.map(|row| (row.id, row.normal_impulse, row.friction_impulse)));
-        self.last.sort_unstable_by_key(|(id, ..)| *id);
+        self.last.resize(self.rows.len(), (0, 0.0, [0.0; D]));
+        for (row, k) in self.rows.iter().zip(self.turns.order()) {
+            self.last[*k as usize] = (row.id, row.normal_impulse, row.friction_impulse);
+        }
+        self.last.retain(|(_, along, _)| *along > 0.0);
     }
 
     /// Adds what obstacles hold of the points of all contacts: what bodies push against them must not go through.
@@ -419,7 +435,7 @@ impl<const D: usize> Touching<D> {
             obstacles(p, &x0, &x1, reach, &mut |touch: Touch<D>| {
                 let mut gap = Gap { points: [p; 4], weights: [0.0; 4], gap: touch.gap_before, normal: touch.normal };
                 gap.weights[0] = 1.0;
-                let id = 1 << 63 | u64::from(p) << 31 | touch.surface as u64;
+                let id = OBSTACLE_BIT | u64::from(p) << 31 | touch.surface as u64;
                 let mut row = Row::new(id, &gap, 0.0, touch.friction, inverse_mass);
                 row.carry = touch.velocity;
                 row.target = if row.gap > 0.0 { -row.gap / h } else { 0.0 };
@@ -450,118 +466,6 @@ impl<const D: usize> Touching<D> {
         }
     }
 
-    /// Takes the points along with their new velocities, and overlapping ones apart.
-    fn settle(&mut self, h: f64) {
-        for row in &self.rows {
-            if row.normal_impulse > 0.0 && !row.of_obstacle {
-                for k in (0..=D).filter(|k| row.weights[*k] != 0.0) {
-                    self.touched[row.points[k] as usize] = true;
-                }
-            }
-        }
-        self.recover(h);
-        self.end.clone_from(&self.after[0]);
-        for (p, _) in self.touched.iter().enumerate().filter(|(_, touched)| **touched) {
-            for d in (0..D).filter(|d| self.inverse_mass[p][*d] > 0.0) {
-                self.end[p][d] = self.before[0][p][d] + (h * self.v[p][d] + self.moved[p][d]);
-            }
-            if self.coupled.body_of(p as u32).is_none() {
-                self.moved[p] = [0.0; D];
-            }
-        }
-    }
-
-    /// Books what contact took and gave, and moves the points.
-    fn book(&mut self, h: f64) {
-        let touched = &self.touched;
-        self.changed.extend((0..self.surface.points() as u32).filter(|p| touched[*p as usize]));
-        for (k, p) in self.changed.iter().enumerate() {
-            self.number[*p as usize] = k as u32;
-        }
-        self.losses.clear();
-        self.losses.resize(self.changed.len(), [0.0; 4]);
-        for row in &self.rows {
-            if row.normal_impulse == 0.0 {
-                continue;
-            }
-            for k in (0..=D).filter(|k| row.weights[*k] != 0.0) {
-                let p = row.points[k];
-                if !self.touched[p as usize] {
-                    continue;
-                }
-                let (v0, v1) = (&self.before[1][p as usize], &self.v[p as usize]);
-                // The velocity of what follows as a whole is the mean one already. What answers by itself after a step that was solved for
-                // gets its impulse at the end of that.
-                let v0 = match (self.coupled.body_of(p), self.coupled.has(p)) {
-                    (Some(_), _) => v1,
-                    (None, true) => &self.after[1][p as usize],
-                    (None, false) => v0,
-                };
-                let (mut along, mut across, mut carried) = (0.0, 0.0, 0.0);
-                for d in 0..D {
-                    let mean = 0.5 * (v0[d] + v1[d]) - row.carry[d];
-                    let [n, t] = [row.normal_impulse * row.normal[d], row.friction_impulse[d]];
-                    along -= row.weights[k] * n * mean;
-                    across -= row.weights[k] * t * mean;
-                    carried += row.weights[k] * (n + t) * row.carry[d];
-                    if self.inverse_mass[p as usize][d] == 0.0 {
-                        // A pin gives back what a contact takes of its motion.
-                        carried -= row.weights[k] * (n + t) * 0.5 * (v0[d] + v1[d]);
-                    }
-                }
-                let sum = &mut self.losses[self.number[p as usize] as usize];
-                for (sum, more) in sum.iter_mut().zip([along, across, carried]) {
-                    *sum += more;
-                }
-            }
-        }
-        self.zones.book(&self.before[1], &self.v, &self.inverse_mass, &self.number, &mut self.losses);
-        for (p, losses) in self.changed.iter().zip(&mut self.losses) {
-            let p = *p as usize;
-            for d in (0..D).filter(|_| self.coupled.body_of(p as u32).is_none()) {
-                let inverse = self.inverse_mass[p][d];
-                if inverse > 0.0 {
-                    let (v0, free, v1) = (self.before[1][p][d], self.after[1][p][d], self.v[p][d]);
-                    let travel = self.end[p][d] - self.before[0][p][d];
-                    let by_velocity = if self.coupled.has(p as u32) {
-                        self.after[0][p][d] - self.before[0][p][d]
-                    } else {
-                        0.5 * h * (v0 + v1)
-                    };
-                    losses[3] += (free - v0) / (inverse * h) * (by_velocity - travel);
-                    self.after[0][p][d] = self.end[p][d];
-                    self.after[1][p][d] = v1;
-                }
-            }
-        }
-    }
-
-    /// Displacements that take overlapping pairs apart.
-    fn recover(&mut self, h: f64) {
-        let most = self.laws.recovery_speed * h;
-        self.wanted.clear();
-        let mut overlap = false;
-        for row in &self.rows {
-            row.points.iter().for_each(|p| self.moved[*p as usize] = [0.0; D]);
-            let u = subtract(&row.mean(&self.v), &row.carry);
-            let end = row.gap + h * dot(&u, &row.normal);
-            // Sweeps that end early leave less than this.
-            overlap |= end < -OVERLAP * self.thickest[0];
-            self.wanted.push(if row.of_obstacle { -end } else { (-end).smaller(most) });
-        }
-        if !overlap {
-            return;
-        }
-        part(&self.rows, &self.inverse_mass, &self.wanted, &mut self.multipliers, &mut self.moved, most);
-        for (row, multiplier) in self.rows.iter().zip(&self.multipliers) {
-            if *multiplier > 0.0 {
-                for k in (0..=D).filter(|k| row.weights[*k] != 0.0) {
-                    self.touched[row.points[k] as usize] = true;
-                }
-            }
-        }
-    }
-
     /// Bytes on the heap.
     pub fn heap_bytes(&self) -> usize {
         let vectors = [&self.inverse_mass, &self.v, &self.moved, &self.impact, &self.end];
@@ -580,10 +484,6 @@ const STEPS: f64 = 8.0;
 
 /// In place of the points of a pair that is solved for.
 const CALLED: u32 = u32::MAX;
-
-/// The part of the thickness that pairs may lack before they are taken apart: the surfaces themselves do not overlap then, and what sweeps
-/// leave of a step is no reason to move anything.
-const OVERLAP: f64 = 0.01;
 
 /// How often pairs that would pass through one another are solved for along their normals, before what still passes moves as one: four, as an impulse
 /// along one pair may send another one through, but each round leaves fewer.

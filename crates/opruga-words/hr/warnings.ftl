@@ -83,6 +83,8 @@ units-sag-Sag = tijelo `{ $body }` od { $mass } kg ulegnulo bi se pod svojom te�
 contact-starts_inside-StartsInside = tijelo `{ $body }` počinje u prepreci { $collider } ({ $kind }), čvorova: { $nodes }, najdublji je čvor { $deepest }, { $depth } m; { $remedy }
 contact-none-NoContact = u t = { $time } s tijela prolaze jedna kroz druga, parova: { $pairs }, prva dva su `{ $first }` i `{ $second }`
     .hint = odjeljak `[contact]` drži tijela razdvojenima
+contact-mixed-Mixed = u t = { $time } s tijelo `{ $first }` ({ $first_rule }) dodiruje tijelo `{ $second }` ({ $second_rule }): dodir se rješava za oba zajedno, ali svako korača po svojem pravilu, pa za par ne vrijede ni red ni prigušenje nijednoga; broji se po sličici i paru tijela
+    .hint = jedan integrator za tijela koja se dodiruju
 cells-slender-Slender = tijelo `{ $body }` presavija se ili uvija prekruto: najdulji bridovi njegovih ćelija dugi su prosječno { NUMBER($length, maximumSignificantDigits: 3) } m, { NUMBER($times, maximumSignificantDigits: 3) } puta koliko je debelo ({ NUMBER($thickness, maximumSignificantDigits: 3) } m); uz { $limit } puta prve su frekvencije ploča izmjerene { $error } % previsoke, a dalje rastu
     .hint = { $help }
 cells-inverted-Inverted = u t = { $time } s izvrnuto je: { $cells }; prva je ćelija { $cell } tijela `{ $body }` s J = { $ratio }

@@ -16,7 +16,7 @@ impl<const D: usize> Meeting<D> {
     /// Makes a substep of all bodies that the barrier keeps apart. Where one of them fails in it, its outcome says so.
     pub(crate) fn step_with_barrier(
         &mut self,
-        islands: &mut [Island<D>],
+        islands: &mut [&mut Island<D>],
         step: &Substep<'_, D>,
     ) -> Result<(), Trouble> {
         let Some(mut kept) = self.barrier.take() else { return Ok(()) };
@@ -36,7 +36,7 @@ impl<const D: usize> Meeting<D> {
 
     fn search_with_barrier(
         &mut self,
-        islands: &mut [Island<D>],
+        islands: &mut [&mut Island<D>],
         step: &Substep<'_, D>,
         kept: &mut Kept<D>,
     ) -> Result<(), Refused> {
@@ -53,7 +53,7 @@ impl<const D: usize> Meeting<D> {
 
     fn find_common_end(
         &mut self,
-        islands: &mut [Island<D>],
+        islands: &mut [&mut Island<D>],
         step: &Substep<'_, D>,
         kept: &mut Kept<D>,
     ) -> Result<(), Refused> {
@@ -103,7 +103,7 @@ impl<const D: usize> Meeting<D> {
     }
 }
 
-impl<const D: usize> Search<'_, D> {
+impl<const D: usize> Search<'_, '_, D> {
     /// Ends the steps of all bodies, with the forces that they exert on one another.
     fn close(self, h: f64) -> Result<(), Refused> {
         let (iterations, converged) = (self.iterations, self.converged);

@@ -52,7 +52,7 @@ const ROUNDING: f64 = 1e-12;
 #[derive(Debug, Default)]
 pub(crate) struct Kept<const D: usize> {
     pub(crate) barrier: Barrier<D>,
-    /// Friction of the substep before, within a frame; ascending.
+    /// Friction of the substep before; ascending.
     pub(crate) multipliers: Vec<(u64, [f64; D])>,
     pub(crate) workspaces: Vec<Workspace<D>>,
 }
@@ -60,11 +60,6 @@ pub(crate) struct Kept<const D: usize> {
 impl<const D: usize> Kept<D> {
     pub(crate) fn new(reach: f64) -> Self {
         Kept { barrier: Barrier::new(reach), ..Kept::default() }
-    }
-
-    /// Begins a frame: nothing of the last one is used.
-    pub(crate) fn begin(&mut self) {
-        self.multipliers.clear();
     }
 }
 
@@ -92,8 +87,8 @@ pub(crate) struct Opened<const D: usize> {
 }
 
 /// The search for the common end of a substep.
-pub(crate) struct Search<'a, const D: usize> {
-    pub(crate) islands: &'a mut [Island<D>],
+pub(crate) struct Search<'a, 'b, const D: usize> {
+    pub(crate) islands: &'a mut [&'b mut Island<D>],
     pub(crate) touching: &'a mut Touching<D>,
     pub(crate) barrier: &'a mut Barrier<D>,
     pub(crate) opened: Vec<Opened<D>>,
@@ -159,7 +154,7 @@ impl<const D: usize> Preconditioner for Factors<'_, D> {
     }
 }
 
-impl<const D: usize> Search<'_, D> {
+impl<const D: usize> Search<'_, '_, D> {
     /// How much the points give way, by the matrices at the start of the step.
     pub(crate) fn find_softness(&mut self) -> Result<(), Refused> {
         self.barrier.softness.clear();

@@ -56,9 +56,11 @@ impl<const D: usize> World<D> {
     /// Changes a parameter, for the program or for a command.
     pub(crate) fn set_now(&mut self, path: &str, value: Value) -> Result<(), WorldError> {
         let (before, touched) = self.change(path, value.clone())?;
+        let memory = self.contact_memory.clone();
         if let Err(error) = self.follow(&touched) {
             self.undo(before);
             self.follow(&touched)?;
+            self.contact_memory = memory;
             return Err(error);
         }
         self.keep_start(before);
@@ -159,7 +161,7 @@ impl<const D: usize> World<D> {
                 let before = contact.values.clone();
                 contact.values.set_instead(CONTACT.spec, field, value, D).map_err(|e| refuse(e.into()))?;
                 // Made anew with the laws that hold from now on.
-                self.meeting = None;
+                self.clusters = None;
                 Ok((Before::Contact(before), Touched::Bodies(Vec::new())))
             }
             ["world", field] => {
@@ -271,7 +273,7 @@ impl<const D: usize> World<D> {
                 if let Some(contact) = &mut self.blueprint.contact {
                     contact.values = values;
                 }
-                self.meeting = None;
+                self.clusters = None;
             }
         }
     }
@@ -317,7 +319,7 @@ impl<const D: usize> World<D> {
         }
         if let (Some(now), Some(values)) = (&mut scene.contact, contact) {
             now.values = values;
-            self.meeting = None;
+            self.clusters = None;
         }
         scene.bodies.truncate(self.slots.initial);
         for (number, (models, own)) in bodies {

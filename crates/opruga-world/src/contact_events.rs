@@ -1,6 +1,8 @@
 //! Which bodies began to touch, go on, and came apart: for programs that ask.
 
+use crate::blueprint::BodyBlueprint;
 use crate::contact_report::{Contact, ContactPhase};
+use crate::warnings::{Warning, WorldWarning};
 use crate::world::World;
 
 impl<const D: usize> World<D> {
@@ -19,15 +21,39 @@ impl<const D: usize> World<D> {
 
     /// Forgets who touched before, and how hard.
     pub(crate) fn forget_contacts(&mut self) {
-        self.meeting.iter_mut().for_each(|meeting| meeting.touching.forget_impulses());
+        let meetings = self.clusters.iter_mut().flat_map(|clusters| clusters.meetings_mut());
+        meetings.for_each(|meeting| meeting.touching.forget_impulses());
         self.contacts.iter_mut().for_each(Vec::clear);
+    }
+
+    /// Warns of bodies of different integrators that met in the frame: once, with the first, counted per frame and pair.
+    pub(crate) fn warn_of_mixed_contact(&mut self) {
+        const MIXED: &str = "contact.mixed";
+        let mixed = || self.clusters.iter().flat_map(|clusters| clusters.meetings()).flat_map(|meeting| &meeting.mixed);
+        let count = mixed().count() as u64;
+        let Some([first, second]) = mixed().min().map(|pair| pair.map(|body| &self.blueprint.bodies[body])) else {
+            return;
+        };
+        let rule =
+            |body: &BodyBlueprint<D>| body.integrator.as_ref().unwrap_or(&self.blueprint.integrator).kind().into();
+        let about = WorldWarning::Mixed {
+            time: self.time(),
+            first: first.name.clone(),
+            first_rule: rule(first),
+            second: second.name.clone(),
+            second_rule: rule(second),
+        };
+        match self.warnings.iter_mut().find(|warning| warning.code == MIXED) {
+            Some(known) => known.count += count,
+            None => self.warnings.push(Warning::new(about, count)),
+        }
     }
 
     /// Takes the reports of a frame.
     pub(crate) fn take_contacts(&mut self) {
         let Some(before) = self.contacts.take() else { return };
         let mut now = Vec::new();
-        if let Some(meeting) = &self.meeting {
+        for meeting in self.clusters.iter().flat_map(|clusters| clusters.meetings()) {
             for report in &meeting.touching.reports {
                 let bodies = report.bodies.map(|number| meeting.bodies[number as usize]);
                 let known = before.binary_search_by_key(&bodies, |contact| contact.bodies);

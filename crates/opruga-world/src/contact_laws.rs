@@ -1,6 +1,5 @@
 //! What `[contact]` and the bodies say of contact, as the laws of pairs of bodies.
 
-use crate::barrier_search::Kept;
 use crate::blueprint::{Blueprint, BodyBlueprint, ContactBlueprint};
 use crate::refusals::Refusal;
 use opruga_collide::{Laws, PairLaw};
@@ -129,6 +128,7 @@ pub(crate) fn laws<const D: usize>(
         itself: classes.iter().map(|class| class.itself).collect(),
         rest_speed: values.number("rest_speed").unwrap_or(0.0),
         recovery_speed: values.number("recovery_speed").unwrap_or(0.0),
+        thickest_elsewhere: [0.0; 2],
     }
 }
 
@@ -136,10 +136,10 @@ pub(crate) fn laws<const D: usize>(
 const REACH_OF_EDGE: f64 = 0.02;
 const REACH_OF_SHORTEST: f64 = 0.5;
 
-/// The barrier of a scene that asks for one.
-pub(crate) fn barrier_of<const D: usize>(contact: &ContactBlueprint, mean_edge: f64, shortest: f64) -> Option<Kept<D>> {
+/// The reach of the barrier of a scene that asks for one [m].
+pub(crate) fn reach_of(contact: &ContactBlueprint, mean_edge: f64, shortest: f64) -> Option<f64> {
     let own = (REACH_OF_EDGE * mean_edge).smaller(REACH_OF_SHORTEST * shortest);
-    is_barrier(contact).then(|| Kept::new(contact.values.number("reach").unwrap_or(own)))
+    is_barrier(contact).then(|| contact.values.number("reach").unwrap_or(own))
 }
 
 fn is_barrier(contact: &ContactBlueprint) -> bool {

@@ -2,6 +2,7 @@
 
 use crate::blueprint::BodyBlueprint;
 use crate::ledger::{Stock, Survey, survey, take_stock, total_of};
+use crate::path::{Bounds, Path};
 use opruga_collide::Colliders;
 use opruga_core::error::StepError;
 use opruga_core::history::History;
@@ -28,14 +29,16 @@ pub(crate) struct Island<const D: usize> {
     pub(crate) range: f64,
     pub(crate) work: Work8,
     /// The potential energy at the start of the last frame [J].
-    potential_before: f64,
+    pub(crate) potential_before: f64,
+    /// Where its bodies went in the last frame, if that was watched.
+    pub(crate) path: Path<D>,
     /// How the last frame ended.
     pub(crate) outcome: Result<(), StepError>,
     last: Option<Saved<D>>,
     /// The states at the looks within the last frame.
     looks: Vec<Saved<D>>,
     /// The state at the start of a substep that may be made again.
-    substep_start: Option<Saved<D>>,
+    pub(crate) substep_start: Option<Saved<D>>,
 }
 
 /// The state at the last good frame, or within a frame.
@@ -66,7 +69,7 @@ impl<const D: usize> Saved<D> {
     ///
     /// The columns change hands, and the system goes on with a copy: what is kept stays as it is in memory, and is not
     /// written there once more.
-    fn take(&mut self, system: &mut System<D>, time: f64) {
+    pub(crate) fn take(&mut self, system: &mut System<D>, time: f64) {
         std::mem::swap(&mut self.x, &mut system.state.x);
         std::mem::swap(&mut self.v, &mut system.state.v);
         for d in 0..D {
@@ -82,7 +85,7 @@ impl<const D: usize> Saved<D> {
     }
 
     /// Writes the state into a system.
-    fn write_into(&self, system: &mut System<D>) {
+    pub(crate) fn write_into(&self, system: &mut System<D>) {
         for d in 0..D {
             system.state.x.0[d].copy_from_slice(&self.x.0[d]);
             system.state.v.0[d].copy_from_slice(&self.v.0[d]);
@@ -118,6 +121,8 @@ pub(crate) struct FramePlan<'a, const D: usize> {
     pub(crate) h: f64,
     /// Substeps between two looks within the frame; 0: none.
     pub(crate) look_every: u32,
+    /// Whether islands keep where their bodies go ([`Island::path`]).
+    pub(crate) watched: bool,
     /// The bodies of the world where those that rest in a degenerate shape are displaced.
     pub(crate) unfold: Option<&'a [BodyBlueprint<D>]>,
 }
@@ -143,6 +148,7 @@ impl<const D: usize> Island<D> {
             range,
             work: Work8::default(),
             potential_before: 0.0,
+            path: Path::default(),
             outcome: Ok(()),
             last: None,
             looks: Vec::new(),
@@ -167,7 +173,7 @@ impl<const D: usize> Island<D> {
     }
 
     /// The potential energy of the present state [J].
-    fn potential(&self) -> f64 {
+    pub(crate) fn potential(&self) -> f64 {
         self.stock.elastic + self.stock.gas + self.survey.gravity
     }
 
@@ -280,10 +286,12 @@ impl<const D: usize> Island<D> {
         if let (true, Some(colliders)) = (near, plan.colliders) {
             self.system.contacts = Some(Arc::clone(colliders).into_contacts());
         }
+        self.begin_path(plan);
         for substep in 0..plan.substeps {
             self.system.go_on()?;
             self.set_out(plan, substep);
             self.integrator.step(&mut self.system, plan.h)?;
+            self.keep_path(plan);
             let done = substep + 1;
             if plan.look_every > 0 && done.is_multiple_of(plan.look_every) && done < plan.substeps {
                 self.keep_look((done / plan.look_every - 1) as usize);
@@ -293,7 +301,7 @@ impl<const D: usize> Island<D> {
     }
 
     /// Looks at all nodes; refuses what is not finite or out of range.
-    fn surveyed(&self, start: f64) -> Result<Survey<D>, StepError> {
+    pub(crate) fn surveyed(&self, start: f64) -> Result<Survey<D>, StepError> {
         let survey = survey(&self.system);
         let [low, high] = &survey.position;
         let far = (0..D).any(|d| low[d] < -self.range || high[d] > self.range);
@@ -305,7 +313,7 @@ impl<const D: usize> Island<D> {
     }
 
     /// The system at the beginning of a substep.
-    fn set_out(&mut self, plan: &FramePlan<D>, substep: u32) {
+    pub(crate) fn set_out(&mut self, plan: &FramePlan<D>, substep: u32) {
         self.system.time = plan.start + f64::from(substep) * plan.h;
         self.system.lead_pins(plan.h);
         if substep == 0 {
@@ -346,94 +354,28 @@ impl<const D: usize> Island<D> {
         None
     }
 
-    fn save(&mut self, time: f64) {
+    /// Begins to keep where bodies go in a frame, if that is asked for.
+    pub(crate) fn begin_path(&mut self, plan: &FramePlan<D>) {
+        self.path = Path::default();
+        self.keep_path(plan);
+    }
+
+    /// Adds where bodies are now.
+    pub(crate) fn keep_path(&mut self, plan: &FramePlan<D>) {
+        if plan.watched {
+            self.path.include(&self.system, &self.system.state.x);
+        }
+    }
+
+    pub(crate) fn save(&mut self, time: f64) {
         match &mut self.last {
             Some(saved) => saved.take(&mut self.system, time),
             None => self.last = Some(Saved::of(&self.system, time)),
         }
     }
 
-    /// Begins a frame through which others step together with it.
-    pub(crate) fn begin_together(&mut self, plan: &FramePlan<D>) {
-        self.save(plan.start);
-        self.potential_before = self.potential();
-        self.system.work = Work8::default();
-        // Whom it meets on the way nobody knows: obstacles are always looked at.
-        self.system.contacts = plan.colliders.map(|colliders| Arc::clone(colliders).into_contacts());
-        self.outcome = Ok(());
-    }
-
-    /// Keeps the state at the start of a substep, to which [`Island::rewind`] goes back.
-    pub(crate) fn mark(&mut self) {
-        let time = self.system.time;
-        match &mut self.substep_start {
-            Some(kept) => kept.take(&mut self.system, time),
-            None => self.substep_start = Some(Saved::of(&self.system, time)),
-        }
-    }
-
-    /// Goes back to the start of the substep.
-    pub(crate) fn rewind(&mut self) {
-        if let Some(kept) = self.substep_start.take() {
-            kept.write_into(&mut self.system);
-            self.system.work = kept.work;
-            self.substep_start = Some(kept);
-        }
-    }
-
-    /// Makes one substep in a workspace that is lent.
-    pub(crate) fn step_together(&mut self, plan: &FramePlan<D>, substep: u32, workspace: &mut Workspace<D>) {
-        self.system.exchange(workspace);
-        self.outcome = self.system.go_on().and_then(|()| {
-            self.set_out(plan, substep);
-            self.integrator.step(&mut self.system, plan.h)
-        });
-        self.system.exchange(workspace);
-        if let Err(error) = self.outcome.clone() {
-            self.refuse(error);
-        }
-    }
-
-    /// Begins a substep that others make with it.
-    pub(crate) fn begin_as_one(&mut self, plan: &FramePlan<D>, substep: u32) {
-        self.outcome = Ok(());
-        self.set_out(plan, substep);
-    }
-
-    /// Refuses a substep that others make with it.
-    pub(crate) fn refuse(&mut self, error: StepError) {
-        self.outcome = Err(error);
-        self.restore();
-        self.system.work = Work8::default();
-    }
-
-    /// Keeps the state after a substep where that is one to look at.
-    pub(crate) fn look_together(&mut self, plan: &FramePlan<D>, substep: u32) {
-        let done = substep + 1;
-        if plan.look_every > 0 && done.is_multiple_of(plan.look_every) && done < plan.substeps {
-            self.keep_look((done / plan.look_every - 1) as usize);
-        }
-    }
-
-    /// Ends such a frame.
-    pub(crate) fn end_together(&mut self, plan: &FramePlan<D>) {
-        match self.surveyed(plan.start) {
-            Ok(survey) => {
-                self.survey = survey;
-                self.system.time = plan.start + f64::from(plan.substeps) * plan.h;
-                self.work = std::mem::take(&mut self.system.work);
-                self.stock = take_stock(&mut self.system);
-            }
-            Err(error) => {
-                self.outcome = Err(error);
-                self.restore();
-                self.system.work = Work8::default();
-            }
-        }
-    }
-
     /// Keeps the state in the middle of a frame.
-    fn keep_look(&mut self, number: usize) {
+    pub(crate) fn keep_look(&mut self, number: usize) {
         let time = self.system.time;
         match self.looks.get_mut(number) {
             Some(look) => look.take(&mut self.system, time),
@@ -473,8 +415,11 @@ impl<const D: usize> Island<D> {
     /// It decides whether obstacles are looked at, and with them how implicit steps are solved. So it follows from positions and
     /// velocities alone, which snapshots hold: what an island has seen in earlier frames must not widen it.
     fn swept_bounds(&self, plan: &FramePlan<D>) -> [[f64; D]; 2] {
-        let [mut low, mut high] = self.survey.position;
-        let [slow, fast] = self.survey.velocity;
+        self.sweep(plan, self.survey.position, self.survey.velocity)
+    }
+
+    /// The box swept by what lies within a box and has velocities within a range [m/s].
+    fn sweep(&self, plan: &FramePlan<D>, [mut low, mut high]: Bounds<D>, [slow, fast]: Bounds<D>) -> Bounds<D> {
         let dt = f64::from(plan.substeps) * plan.h;
         for d in 0..D {
             let fall = 0.5 * self.system.gravity[d] * dt * dt;
@@ -484,6 +429,23 @@ impl<const D: usize> Island<D> {
             high[d] += (fast[d] * dt).larger(0.0) + margin;
         }
         [low, high]
+    }
+
+    /// The boxes that its bodies sweep within the frame, lane by lane, as [`Island::swept_bounds`] has it for all together.
+    pub(crate) fn swept_by_bodies(&self, plan: &FramePlan<D>, mut visit: impl FnMut(usize, Bounds<D>)) {
+        if self.integrator.is_static() {
+            // It goes wherever its balance is.
+            let everywhere = [[f64::NEG_INFINITY; D], [f64::INFINITY; D]];
+            (0..self.bodies.len()).for_each(|lane| visit(lane, everywhere));
+            return;
+        }
+        let (mut x, mut v) = (Path::default(), Path::default());
+        x.include(&self.system, &self.system.state.x);
+        v.include(&self.system, &self.system.state.v);
+        let layout = self.system.layout;
+        for lane in 0..self.bodies.len() {
+            visit(lane, self.sweep(plan, x.of(layout, lane), v.of(layout, lane)));
+        }
     }
 
     /// Bytes on the heap.

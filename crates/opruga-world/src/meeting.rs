@@ -1,36 +1,41 @@
-//! The surfaces of all bodies that may touch, beside the islands that hold their nodes.
+//! The surfaces of bodies that may touch, beside the islands that hold their nodes.
 
+use crate::barrier_search::Kept;
 use crate::blueprint::Blueprint;
-use crate::contact_laws::{barrier_of, edges_of, laws};
 use crate::island::{FramePlan, Island};
-use opruga_collide::{Colliders, Outline, Touching, Trouble};
+use crate::scene_contact::{Cluster, SceneContact};
+use opruga_collide::{Colliders, Obstacles, Outline, Touching, Trouble};
 use opruga_core::contacts::Contacts;
 use opruga_core::system::Workspace;
-use opruga_math::{Lane, WIDTH};
+use opruga_math::WIDTH;
 use std::sync::Arc;
 
-/// The margin of the search for candidates, relative to the mean edge: half of that is what points go between two searches, a quarter of
-/// an edge, about as far as gaps are taken at all.
-const MARGIN_OF_EDGE: f64 = 0.5;
-
-/// Bodies that are stepped together because they may touch.
+/// Bodies of a cluster, which go through a frame together because they may touch.
 #[derive(Debug)]
 pub(crate) struct Meeting<const D: usize> {
     pub(crate) touching: Touching<D>,
-    /// The islands and obstacles that it was made for.
-    made_for: MadeFor<D>,
-    /// For every island the first of its points and where their nodes lie in its columns, body by body.
+    /// Who they are, and their numbers in the scene: bodies, then obstacles.
+    pub(crate) cluster: Cluster,
+    numbers: Vec<u32>,
+    colliders: Option<Arc<Colliders<D>>>,
+    /// For every island of the group the first of its points and where their nodes lie in its columns, body by body.
     columns: Vec<Vec<(u32, Vec<u32>)>>,
     /// The island of every point and the index in its columns.
     points: Vec<(u32, u32)>,
     /// The bodies that touch, by their place in the scene.
     pub(crate) bodies: Vec<usize>,
+    /// The integrators of the bodies, where there are several: the same number, the same integrator.
+    rules: Vec<u32>,
+    /// The bodies of different integrators that met in the frame, by their place in the scene, ascending.
+    pub(crate) mixed: Vec<[usize; 2]>,
     /// Corners and edges of obstacles, which follow the bodies, and the first point of each.
-    pub(crate) outlines: Vec<(Outline<D>, usize)>,
+    pub(crate) outlines: Vec<(Arc<Outline<D>>, usize)>,
     /// The bodies that take pushes into the balance of forces of their steps.
     pub(crate) pushed: Vec<Pushed<D>>,
     /// What keeps them apart instead of impulses, if the scene says so.
-    pub(crate) barrier: Option<crate::barrier_search::Kept<D>>,
+    pub(crate) barrier: Option<Kept<D>>,
+    /// For the steps of bodies that make them again.
+    pub(crate) workspace: Workspace<D>,
 }
 
 /// A body that takes pushes into the balance of forces.
@@ -49,6 +54,12 @@ impl<const D: usize> Pushed<D> {
     pub(crate) fn new(island: usize, indices: Vec<u32>) -> Self {
         Pushed { island, indices, applied: Vec::new(), prepared: false }
     }
+
+    /// The forces of its impulses in a substep of h [s], by index into the columns of its island [N].
+    pub(crate) fn forces(&self, h: f64) -> Vec<(usize, [f64; D])> {
+        let force = |(point, impulse): &(usize, [f64; D])| (self.indices[*point] as usize, impulse.map(|c| c / h));
+        self.applied.iter().map(force).collect()
+    }
 }
 
 /// A substep that bodies have made without one another.
@@ -61,54 +72,36 @@ pub(crate) struct Substep<'a, const D: usize> {
     pub(crate) obstacles: Option<&'a dyn Contacts<D>>,
 }
 
-/// What the surfaces were made for: they are made anew where it has changed.
-#[derive(Clone, Debug)]
-pub(crate) struct MadeFor<const D: usize> {
-    /// How many islands were built by then.
-    pub(crate) built: u64,
-    /// How many there were.
-    pub(crate) islands: usize,
-    /// The obstacles.
-    pub(crate) colliders: Option<Arc<Colliders<D>>>,
-}
-
-impl<const D: usize> MadeFor<D> {
-    fn is(&self, other: &MadeFor<D>) -> bool {
-        let same = match (&self.colliders, &other.colliders) {
-            (None, None) => true,
-            (Some(own), Some(other)) => Arc::ptr_eq(own, other),
-            _ => false,
-        };
-        same && self.built == other.built && self.islands == other.islands
+impl<const D: usize> Substep<'_, D> {
+    /// Does something with what obstacles say of single points.
+    fn with_obstacles<R>(&self, work: impl FnOnce(Option<Obstacles<'_, D>>) -> R) -> R {
+        let Some(obstacles) = self.obstacles else { return work(None) };
+        let (time, h) = (self.time, self.plan.h);
+        work(Some(&|_, from, to, reach, visit| obstacles.touch(from, to, time, h, reach, visit)))
     }
 }
 
 impl<const D: usize> Meeting<D> {
-    /// The surfaces of the bodies of a scene as it is now; none where no two of them may touch.
-    pub(crate) fn of(scene: &Blueprint<D>, islands: &[Island<D>], made_for: MadeFor<D>) -> Option<Meeting<D>> {
-        let contact = scene.contact.as_ref()?;
+    /// The surfaces of a cluster, whose bodies live in some islands of the scene.
+    pub(crate) fn of(
+        blueprint: &Blueprint<D>,
+        scene: &SceneContact<D>,
+        all: &[Island<D>],
+        islands: &[usize],
+        cluster: Cluster,
+    ) -> Meeting<D> {
+        let first_outline = scene.bodies.len() as u32;
+        let mut numbers = cluster.bodies.clone();
+        numbers.extend(cluster.outlines.iter().map(|outline| first_outline + outline));
         let mut touching = Touching::<D>::default();
-        let (mut columns, mut points, mut bodies) = (vec![Vec::new(); islands.len()], Vec::new(), Vec::new());
-        let mut pushed = Vec::new();
-        let (mut length, mut edges, mut shortest) = (0.0, 0, f64::INFINITY);
-        // In the order of the bodies: results depend on no batches.
-        let mut seats: Vec<(usize, usize, usize)> = Vec::new();
-        for (number, island) in islands.iter().enumerate() {
-            seats.extend(island.bodies.iter().enumerate().map(|(lane, body)| (*body, number, lane)));
-        }
-        seats.sort_unstable();
-        for (body, number, lane) in seats {
-            let blueprint = &scene.bodies[body];
-            if !blueprint.touches() {
-                continue;
-            }
-            let own = edges_of(&blueprint.mesh);
-            (length, edges) = (length + own.sum, edges + own.count);
-            shortest = own.shortest.smaller(shortest);
+        let (mut columns, mut points, mut pushed) = (vec![Vec::new(); islands.len()], Vec::new(), Vec::new());
+        let mut workspace = Workspace::default();
+        for (own, number) in cluster.bodies.iter().enumerate() {
+            let (island, lane) = scene.seats[*number as usize];
             let first = touching.surface.points() as u32;
-            let nodes = touching.surface.add(&blueprint.mesh, bodies.len() as u32);
-            bodies.push(body);
-            let system = &islands[number].system;
+            let nodes = touching.surface.add(&blueprint.bodies[scene.bodies[*number as usize]].mesh, own as u32);
+            let Island { system, integrator, .. } = &all[island];
+            let island = islands.binary_search(&island).unwrap_or(0);
             let indices: Vec<u32> = nodes.iter().map(|n| system.layout.place(*n as usize, lane) as u32).collect();
             for index in &indices {
                 let mut inverse = [system.inverse_mass.at(*index as usize); D];
@@ -116,40 +109,46 @@ impl<const D: usize> Meeting<D> {
                     (0..D).filter(|d| pin.axes[*d]).for_each(|d| inverse[d] = 0.0);
                 }
                 touching.inverse_mass.push(inverse);
-                points.push((number as u32, *index));
+                points.push((island as u32, *index));
             }
-            if islands[number].integrator.takes_pushes() {
+            if integrator.takes_pushes() {
                 touching.coupled.add(first as usize..touching.surface.points());
-                pushed.push(Pushed::new(number, indices.clone()));
+                pushed.push(Pushed::new(island, indices.clone()));
+                workspace.fit(system);
             }
-            columns[number].push((first, indices));
+            columns[island].push((first, indices));
         }
-        let mean_edge = if edges > 0 { length / edges as f64 } else { 1.0 };
-        touching.laws = laws(scene, contact, &bodies, mean_edge);
         let mut outlines = Vec::new();
-        for outline in made_for.colliders.iter().flat_map(|colliders| colliders.outlines()) {
-            let first = touching.surface.points();
-            touching.surface.add_obstacle(&outline.mesh, (bodies.len() + outlines.len()) as u32);
-            touching.laws.add_obstacle(outline.law);
+        for (k, number) in cluster.outlines.iter().enumerate() {
+            let (outline, first) = (&scene.outlines[*number as usize], touching.surface.points());
+            touching.surface.add_obstacle(&outline.mesh, (cluster.bodies.len() + k) as u32);
             touching.inverse_mass.resize(touching.surface.points(), [0.0; D]);
-            outlines.push((outline, first));
+            outlines.push((Arc::clone(outline), first));
         }
-        touching.margin = MARGIN_OF_EDGE * mean_edge;
-        touching.most = contact.values.number("most_pairs").unwrap_or(0.0) as usize;
+        touching.laws = scene.laws.of_some(&numbers);
+        (touching.margin, touching.most) = (scene.margin, scene.most);
         for columns in touching.before.iter_mut().chain(&mut touching.after) {
             columns.resize(touching.inverse_mass.len(), [0.0; D]);
         }
-        let barrier = barrier_of(contact, mean_edge, shortest);
-        touching.may_touch().then_some(Meeting {
+        let mut rules: Vec<u32> = cluster.bodies.iter().map(|number| scene.rules[*number as usize]).collect();
+        if rules.iter().all(|rule| *rule == rules[0]) {
+            rules.clear();
+        }
+        Meeting {
             touching,
-            made_for,
+            bodies: cluster.bodies.iter().map(|number| scene.bodies[*number as usize]).collect(),
+            numbers,
+            cluster,
+            colliders: scene.colliders().cloned(),
             columns,
             points,
-            bodies,
+            rules,
+            mixed: Vec::new(),
             outlines,
             pushed,
-            barrier,
-        })
+            barrier: scene.reach.map(Kept::new),
+            workspace,
+        }
     }
 
     /// Whether an island makes its substeps as one with others that a barrier keeps apart.
@@ -157,23 +156,18 @@ impl<const D: usize> Meeting<D> {
         self.barrier.is_some() && self.pushed.iter().any(|pushed| pushed.island == island)
     }
 
-    /// Whether it was made for these islands and obstacles.
-    pub(crate) fn is_for(&self, made_for: &MadeFor<D>) -> bool {
-        self.made_for.is(made_for)
-    }
-
-    /// What a body or an obstacle is called, by its number among those that touch.
-    pub(crate) fn name_of(&self, number: u32, scene: &Blueprint<D>) -> String {
-        let number = number as usize;
-        match (self.bodies.get(number), self.outlines.get(number.saturating_sub(self.bodies.len()))) {
-            (Some(body), _) => scene.bodies[*body].name.clone(),
-            (None, Some((outline, _))) => format!("collider {}", outline.collider),
-            (None, None) => String::new(),
+    /// The numbers of bodies and obstacles in what befell it, as the scene counts them.
+    pub(crate) fn in_scene(&self, trouble: Trouble) -> Trouble {
+        let all = |bodies: [u32; 2]| bodies.map(|body| self.numbers[body as usize]);
+        match trouble {
+            Trouble::TooMany { .. } => trouble,
+            Trouble::Meet { bodies } => Trouble::Meet { bodies: all(bodies) },
+            Trouble::LedThrough { bodies } => Trouble::LedThrough { bodies: all(bodies) },
         }
     }
 
     /// Takes positions and velocities at a time [s], after the free motion or at the beginning of a frame.
-    pub(crate) fn take(&mut self, islands: &[Island<D>], time: f64) {
+    pub(crate) fn take(&mut self, islands: &[&mut Island<D>], time: f64) {
         self.move_outlines(time);
         let [x, v] = &mut self.touching.after;
         for (island, bodies) in islands.iter().zip(&self.columns) {
@@ -190,22 +184,12 @@ impl<const D: usize> Meeting<D> {
         }
     }
 
-    /// Whether all bodies are where positions keep their digits, with velocities that are numbers.
-    pub(crate) fn is_in_range(&self, islands: &[Island<D>]) -> bool {
-        let [x, v] = &self.touching.after;
-        let is_in = |(point, (island, _)): (usize, &(u32, u32))| {
-            let range = islands[*island as usize].range;
-            x[point].iter().all(|c| c.abs() <= range) && v[point].iter().all(|c| c.is_finite())
-        };
-        self.points.iter().enumerate().all(is_in)
-    }
-
     /// Takes corners of obstacles to where they are at a time [s].
     pub(crate) fn move_outlines(&mut self, time: f64) {
         let [x, v] = &mut self.touching.after;
         for (outline, first) in &self.outlines {
             let points = *first..*first + outline.mesh.positions.len();
-            if let Some(colliders) = &self.made_for.colliders {
+            if let Some(colliders) = &self.colliders {
                 let state = [&mut x[points.clone()], &mut v[points]];
                 colliders.move_points(outline.collider, time, &outline.mesh.positions, state);
             }
@@ -228,35 +212,40 @@ impl<const D: usize> Meeting<D> {
     }
 
     /// Where the step that follows begins: where the last one ended.
-    pub(crate) fn set_out(&mut self, islands: &mut [Island<D>]) {
+    pub(crate) fn set_out(&mut self, islands: &mut [&mut Island<D>]) {
         let Touching { before, after, .. } = &mut self.touching;
         std::mem::swap(before, after);
         self.mark(islands);
     }
 
-    /// Lets the bodies touch after a substep that each made by itself. Where one of them fails in it, its outcome says so.
-    pub(crate) fn resolve(
-        &mut self,
-        islands: &mut [Island<D>],
-        step: &Substep<'_, D>,
-        workspace: &mut Workspace<D>,
-    ) -> Result<(), Trouble> {
-        let (time, h) = (step.time, step.plan.h);
-        let touch = step.obstacles.map(|obstacles| {
-            move |_: u32, from: &[f64; D], to: &[f64; D], reach: f64, visit: &mut dyn FnMut(_)| {
-                obstacles.touch(from, to, time, h, reach, visit);
-            }
-        });
-        let touch = touch.as_ref().map(|touch| touch as _);
+    /// Whether bodies of it answer to contact as a whole, so that steps and contact are solved in turn.
+    pub(crate) fn is_pushed(&self) -> bool {
+        !self.pushed.is_empty()
+    }
+
+    /// Finds what contact makes of bodies that have made the substep each by itself; [`Meeting::write_back`] gives it to them.
+    pub(crate) fn solve(&mut self, step: &Substep<'_, D>) -> Result<(), Trouble> {
         self.touching.begin_step();
-        if self.pushed.is_empty() {
-            self.touching.find_impulses(h, touch, None)?;
-        } else if !self.iterate_with_contact(islands, step, touch, workspace)? {
-            self.part(islands, step, workspace);
+        step.with_obstacles(|touch| self.touching.find_impulses(step.plan.h, touch, None))?;
+        self.touching.end_step(step.plan.h);
+        Ok(())
+    }
+
+    /// The same for bodies that answer as a whole, with all that this changes in them. Where one of them fails in it, its outcome says so.
+    pub(crate) fn solve_in_turn(
+        &mut self,
+        islands: &mut [&mut Island<D>],
+        step: &Substep<'_, D>,
+    ) -> Result<(), Trouble> {
+        let h = step.plan.h;
+        self.touching.begin_step();
+        let agreed = step.with_obstacles(|touch| self.iterate_with_contact(islands, step, touch))?;
+        if !agreed {
+            self.part(islands, step);
             if islands.iter().any(|island| island.outcome.is_err()) {
                 return Ok(());
             }
-            self.touching.find_impulses(h, touch, None)?;
+            step.with_obstacles(|touch| self.touching.find_impulses(h, touch, None))?;
         }
         self.touching.end_step(h);
         self.write_back(islands);
@@ -264,14 +253,36 @@ impl<const D: usize> Meeting<D> {
         Ok(())
     }
 
+    /// Takes note of bodies of different integrators that met in the substep.
+    fn note_mixed(&mut self) {
+        let Meeting { touching, rules, mixed, bodies, .. } = self;
+        if rules.is_empty() {
+            return;
+        }
+        touching.visit_pairs(|a, b| {
+            let mut pair = [a, b].map(|body| bodies[body as usize]);
+            pair.sort_unstable();
+            if rules[a as usize] != rules[b as usize]
+                && let Err(at) = mixed.binary_search(&pair)
+            {
+                mixed.insert(at, pair);
+            }
+        });
+    }
+
     /// Writes what contact made of the bodies into their islands, and enters its works.
-    fn write_back(&mut self, islands: &mut [Island<D>]) {
+    pub(crate) fn write_back(&mut self, islands: &mut [&mut Island<D>]) {
+        self.note_mixed();
         let Touching { changed, losses, after: [x, v], .. } = &self.touching;
         for (p, [contact, friction, user, correction]) in changed.iter().zip(losses) {
             // What contact takes at points of obstacles is booked with the first island.
             let point = self.points.get(*p as usize).copied();
             let (island, index) = point.unwrap_or_default();
-            let (system, index) = (&mut islands[island as usize].system, index as usize);
+            let (island, index) = (&mut islands[island as usize], index as usize);
+            if point.is_some() {
+                island.path.include_one(index, &x[*p as usize]);
+            }
+            let system = &mut island.system;
             for d in (0..D).filter(|_| point.is_some() && !self.touching.follows(*p)) {
                 system.state.x.0[d][index] = x[*p as usize][d];
                 system.state.v.0[d][index] = v[*p as usize][d];

@@ -42,11 +42,13 @@ impl<const D: usize> World<D> {
     /// Empty where the body is not there, nothing can touch it, or a model refuses the state.
     pub fn contact_forces(&mut self, body: usize) -> Vec<[f64; D]> {
         let mut forces = self.obstacle_forces(body);
-        if let Some(meeting) = self.meeting.as_ref().filter(|_| self.handle(body).is_some()) {
+        if let Some(clusters) = self.clusters.as_ref().filter(|_| self.handle(body).is_some()) {
             let (h, nodes) = (self.h(), self.node_count(body));
             forces.resize(nodes, [0.0; D]);
             let stride = self.islands[self.place[body].0].system.layout.stride();
-            meeting.add_forces(body, h, stride, &mut forces);
+            for meeting in clusters.meetings().filter(|meeting| meeting.bodies.contains(&body)) {
+                meeting.add_forces(body, h, stride, &mut forces);
+            }
         }
         forces
     }

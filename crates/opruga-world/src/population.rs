@@ -139,10 +139,12 @@ impl<const D: usize> World<D> {
         let before = self.exchange(body, models, integrator);
         let fresh = BTreeMap::from([(body, state)]);
         let touched = Touched::Bodies(vec![body]);
+        let memory = self.contact_memory.clone();
         if let Err(error) = self.regroup(&touched, &fresh).and_then(|()| self.check_stability()) {
             self.undo(before);
             self.regroup(&touched, &BTreeMap::from([(body, was)]))?;
             self.check_stability()?;
+            self.contact_memory = memory;
             return Err(error);
         }
         self.keep_start(before);

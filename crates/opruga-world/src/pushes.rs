@@ -6,7 +6,7 @@
 //! contact   p from the gaps, the free motion x₁(f) − A⁻¹ f/θ and the answer
 //! ```
 //!
-//! Steps and contact are solved in turn until they agree on the end of the step: Newton's method for f. The forces of a substep are those of the one before at first, within a frame: bodies at rest on one another take one step.
+//! Steps and contact are solved in turn until they agree on the end of the step: Newton's method for f. The forces of a substep are those of the one before at first: bodies at rest on one another take one step.
 //!
 //! Source: M. Otaduy, R. Tamstorf, D. Steinemann, M. Gross, Implicit contact handling for deformable objects, Computer Graphics Forum 28 (2009)
 //! 559–568.
@@ -26,15 +26,15 @@ const AGREED: [(usize, f64); 3] = [(3, 1e-7), (6, 1e-4), (MOST_ROUNDS, 1e-2)];
 const MOST_ROUNDS: usize = 12;
 
 /// Asks bodies for their answers.
-struct Answers<'a, const D: usize> {
-    islands: &'a mut [Island<D>],
+struct Answers<'a, 'b, const D: usize> {
+    islands: &'a mut [&'b mut Island<D>],
     pushed: &'a mut [Pushed<D>],
     workspace: &'a mut Workspace<D>,
     h: f64,
     vector: Vec<f64>,
 }
 
-impl<const D: usize> Answers<'_, D> {
+impl<const D: usize> Answers<'_, '_, D> {
     /// Prepares a body for questions; says whether it answers.
     fn prepare(&mut self, body: usize) -> bool {
         let pushed = &mut self.pushed[body];
@@ -66,7 +66,7 @@ impl<const D: usize> Answers<'_, D> {
     }
 }
 
-impl<const D: usize> Respond<D> for Answers<'_, D> {
+impl<const D: usize> Respond<D> for Answers<'_, '_, D> {
     fn respond(&mut self, body: usize, point: usize, out: &mut [[[f64; D]; D]]) -> bool {
         for d in 0..D {
             let mut impulse = [0.0; D];
@@ -85,20 +85,19 @@ impl<const D: usize> Respond<D> for Answers<'_, D> {
 }
 
 impl<const D: usize> Meeting<D> {
-    /// Begins a frame: nothing of the last one is used.
+    /// Begins a frame, without anything of the last one.
     pub(crate) fn begin(&mut self) {
         self.touching.begin();
-        self.barrier.iter_mut().for_each(|kept| kept.begin());
-        self.pushed.iter_mut().for_each(|pushed| pushed.applied.clear());
+        self.mixed.clear();
     }
 
     /// Ends a frame: what is asked of bodies between frames knows of no pushes.
-    pub(crate) fn end(&mut self, islands: &mut [Island<D>]) {
+    pub(crate) fn end(&mut self, islands: &mut [&mut Island<D>]) {
         self.pushed.iter().for_each(|pushed| islands[pushed.island].system.pushes = None);
     }
 
     /// Keeps the states to which bodies go back within the substep.
-    pub(crate) fn mark(&mut self, islands: &mut [Island<D>]) {
+    pub(crate) fn mark(&mut self, islands: &mut [&mut Island<D>]) {
         for (body, pushed) in self.pushed.iter_mut().enumerate() {
             let island = &mut islands[pushed.island];
             island.mark();
@@ -117,10 +116,9 @@ impl<const D: usize> Meeting<D> {
     /// Repeats steps and the solution of contact until both agree; says whether they do.
     pub(crate) fn iterate_with_contact(
         &mut self,
-        islands: &mut [Island<D>],
+        islands: &mut [&mut Island<D>],
         step: &Substep<'_, D>,
         obstacles: Option<Obstacles<'_, D>>,
-        workspace: &mut Workspace<D>,
     ) -> Result<bool, Trouble> {
         let h = step.plan.h;
         let thickness = self.touching.laws.largest_thickness()[0];
@@ -129,7 +127,7 @@ impl<const D: usize> Meeting<D> {
                 self.take(islands, step.time);
             }
             self.take_mean_velocities(h);
-            let Meeting { touching, pushed, .. } = &mut *self;
+            let Meeting { touching, pushed, workspace, .. } = &mut *self;
             let mut answers = Answers { islands, pushed, workspace, h, vector: Vec::new() };
             if !free_motion(touching, &mut answers) || !touching.find_impulses(h, obstacles, Some(&mut answers))? {
                 return Ok(false);
@@ -137,7 +135,7 @@ impl<const D: usize> Meeting<D> {
             // In the end nothing passes in what the last step came to: what it misses is left to the next one.
             let agreed = AGREED.iter().find(|(before, _)| round < *before);
             let enough = agreed.map_or(f64::INFINITY, |(_, part)| part * thickness);
-            if !self.step_again(islands, step, workspace, enough) {
+            if !self.step_again(islands, step, enough) {
                 let nobody_pushes = (0..self.pushed.len()).all(|body| {
                     self.pushed[body].applied.is_empty() && self.touching.coupled.impulses_on(body).next().is_none()
                 });
@@ -159,13 +157,7 @@ impl<const D: usize> Meeting<D> {
     }
 
     /// Makes the step of bodies again that do not end where the impulses were to lead them; says whether there are any.
-    fn step_again(
-        &mut self,
-        islands: &mut [Island<D>],
-        step: &Substep<'_, D>,
-        workspace: &mut Workspace<D>,
-        enough: f64,
-    ) -> bool {
+    fn step_again(&mut self, islands: &mut [&mut Island<D>], step: &Substep<'_, D>, enough: f64) -> bool {
         let mut most: f64 = 0.0;
         for (body, Pushed { island, indices, .. }) in self.pushed.iter().enumerate() {
             let x = &islands[*island].system.state.x;
@@ -184,13 +176,10 @@ impl<const D: usize> Meeting<D> {
                 continue;
             }
             let island = &mut islands[pushed.island];
-            let forces = impulses
-                .iter()
-                .map(|(point, impulse)| (pushed.indices[*point] as usize, impulse.map(|c| c / step.plan.h)));
-            island.system.pushes = Some(forces.collect());
             pushed.applied = impulses;
+            island.system.pushes = Some(pushed.forces(step.plan.h));
             island.rewind();
-            island.step_together(step.plan, step.number, workspace);
+            island.step_together(step.plan, step.number, &mut self.workspace);
             pushed.prepared = false;
             self.touching.coupled.forget(body);
         }
@@ -199,7 +188,7 @@ impl<const D: usize> Meeting<D> {
 
     /// Lets contact change velocities after the steps, where steps and contact do not agree. Bodies that push only one another keep what they
     /// have come to, which is near; where others answer by the impulses too, or a step failed, all go back to a step without pushes.
-    pub(crate) fn part(&mut self, islands: &mut [Island<D>], step: &Substep<'_, D>, workspace: &mut Workspace<D>) {
+    pub(crate) fn part(&mut self, islands: &mut [&mut Island<D>], step: &Substep<'_, D>) {
         let failed = self.pushed.iter().any(|pushed| islands[pushed.island].outcome.is_err());
         let back = failed || self.pushed.len() < self.bodies.len();
         for (body, pushed) in self.pushed.iter_mut().enumerate() {
@@ -210,7 +199,7 @@ impl<const D: usize> Meeting<D> {
             if back {
                 island.system.pushes = Some(Vec::new());
                 island.rewind();
-                island.step_together(step.plan, step.number, workspace);
+                island.step_together(step.plan, step.number, &mut self.workspace);
             } else {
                 let first = self.touching.coupled.points_of(body).start;
                 for (point, impulse) in &pushed.applied {
@@ -235,7 +224,7 @@ impl<const D: usize> Meeting<D> {
     }
 
     /// Ends a substep: gives what is left of impulses, and moves what overlap is taken apart by.
-    pub(crate) fn end_pushes(&mut self, islands: &mut [Island<D>], h: f64) {
+    pub(crate) fn end_pushes(&mut self, islands: &mut [&mut Island<D>], h: f64) {
         // Others have answered by the impulses that were found last: what the step was made with differs from them by what is left.
         let mixed = self.pushed.len() < self.bodies.len();
         for (body, pushed) in self.pushed.iter().enumerate() {
@@ -279,7 +268,7 @@ impl<const D: usize> Meeting<D> {
 }
 
 /// Takes what pushes have added to the motion out of it, to first order; says whether bodies answer.
-fn free_motion<const D: usize>(touching: &mut Touching<D>, answers: &mut Answers<'_, D>) -> bool {
+fn free_motion<const D: usize>(touching: &mut Touching<D>, answers: &mut Answers<'_, '_, D>) -> bool {
     for body in 0..answers.pushed.len() {
         let applied = std::mem::take(&mut answers.pushed[body].applied);
         let answered = applied.is_empty() || answers.displace(body, applied.iter().copied());

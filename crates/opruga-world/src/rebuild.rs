@@ -115,6 +115,10 @@ impl<const D: usize> World<D> {
                 Err(island) => self.put(number, *island),
             }
         }
+        let alive = &self.slots.alive;
+        let is_other =
+            |body: usize| touched.contains(body) || fresh.contains_key(&body) || alive.get(body) != Some(&true);
+        self.contact_memory.forget(is_other);
         self.shift_start(before);
         Ok(())
     }

@@ -145,7 +145,7 @@ impl<const D: usize> World<D> {
         {
             let values = reader.values(D, |kind| (kind == CONTACT.spec.kind).then_some(CONTACT.spec))?;
             let before = std::mem::replace(&mut contact.values, values);
-            self.meeting = None;
+            self.clusters = None;
             self.keep_start(Before::Contact(before));
         }
         self.take_added(reader, commands, &known)?;

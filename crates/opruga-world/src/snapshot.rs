@@ -3,6 +3,7 @@
 use crate::blueprint::Action;
 use crate::bytes::{Reader, Writer};
 use crate::carried::BodyState;
+use crate::contact_memory::ContactMemory;
 use crate::error::WorldError;
 use crate::ledger::Flows;
 use crate::path_faults::SnapshotFault;
@@ -16,9 +17,10 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-const VERSION: u64 = 9;
-/// The version before it, which named no channels of a history. It is read where no integrator kept anything.
-const BEFORE: u64 = 8;
+const VERSION: u64 = 10;
+/// The version before it, which kept nothing of contact; and the one before that, which named no channels of a history: it is read where no
+/// integrator kept anything.
+const BEFORE: [u64; 2] = [9, 8];
 
 impl<const D: usize> World<D> {
     /// The whole state: time, positions, velocities, what models remember, how far commands have come, the ledger.
@@ -94,6 +96,7 @@ impl<const D: usize> World<D> {
         out.number(s.left);
         out.number(s.error_estimate);
         out.number(s.conditioning);
+        self.contact_memory.write(&mut out);
     }
 
     /// Goes to the state of a snapshot of a world with the same blueprint. Bodies that a program had added and commands that it had
@@ -140,7 +143,7 @@ impl<const D: usize> World<D> {
     fn read_head<'b>(reader: &mut Reader<'b>) -> Result<Head<'b>, WorldError> {
         let refuse = |fault: SnapshotFault| Err(WorldError::snapshot(fault));
         let version = reader.count()?;
-        if ![VERSION, BEFORE].contains(&version) {
+        if version != VERSION && !BEFORE.contains(&version) {
             return refuse(SnapshotFault::Version { version: VERSION });
         }
         if reader.count()? != D as u64 {
@@ -190,7 +193,7 @@ impl<const D: usize> World<D> {
                 return refuse(SnapshotFault::NotFinite { body: body.name.clone() });
             }
             let history = match version {
-                VERSION => reader.history()?,
+                VERSION | 9 => reader.history()?,
                 _ => match reader.empty_history()? {
                     Some(history) => history,
                     None => return refuse(SnapshotFault::Version { version: VERSION }),
@@ -249,6 +252,9 @@ impl<const D: usize> World<D> {
         let [mut residual, mut left, mut error_estimate, mut conditioning] = [0.0; 4];
         for number in [&mut residual, &mut left, &mut error_estimate, &mut conditioning] {
             *number = reader.number()?;
+        }
+        if version == VERSION {
+            rest.contact = ContactMemory::read(reader)?;
         }
         if !reader.0.is_empty() {
             return refuse(SnapshotFault::GoesOn {});
@@ -375,6 +381,7 @@ impl<const D: usize> World<D> {
         }
         self.limited_pulls.store(rest.flows.limited_pulls, Ordering::Relaxed);
         self.flows = rest.flows;
+        self.contact_memory = rest.contact;
         self.refresh_ledger();
         // What is in motion now is not measured again: the time of a frame and of its last substep differ by rounding.
         self.flows.largest = rest.flows.largest;
@@ -408,6 +415,7 @@ impl<const D: usize> World<D> {
         self.laws_saved = rest.laws;
         self.limited_pulls.store(rest.flows.limited_pulls, Ordering::Relaxed);
         self.flows = rest.flows;
+        self.contact_memory = rest.contact;
         self.refresh_ledger();
         // What is in motion now is not measured again: the time of a frame and of its last substep differ by rounding.
         self.flows.largest = rest.flows.largest;
@@ -436,6 +444,8 @@ struct Rest<const D: usize> {
     /// How many laws of force of the program bodies had.
     laws: BTreeMap<usize, u64>,
     flows: Flows,
+    /// What contact kept.
+    contact: ContactMemory<D>,
 }
 
 fn write_progress<const D: usize>(out: &mut Writer<'_>, progress: &Progress<D>) {

@@ -3,6 +3,7 @@
 use crate::at_start::AtStart;
 use crate::blueprint::Blueprint;
 use crate::build::{build_colliders, build_integrator, initial_state};
+use crate::contact_memory::ContactMemory;
 use crate::error::{Place, WorldError};
 use crate::ledger::{Energy, Flows, Momentum};
 use crate::looks::Looks;
@@ -71,7 +72,8 @@ impl<const D: usize> World<D> {
             integrator,
             colliders,
             islands: Vec::new(),
-            meeting: None,
+            clusters: None,
+            contact_memory: ContactMemory::default(),
             contacts: None,
             islands_built: 0,
             place: Vec::new(),

@@ -1,8 +1,9 @@
 //! Steps a world through a frame, and takes back a frame that fails.
 
+use crate::clusters::Clusters;
 use crate::error::WorldError;
 use crate::island::{FramePlan, Island};
-use crate::meeting::{MadeFor, Meeting};
+use crate::scene_contact::{MadeFor, SceneContact};
 use crate::together;
 use crate::world::{World, lock};
 use opruga_collide::Trouble;
@@ -24,13 +25,15 @@ impl<const D: usize> World<D> {
             substeps: self.blueprint.time.substeps,
             h: self.h(),
             look_every: self.looks.every,
+            watched: self.blueprint.contact.is_some(),
             unfold: self.blueprint.surroundings.unfold.then_some(&self.blueprint.bodies[..]),
         };
         (self.looks.flows, self.looks.fresh) = (self.flows, false);
         let (built, colliders) = (self.islands_built, self.colliders.clone());
         let made_for = MadeFor { built, islands: self.islands.len(), colliders };
-        if self.blueprint.contact.is_some() && self.meeting.as_ref().is_none_or(|meeting| !meeting.is_for(&made_for)) {
-            self.meeting = Meeting::of(&self.blueprint, &self.islands, made_for).map(Box::new);
+        if self.clusters.as_ref().is_none_or(|clusters| !clusters.scene.is_for(&made_for)) {
+            let scene = SceneContact::of(&self.blueprint, &self.islands, made_for);
+            self.clusters = scene.map(|scene| Box::new(Clusters::of(scene)));
         }
         self.refuse_what_meets()?;
         let islands = &mut self.islands;
@@ -39,10 +42,11 @@ impl<const D: usize> World<D> {
         let alone = |island: &[Island<D>]| matches!(island, [one] if !one.is_shared_by(self.options.threads, 1));
         let mut touched = Ok(());
         match self.pool.as_ref().filter(|_| !alone(islands)) {
-            pool if self.meeting.is_some() => {
-                if let Some(meeting) = &mut self.meeting {
-                    meeting.touching.report = self.contacts.is_some();
-                    let mut go = |threaded| together::frame(islands, meeting, &plan, workspaces, threaded);
+            pool if self.clusters.is_some() => {
+                if let Some(clusters) = &mut self.clusters {
+                    let reported = self.contacts.is_some();
+                    let scene = (&self.blueprint, &self.contact_memory, reported);
+                    let mut go = |pooled| together::frame(clusters, scene, islands, &plan, workspaces, pooled);
                     touched = match pool {
                         None => go(false),
                         Some(pool) => pool.install(|| go(true)),
@@ -109,6 +113,10 @@ impl<const D: usize> World<D> {
         if !(self.energy.is_finite() && self.momentum.is_finite()) {
             return Err(self.take_back_frame());
         }
+        match &self.clusters {
+            Some(clusters) => self.contact_memory.take(clusters),
+            None => self.contact_memory.clear(),
+        }
         let islands = &self.islands;
         let members = || islands.iter().flat_map(|island| &island.system.members);
         // Derivatives of forces that have an energy are symmetric.
@@ -117,12 +125,13 @@ impl<const D: usize> World<D> {
         self.flows.count_frame(&self.energy, has_energy);
         self.warn_of_crushed_bodies();
         self.warn_of_turned_cells();
+        self.warn_of_mixed_contact();
         self.take_away_what_is_far()
     }
 
     /// Refuses surfaces that cross, which a barrier would keep so.
     fn refuse_what_meets(&self) -> Result<(), WorldError> {
-        if self.meeting.as_ref().is_none_or(|meeting| meeting.barrier.is_none()) {
+        if self.clusters.as_ref().is_none_or(|clusters| clusters.scene.reach.is_none()) {
             return Ok(());
         }
         let Some(crossed) = self.crossed_surfaces().first().copied() else { return Ok(()) };
@@ -132,23 +141,19 @@ impl<const D: usize> World<D> {
 
     /// Why bodies that touch could not go through a frame.
     fn trouble(&self, trouble: Trouble, time: f64) -> WorldError {
-        let meeting = self.meeting.as_ref();
+        let scene = self.clusters.as_ref().map(|clusters| &clusters.scene);
+        let name = |number: u32| scene.map_or(String::new(), |scene| scene.name_of(number, &self.blueprint));
         match trouble {
             Trouble::TooMany { found } => {
-                let most = meeting.map_or(0, |meeting| meeting.touching.most);
-                WorldError::TooManyContacts { found, most, last: self.time() }
+                WorldError::TooManyContacts { found, most: scene.map_or(0, |scene| scene.most), last: self.time() }
             }
             Trouble::Meet { mut bodies } => {
                 bodies.sort_unstable();
-                let name =
-                    |number: u32| meeting.map_or(String::new(), |meeting| meeting.name_of(number, &self.blueprint));
                 WorldError::Meet { first: name(bodies[0]), second: name(bodies[1]), time }
             }
             Trouble::LedThrough { mut bodies } => {
                 // Obstacles have the highest numbers: a body is named first.
                 bodies.sort_unstable();
-                let name =
-                    |number: u32| meeting.map_or(String::new(), |meeting| meeting.name_of(number, &self.blueprint));
                 WorldError::LedThrough { first: name(bodies[0]), second: name(bodies[1]), time }
             }
         }

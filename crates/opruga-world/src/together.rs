@@ -1,93 +1,228 @@
-//! A frame of bodies that touch: all islands go through it substep by substep.
+//! A frame of bodies that may touch: clusters of them go through it substep by substep, all others as if alone.
 
+use crate::blueprint::Blueprint;
+use crate::clusters::{Clusters, Group, Progress};
+use crate::contact_memory::ContactMemory;
 use crate::island::{FramePlan, Island};
 use crate::meeting::{Meeting, Substep};
 use crate::world::lock;
 use opruga_collide::Trouble;
 use opruga_core::system::Workspace;
-use opruga_core::threads::together;
+use opruga_core::threads;
 use rayon::prelude::*;
 use std::sync::{Arc, Mutex};
 
+/// Nodes from which on a group is worth more than one thread within a substep.
+const SHARED_FROM: usize = 1000;
+
+/// A group on its way through the frame.
+struct Job<'a, const D: usize> {
+    islands: Vec<&'a mut Island<D>>,
+    group: &'a mut Group<D>,
+}
+
+/// How threads are at hand.
+#[derive(Clone, Copy)]
+struct Hands<'a, const D: usize> {
+    /// What contact kept of the last frame.
+    memory: &'a ContactMemory<D>,
+    workspaces: &'a [Mutex<Workspace<D>>],
+    /// Whether this runs in the pool of the world.
+    pooled: bool,
+    /// Whether several may work on a substep.
+    threaded: bool,
+    /// All islands of the world.
+    islands: usize,
+}
+
 /// Steps islands through a frame. Where one fails, its outcome says so, and the others are wherever they were.
+///
+/// Bodies that come close to others which were not with them take both back to the start of the frame, and through it together.
 ///
 /// # Errors
 /// [`Trouble`] where more pairs may touch than the scene allows, or pins and obstacles lead bodies through one another; with the time [s].
 pub(crate) fn frame<const D: usize>(
+    clusters: &mut Clusters<D>,
+    (blueprint, memory, reported): (&Blueprint<D>, &ContactMemory<D>, bool),
     islands: &mut [Island<D>],
-    meeting: &mut Meeting<D>,
     plan: &FramePlan<'_, D>,
     workspaces: &[Mutex<Workspace<D>>],
-    threaded: bool,
+    pooled: bool,
 ) -> Result<(), (Trouble, f64)> {
-    let outcome = step_through(islands, meeting, plan, workspaces, threaded);
-    meeting.end(islands);
-    outcome
+    let hands = Hands { memory, workspaces, pooled, threaded: pooled, islands: islands.len() };
+    clusters.begin(blueprint, islands, plan);
+    clusters.report(reported);
+    go_through(clusters, islands, plan, hands);
+    while clusters.merge(blueprint, islands, plan) {
+        for island in
+            clusters.groups.iter().filter(|group| group.progress == Progress::Waiting).flat_map(|g| &g.islands)
+        {
+            islands[*island].restore();
+            islands[*island].refresh();
+        }
+        clusters.report(reported);
+        go_through(clusters, islands, plan, hands);
+    }
+    let stuck = clusters.groups.iter().filter_map(|group| match group.progress {
+        Progress::Stuck(trouble, time) => Some((trouble, time)),
+        _ => None,
+    });
+    // The first in time; of several the first in the order of the bodies.
+    stuck.reduce(|first, other| if other.1 < first.1 { other } else { first }).map_or(Ok(()), Err)
 }
 
-fn step_through<const D: usize>(
+/// Lets all groups that have yet to do so go through the frame.
+fn go_through<const D: usize>(
+    clusters: &mut Clusters<D>,
     islands: &mut [Island<D>],
-    meeting: &mut Meeting<D>,
     plan: &FramePlan<'_, D>,
-    workspaces: &[Mutex<Workspace<D>>],
+    hands: Hands<'_, D>,
+) {
+    let mut at_hand: Vec<Option<&mut Island<D>>> = islands.iter_mut().map(Some).collect();
+    let mut jobs: Vec<Job<'_, D>> = Vec::new();
+    for group in clusters.groups.iter_mut().filter(|group| group.progress == Progress::Waiting) {
+        let islands = group.islands.iter().filter_map(|island| at_hand[*island].take()).collect();
+        jobs.push(Job { islands, group });
+    }
+    if !hands.threaded {
+        jobs.iter_mut().for_each(|job| job.run(plan, hands));
+        return;
+    }
+    // Groups with large bodies one after the other, each of these on all threads; then the others side by side. A body that waits for
+    // its threads must not be handed another one, whose workspace would be its own.
+    let number = rayon::current_num_threads();
+    let is_shared = |job: &Job<'_, D>| job.islands.iter().any(|island| island.is_shared_by(number, hands.islands));
+    jobs.iter_mut().filter(|job| is_shared(job)).for_each(|job| job.run(plan, hands));
+    jobs.par_iter_mut().filter(|job| !is_shared(job)).for_each(|job| job.run(plan, hands));
+}
+
+impl<const D: usize> Job<'_, D> {
+    fn run(&mut self, plan: &FramePlan<'_, D>, hands: Hands<'_, D>) {
+        if self.group.meetings.is_empty() {
+            self.islands
+                .iter_mut()
+                .for_each(|island| hands.lend(island, |island, workspace| island.frame(plan, workspace)));
+            self.group.progress = Progress::Done;
+            return;
+        }
+        let outcome = self.step_through(plan, hands);
+        self.group.meetings.iter_mut().for_each(|meeting| meeting.end(&mut self.islands));
+        self.group.progress = outcome.err().map_or(Progress::Done, |(trouble, time)| Progress::Stuck(trouble, time));
+    }
+
+    fn step_through(&mut self, plan: &FramePlan<'_, D>, hands: Hands<'_, D>) -> Result<(), (Trouble, f64)> {
+        let nodes: usize = self.islands.iter().map(|island| island.system.nodes * island.system.bodies).sum();
+        let hands = Hands { threaded: hands.threaded && nodes >= SHARED_FROM, ..hands };
+        let Job { islands, group: Group { meetings, .. } } = self;
+        let failed = |islands: &[&mut Island<D>]| islands.iter().any(|island| island.outcome.is_err());
+        islands.iter_mut().for_each(|island| island.begin_together(plan));
+        let contacts = plan.colliders.map(|colliders| Arc::clone(colliders).into_contacts());
+        for meeting in meetings.iter_mut() {
+            meeting.begin();
+            meeting.recall(hands.memory, islands, plan.h);
+            meeting.take(islands, plan.start);
+        }
+        for substep in 0..plan.substeps {
+            let time = plan.start + f64::from(substep + 1) * plan.h;
+            let step = Substep { plan, number: substep, time, obstacles: contacts.as_deref() };
+            for meeting in meetings.iter_mut() {
+                meeting.set_out(islands);
+                let stepped = meeting.step_with_barrier(islands, &step);
+                stepped.map_err(|trouble| (meeting.in_scene(trouble), time))?;
+            }
+            hands.step_freely(islands, meetings, plan, substep);
+            if failed(islands) {
+                return Ok(());
+            }
+            for meeting in meetings.iter_mut() {
+                meeting.take(islands, time);
+            }
+            // What leaves its range ends the frame, and is refused there: contact would look at every pair of it.
+            if !islands.iter().all(|island| island.is_in_range()) {
+                break;
+            }
+            touch(islands, meetings, &step, hands.threaded)?;
+            if failed(islands) {
+                return Ok(());
+            }
+            islands.iter_mut().for_each(|island| island.look_together(plan, substep));
+        }
+        islands.iter_mut().for_each(|island| island.end_together(plan));
+        Ok(())
+    }
+}
+
+/// Lets the bodies of every cluster touch after a substep that each made by itself.
+fn touch<const D: usize>(
+    islands: &mut [&mut Island<D>],
+    meetings: &mut [Meeting<D>],
+    step: &Substep<'_, D>,
     threaded: bool,
 ) -> Result<(), (Trouble, f64)> {
-    islands.iter_mut().for_each(|island| island.begin_together(plan));
-    let contacts = plan.colliders.map(|colliders| Arc::clone(colliders).into_contacts());
-    meeting.begin();
-    meeting.take(islands, plan.start);
-    for substep in 0..plan.substeps {
-        meeting.set_out(islands);
-        let time = plan.start + f64::from(substep + 1) * plan.h;
-        let step = Substep { plan, number: substep, time, obstacles: contacts.as_deref() };
-        meeting.step_with_barrier(islands, &step).map_err(|trouble| (trouble, time))?;
-        step_freely(islands, meeting, plan, substep, workspaces, threaded);
-        if islands.iter().any(|island| island.outcome.is_err()) {
-            return Ok(());
-        }
-        meeting.take(islands, time);
-        // What leaves its range ends the frame, and is refused there: contact would look at every pair of it.
-        if !meeting.is_in_range(islands) {
-            islands.iter_mut().for_each(|island| island.end_together(plan));
-            return Ok(());
-        }
-        if meeting.barrier.is_none() {
-            meeting.resolve(islands, &step, &mut lock(&workspaces[0])).map_err(|trouble| (trouble, time))?;
-        }
-        if islands.iter().any(|island| island.outcome.is_err()) {
-            return Ok(());
-        }
-        islands.iter_mut().for_each(|island| island.look_together(plan, substep));
+    let solve = |meeting: &mut Meeting<D>| {
+        let alone = meeting.barrier.is_none() && !meeting.is_pushed();
+        let outcome = if alone { meeting.solve(step) } else { Ok(()) };
+        outcome.map_err(|trouble| (meeting.in_scene(trouble), step.time))
+    };
+    if threaded && meetings.len() > 1 {
+        let outcomes: Vec<_> = meetings.par_iter_mut().map(solve).collect();
+        outcomes.into_iter().collect::<Result<(), _>>()?;
+    } else {
+        meetings.iter_mut().try_for_each(solve)?;
     }
-    islands.iter_mut().for_each(|island| island.end_together(plan));
+    for meeting in meetings.iter_mut().filter(|meeting| meeting.barrier.is_none()) {
+        if meeting.is_pushed() {
+            let outcome = meeting.solve_in_turn(islands, step);
+            outcome.map_err(|trouble| (meeting.in_scene(trouble), step.time))?;
+        } else {
+            meeting.write_back(islands);
+        }
+    }
     Ok(())
 }
 
-/// One substep without contact between bodies, of those that did not make it together.
-fn step_freely<const D: usize>(
-    islands: &mut [Island<D>],
-    meeting: &Meeting<D>,
-    plan: &FramePlan<'_, D>,
-    substep: u32,
-    workspaces: &[Mutex<Workspace<D>>],
-    threaded: bool,
-) {
-    let alone = |(number, _): &(usize, &mut Island<D>)| !meeting.steps_as_one(*number);
-    if !threaded {
-        let own = islands.iter_mut().enumerate().filter(alone);
-        own.for_each(|(_, island)| island.step_together(plan, substep, &mut lock(&workspaces[0])));
-        return;
+impl<const D: usize> Hands<'_, D> {
+    fn threads(&self) -> usize {
+        if self.threaded { rayon::current_num_threads() } else { 1 }
     }
-    let (threads, count) = (rayon::current_num_threads(), islands.len());
-    let shared = islands.iter_mut().enumerate().filter(alone).map(|(_, island)| island);
-    for island in shared.filter(|island| island.is_shared_by(threads, count)) {
-        island.system.threads = threads;
-        together(threads, || island.step_together(plan, substep, &mut lock(&workspaces[0])));
+
+    /// Does something with an island in the workspace of the thread; of a large one on all threads.
+    fn lend(&self, island: &mut Island<D>, work: impl Fn(&mut Island<D>, &mut Workspace<D>) + Sync) {
+        let thread = if self.pooled { rayon::current_thread_index().unwrap_or(0) } else { 0 };
+        let number = self.threads();
+        if !island.is_shared_by(number, self.islands) {
+            return work(island, &mut lock(&self.workspaces[thread]));
+        }
+        island.system.threads = number;
+        threads::together(number, || work(island, &mut lock(&self.workspaces[thread])));
         island.system.threads = 1;
     }
-    let own = islands.par_iter_mut().enumerate().filter(alone).map(|(_, island)| island);
-    own.filter(|island| !island.is_shared_by(threads, count)).for_each(|island| {
-        let thread = rayon::current_thread_index().unwrap_or(0);
-        island.step_together(plan, substep, &mut lock(&workspaces[thread]));
-    });
+
+    /// One substep without contact between bodies, of those that did not make it together.
+    fn step_freely(
+        &self,
+        islands: &mut [&mut Island<D>],
+        meetings: &[Meeting<D>],
+        plan: &FramePlan<'_, D>,
+        substep: u32,
+    ) {
+        let barriers = meetings.iter().any(|meeting| meeting.barrier.is_some());
+        let alone = |number: usize| !barriers || !meetings.iter().any(|meeting| meeting.steps_as_one(number));
+        let step = |island: &mut Island<D>| {
+            self.lend(island, |island, workspace| island.step_together(plan, substep, workspace));
+            island.keep_path(plan);
+        };
+        let number = self.threads();
+        let shared = |island: &Island<D>| island.is_shared_by(number, self.islands);
+        let one_by_one = |island: &Island<D>| !self.threaded || shared(island);
+        for (number, island) in islands.iter_mut().enumerate() {
+            if one_by_one(island) && alone(number) {
+                step(island);
+            }
+        }
+        if self.threaded {
+            let own = islands.par_iter_mut().enumerate().filter(|(number, island)| !shared(island) && alone(*number));
+            own.for_each(|(_, island)| step(island));
+        }
+    }
 }

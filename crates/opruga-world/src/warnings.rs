@@ -189,6 +189,10 @@ messages! {
         #[error("at t = {} s {} through one another: `{first}` and `{second}` first", number(*time), if *pairs == 1 { "two bodies pass".into() } else { format!("{pairs} pairs of bodies pass") })]
         #[hint("a section `[contact]` keeps bodies apart")]
         NoContact { time: f64, pairs: u64, first: String, second: String },
+        "contact.mixed"
+        #[error("at t = {} s body `{first}` ({first_rule}) touches body `{second}` ({second_rule}): contact is solved for both together, but each of them steps by its own rule, so the order and the damping of neither hold for the pair; counted per frame and pair of bodies", number(*time))]
+        #[hint("one integrator for bodies that touch")]
+        Mixed { time: f64, first: String, first_rule: String, second: String, second_rule: String },
         "cells.slender"
         #[error("body `{body}` bends or twists too stiffly: the longest edges of its cells are {} m on average, {} times its thickness of {} m; at {limit} times the first frequencies of plates were measured {error} % too high, and they rise farther", rounded(*length, 3), rounded(*times, 3), rounded(*thickness, 3))]
         #[hint("{help}")]

@@ -2,13 +2,14 @@
 
 use crate::at_start::AtStart;
 use crate::blueprint::{Blueprint, CommandBlueprint};
+use crate::clusters::Clusters;
+use crate::contact_memory::ContactMemory;
 use crate::contact_report::Contact;
 use crate::inputs::Input;
 use crate::island::Island;
 use crate::ledger::{Energy, Flows, Momentum};
 use crate::loads::ForceLaw;
 use crate::looks::Looks;
-use crate::meeting::Meeting;
 use crate::registry::Registry;
 use crate::running::Running;
 use crate::slots::{BodyHandle, Slots};
@@ -67,8 +68,10 @@ pub struct World<const D: usize> {
     pub(crate) integrator: Arc<dyn Integrator<D>>,
     pub(crate) colliders: Option<Arc<Colliders<D>>>,
     pub(crate) islands: Vec<Island<D>>,
-    /// The surfaces of bodies that may touch.
-    pub(crate) meeting: Option<Box<Meeting<D>>>,
+    /// Bodies that may touch, and their contacts; none without `[contact]`.
+    pub(crate) clusters: Option<Box<Clusters<D>>>,
+    /// What contact keeps from frame to frame.
+    pub(crate) contact_memory: ContactMemory<D>,
     /// The contacts of the last frame; none where they are not reported.
     pub(crate) contacts: Option<Vec<Contact<D>>>,
     /// How many islands were built since the start.
@@ -147,7 +150,7 @@ impl<const D: usize> World<D> {
     }
     /// What contact between bodies has cost since the bodies were put together; none where there is none.
     pub fn contact_counts(&self) -> Option<opruga_collide::Counts> {
-        self.meeting.as_ref().map(|meeting| meeting.touching.counts)
+        self.clusters.as_ref().map(|clusters| clusters.counts())
     }
     /// The vector instructions in force.
     pub fn simd(&self) -> Simd {

@@ -16,6 +16,7 @@ fn laws(friction: f64) -> Laws {
         itself: vec![false],
         rest_speed: 0.0,
         recovery_speed: 0.0,
+        thickest_elsewhere: [0.0; 2],
     }
 }
 

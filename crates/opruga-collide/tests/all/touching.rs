@@ -59,6 +59,7 @@ impl<const D: usize> Toy<D> {
             itself: vec![true],
             rest_speed: 0.05,
             recovery_speed: 0.5,
+            thickest_elsewhere: [0.0; 2],
         };
         touching.margin = 0.5 * springs[0].1;
         touching.most = 10_000_000;

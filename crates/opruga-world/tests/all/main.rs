@@ -5,6 +5,7 @@ mod any_world;
 mod ball;
 mod barrier;
 mod blueprints_of_programs;
+mod clusters;
 mod common;
 mod consistent_mass;
 mod contact;

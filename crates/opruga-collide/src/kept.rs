@@ -1,0 +1,68 @@
+//! Impulses of pairs by the numbers that features have within their bodies: for those who keep them while clusters change.
+
+use crate::row::OBSTACLE_BIT;
+use crate::rows::key;
+use crate::touching::Touching;
+
+/// The kinds of pairs: a vertex and a facet, two edges, a point and a surface of an obstacle that holds nodes.
+const VERTEX_FACET: u32 = 0;
+const EDGES: u32 = 1;
+const OF_OBSTACLE: u32 = 2;
+
+impl<const D: usize> Touching<D> {
+    /// What a pair is, by its number: its kind, then body and feature of the first and of the second one. An obstacle that holds nodes is no body,
+    /// and has the number of a surface.
+    pub fn features_of(&self, id: u64) -> [u32; 5] {
+        let part = |shift: u32| ((id >> shift) & ((1 << 31) - 1)) as u32;
+        let (a, b) = (part(31), part(0));
+        let body = |point: u32| self.surface.body[point as usize];
+        let vertex = |point: u32| [body(point), point - self.surface.points_of(body(point) as usize).start as u32];
+        let edge = |edge: u32| {
+            let own = body(self.surface.edges[edge as usize][0]);
+            [own, edge - self.surface.edges_of(own as usize).start as u32]
+        };
+        let facet = |facet: u32| {
+            let own = body(self.surface.facets[facet as usize][0]);
+            [own, facet - self.surface.facets_of(own as usize).start as u32]
+        };
+        let (kind, first, second) = match id >> 62 {
+            0 => (VERTEX_FACET, vertex(a), facet(b)),
+            1 => (EDGES, edge(a), edge(b)),
+            _ => (OF_OBSTACLE, vertex(a), [0, b]),
+        };
+        [kind, first[0], first[1], second[0], second[1]]
+    }
+
+    /// The number of a pair; none where a body has no such feature.
+    pub fn id_of(&self, [kind, first, own, second, other]: [u32; 5]) -> Option<u64> {
+        let at = |range: core::ops::Range<usize>, local: u32| {
+            let number = range.start + local as usize;
+            (number < range.end).then_some(number as u32)
+        };
+        let surface = &self.surface;
+        if first as usize >= surface.bodies() || kind != OF_OBSTACLE && second as usize >= surface.bodies() {
+            return None;
+        }
+        let (first, second) = (first as usize, second as usize);
+        match kind {
+            VERTEX_FACET => {
+                Some(key([at(surface.points_of(first), own)?, at(surface.facets_of(second), other)?], true))
+            }
+            EDGES => Some(key([at(surface.edges_of(first), own)?, at(surface.edges_of(second), other)?], false)),
+            _ => Some(OBSTACLE_BIT | u64::from(at(surface.points_of(first), own)?) << 31 | u64::from(other)),
+        }
+    }
+
+    /// Calls back with the pairs that press, by [`Touching::features_of`], and the impulses of the last step along and across their normals [N s].
+    pub fn visit_kept(&self, mut visit: impl FnMut([u32; 5], f64, [f64; D])) {
+        for (id, along, across) in &self.last {
+            visit(self.features_of(*id), *along, *across);
+        }
+    }
+
+    /// Lets the next step begin with these impulses, given by the numbers of pairs, ascending.
+    pub fn keep(&mut self, pairs: impl Iterator<Item = (u64, f64, [f64; D])>) {
+        self.last.clear();
+        self.last.extend(pairs);
+    }
+}

@@ -1,0 +1,128 @@
+//! What impulses make of a substep: where points go, and what contact took and gave.
+
+use crate::impulses::part;
+use crate::touching::Touching;
+use crate::vector::{dot, subtract};
+use opruga_math::Lane;
+
+/// The part of the thickness that pairs may lack before they are taken apart: the surfaces themselves do not overlap then, and what sweeps
+/// leave of a step is no reason to move anything.
+const OVERLAP: f64 = 0.01;
+
+impl<const D: usize> Touching<D> {
+    /// Takes the points along with their new velocities, and overlapping ones apart.
+    pub(crate) fn settle(&mut self, h: f64) {
+        for row in &self.rows {
+            if row.normal_impulse > 0.0 && !row.of_obstacle {
+                for k in (0..=D).filter(|k| row.weights[*k] != 0.0) {
+                    self.touched[row.points[k] as usize] = true;
+                }
+            }
+        }
+        self.recover(h);
+        self.end.clone_from(&self.after[0]);
+        for (p, _) in self.touched.iter().enumerate().filter(|(_, touched)| **touched) {
+            for d in (0..D).filter(|d| self.inverse_mass[p][*d] > 0.0) {
+                self.end[p][d] = self.before[0][p][d] + (h * self.v[p][d] + self.moved[p][d]);
+            }
+            if self.coupled.body_of(p as u32).is_none() {
+                self.moved[p] = [0.0; D];
+            }
+        }
+    }
+
+    /// Books what contact took and gave, and moves the points.
+    pub(crate) fn book(&mut self, h: f64) {
+        let touched = &self.touched;
+        self.changed.extend((0..self.surface.points() as u32).filter(|p| touched[*p as usize]));
+        for (k, p) in self.changed.iter().enumerate() {
+            self.number[*p as usize] = k as u32;
+        }
+        self.losses.clear();
+        self.losses.resize(self.changed.len(), [0.0; 4]);
+        for row in &self.rows {
+            if row.normal_impulse == 0.0 {
+                continue;
+            }
+            for k in (0..=D).filter(|k| row.weights[*k] != 0.0) {
+                let p = row.points[k];
+                if !self.touched[p as usize] {
+                    continue;
+                }
+                let (v0, v1) = (&self.before[1][p as usize], &self.v[p as usize]);
+                // The velocity of what follows as a whole is the mean one already. What answers by itself after a step that was solved for
+                // gets its impulse at the end of that.
+                let v0 = match (self.coupled.body_of(p), self.coupled.has(p)) {
+                    (Some(_), _) => v1,
+                    (None, true) => &self.after[1][p as usize],
+                    (None, false) => v0,
+                };
+                let (mut along, mut across, mut carried) = (0.0, 0.0, 0.0);
+                for d in 0..D {
+                    let mean = 0.5 * (v0[d] + v1[d]) - row.carry[d];
+                    let [n, t] = [row.normal_impulse * row.normal[d], row.friction_impulse[d]];
+                    along -= row.weights[k] * n * mean;
+                    across -= row.weights[k] * t * mean;
+                    carried += row.weights[k] * (n + t) * row.carry[d];
+                    if self.inverse_mass[p as usize][d] == 0.0 {
+                        // A pin gives back what a contact takes of its motion.
+                        carried -= row.weights[k] * (n + t) * 0.5 * (v0[d] + v1[d]);
+                    }
+                }
+                let sum = &mut self.losses[self.number[p as usize] as usize];
+                for (sum, more) in sum.iter_mut().zip([along, across, carried]) {
+                    *sum += more;
+                }
+            }
+        }
+        self.zones.book(&self.before[1], &self.v, &self.inverse_mass, &self.number, &mut self.losses);
+        for (p, losses) in self.changed.iter().zip(&mut self.losses) {
+            let p = *p as usize;
+            for d in (0..D).filter(|_| self.coupled.body_of(p as u32).is_none()) {
+                let inverse = self.inverse_mass[p][d];
+                if inverse > 0.0 {
+                    let (v0, free, v1) = (self.before[1][p][d], self.after[1][p][d], self.v[p][d]);
+                    let travel = self.end[p][d] - self.before[0][p][d];
+                    let by_velocity = if self.coupled.has(p as u32) {
+                        self.after[0][p][d] - self.before[0][p][d]
+                    } else {
+                        0.5 * h * (v0 + v1)
+                    };
+                    losses[3] += (free - v0) / (inverse * h) * (by_velocity - travel);
+                    self.after[0][p][d] = self.end[p][d];
+                    self.after[1][p][d] = v1;
+                }
+            }
+        }
+    }
+
+    /// Displacements that take overlapping pairs apart.
+    fn recover(&mut self, h: f64) {
+        let most = self.laws.recovery_speed * h;
+        for row in &self.rows {
+            row.points.iter().for_each(|p| self.moved[*p as usize] = [0.0; D]);
+        }
+        // Separately where rows share no point: nothing is moved for what overlaps elsewhere.
+        for ends in self.turns.starts().windows(2) {
+            let rows = &self.rows[ends[0] as usize..ends[1] as usize];
+            self.wanted.clear();
+            let mut overlap = false;
+            for row in rows {
+                let u = subtract(&row.mean(&self.v), &row.carry);
+                let end = row.gap + h * dot(&u, &row.normal);
+                // Sweeps that end early leave less than this.
+                overlap |= end < -OVERLAP * self.thickest[0];
+                self.wanted.push(if row.of_obstacle { -end } else { (-end).smaller(most) });
+            }
+            if !overlap {
+                continue;
+            }
+            part(rows, &self.inverse_mass, &self.wanted, &mut self.multipliers, &mut self.moved, most);
+            for (row, _) in rows.iter().zip(&self.multipliers).filter(|(_, multiplier)| **multiplier > 0.0) {
+                for k in (0..=D).filter(|k| row.weights[*k] != 0.0) {
+                    self.touched[row.points[k] as usize] = true;
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,269 @@
+//! What contact of a scene consists of, whoever meets whom.
+
+use crate::blueprint::Blueprint;
+use crate::contact_laws::{edges_of, laws, reach_of};
+use crate::island::{FramePlan, Island};
+use crate::path::{Bounds, overlap, wider};
+use opruga_collide::{Colliders, Laws, Outline};
+use opruga_core::spec::Values;
+use opruga_math::Lane;
+use std::sync::Arc;
+
+/// The margin of the search for candidates, relative to the mean edge: half of that is what points go between two searches, a quarter of
+/// an edge, about as far as gaps are taken at all.
+const MARGIN_OF_EDGE: f64 = 0.5;
+
+/// The bodies of a scene that may touch, and how.
+#[derive(Debug)]
+pub(crate) struct SceneContact<const D: usize> {
+    made_for: MadeFor<D>,
+    /// The bodies, by their place in the scene, ascending: the numbers in what follows count these.
+    pub(crate) bodies: Vec<usize>,
+    /// Island and lane of each.
+    pub(crate) seats: Vec<(usize, usize)>,
+    /// Their integrators: the same number, the same integrator.
+    pub(crate) rules: Vec<u32>,
+    /// Corners and edges of obstacles; their numbers follow those of the bodies.
+    pub(crate) outlines: Vec<Arc<Outline<D>>>,
+    pub(crate) laws: Laws,
+    /// The margin of the search for candidates [m].
+    pub(crate) margin: f64,
+    /// The most candidates.
+    pub(crate) most: usize,
+    /// The reach of the barrier [m]; none: impulses keep bodies apart.
+    pub(crate) reach: Option<f64>,
+    /// How far from where they are bodies may touch others [m].
+    distance: f64,
+}
+
+/// What it was made for: it is made anew where that has changed.
+#[derive(Clone, Debug)]
+pub(crate) struct MadeFor<const D: usize> {
+    /// How many islands were built by then.
+    pub(crate) built: u64,
+    /// How many there were.
+    pub(crate) islands: usize,
+    /// The obstacles.
+    pub(crate) colliders: Option<Arc<Colliders<D>>>,
+}
+
+impl<const D: usize> MadeFor<D> {
+    fn is(&self, other: &MadeFor<D>) -> bool {
+        let same = match (&self.colliders, &other.colliders) {
+            (None, None) => true,
+            (Some(own), Some(other)) => Arc::ptr_eq(own, other),
+            _ => false,
+        };
+        same && self.built == other.built && self.islands == other.islands
+    }
+}
+
+impl<const D: usize> SceneContact<D> {
+    /// That of a scene as it is now; none without `[contact]`, and where no two bodies may touch.
+    pub(crate) fn of(scene: &Blueprint<D>, islands: &[Island<D>], made_for: MadeFor<D>) -> Option<SceneContact<D>> {
+        let contact = scene.contact.as_ref()?;
+        // In the order of the bodies: results depend on no batches.
+        let mut seated: Vec<(usize, (usize, usize))> = Vec::new();
+        for (number, island) in islands.iter().enumerate() {
+            seated.extend(island.bodies.iter().enumerate().map(|(lane, body)| (*body, (number, lane))));
+        }
+        seated.retain(|(body, _)| scene.bodies[*body].touches());
+        seated.sort_unstable();
+        let (bodies, seats): (Vec<usize>, Vec<_>) = seated.into_iter().unzip();
+        let (mut length, mut edges, mut shortest) = (0.0, 0, f64::INFINITY);
+        let mut known: Vec<&Values> = Vec::new();
+        let mut rules = Vec::with_capacity(bodies.len());
+        for body in &bodies {
+            let own = edges_of(&scene.bodies[*body].mesh);
+            (length, edges) = (length + own.sum, edges + own.count);
+            shortest = own.shortest.smaller(shortest);
+            let rule = scene.bodies[*body].integrator.as_ref().unwrap_or(&scene.integrator);
+            let number = known.iter().position(|other| *other == rule).unwrap_or_else(|| {
+                known.push(rule);
+                known.len() - 1
+            });
+            rules.push(number as u32);
+        }
+        let mean_edge = if edges > 0 { length / edges as f64 } else { 1.0 };
+        let mut laws = laws(scene, contact, &bodies, mean_edge);
+        let outlines: Vec<Arc<Outline<D>>> =
+            made_for.colliders.iter().flat_map(|colliders| colliders.outlines()).map(Arc::new).collect();
+        let thickness = laws.largest_thickness()[0];
+        outlines.iter().for_each(|outline| laws.add_obstacle(outline.law));
+        let reach = reach_of(contact, mean_edge, shortest);
+        laws.any_meet().then_some(SceneContact {
+            made_for,
+            bodies,
+            seats,
+            rules,
+            outlines,
+            laws,
+            margin: MARGIN_OF_EDGE * mean_edge,
+            most: contact.values.number("most_pairs").unwrap_or(0.0) as usize,
+            reach,
+            distance: thickness + reach.unwrap_or(0.0),
+        })
+    }
+
+    /// Whether it was made for these islands and obstacles.
+    pub(crate) fn is_for(&self, made_for: &MadeFor<D>) -> bool {
+        self.made_for.is(made_for)
+    }
+
+    /// The obstacles.
+    pub(crate) fn colliders(&self) -> Option<&Arc<Colliders<D>>> {
+        self.made_for.colliders.as_ref()
+    }
+
+    /// What a body or an obstacle is called.
+    pub(crate) fn name_of(&self, number: u32, blueprint: &Blueprint<D>) -> String {
+        let number = number as usize;
+        match (self.bodies.get(number), self.outlines.get(number.saturating_sub(self.bodies.len()))) {
+            (Some(body), _) => blueprint.bodies[*body].name.clone(),
+            (None, Some(outline)) => format!("collider {}", outline.collider),
+            (None, None) => String::new(),
+        }
+    }
+
+    /// Whether a body touches itself.
+    fn touches_itself(&self, number: usize) -> bool {
+        self.laws.meet(number as u32, number as u32)
+    }
+
+    /// The outlines that bodies may meet that stay within a box during a frame.
+    fn visit_outlines(&self, plan: &FramePlan<'_, D>, [low, high]: &Bounds<D>, mut visit: impl FnMut(u32)) {
+        let Some(colliders) = self.colliders() else { return };
+        let end = plan.start + f64::from(plan.substeps) * plan.h;
+        for (number, outline) in self.outlines.iter().enumerate() {
+            if colliders.one_reaches(outline.collider, plan.start, end, low, high) {
+                visit(number as u32);
+            }
+        }
+    }
+}
+
+/// Which bodies go through a frame together: those that may touch one another, directly or by others between them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Partition {
+    /// Another body of the same cluster, or the body itself.
+    parent: Vec<u32>,
+    /// Bodies and the outlines that they may meet, ascending.
+    outlines: Vec<(u32, u32)>,
+}
+
+/// Bodies that go through a frame together, and outlines that they may meet; ascending.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Cluster {
+    pub(crate) bodies: Vec<u32>,
+    pub(crate) outlines: Vec<u32>,
+}
+
+/// The most corners of an obstacle that bodies may meet in clusters of their own: about as many as a small body has points.
+const MOST_COPIED: usize = 64;
+
+impl Partition {
+    /// All bodies by themselves.
+    pub(crate) fn begin(&mut self, bodies: usize) {
+        self.parent.clear();
+        self.parent.extend(0..bodies as u32);
+        self.outlines.clear();
+    }
+
+    fn root(&self, mut body: u32) -> u32 {
+        while self.parent[body as usize] != body {
+            body = self.parent[body as usize];
+        }
+        body
+    }
+
+    /// Joins bodies that go through boxes which come close to one another, and lists the obstacles that are close to them; says whether there
+    /// are new ones. `order` is for use within.
+    pub(crate) fn join<const D: usize>(
+        &mut self,
+        scene: &SceneContact<D>,
+        plan: &FramePlan<'_, D>,
+        boxes: &[Bounds<D>],
+        order: &mut Vec<u32>,
+    ) -> bool {
+        let mut any = false;
+        let wide = |number: u32| wider(boxes[number as usize], scene.distance);
+        // Along the axis along which the bodies are spread most, in the order of their lower ends.
+        let extent = |d: usize| {
+            let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+            for one in boxes {
+                (low, high) = (one[0][d].smaller(low), one[0][d].larger(high));
+            }
+            high - low
+        };
+        let axis = (1..D).fold(0, |most, d| if extent(d) > extent(most) { d } else { most });
+        order.clear();
+        order.extend(0..boxes.len() as u32);
+        order.sort_unstable_by(|a, b| {
+            let [a, b] = [a, b].map(|number| boxes[*number as usize][0][axis]);
+            a.total_cmp(&b)
+        });
+        for (k, first) in order.iter().enumerate() {
+            let own = wide(*first);
+            let close = order[k + 1..].iter().take_while(|other| wide(**other)[0][axis] <= own[1][axis]);
+            for other in close {
+                if overlap(&own, &wide(*other)) && scene.laws.meet(*first, *other) {
+                    any |= self.join_two(*first, *other);
+                }
+            }
+            scene.visit_outlines(plan, &own, |outline| any |= self.add_outline(scene, *first, outline));
+        }
+        // Every body by the lowest one of its cluster.
+        for body in 0..self.parent.len() {
+            self.parent[body] = self.parent[self.parent[body] as usize];
+        }
+        any
+    }
+
+    fn add_outline<const D: usize>(&mut self, scene: &SceneContact<D>, body: u32, outline: u32) -> bool {
+        let Err(at) = self.outlines.binary_search(&(body, outline)) else { return false };
+        self.outlines.insert(at, (body, outline));
+        // Every cluster has its own copy of the corners of an obstacle, which costs more than it spares where these are many.
+        if scene.outlines[outline as usize].mesh.positions.len() > MOST_COPIED {
+            let other = self.outlines.iter().find(|(other, number)| *number == outline && *other != body);
+            if let Some((other, _)) = other.copied() {
+                self.join_two(body, other);
+            }
+        }
+        true
+    }
+
+    fn join_two(&mut self, a: u32, b: u32) -> bool {
+        let (a, b) = (self.root(a), self.root(b));
+        let (low, high) = if a < b { (a, b) } else { (b, a) };
+        self.parent[high as usize] = low;
+        a != b
+    }
+
+    /// The clusters of bodies that may touch anything, in the order of their first bodies.
+    pub(crate) fn clusters<const D: usize>(&self, scene: &SceneContact<D>) -> Vec<Cluster> {
+        let mut out: Vec<Cluster> = Vec::new();
+        let mut number = vec![usize::MAX; self.parent.len()];
+        for body in 0..self.parent.len() {
+            let root = self.parent[body] as usize;
+            if root == body {
+                number[body] = out.len();
+                out.push(Cluster::default());
+            }
+            out[number[root]].bodies.push(body as u32);
+        }
+        for (body, outline) in &self.outlines {
+            out[number[self.parent[*body as usize] as usize]].outlines.push(*outline);
+        }
+        for cluster in &mut out {
+            cluster.outlines.sort_unstable();
+            cluster.outlines.dedup();
+        }
+        let touches = |cluster: &Cluster| {
+            cluster.bodies.len() > 1
+                || !cluster.outlines.is_empty()
+                || cluster.bodies.iter().any(|body| scene.touches_itself(*body as usize))
+        };
+        out.retain(touches);
+        out
+    }
+}
