@@ -471,6 +471,7 @@ part-snapshot-NotFinite = tijelo `{ $body }` ima broj koji nije konačan
 part-snapshot-CommandCount = ima drugi broj naredbi
 part-snapshot-CommandHolds = naredba drži čega nema
 part-snapshot-CommandState = naredba je u nepoznatom stanju
+part-snapshot-Contact = njezini impulsi dodira nisu valjani
 part-snapshot-GoesOn = nastavlja se iza svojeg kraja
 part-snapshot-SceneGoesOn = što kaže o prizoru, nastavlja se iza svojeg kraja
 part-snapshot-NoPair = nije stanje dvaju prizora jednog uz drugi

@@ -8,6 +8,7 @@ use crate::clusters::Clusters;
 use crate::error::WorldError;
 use crate::island::Island;
 use crate::meeting::Meeting;
+use crate::path_faults::SnapshotFault;
 
 /// The impulses of a pair: along its normal and across it [N s]; under a barrier the friction that its multiplier stands for [N].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -98,7 +99,7 @@ impl<const D: usize> ContactMemory<D> {
     /// # Errors
     /// [`WorldError::Snapshot`] where it holds what cannot be.
     pub(crate) fn read(reader: &mut Reader<'_>) -> Result<ContactMemory<D>, WorldError> {
-        let refuse = || WorldError::Snapshot("what it says of contact cannot be".into());
+        let refuse = || WorldError::snapshot(SnapshotFault::Contact {});
         let index = |reader: &mut Reader<'_>| u32::try_from(reader.count()?).map_err(|_| refuse());
         let number = |reader: &mut Reader<'_>| {
             let x = reader.number()?;

@@ -129,6 +129,8 @@ messages! {
         Input {},
         "part.snapshot" #[error("its version is not {version}")]
         Version { version: u64 },
+        "part.snapshot" #[error("its impulses of contact are invalid")]
+        Contact {},
         "part.snapshot" #[error("it has another dimension")]
         Dimension {},
         "part.snapshot" #[error("it has another number of bodies")]
