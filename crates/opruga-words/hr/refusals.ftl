@@ -351,7 +351,7 @@ part-build-Build = { $place }: { $source }
     .hint = { HINT($source) }
 step-unstable-UnstableStep = korak h = { $h } s integratora `{ $integrator }` nestabilan je za tijelo `{ $body }`
     .allowed = h <= { $limit } s (njegovo najbrže gibanje: { $omega } rad/s, prigušenje { $damping } 1/s)
-    .hint = podkoraka >= { $substeps }, a sličica ih ima najviše 10000; ili kraća sličica, mekše ili teže tijelo, ili drugi integrator
+    .hint = podkoraka >= { $substeps }, a sličica ima najviše 1000000 podkoraka; ili kraća sličica, mekše ili teže tijelo, ili drugi integrator
 run-diverged-Diverged = tijelo `{ $body }` je divergiralo: čvor { $node } napustio je { $range ->
         [none] konačne brojeve
        *[other] područje u kojem je zaokruživanje sitno prema njegovim elementima, { $range } m oko ishodišta,

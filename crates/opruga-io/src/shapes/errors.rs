@@ -115,11 +115,11 @@ messages! {
         #[value("{count}")]
         Dropped { count: usize, outlines: usize, least: f64 },
         "shape.overlap"
-        #[error("{} or touch one another: `overlap = \"union\"` keeps what any of them covers, {}", counted(*count as u64, "outline crosses, covers", "outlines cross, cover"), counted(*left as u64, "outline is left", "outlines are left"))]
+        #[error("{}: `overlap = \"union\"` keeps what any of them covers, {}", counted(*count as u64, "outline crosses, covers or touches others or itself", "outlines cross, cover or touch others or themselves"), counted(*left as u64, "outline is left", "outlines are left"))]
         #[value("{count}")]
         Union { count: usize, left: usize },
         "shape.overlap"
-        #[error("{} or touch one another: `overlap = \"even_odd\"` keeps what an odd number of them encloses, {}", counted(*count as u64, "outline crosses, covers", "outlines cross, cover"), counted(*left as u64, "outline is left", "outlines are left"))]
+        #[error("{}: `overlap = \"even_odd\"` keeps what an odd number of them encloses, {}", counted(*count as u64, "outline crosses, covers or touches others or itself", "outlines cross, cover or touch others or themselves"), counted(*left as u64, "outline is left", "outlines are left"))]
         #[value("{count}")]
         EvenOdd { count: usize, left: usize },
     }

@@ -279,7 +279,7 @@ fn bad_stl_and_ply_files_are_refused_with_their_place() {
     let mut nan = stl_bytes();
     nan[84 + 50 + 16..84 + 50 + 20].copy_from_slice(&f32::NAN.to_le_bytes());
     let error = refused("a.stl", &nan);
-    assert!(error.code == "scene.not_finite" && error.message.contains("byte 150"), "{error}");
+    assert!(error.code == "scene.not_finite" && error.to_string().contains("byte 150"), "{error}");
     let text = String::from_utf8(ply("ascii")).expect("a text");
     for (from, to, code, line) in [
         ("ply\n", "plx\n", "ply.syntax", Some(1)),

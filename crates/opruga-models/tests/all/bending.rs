@@ -210,7 +210,7 @@ fn rest_shape_is_at_rest() {
 fn refusals() {
     let line = Mesh::<2>::line([0.0; 2], [1.0, 0.0], 1).unwrap();
     let ring = Mesh::ring(1.0, 9, [0.0; 2], 0.0).unwrap();
-    let both = "model.one_of bending: exactly one of `stiffness` and `modulus` must be given";
+    let both = "model.one_of bending: exactly one of `stiffness`, `modulus` must be given";
     assert!(
         refusal(&line, &Bending, values!(bending, stiffness: 1.0)).starts_with("model.no_hinges bending: the body has")
     );

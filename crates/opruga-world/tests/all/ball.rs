@@ -2,6 +2,7 @@
 
 use opruga_core::spec::{Spec, Value, Values};
 use opruga_math::Simd;
+use opruga_math::message::Message;
 use opruga_math::message::Message as _;
 use opruga_mesh::Mesh;
 use opruga_world::blueprint::*;
@@ -373,8 +374,8 @@ fn an_empty_world_goes_on_and_commands_on_lost_bodies_are_told() {
 fn numbers_that_are_not_finite_stay_outside() {
     let mut world = run(rings(1, 36, "symplectic_euler"), Options::default(), 2);
     let hash = world.state_hash();
-    let error = world.place_node(0, 3, [f64::NAN, 0.0], [0.0; 2]).expect_err("no place").to_string();
-    assert_eq!(error, "`body 0, node 3`: NaN is no place and no velocity; allowed: finite numbers");
+    let error = world.place_node(0, 3, [f64::NAN, 0.0], [0.0; 2]).expect_err("no place").in_full();
+    assert_eq!(error, "`body 0, node 3`: NaN is not a position and not a velocity; allowed: finite numbers");
     assert!(world.place_node(0, 3, [0.0; 2], [f64::INFINITY, 0.0]).is_err());
     assert!(world.place_node(0, 36, [0.0; 2], [0.0; 2]).is_err());
     assert!(world.place_node(1, 0, [0.0; 2], [0.0; 2]).is_err());

@@ -1,6 +1,7 @@
 //! A blueprint that a program makes keeps to what a scene file could say; all else is refused with the code of the reader.
 
 use crate::common;
+use opruga_math::message::Message;
 
 use common::{clamp, solid, text};
 use opruga_core::spec::Value;
@@ -76,7 +77,7 @@ fn what_no_scene_could_say_is_refused_with_the_code_of_the_reader() {
         change(&mut blueprint);
         let error = refused(what, blueprint);
         assert_eq!(error.code(), *code, "{what}: {error}");
-        assert!(error.to_string().contains(said), "{what}: {error}");
+        assert!(error.in_full().contains(said), "{what}: {error}");
     }
     let load = |body, kind, curve| LoadBlueprint { body, select: Selector::Side("right".into()), kind, curve };
     for (what, load) in [

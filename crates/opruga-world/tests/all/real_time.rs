@@ -2,6 +2,7 @@
 //! in it, and (`-- --ignored --nocapture`) how long it takes.
 
 use crate::common;
+use opruga_math::message::Message;
 
 use common::{clamp, solid, text};
 use opruga_core::spec::Value;
@@ -357,7 +358,7 @@ fn real_time_steps_are_those_of_their_rule() {
     assert!((quick - exact).abs() < 0.05 * (euler - exact).abs(), "{euler} {exact} {quick}");
     for rule in ["implicit_midpoint", "newmark"] {
         let refused = World::new(clamped(cube(4), rule, "real_time", 1e5, &[]), Options::default());
-        let said = refused.expect_err("it damps nothing").to_string();
+        let said = refused.expect_err("it damps nothing").in_full();
         assert!(said.contains("damps nothing") && said.contains("`backward_euler` and `bdf2`"), "{said}");
     }
 }

@@ -1,6 +1,7 @@
 //! Implicit steps from shapes that no body has: every one comes back to its volume, or is refused with a reason.
 
 use crate::common;
+use opruga_math::message::Message;
 
 use common::{clamp, solid, text};
 use opruga_core::spec::Value;
@@ -348,7 +349,7 @@ fn accepted_steps_that_blow_a_body_up_end_in_an_error() {
     let mut refused = None;
     for _ in 0..400 {
         if let Err(error) = world.frame() {
-            refused = Some(error.to_string());
+            refused = Some(error.in_full());
             break;
         }
         let extent = (0..positions.len()).map(|n| world.position(0, n as u32)[0].abs()).fold(0.0, Lane::larger);

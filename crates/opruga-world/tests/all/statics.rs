@@ -1,6 +1,7 @@
 //! Statics: which bodies are held, by what; loads in halves; solvers; the ledger.
 
 use crate::common;
+use opruga_math::message::Message;
 
 use common::{clamp, solid, text};
 use opruga_core::spec::{Value, Values};
@@ -198,7 +199,7 @@ fn what_is_too_much_at_once_is_put_on_by_halves_or_said_to_have_gone_so_far() {
         let mut beam = World::new(beam, Options::default()).unwrap();
         let outcome = beam.frame();
         let tip = beam.position(0, beam.node_count(0) as u32 - 1);
-        (outcome.map_err(|error| error.to_string()), tip, beam.solver_work(), beam.warnings())
+        (outcome.map_err(|error| error.in_full()), tip, beam.solver_work(), beam.warnings())
     };
     let (outcome, wanted, ..) = bent(200, "error", 10.0);
     outcome.unwrap();

@@ -4,6 +4,7 @@
 
 use crate::common;
 use common::*;
+use opruga::math::message::Message;
 use opruga::{Options, World, WorldError};
 
 /// The mean of a coordinate over the nodes of body 0 that lie at a coordinate of the rest shape.
@@ -110,7 +111,7 @@ fn cells_that_cannot_be_had_are_refused_where_they_are_asked_for() {
          models = [{{ kind = \"fem\", youngs_modulus = 1.0, poissons_ratio = 0.49 }}]\n",
         head(0.01, 10, 0.0, "verlet")
     ))
-    .to_string();
+    .in_full();
     assert!(locking.contains("order = 2"), "{locking}");
 }
 
@@ -205,7 +206,7 @@ fn a_linear_body_that_only_its_weight_would_hold_is_refused_with_its_rotation() 
             "against rotation about an axis along x: 1 rigid mode, ",
         ),
     ] {
-        let message = error.to_string();
+        let message = error.in_full();
         assert!(message.contains(what) && message.contains(told) && message.contains("`neo_hookean`"), "{message}");
     }
     for material in ["neo_hookean", "st_venant_kirchhoff"] {

@@ -2,6 +2,7 @@
 #![allow(clippy::disallowed_methods)] // expected values of the tests' own
 
 use crate::common;
+use opruga::math::message::Message;
 
 use common::{built, frames, head, plane, refused, space};
 use opruga::World;
@@ -299,7 +300,7 @@ fn refusals_say_what_is_wrong_and_what_helps() {
     let before = nodes(&world);
     let error = world.frame().unwrap_err();
     assert_eq!(error.code(), "run.not_converged");
-    let text = error.to_string();
+    let text = error.in_full();
     for part in ["did not converge in 2 iterations at t = 0 s", "out of balance by", "allowed:", "hint: more substeps"]
     {
         assert!(text.contains(part), "{text}");

@@ -49,11 +49,11 @@ fn parameters_that_make_no_sense() {
         (ring(16, "{ kind = \"mass_spring\", stiffness = -1 }", ""), "error[scene.range]: `stiffness` is -1"),
         (
             ring(16, "{ kind = \"mass_spring\" }", ""),
-            "error[model.one_of]: exactly one of `stiffness` and `modulus` must be given; here are none of them",
+            "error[model.one_of]: exactly one of `stiffness`, `modulus` must be given; here are none of them",
         ),
         (
             ring(16, "{ kind = \"mass_spring\", stiffness = 1, modulus = 1 }", ""),
-            "exactly one of `stiffness` and `modulus` must be given; here are `stiffness` and `modulus`",
+            "exactly one of `stiffness`, `modulus` must be given; here are `stiffness`, `modulus`",
         ),
         (ring(16, "{ kind = \"bending\", stiffness = -0.1 }", ""), "error[scene.range]: `stiffness` is -0.1"),
         (ring(16, BALL, &FLOOR.replace("friction = 0.5", "friction = -0.5")), "error[scene.range]: `friction` is -0.5"),

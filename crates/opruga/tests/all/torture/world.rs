@@ -10,7 +10,7 @@ fn numbers_of_threads() {
     let scene = || plane(&ring(32, BALL, FLOOR));
     for threads in [0, 257, 10_000] {
         let error = World::new(scene(), Options { threads, ..Options::default() }).expect_err("no such number");
-        assert_eq!(error.in_full(), format!("`threads`: is {threads}; allowed: 1 to 256"));
+        assert_eq!(error.in_full(), format!("`threads`: is {threads}; allowed: a whole number from 1 to 256"));
     }
     let hash = |threads| {
         let mut world = World::new(scene(), Options { threads, ..Options::default() }).expect("a world");
