@@ -269,5 +269,5 @@ fn overlapping_areas_are_united_with_a_message() {
     std::fs::write(folder.path().join("s.toml"), scene.replace("FILE\"", "two.svg\", overlap = \"union\""))
         .expect("a file");
     let told = text(&opruga(folder.path(), &["check", "s.toml"]).stderr);
-    assert!(told.contains("2 outlines cross, cover or touch others or themselves (`overlap = \"union\"`)"), "{told}");
+    assert!(told.contains("2 outlines cross, cover or touch others or themselves: `overlap = \"union\"`"), "{told}");
 }

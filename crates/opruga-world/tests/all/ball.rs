@@ -2,7 +2,6 @@
 
 use opruga_core::spec::{Spec, Value, Values};
 use opruga_math::Simd;
-use opruga_math::message::Message;
 use opruga_math::message::Message as _;
 use opruga_mesh::Mesh;
 use opruga_world::blueprint::*;

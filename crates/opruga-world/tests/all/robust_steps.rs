@@ -1,7 +1,6 @@
 //! Implicit steps from shapes that no body has: every one comes back to its volume, or is refused with a reason.
 
 use crate::common;
-use opruga_math::message::Message;
 
 use common::{clamp, solid, text};
 use opruga_core::spec::Value;

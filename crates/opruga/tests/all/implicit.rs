@@ -6,7 +6,6 @@ use opruga::math::message::Message;
 
 use common::{built, frames, head, plane, refused, space};
 use opruga::World;
-use opruga::math::message::Message as _;
 
 /// The rules that step through time.
 const RULES: [&str; 4] = ["backward_euler", "bdf2", "implicit_midpoint", "newmark"];
