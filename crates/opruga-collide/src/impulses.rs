@@ -1,6 +1,7 @@
 //! Impulses on pairs in contact: projected Gauss–Seidel.
 
 use crate::coupled::Coupled;
+use crate::newton;
 use crate::row::Row;
 use crate::subspace;
 use crate::vector::{dot, length, scaled, subtract};
@@ -31,6 +32,9 @@ const SWEEPS_BETWEEN: usize = 2;
 /// After so many of these steps that did not halve what a sweep changes, sweeps go on alone: with friction, contacts may stick and slide in turn.
 /// With 8 the row `contact-patch-tetrahedra` misses 1e-6; without an end sheets on solids take more than twice as long.
 const MOST_FAILURES: usize = 16;
+
+/// The part of the tolerance to which Newton's method goes: the sweep that follows finds nothing to change.
+const ENOUGH: f64 = 0.1;
 
 /// When rows were solved for, and when what they hold has changed, counted in turns of rows: beside the rows, which are large.
 #[derive(Clone, Debug, Default)]
@@ -283,7 +287,11 @@ fn solve<const D: usize>(problem: Problem<'_, D>) -> usize {
         for sweep in 0..most {
             let steps = together && sweep > 0 && sweep % SWEEPS_BETWEEN == 0 && failures < MOST_FAILURES;
             if steps {
-                subspace::step(rows, inverse_mass, coupled, v);
+                if newton::is_small(rows) {
+                    newton::step(rows, inverse_mass, coupled, v, ENOUGH * tolerance * approach);
+                } else {
+                    subspace::step(rows, inverse_mass, coupled, v);
+                }
                 // All velocities may have changed.
                 heads.iter_mut().for_each(|(_, last)| *last = 0);
             }

@@ -78,6 +78,7 @@ mod inside;
 mod kept;
 mod law;
 mod motion;
+mod newton;
 mod outline;
 mod pass;
 mod passages;

@@ -121,3 +121,19 @@ pub(crate) fn rotation<const D: usize>(omega: &[[f64; D]; D], time: f64) -> [[f6
     }
     out
 }
+/// Axes across a normal, of unit length.
+pub(crate) fn across<const D: usize>(normal: &[f64; D]) -> impl Iterator<Item = [f64; D]> {
+    let mut out = [[0.0; D]; D];
+    if D == 2 {
+        (out[0][0], out[0][1]) = (-normal[1], normal[0]);
+    } else {
+        // The axis along which the normal points least.
+        let least = (0..D).min_by(|i, j| normal[*i].abs().total_cmp(&normal[*j].abs())).unwrap_or(0);
+        let (i, j) = ((least + 1) % 3, (least + 2) % 3);
+        let size = (normal[i] * normal[i] + normal[j] * normal[j]).sqrt();
+        (out[0][i], out[0][j]) = (-normal[j] / size, normal[i] / size);
+        let (a, b) = (*normal, out[0]);
+        (0..3).for_each(|d| out[1][d] = a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3]);
+    }
+    out.into_iter().take(D - 1)
+}

@@ -1,0 +1,388 @@
+//! Impulses of contacts of bodies that answer as a whole, all at once: a semismooth Newton method.
+//!
+//! ```text
+//! motion    u = free + W λ                         W = G Y Gᵀ, the velocities of gaps by impulses
+//! pressing  N = max(0, a),  a = N − ρ (uₙ − target)
+//! friction  F = the point of the disc |F| ≤ µ max(0, a) that is nearest to b = F − r uₜ
+//! ```
+//!
+//! A contact that is apart (a ≤ 0) has no impulse, one that sticks (|b| ≤ µ a) does not move, one that slides has the whole friction along b.
+//! What they miss is linear but at the borders between these cases, so Newton's method converges where sweeps let contacts stick and slide in
+//! turn. Contacts are redundant, and W has no inverse: a small part of its diagonal, on the change of the impulses, makes the solution
+//! unique (a proximal point; what it holds back, the next step gives).
+//!
+//! Source: P. Alart, A. Curnier, A mixed formulation for frictional contact problems prone to Newton like solution methods, Computer Methods in
+//! Applied Mechanics and Engineering 92 (1991) 353–375; V. Acary, M. Brémond, O. Huber, On solving contact problems with Coulomb friction:
+//! formulations and numerical comparisons (2018), section 6 (proximal point with Newton's method).
+
+use crate::coupled::Coupled;
+use crate::row::Row;
+use crate::vector::{across, add, dot, scaled, subtract};
+use opruga_math::{Pack, Simd, WIDTH, Work};
+
+/// The most unknowns. An elimination takes ⅓ n³ products: 0.2 · 10⁹ for so many, as much as a hundred sweeps take over bodies of so many points.
+const MOST_UNKNOWNS: usize = 900;
+
+/// The part of the diagonal of W that holds changes of impulses back. A tenth of problems with friction on which sweeps did not end needs
+/// three times the iterations with 1e-5; rounding shows at 1e-12.
+const PROXIMAL: f64 = 1e-7;
+
+/// The most iterations of one step. Half of the steps need four, and nine in ten less than 20.
+const MOST_ITERATIONS: usize = 30;
+
+/// How often a correction is halved. Where nothing helps, a tenth of it is taken: cases change then, and what is missed may rise on the way.
+const MOST_HALVINGS: usize = 12;
+const UPHILL: f64 = 0.1;
+
+/// A contact and its unknowns: the impulse along its normal, and where it has friction those across it.
+struct Contact<const D: usize> {
+    row: usize,
+    axes: [[f64; D]; D],
+    first: usize,
+    count: usize,
+    friction: f64,
+    /// Inverses of the mobilities along and across [kg].
+    mass: [f64; 2],
+}
+
+/// What a contact does at a trial.
+enum Case<const D: usize> {
+    Apart,
+    Sticks,
+    /// Along a direction; with the radius of the disc over the length of b.
+    Slides([f64; D], f64),
+}
+
+struct Equations<const D: usize> {
+    contacts: Vec<Contact<D>>,
+    /// W by unknowns, row by row of `stride` numbers.
+    mobility: Vec<f64>,
+    stride: usize,
+    /// Velocities without impulses, less the targets [m/s].
+    free: Vec<f64>,
+    /// The impulses that changes are counted from [N s].
+    center: Vec<f64>,
+}
+
+/// Whether so many contacts are few enough.
+pub(crate) fn is_small<const D: usize>(rows: &[Row<D>]) -> bool {
+    rows.iter().map(count_of).sum::<usize>() <= MOST_UNKNOWNS
+}
+
+fn count_of<const D: usize>(row: &Row<D>) -> usize {
+    match row.mass[0] > 0.0 {
+        true if row.friction > 0.0 => D,
+        moves => usize::from(moves),
+    }
+}
+
+/// Goes to the impulses at which all contacts obey their laws, as near as it comes. What they miss at the end is at most `enough` [m/s] where
+/// it converges; it takes no impulses that miss more than those before.
+pub(crate) fn step<const D: usize>(
+    rows: &mut [Row<D>],
+    inverse_mass: &[[f64; D]],
+    coupled: &mut Coupled<D>,
+    v: &mut [[f64; D]],
+    enough: f64,
+) {
+    let equations = Equations::new(rows, inverse_mass, coupled, v);
+    let old = equations.center.clone();
+    let mut impulses = old.clone();
+    let mut missed = equations.missed(&impulses);
+    let (mut best, before) = ((square(&missed), old.clone()), square(&missed));
+    for _ in 0..MOST_ITERATIONS {
+        if missed.iter().all(|missed| missed.abs() <= enough) {
+            break;
+        }
+        let Some(correction) = equations.correction(&impulses, &missed) else { break };
+        (impulses, missed) = equations.search(&impulses, &missed, &correction);
+        let size = square(&missed);
+        if size < best.0 {
+            best = (size, impulses.clone());
+        }
+    }
+    // The comparison holds for no number that is none.
+    if !(best.0 < before) {
+        return;
+    }
+    for contact in &equations.contacts {
+        let unknowns = contact.first..contact.first + contact.count;
+        let sum = |of: &[f64]| {
+            contact.axes.iter().zip(&of[unknowns.clone()]).fold([0.0; D], |sum, (axis, x)| add(&sum, &scaled(axis, *x)))
+        };
+        let (from, to) = (sum(&old), sum(&best.1));
+        let row = &mut rows[contact.row];
+        coupled.give((&row.points, &row.weights), &subtract(&to, &from), inverse_mass, v);
+        row.normal_impulse = best.1[contact.first];
+        row.friction_impulse = subtract(&to, &scaled(&row.normal, row.normal_impulse));
+    }
+}
+
+impl<const D: usize> Equations<D> {
+    fn new(rows: &[Row<D>], inverse_mass: &[[f64; D]], coupled: &Coupled<D>, v: &[[f64; D]]) -> Self {
+        let (mut contacts, mut size) = (Vec::new(), 0);
+        for (number, row) in rows.iter().enumerate().filter(|(_, row)| row.mass[0] > 0.0) {
+            let mut axes = [row.normal; D];
+            axes.iter_mut().skip(1).zip(across(&row.normal)).for_each(|(axis, across)| *axis = across);
+            let count = count_of(row);
+            contacts.push(Contact { row: number, axes, first: size, count, friction: row.friction, mass: row.mass });
+            size += count;
+        }
+        let stride = size.next_multiple_of(WIDTH);
+        let (mut mobility, mut moved) = (vec![0.0; size * stride], vec![[0.0; D]; v.len()]);
+        let (mut center, mut free) = (Vec::with_capacity(size), Vec::with_capacity(size));
+        for contact in &contacts {
+            let row = &rows[contact.row];
+            let (impulse, u) = (row.impulse(), subtract(&row.mean(v), &row.carry));
+            for (k, axis) in contact.axes[..contact.count].iter().enumerate() {
+                moved.fill([0.0; D]);
+                coupled.add_answer((&row.points, &row.weights), axis, inverse_mass, &mut moved);
+                let line = &mut mobility[(contact.first + k) * stride..][..size];
+                for other in &contacts {
+                    let velocity = rows[other.row].mean(&moved);
+                    let own = &mut line[other.first..other.first + other.count];
+                    own.iter_mut().zip(&other.axes).for_each(|(entry, axis)| *entry = dot(axis, &velocity));
+                }
+                center.push(dot(&impulse, axis));
+                free.push(dot(&u, axis) - if k == 0 { row.target } else { 0.0 });
+            }
+        }
+        let mut equations = Equations { contacts, mobility, stride, free, center };
+        let by_impulses = equations.by_impulses(&equations.center);
+        equations.free.iter_mut().zip(&by_impulses).for_each(|(free, given)| *free -= given);
+        equations
+    }
+
+    /// W λ, by symmetry.
+    fn by_impulses(&self, impulses: &[f64]) -> Vec<f64> {
+        let mut out = vec![0.0; self.stride];
+        for (line, impulse) in self.mobility.chunks_exact(self.stride).zip(impulses).filter(|(_, x)| **x != 0.0) {
+            Simd::best().run(Add { from: line, factor: *impulse, to: &mut out });
+        }
+        out.truncate(self.free.len());
+        out
+    }
+
+    /// The velocities at trial impulses, less the targets and with what holds changes back [m/s].
+    fn velocities(&self, impulses: &[f64]) -> Vec<f64> {
+        let mut out = self.by_impulses(impulses);
+        out.iter_mut().zip(&self.free).for_each(|(u, free)| *u += free);
+        for contact in &self.contacts {
+            for k in 0..contact.count {
+                let (at, mass) = (contact.first + k, contact.mass[usize::from(k > 0)]);
+                out[at] += PROXIMAL / mass * (impulses[at] - self.center[at]);
+            }
+        }
+        out
+    }
+
+    /// What a contact does, and what it misses [m/s].
+    fn case(&self, contact: &Contact<D>, impulses: &[f64], u: &[f64]) -> (Case<D>, [f64; D]) {
+        let range = contact.first..contact.first + contact.count;
+        let (own, u) = (&impulses[range.clone()], &u[range]);
+        let [along, across] = contact.mass;
+        let mut missed = [0.0; D];
+        let presses = own[0] - along * u[0];
+        if presses <= 0.0 {
+            for k in 0..contact.count {
+                missed[k] = own[k] / contact.mass[usize::from(k > 0)];
+            }
+            return (Case::Apart, missed);
+        }
+        missed[0] = u[0];
+        let mut wanted = [0.0; D];
+        for k in 1..contact.count {
+            wanted[k] = own[k] - across * u[k];
+        }
+        let (size, most) = (dot(&wanted, &wanted).sqrt(), contact.friction * presses);
+        if size <= most {
+            missed[1..contact.count].copy_from_slice(&u[1..]);
+            return (Case::Sticks, missed);
+        }
+        for k in 1..contact.count {
+            missed[k] = (own[k] - wanted[k] * (most / size)) / across;
+        }
+        (Case::Slides(scaled(&wanted, 1.0 / size), most / size), missed)
+    }
+
+    fn missed(&self, impulses: &[f64]) -> Vec<f64> {
+        let u = self.velocities(impulses);
+        let mut out = vec![0.0; impulses.len()];
+        for contact in &self.contacts {
+            let (_, missed) = self.case(contact, impulses, &u);
+            out[contact.first..contact.first + contact.count].copy_from_slice(&missed[..contact.count]);
+        }
+        out
+    }
+
+    /// Newton's correction of the impulses; none where its equations have no solution.
+    fn correction(&self, impulses: &[f64], missed: &[f64]) -> Option<Vec<f64>> {
+        let u = self.velocities(impulses);
+        let mut out = vec![0.0; impulses.len()];
+        let mut present = Vec::new();
+        for contact in &self.contacts {
+            match self.case(contact, impulses, &u).0 {
+                // What is apart loses its impulse.
+                Case::Apart => {
+                    for k in contact.first..contact.first + contact.count {
+                        out[k] = -impulses[k];
+                    }
+                }
+                case => present.push((contact, case)),
+            }
+        }
+        let lost = self.by_impulses(&out);
+        let unknowns: Vec<usize> =
+            present.iter().flat_map(|(contact, _)| contact.first..contact.first + contact.count).collect();
+        let size = unknowns.len();
+        let stride = (size + 1).next_multiple_of(WIDTH);
+        let mut matrix = vec![0.0; size * stride];
+        let mut lines = matrix.chunks_exact_mut(stride);
+        for (contact, case) in &present {
+            // Rows of W, with what holds changes back, and the velocity that is lost at the end.
+            let line_of = |k: usize, line: &mut [f64]| {
+                let from = &self.mobility[(contact.first + k) * self.stride..][..self.stride];
+                line.iter_mut().zip(&unknowns).for_each(|(to, column)| *to = from[*column]);
+                line[size] = lost[contact.first + k];
+            };
+            let own = unknowns.partition_point(|k| *k < contact.first);
+            let held = |k: usize| PROXIMAL / contact.mass[usize::from(k > 0)];
+            let normal = lines.next()?;
+            line_of(0, normal);
+            normal[own] += held(0);
+            let normal = &*normal;
+            let mut of_axes: [Vec<f64>; D] = std::array::from_fn(|_| Vec::new());
+            for k in 1..contact.count {
+                of_axes[k].resize(stride, 0.0);
+                line_of(k, &mut of_axes[k]);
+                of_axes[k][own + k] += held(k);
+            }
+            for k in 1..contact.count {
+                let line = lines.next()?;
+                let Case::Slides(direction, part) = case else {
+                    line.copy_from_slice(&of_axes[k]);
+                    continue;
+                };
+                // F − µ a d with a = N − ρ uₙ and d the direction of F − r uₜ, over r.
+                let [along, across] = contact.mass;
+                let by_normal = contact.friction * direction[k];
+                Simd::best().run(Add { from: normal, factor: by_normal * along / across, to: line });
+                line[own] -= by_normal / across;
+                for l in 1..contact.count {
+                    let turned = part * (f64::from(u8::from(k == l)) - direction[k] * direction[l]);
+                    Simd::best().run(Add { from: &of_axes[l], factor: turned, to: line });
+                    line[own + l] += (f64::from(u8::from(k == l)) - turned) / across;
+                }
+            }
+        }
+        for (k, line) in unknowns.iter().zip(matrix.chunks_exact_mut(stride)) {
+            line[size] = -missed[*k] - line[size];
+        }
+        if !Simd::best().run(Eliminate { matrix: &mut matrix, size, stride }) {
+            return None;
+        }
+        for (k, line) in unknowns.iter().zip(matrix.chunks_exact(stride)) {
+            out[*k] = line[size];
+        }
+        out.iter().all(|x| x.is_finite()).then_some(out)
+    }
+
+    /// The impulses along a correction that miss less, halving it; where none does, those that miss least of all tried, or a tenth of it.
+    fn search(&self, impulses: &[f64], missed: &[f64], correction: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let at = |part: f64| -> (Vec<f64>, Vec<f64>) {
+            let trial: Vec<f64> = impulses.iter().zip(correction).map(|(x, c)| x + part * c).collect();
+            let missed = self.missed(&trial);
+            (trial, missed)
+        };
+        let (now, mut part) = (square(missed), 1.0);
+        for _ in 0..MOST_HALVINGS {
+            let trial = at(part);
+            if square(&trial.1) < (1.0 - 1e-4 * part) * now {
+                return trial;
+            }
+            part *= 0.5;
+        }
+        at(UPHILL)
+    }
+}
+
+fn square(of: &[f64]) -> f64 {
+    of.iter().map(|x| x * x).sum()
+}
+
+/// to += factor from, for whole packs.
+struct Add<'a> {
+    from: &'a [f64],
+    factor: f64,
+    to: &'a mut [f64],
+}
+
+impl Work for Add<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<P: Pack>(self) {
+        add_rows::<P>(self.from, self.factor, self.to);
+    }
+}
+
+/// A loop by numbers, because adapters of iterators are compiled without the vector instructions of their caller.
+#[inline(always)]
+fn add_rows<P: Pack>(from: &[f64], factor: f64, to: &mut [f64]) {
+    let (factor, from, to) = (P::splat(factor), from.as_chunks::<WIDTH>().0, to.as_chunks_mut::<WIDTH>().0);
+    let count = if from.len() < to.len() { from.len() } else { to.len() };
+    let mut k = 0;
+    while k < count {
+        (P::load(&to[k]) + factor * P::load(&from[k])).store(&mut to[k]);
+        k += 1;
+    }
+}
+
+/// Replaces the last column by the solution, by elimination with the largest pivot of each column; says whether there is one.
+struct Eliminate<'a> {
+    /// Rows of `stride` numbers, a multiple of eight: `size` columns and the right-hand side.
+    matrix: &'a mut [f64],
+    size: usize,
+    stride: usize,
+}
+
+impl Work for Eliminate<'_> {
+    type Output = bool;
+    #[inline(always)]
+    fn run<P: Pack>(self) -> bool {
+        let Eliminate { matrix, size, stride } = self;
+        for k in 0..size {
+            let mut pivot = k;
+            for i in k + 1..size {
+                if matrix[i * stride + k].abs() > matrix[pivot * stride + k].abs() {
+                    pivot = i;
+                }
+            }
+            if !(matrix[pivot * stride + k].abs() > 0.0) {
+                return false;
+            }
+            let (upper, lower) = matrix.split_at_mut((k + 1) * stride);
+            let row = &mut upper[k * stride..];
+            if pivot > k {
+                row.swap_with_slice(&mut lower[(pivot - k - 1) * stride..][..stride]);
+            }
+            let first = k / WIDTH * WIDTH;
+            let mut i = 0;
+            while i < size - k - 1 {
+                let line = &mut lower[i * stride..(i + 1) * stride];
+                let factor = line[k] / row[k];
+                if factor != 0.0 {
+                    add_rows::<P>(&row[first..stride], -factor, &mut line[first..]);
+                }
+                i += 1;
+            }
+        }
+        for k in (0..size).rev() {
+            let mut x = matrix[k * stride + size];
+            for l in k + 1..size {
+                x -= matrix[k * stride + l] * matrix[l * stride + size];
+            }
+            matrix[k * stride + size] = x / matrix[k * stride + k];
+        }
+        true
+    }
+}
