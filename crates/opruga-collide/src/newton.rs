@@ -101,8 +101,7 @@ pub(crate) fn step<const D: usize>(
             best = (size, impulses.clone());
         }
     }
-    // The comparison holds for no number that is none.
-    if !(best.0 < before) {
+    if best.0 >= before || before.is_nan() {
         return;
     }
     for contact in &equations.contacts {
@@ -357,7 +356,8 @@ impl Work for Eliminate<'_> {
                     pivot = i;
                 }
             }
-            if !(matrix[pivot * stride + k].abs() > 0.0) {
+            let largest = matrix[pivot * stride + k].abs();
+            if largest == 0.0 || largest.is_nan() {
                 return false;
             }
             let (upper, lower) = matrix.split_at_mut((k + 1) * stride);
@@ -384,5 +384,79 @@ impl Work for Eliminate<'_> {
             matrix[k * stride + size] = x / matrix[k * stride + k];
         }
         true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A contact of two points, with an impulse of 1 N s.
+    fn contact(points: [u32; 2], friction: f64, inverse_mass: &[[f64; 3]]) -> Row<3> {
+        let mut row = Row {
+            id: 0,
+            points: [points[0], points[1], 0, 0],
+            weights: [1.0, -1.0, 0.0, 0.0],
+            normal: [0.0, 0.0, 1.0],
+            gap: 0.0,
+            target: 0.0,
+            carry: [0.0; 3],
+            friction,
+            mass: [0.0; 2],
+            normal_impulse: 1.0,
+            friction_impulse: [0.0; 3],
+            of_obstacle: false,
+            coupled: true,
+        };
+        row.weigh(inverse_mass);
+        row
+    }
+
+    /// Points of 1 kg one above the other on one that is held, with two equal contacts between each two: what each of them carries has no
+    /// unique answer.
+    fn column(points: usize, friction: f64) -> (Vec<Row<3>>, Vec<[f64; 3]>) {
+        let mut inverse_mass = vec![[1.0; 3]; points];
+        inverse_mass[0] = [0.0; 3];
+        let row = |k: usize| contact([(k / 2) as u32 + 1, (k / 2) as u32], friction, &inverse_mass);
+        ((0..2 * (points - 1)).map(row).collect(), inverse_mass)
+    }
+
+    fn solved(rows: &mut [Row<3>], inverse_mass: &[[f64; 3]], v: &mut [[f64; 3]]) {
+        for _ in 0..3 {
+            step(rows, inverse_mass, &mut Coupled::default(), v, 1e-12);
+        }
+    }
+
+    #[test]
+    fn contacts_that_are_redundant_stop_a_column_and_stick() {
+        let (mut rows, inverse_mass) = column(8, 0.5);
+        let mut v = vec![[0.01, -0.02, -1.0]; 8];
+        v[0] = [0.0; 3];
+        solved(&mut rows, &inverse_mass, &mut v);
+        assert!(v.iter().flatten().all(|v| v.abs() < 1e-9), "{v:?}");
+        // The lowest two carry all seven points, which had two impulses of 1 N s from above and below.
+        let carried: f64 = rows[..2].iter().map(|row| row.normal_impulse).sum();
+        assert!((carried - 2.0 - 7.0).abs() < 1e-9, "{carried}");
+    }
+
+    #[test]
+    fn contacts_that_slide_have_the_whole_friction_against_their_motion() {
+        let (mut rows, inverse_mass) = column(2, 0.3);
+        let mut v = vec![[0.0; 3], [3.0, 4.0, -1.0]];
+        solved(&mut rows, &inverse_mass, &mut v);
+        // 2 N s were there, and 1 N s stops the fall: 0.3 · 3 N s slow the point down along its motion.
+        let speed = 5.0 - 0.9;
+        let expected = [0.6 * speed, 0.8 * speed, 0.0];
+        assert!(v[1].iter().zip(expected).all(|(v, e)| (v - e).abs() < 1e-9), "{v:?}");
+    }
+
+    #[test]
+    fn contacts_that_part_have_no_impulse() {
+        let (mut rows, inverse_mass) = column(2, 0.3);
+        let mut v = vec![[0.0; 3], [1.0, 0.0, 5.0]];
+        solved(&mut rows, &inverse_mass, &mut v);
+        assert!(rows.iter().all(|row| row.impulse() == [0.0; 3]), "{rows:?}");
+        // What the two impulses gave is taken back.
+        assert!((v[1][2] - 3.0).abs() < 1e-12 && v[1][0] == 1.0, "{v:?}");
     }
 }

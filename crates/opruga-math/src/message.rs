@@ -223,6 +223,12 @@ impl IntoField for AnyMessage {
 }
 
 /// What is not there is an empty text.
+impl<T: IntoField> IntoField for Box<T> {
+    fn field(&self) -> Field {
+        T::field(self)
+    }
+}
+
 impl<T: IntoField> IntoField for Option<T> {
     fn field(&self) -> Field {
         self.as_ref().map_or_else(|| Field::Text(String::new()), IntoField::field)

@@ -33,7 +33,7 @@ fn every_message_has_a_croatian_text_with_its_fields() {
 fn what_a_model_refuses_in_a_step_comes_with_what_helps_under_the_settings_of_the_rule() {
     let (about, helps) = (Refusal::NoThicknessLeft { cell: 3, time: 0.75 }.into(), Some(StepHint::LoadSteps {}.into()));
     let cause = StepError::Model { model: "fem", about, helps };
-    let error = WorldError::Step { body: "b".into(), cause };
+    let error = WorldError::Step { body: "b".into(), cause: Box::new(cause) };
     let croatian = Translation::croatian().in_full(&error).expect("it is known");
     assert!(croatian.starts_with("tijelo `b`: fem: ćelija 3 u t = 0.75 s nema pozitivnu debljinu"), "{croatian}");
     let hint = "`when_not_converged = \"halve\"`, više `load_steps`, ili više `iterations`";

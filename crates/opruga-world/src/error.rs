@@ -89,11 +89,11 @@ messages! {
         /// A model has no meaning in the state reached.
         "run.model" #[error("body `{body}`: {cause}; the world is at its last good frame")]
         #[allowed("{}", cause.allowed().unwrap_or_default())] #[hint("{}", cause.hint().unwrap_or_default())]
-        Step { body: String, cause: StepError },
+        Step { body: String, cause: Box<StepError> },
         /// An implicit integrator has not found the end of a step.
         "run.not_converged" #[error("body `{body}`: {cause}; the world is at its last good frame")]
         #[allowed("{}", cause.allowed().unwrap_or_default())] #[hint("{}", cause.hint().unwrap_or_default())]
-        NotConverged { body: String, cause: StepError },
+        NotConverged { body: String, cause: Box<StepError> },
         /// The sums over all bodies left the finite numbers in the frame after the last good one, whose time is given \[s\].
         "run.overflow"
         #[error("the energy or the momentum of all bodies together left the finite numbers in the frame from t = {} s; the world is at its last good frame", number(*last))]

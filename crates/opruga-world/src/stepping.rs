@@ -94,9 +94,9 @@ impl<const D: usize> World<D> {
                 }
                 Err(StepError::BrokenOff {}) => WorldError::BrokenOff {},
                 Err(cause @ StepError::NotConverged { .. }) => {
-                    WorldError::NotConverged { body: body(0), cause: cause.clone() }
+                    WorldError::NotConverged { body: body(0), cause: Box::new(cause.clone()) }
                 }
-                Err(cause) => WorldError::Step { body: body(0), cause: cause.clone() },
+                Err(cause) => WorldError::Step { body: body(0), cause: Box::new(cause.clone()) },
                 // It is one that has failed.
                 Ok(()) => WorldError::Overflow { last: self.time() },
             });

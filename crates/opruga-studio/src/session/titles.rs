@@ -106,7 +106,7 @@ impl Titles {
             }
             WorldError::NotConverged { body, cause } | WorldError::Step { body, cause } => {
                 *body = self.of(body).to_string();
-                if let StepError::Model { about, .. } = cause {
+                if let StepError::Model { about, .. } = &mut **cause {
                     *about = self.in_message(about);
                 }
             }
