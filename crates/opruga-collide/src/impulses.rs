@@ -2,6 +2,7 @@
 
 use crate::coupled::Coupled;
 use crate::row::Row;
+use crate::spread::Spread;
 use crate::subspace;
 use crate::vector::{dot, scaled};
 use core::any::Any;
@@ -75,39 +76,39 @@ impl<const D: usize> Turns<D> {
     }
 
     /// Sorts rows into those that points join, each in the order of features: what is solved together lies together.
-    fn join(&mut self, rows: &mut Vec<Row<D>>, coupled: &Coupled<D>) {
+    fn join(&mut self, rows: &mut Vec<Row<D>>, spread: &Spread, coupled: &Coupled<D>) {
         if !rows.is_sorted_by_key(|row| row.id) {
             rows.sort_by_key(|row| row.id);
         }
-        let points = |row: &Row<D>| {
-            let (points, weights) = (row.points, row.weights);
-            (0..=D).filter(move |k| weights[*k] != 0.0).map(move |k| points[k])
-        };
+        fn points<'a, const D: usize>(spread: &'a Spread, row: &'a Row<D>) -> impl Iterator<Item = u32> + 'a {
+            let (points, weights) = row.on(spread);
+            points.iter().zip(weights).filter(|(_, w)| **w != 0.0).map(|(p, _)| *p)
+        }
         for row in rows.iter() {
             let mut begin = |p: u32| {
                 self.parent[p as usize] = p;
                 self.number[p as usize] = u32::MAX;
             };
-            points(row).for_each(&mut begin);
+            points(spread, row).for_each(&mut begin);
             if row.coupled {
-                coupled.followers((&row.points, &row.weights), begin);
+                coupled.followers(row.on(spread), begin);
             }
         }
         for row in rows.iter() {
-            let mut own = points(row);
+            let mut own = points(spread, row);
             let Some(first) = own.next() else { continue };
             for p in own {
                 self.join_points(first, p);
             }
             if row.coupled {
-                coupled.followers((&row.points, &row.weights), |p| self.join_points(first, p));
+                coupled.followers(row.on(spread), |p| self.join_points(first, p));
             }
         }
         // Counted, summed up, and entered from behind.
         self.starts.clear();
         self.joined.clear();
         for row in rows.iter() {
-            let root = points(row).next().map_or(0, |p| self.root(p)) as usize;
+            let root = points(spread, row).next().map_or(0, |p| self.root(p)) as usize;
             if self.number[root] == u32::MAX {
                 self.number[root] = self.starts.len() as u32;
                 self.starts.push(0);
@@ -126,7 +127,7 @@ impl<const D: usize> Turns<D> {
         for (row, number) in rows.iter().zip(&self.joined).rev() {
             let start = &mut self.starts[*number as usize];
             *start -= 1;
-            (self.sorted[*start as usize], self.heads[*start as usize]) = (*row, (row.points, 0));
+            (self.sorted[*start as usize], self.heads[*start as usize]) = (*row, (row.head(), 0));
         }
         self.starts.push(sum);
         std::mem::swap(rows, &mut self.sorted);
@@ -136,6 +137,7 @@ impl<const D: usize> Turns<D> {
 /// What is solved for.
 pub(crate) struct Problem<'a, const D: usize> {
     pub(crate) rows: &'a mut Vec<Row<D>>,
+    pub(crate) spread: &'a Spread,
     pub(crate) inverse_mass: &'a Vec<[f64; D]>,
     pub(crate) coupled: &'a mut Coupled<D>,
     pub(crate) v: &'a mut Vec<[f64; D]>,
@@ -152,6 +154,7 @@ impl<const D: usize> Problem<'_, D> {
         }
         Some(Problem {
             rows: cast(self.rows)?,
+            spread: self.spread,
             inverse_mass: (self.inverse_mass as &dyn Any).downcast_ref()?,
             coupled: cast(self.coupled)?,
             v: cast(self.v)?,
@@ -184,8 +187,8 @@ fn solve_in_space(problem: Problem<'_, 3>) -> usize {
 /// A row is passed over while nothing that it holds has changed since its last turn by more than the tolerance: so sweeps cost what is still
 /// on the move.
 fn solve<const D: usize>(problem: Problem<'_, D>) -> usize {
-    let Problem { rows, inverse_mass, coupled, v, turns, approach } = problem;
-    turns.join(rows, coupled);
+    let Problem { rows, spread, inverse_mass, coupled, v, turns, approach } = problem;
+    turns.join(rows, spread, coupled);
     let Turns { stamps, heads, now, starts, .. } = turns;
     let begin = *now;
     for ends in starts.windows(2) {
@@ -198,7 +201,7 @@ fn solve<const D: usize>(problem: Problem<'_, D>) -> usize {
         for sweep in 0..most {
             let steps = together && sweep > 0 && sweep % SWEEPS_BETWEEN == 0 && failures < MOST_FAILURES;
             if steps {
-                subspace::step(rows, inverse_mass, coupled, v);
+                subspace::step(rows, spread, inverse_mass, coupled, v);
                 // All velocities may have changed.
                 heads.iter_mut().for_each(|(_, last)| *last = 0);
             }
@@ -207,21 +210,22 @@ fn solve<const D: usize>(problem: Problem<'_, D>) -> usize {
             for k in 0..rows.len() {
                 let k = if sweep % 2 == 0 { k } else { rows.len() - 1 - k };
                 let (points, last) = &mut heads[k];
-                if *last > 0 && points[..=D].iter().all(|p| stamps[*p as usize] <= *last) {
+                let points = spread.points_of::<D>(points);
+                if *last > 0 && points.iter().all(|p| stamps[*p as usize] <= *last) {
                     continue;
                 }
                 *now += 1;
-                let change = if rows[k].coupled {
-                    rows[k].solve_coupled(inverse_mass, coupled, v)
+                let change = if rows[k].coupled || rows[k].spread[1] > 0 {
+                    rows[k].solve_coupled(spread, inverse_mass, coupled, v)
                 } else {
                     rows[k].solve(inverse_mass, v)
                 };
                 largest = change.larger(largest);
                 if change > tolerance * approach {
                     changed = true;
-                    points[..=D].iter().for_each(|p| stamps[*p as usize] = *now);
+                    points.iter().for_each(|p| stamps[*p as usize] = *now);
                     if rows[k].coupled {
-                        coupled.followers((&rows[k].points, &rows[k].weights), |p| stamps[p as usize] = *now);
+                        coupled.followers(rows[k].on(spread), |p| stamps[p as usize] = *now);
                     }
                 }
                 *last = *now;
@@ -241,6 +245,7 @@ fn solve<const D: usize>(problem: Problem<'_, D>) -> usize {
 /// Displacements that take overlapping pairs apart by at most `most` [m], without bringing others into overlap: the same sweeps, on positions.
 pub(crate) fn part<const D: usize>(
     rows: &[Row<D>],
+    spread: &Spread,
     inverse_mass: &[[f64; D]],
     wanted: &[f64],
     multipliers: &mut Vec<f64>,
@@ -252,12 +257,12 @@ pub(crate) fn part<const D: usize>(
     for _ in 0..MOST_SWEEPS {
         let mut largest: f64 = 0.0;
         for (k, row) in rows.iter().enumerate() {
-            let now = dot(&row.mean(moved), &row.normal);
+            let now = dot(&row.mean(spread, moved), &row.normal);
             let old = multipliers[k];
             let new = (old + (wanted[k] - now) * row.mass[0]).larger(0.0);
             if new != old {
                 multipliers[k] = new;
-                row.give(&scaled(&row.normal, new - old), inverse_mass, moved);
+                row.give(spread, &scaled(&row.normal, new - old), inverse_mass, moved);
                 largest = ((new - old) / row.mass[0]).abs().larger(largest);
             }
         }

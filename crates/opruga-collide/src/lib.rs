@@ -88,6 +88,7 @@ mod row;
 mod rows;
 mod shape;
 pub mod spec;
+mod spread;
 mod subspace;
 mod surface;
 mod touch;

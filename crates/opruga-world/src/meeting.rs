@@ -21,7 +21,7 @@ pub(crate) struct Meeting<const D: usize> {
     made_for: MadeFor<D>,
     /// For every island the first of its points and where their nodes lie in its columns, body by body.
     columns: Vec<Vec<(u32, Vec<u32>)>>,
-    /// The island of every point and the index in its columns.
+    /// The island of every point and the index in its columns; `u32::MAX` for one that nodes carry.
     points: Vec<(u32, u32)>,
     /// The bodies that touch, by their place in the scene.
     pub(crate) bodies: Vec<usize>,
@@ -102,11 +102,12 @@ impl<const D: usize> Meeting<D> {
             if !blueprint.touches() {
                 continue;
             }
-            let own = edges_of(&blueprint.mesh);
+            let surface = blueprint.touching_surface();
+            let own = edges_of(&surface, &blueprint.mesh);
             (length, edges) = (length + own.sum, edges + own.count);
             shortest = own.shortest.smaller(shortest);
             let first = touching.surface.points() as u32;
-            let nodes = touching.surface.add(&blueprint.mesh, bodies.len() as u32);
+            let nodes = touching.surface.add_surface(surface, bodies.len() as u32);
             bodies.push(body);
             let system = &islands[number].system;
             let indices: Vec<u32> = nodes.iter().map(|n| system.layout.place(*n as usize, lane) as u32).collect();
@@ -119,9 +120,11 @@ impl<const D: usize> Meeting<D> {
                 points.push((number as u32, *index));
             }
             if islands[number].integrator.takes_pushes() {
-                touching.coupled.add(first as usize..touching.surface.points());
+                touching.coupled.add(first as usize..first as usize + indices.len());
                 pushed.push(Pushed::new(number, indices.clone()));
             }
+            points.resize(touching.surface.points(), (number as u32, u32::MAX));
+            touching.inverse_mass.resize(touching.surface.points(), [0.0; D]);
             columns[number].push((first, indices));
         }
         let mean_edge = if edges > 0 { length / edges as f64 } else { 1.0 };
