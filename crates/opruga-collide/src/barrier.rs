@@ -303,9 +303,11 @@ impl<const D: usize> Touching<D> {
     /// Takes what the barrier did in a step of h [s], for those who ask for contacts: pairs and their friction [N], where the points end.
     pub fn take_pressed(&mut self, h: f64, pairs: impl Iterator<Item = (Pressed<D>, [f64; D])>) {
         self.rows.clear();
+        self.spread.clear();
         for (pair, friction) in pairs {
             let gap = Gap { points: pair.points, weights: pair.weights, gap: pair.gap, normal: pair.normal };
-            let mut row = Row::new(pair.id, &gap, 0.0, pair.friction, &self.inverse_mass);
+            let mut row = Row::new(pair.id, &gap, 0.0, pair.friction);
+            row.put_into(&mut self.spread, &self.surface);
             (row.normal_impulse, row.friction_impulse) = (pair.force * h, scaled(&friction, h));
             self.rows.push(row);
         }

@@ -52,7 +52,7 @@ impl<const D: usize> Candidates<D> {
     /// distance for pairs of bodies, the second one for those with obstacles.
     ///
     /// `meet` says of two bodies whether they may touch, of a body with itself whether it may touch itself. Features that share a point
-    /// are no pair, and neither are vertices of bodies with facets of obstacles. False where there are more than `most` pairs: then the
+    /// or a node that carries a point of both are no pair, and neither are vertices of bodies with facets of obstacles. False where there are more than `most` pairs: then the
     /// search ends.
     pub fn find(
         &mut self,
@@ -73,11 +73,11 @@ impl<const D: usize> Candidates<D> {
         for pair @ [a, b] in close.iter().filter(|[_, b]| !of_obstacle(*b)) {
             let distance = distance_of(pair);
             let [a, b] = [*a as usize, *b as usize];
-            self.choose(surface.points_of(a), b, distance, |p| boxes[p]);
+            self.choose(surface.vertices_of(a), b, distance, |p| boxes[p]);
             std::mem::swap(&mut self.first, &mut self.second);
             self.choose(surface.facets_of(b), a, 0.0, |f| wider(around(boxes, &surface.facets[f]), distance));
             std::mem::swap(&mut self.first, &mut self.second);
-            let apart = |p: u32, facet: u32| a != b || !surface.facets[facet as usize].contains(&p);
+            let apart = |p: u32, facet: u32| a != b || !surface.share(&[p], &surface.facets[facet as usize]);
             self.join(|p, facet| {
                 if apart(p, facet) {
                     pairs.push([p, facet]);
@@ -101,7 +101,7 @@ impl<const D: usize> Candidates<D> {
             std::mem::swap(&mut self.first, &mut self.second);
             let apart = |i: u32, j: u32| {
                 let [first, second] = [i, j].map(|edge| &surface.edges[edge as usize]);
-                a != b || i < j && !first.iter().any(|p| second.contains(p))
+                a != b || i < j && !surface.share(first, second)
             };
             self.join(|i, j| {
                 if apart(i, j) {
@@ -130,7 +130,7 @@ impl<const D: usize> Candidates<D> {
         self.bodies.clear();
         for number in 0..surface.bodies() {
             let mut whole = [[f64::INFINITY; D], [f64::NEG_INFINITY; D]];
-            for [low, high] in &boxes[surface.points_of(number)] {
+            for [low, high] in &boxes[surface.vertices_of(number)] {
                 for d in 0..D {
                     whole[0][d] = low[d].smaller(whole[0][d]);
                     whole[1][d] = high[d].larger(whole[1][d]);
@@ -140,7 +140,7 @@ impl<const D: usize> Candidates<D> {
         }
         self.close_bodies.clear();
         // A body without points has no box.
-        let body = |number: usize| surface.body.get(surface.points_of(number).start).copied();
+        let body = |number: usize| surface.body.get(surface.vertices_of(number).start).copied();
         let own = |number: usize| {
             let of_obstacle = body(number).is_some_and(|body| surface.is_obstacle(body));
             wider(self.bodies[number], distances[usize::from(of_obstacle)])

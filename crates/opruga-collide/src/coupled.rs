@@ -2,6 +2,7 @@
 //!
 //! An impulse on one point moves all of them, Δv = Y p. Columns of Y are asked for where contacts need them.
 
+use crate::spread::Weighted;
 use crate::vector::scaled;
 use core::ops::Range;
 
@@ -12,9 +13,6 @@ pub trait Respond<const D: usize> {
     /// whether that is known.
     fn respond(&mut self, body: usize, point: usize, out: &mut [[[f64; D]; D]]) -> bool;
 }
-
-/// The points of a contact and their weights, by which it moves and pushes them.
-pub(crate) type Weighted<'a> = (&'a [u32; 4], &'a [f64; 4]);
 
 /// Such bodies, and the columns that are known in the step.
 #[derive(Clone, Debug, Default)]
@@ -79,7 +77,7 @@ impl<const D: usize> Coupled<D> {
 
     /// Whether a row has any point that answers together with others.
     pub(crate) fn holds(&self, (points, weights): Weighted<'_>) -> bool {
-        !self.bodies.is_empty() && (0..=D).any(|k| weights[k] != 0.0 && self.body_of(points[k]).is_some())
+        !self.bodies.is_empty() && (0..points.len()).any(|k| weights[k] != 0.0 && self.body_of(points[k]).is_some())
     }
 
     /// Forgets the columns of a body, as its matrix is another one.
@@ -100,7 +98,7 @@ impl<const D: usize> Coupled<D> {
 
     /// Asks for the columns of the points of a row that are not known; says whether all are known then.
     pub(crate) fn need(&mut self, (points, weights): Weighted<'_>, respond: &mut dyn Respond<D>) -> bool {
-        for k in (0..=D).filter(|k| weights[*k] != 0.0) {
+        for k in (0..points.len()).filter(|k| weights[*k] != 0.0) {
             let Some(number) = self.body_of(points[k]) else { continue };
             let body = &mut self.bodies[number];
             let local = points[k] as usize - body.points.start;
@@ -130,7 +128,7 @@ impl<const D: usize> Coupled<D> {
     /// Σ wₖ wₗ Yₖₗ over the points of a row: the velocity of its gap by a unit impulse along every axis.
     pub(crate) fn mobility(&self, (points, weights): Weighted<'_>, inverse_mass: &[[f64; D]]) -> [[f64; D]; D] {
         let mut out = [[0.0; D]; D];
-        for k in (0..=D).filter(|k| weights[*k] != 0.0) {
+        for k in (0..points.len()).filter(|k| weights[*k] != 0.0) {
             let p = points[k];
             let Some(body) = self.body_of(p) else {
                 for d in 0..D {
@@ -138,7 +136,7 @@ impl<const D: usize> Coupled<D> {
                 }
                 continue;
             };
-            for l in (0..=D).filter(|l| weights[*l] != 0.0 && self.body_of(points[*l]) == Some(body)) {
+            for l in (0..points.len()).filter(|l| weights[*l] != 0.0 && self.body_of(points[*l]) == Some(body)) {
                 let entry = self.entry(body, p, points[l]);
                 for d in 0..D {
                     for i in 0..D {
@@ -160,7 +158,7 @@ impl<const D: usize> Coupled<D> {
     ) {
         self.add_answer(weighted, impulse, inverse_mass, v);
         let (points, weights) = weighted;
-        for k in (0..=D).filter(|k| weights[*k] != 0.0) {
+        for k in (0..points.len()).filter(|k| weights[*k] != 0.0) {
             let Some(body) = self.body_of(points[k]) else { continue };
             let Body { points: range, column, impulses, .. } = &mut self.bodies[body];
             let sum = &mut impulses[column[points[k] as usize - range.start] as usize];
@@ -176,7 +174,7 @@ impl<const D: usize> Coupled<D> {
         inverse_mass: &[[f64; D]],
         v: &mut [[f64; D]],
     ) {
-        for k in (0..=D).filter(|k| weights[*k] != 0.0) {
+        for k in (0..points.len()).filter(|k| weights[*k] != 0.0) {
             let p = points[k] as usize;
             let own = scaled(impulse, weights[k]);
             let Some(body) = self.body_of(points[k]) else {
@@ -200,7 +198,7 @@ impl<const D: usize> Coupled<D> {
 
     /// The points that follow those of a row, beside these.
     pub(crate) fn followers(&self, (points, weights): Weighted<'_>, mut visit: impl FnMut(u32)) {
-        for k in (0..=D).filter(|k| weights[*k] != 0.0) {
+        for k in (0..points.len()).filter(|k| weights[*k] != 0.0) {
             if let Some(body) = self.body_of(points[k]) {
                 self.bodies[body].known.iter().for_each(|p| visit(*p));
             }

@@ -3,6 +3,7 @@
 use crate::coupled::Coupled;
 use crate::newton;
 use crate::row::Row;
+use crate::spread::Spread;
 use crate::subspace;
 use crate::vector::{dot, length, scaled, subtract};
 use core::any::Any;
@@ -81,12 +82,14 @@ impl Approach {
 }
 
 /// The points of a row that can move.
-fn movable<const D: usize>(row: &Row<D>, inverse_mass: &[[f64; D]]) -> impl Iterator<Item = u32> + use<D> {
-    let (points, mut moves) = (row.points, [false; 4]);
-    for k in 0..=D {
-        moves[k] = row.weights[k] != 0.0 && inverse_mass[points[k] as usize] != [0.0; D];
-    }
-    (0..=D).filter(move |k| moves[*k]).map(move |k| points[k])
+fn movable<'a, const D: usize>(
+    spread: &'a Spread,
+    row: &'a Row<D>,
+    inverse_mass: &'a [[f64; D]],
+) -> impl Iterator<Item = u32> + 'a {
+    let (points, weights) = row.on(spread);
+    let moves = |(p, w): &(&u32, &f64)| **w != 0.0 && inverse_mass[**p as usize] != [0.0; D];
+    points.iter().zip(weights).filter(moves).map(|(p, _)| *p)
 }
 
 impl<const D: usize> Turns<D> {
@@ -128,6 +131,7 @@ impl<const D: usize> Turns<D> {
     pub(crate) fn find_approach(
         &mut self,
         rows: &[Row<D>],
+        spread: &Spread,
         (body, bodies): (&[u32], usize),
         inverse_mass: &[[f64; D]],
         v: &[[f64; D]],
@@ -137,13 +141,13 @@ impl<const D: usize> Turns<D> {
         self.approach.mean.clear();
         self.approach.mean.resize(bodies, (0.0, 0));
         for row in rows {
-            let mut own = movable(row, inverse_mass).map(|p| body[p as usize]);
+            let mut own = movable(spread, row, inverse_mass).map(|p| body[p as usize]);
             let Some(first) = own.next() else { continue };
             own.for_each(|other| self.approach.join(first, other));
         }
         for row in rows {
-            let Some(first) = movable(row, inverse_mass).next() else { continue };
-            let u = subtract(&row.mean(v), &row.carry);
+            let Some(first) = movable(spread, row, inverse_mass).next() else { continue };
+            let u = subtract(&row.mean(spread, v), &row.carry);
             let speed = (row.target - dot(&u, &row.normal)).larger(0.0);
             let root = self.approach.root(body[first as usize]) as usize;
             let (sum, count) = &mut self.approach.mean[root];
@@ -156,37 +160,36 @@ impl<const D: usize> Turns<D> {
     }
 
     /// Sorts rows into those that points join, each in the order of features: what is solved together lies together.
-    fn join(&mut self, rows: &mut Vec<Row<D>>, inverse_mass: &[[f64; D]], coupled: &Coupled<D>) {
+    fn join(&mut self, rows: &mut Vec<Row<D>>, spread: &Spread, inverse_mass: &[[f64; D]], coupled: &Coupled<D>) {
         if !rows.is_sorted_by_key(|row| row.id) {
             rows.sort_by_key(|row| row.id);
         }
         // What cannot move passes nothing on.
-        let points = |row: &Row<D>| movable(row, inverse_mass);
         for row in rows.iter() {
             let mut begin = |p: u32| {
                 self.parent[p as usize] = p;
                 self.number[p as usize] = u32::MAX;
             };
-            points(row).for_each(&mut begin);
+            movable(spread, row, inverse_mass).for_each(&mut begin);
             if row.coupled {
-                coupled.followers((&row.points, &row.weights), begin);
+                coupled.followers(row.on(spread), begin);
             }
         }
         for row in rows.iter() {
-            let mut own = points(row);
+            let mut own = movable(spread, row, inverse_mass);
             let Some(first) = own.next() else { continue };
             for p in own {
                 self.join_points(first, p);
             }
             if row.coupled {
-                coupled.followers((&row.points, &row.weights), |p| self.join_points(first, p));
+                coupled.followers(row.on(spread), |p| self.join_points(first, p));
             }
         }
         // Counted, summed up, and entered from behind.
         self.starts.clear();
         self.joined.clear();
         for row in rows.iter() {
-            let root = points(row).next().map_or(0, |p| self.root(p)) as usize;
+            let root = movable(spread, row, inverse_mass).next().map_or(0, |p| self.root(p)) as usize;
             if self.number[root] == u32::MAX {
                 self.number[root] = self.starts.len() as u32;
                 self.starts.push(0);
@@ -212,7 +215,10 @@ impl<const D: usize> Turns<D> {
         std::mem::swap(rows, &mut self.sorted);
         self.heads.clear();
         self.heads.extend(rows.iter().map(|row| {
-            let mut own = points(row);
+            if row.spread[1] > 0 {
+                return (row.head(), 0);
+            }
+            let mut own = movable(spread, row, inverse_mass);
             let first = own.next().unwrap_or(row.points[0]);
             let mut head = [first; 4];
             head.iter_mut().skip(1).zip(own).for_each(|(head, p)| *head = p);
@@ -224,6 +230,7 @@ impl<const D: usize> Turns<D> {
 /// What is solved for.
 pub(crate) struct Problem<'a, const D: usize> {
     pub(crate) rows: &'a mut Vec<Row<D>>,
+    pub(crate) spread: &'a Spread,
     pub(crate) inverse_mass: &'a Vec<[f64; D]>,
     pub(crate) coupled: &'a mut Coupled<D>,
     pub(crate) v: &'a mut Vec<[f64; D]>,
@@ -240,6 +247,7 @@ impl<const D: usize> Problem<'_, D> {
         }
         Some(Problem {
             rows: cast(self.rows)?,
+            spread: self.spread,
             inverse_mass: (self.inverse_mass as &dyn Any).downcast_ref()?,
             coupled: cast(self.coupled)?,
             v: cast(self.v)?,
@@ -272,14 +280,14 @@ fn solve_in_space(problem: Problem<'_, 3>) -> usize {
 /// A row is passed over while nothing that it holds has changed since its last turn by more than the tolerance: so sweeps cost what is still
 /// on the move.
 fn solve<const D: usize>(problem: Problem<'_, D>) -> usize {
-    let Problem { rows, inverse_mass, coupled, v, turns, body } = problem;
-    turns.join(rows, inverse_mass, coupled);
+    let Problem { rows, spread, inverse_mass, coupled, v, turns, body } = problem;
+    turns.join(rows, spread, inverse_mass, coupled);
     let Turns { stamps, heads, now, starts, approach, .. } = turns;
     let begin = *now;
     for ends in starts.windows(2) {
         let range = ends[0] as usize..ends[1] as usize;
         let (rows, heads) = (&mut rows[range.clone()], &mut heads[range]);
-        let approach = approach.mean[approach.root(body[heads[0].0[0] as usize]) as usize].0;
+        let approach = approach.mean[approach.root(body[spread.points_of::<D>(&heads[0].0)[0] as usize]) as usize].0;
         let together = rows.iter().any(|row| row.coupled);
         let (most, tolerance) =
             if together { (MOST_COUPLED_SWEEPS, COUPLED_TOLERANCE) } else { (MOST_SWEEPS, TOLERANCE) };
@@ -288,9 +296,9 @@ fn solve<const D: usize>(problem: Problem<'_, D>) -> usize {
             let steps = together && sweep > 0 && sweep % SWEEPS_BETWEEN == 0 && failures < MOST_FAILURES;
             if steps {
                 if newton::is_small(rows) {
-                    newton::step(rows, inverse_mass, coupled, v, ENOUGH * tolerance * approach);
+                    newton::step(rows, spread, inverse_mass, coupled, v, ENOUGH * tolerance * approach);
                 } else {
-                    subspace::step(rows, inverse_mass, coupled, v);
+                    subspace::step(rows, spread, inverse_mass, coupled, v);
                 }
                 // All velocities may have changed.
                 heads.iter_mut().for_each(|(_, last)| *last = 0);
@@ -300,21 +308,22 @@ fn solve<const D: usize>(problem: Problem<'_, D>) -> usize {
             for k in 0..rows.len() {
                 let k = if sweep % 2 == 0 { k } else { rows.len() - 1 - k };
                 let (points, last) = &mut heads[k];
-                if *last > 0 && points[..=D].iter().all(|p| stamps[*p as usize] <= *last) {
+                let points = spread.points_of::<D>(points);
+                if *last > 0 && points.iter().all(|p| stamps[*p as usize] <= *last) {
                     continue;
                 }
                 *now += 1;
-                let change = if rows[k].coupled {
-                    rows[k].solve_coupled(inverse_mass, coupled, v)
+                let change = if rows[k].coupled || rows[k].spread[1] > 0 {
+                    rows[k].solve_coupled(spread, inverse_mass, coupled, v)
                 } else {
                     rows[k].solve(inverse_mass, v)
                 };
                 largest = change.larger(largest);
                 if change > tolerance * approach {
                     changed = true;
-                    points[..=D].iter().for_each(|p| stamps[*p as usize] = *now);
+                    points.iter().for_each(|p| stamps[*p as usize] = *now);
                     if rows[k].coupled {
-                        coupled.followers((&rows[k].points, &rows[k].weights), |p| stamps[p as usize] = *now);
+                        coupled.followers(rows[k].on(spread), |p| stamps[p as usize] = *now);
                     }
                 }
                 *last = *now;
@@ -334,6 +343,7 @@ fn solve<const D: usize>(problem: Problem<'_, D>) -> usize {
 /// Displacements that take overlapping pairs apart by at most `most` [m], without bringing others into overlap: the same sweeps, on positions.
 pub(crate) fn part<const D: usize>(
     rows: &[Row<D>],
+    spread: &Spread,
     inverse_mass: &[[f64; D]],
     wanted: &[f64],
     multipliers: &mut Vec<f64>,
@@ -345,12 +355,12 @@ pub(crate) fn part<const D: usize>(
     for _ in 0..MOST_SWEEPS {
         let mut largest: f64 = 0.0;
         for (k, row) in rows.iter().enumerate() {
-            let now = dot(&row.mean(moved), &row.normal);
+            let now = dot(&row.mean(spread, moved), &row.normal);
             let old = multipliers[k];
             let new = (old + (wanted[k] - now) * row.mass[0]).larger(0.0);
             if new != old {
                 multipliers[k] = new;
-                row.give(&scaled(&row.normal, new - old), inverse_mass, moved);
+                row.give(spread, &scaled(&row.normal, new - old), inverse_mass, moved);
                 largest = ((new - old) / row.mass[0]).abs().larger(largest);
             }
         }

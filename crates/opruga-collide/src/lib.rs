@@ -93,6 +93,7 @@ mod rows;
 mod settle;
 mod shape;
 pub mod spec;
+mod spread;
 mod subspace;
 mod surface;
 mod touch;

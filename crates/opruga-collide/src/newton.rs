@@ -17,6 +17,7 @@
 
 use crate::coupled::Coupled;
 use crate::row::Row;
+use crate::spread::Spread;
 use crate::vector::{across, add, dot, scaled, subtract};
 use opruga_math::{Pack, Simd, WIDTH, Work};
 
@@ -80,12 +81,13 @@ fn count_of<const D: usize>(row: &Row<D>) -> usize {
 /// it converges; it takes no impulses that miss more than those before.
 pub(crate) fn step<const D: usize>(
     rows: &mut [Row<D>],
+    spread: &Spread,
     inverse_mass: &[[f64; D]],
     coupled: &mut Coupled<D>,
     v: &mut [[f64; D]],
     enough: f64,
 ) {
-    let equations = Equations::new(rows, inverse_mass, coupled, v);
+    let equations = Equations::new(rows, spread, inverse_mass, coupled, v);
     let old = equations.center.clone();
     let mut impulses = old.clone();
     let mut missed = equations.missed(&impulses);
@@ -111,14 +113,14 @@ pub(crate) fn step<const D: usize>(
         };
         let (from, to) = (sum(&old), sum(&best.1));
         let row = &mut rows[contact.row];
-        coupled.give((&row.points, &row.weights), &subtract(&to, &from), inverse_mass, v);
+        coupled.give(row.on(spread), &subtract(&to, &from), inverse_mass, v);
         row.normal_impulse = best.1[contact.first];
         row.friction_impulse = subtract(&to, &scaled(&row.normal, row.normal_impulse));
     }
 }
 
 impl<const D: usize> Equations<D> {
-    fn new(rows: &[Row<D>], inverse_mass: &[[f64; D]], coupled: &Coupled<D>, v: &[[f64; D]]) -> Self {
+    fn new(rows: &[Row<D>], spread: &Spread, inverse_mass: &[[f64; D]], coupled: &Coupled<D>, v: &[[f64; D]]) -> Self {
         let (mut contacts, mut size) = (Vec::new(), 0);
         for (number, row) in rows.iter().enumerate().filter(|(_, row)| row.mass[0] > 0.0) {
             let mut axes = [row.normal; D];
@@ -132,13 +134,13 @@ impl<const D: usize> Equations<D> {
         let (mut center, mut free) = (Vec::with_capacity(size), Vec::with_capacity(size));
         for contact in &contacts {
             let row = &rows[contact.row];
-            let (impulse, u) = (row.impulse(), subtract(&row.mean(v), &row.carry));
+            let (impulse, u) = (row.impulse(), subtract(&row.mean(spread, v), &row.carry));
             for (k, axis) in contact.axes[..contact.count].iter().enumerate() {
                 moved.fill([0.0; D]);
-                coupled.add_answer((&row.points, &row.weights), axis, inverse_mass, &mut moved);
+                coupled.add_answer(row.on(spread), axis, inverse_mass, &mut moved);
                 let line = &mut mobility[(contact.first + k) * stride..][..size];
                 for other in &contacts {
-                    let velocity = rows[other.row].mean(&moved);
+                    let velocity = rows[other.row].mean(spread, &moved);
                     let own = &mut line[other.first..other.first + other.count];
                     own.iter_mut().zip(&other.axes).for_each(|(entry, axis)| *entry = dot(axis, &velocity));
                 }
@@ -397,6 +399,7 @@ mod tests {
             id: 0,
             points: [points[0], points[1], 0, 0],
             weights: [1.0, -1.0, 0.0, 0.0],
+            spread: [0; 2],
             normal: [0.0, 0.0, 1.0],
             gap: 0.0,
             target: 0.0,
@@ -408,7 +411,7 @@ mod tests {
             of_obstacle: false,
             coupled: true,
         };
-        row.weigh(inverse_mass);
+        row.weigh(&Spread::default(), inverse_mass);
         row
     }
 
@@ -423,7 +426,7 @@ mod tests {
 
     fn solved(rows: &mut [Row<3>], inverse_mass: &[[f64; 3]], v: &mut [[f64; 3]]) {
         for _ in 0..3 {
-            step(rows, inverse_mass, &mut Coupled::default(), v, 1e-12);
+            step(rows, &Spread::default(), inverse_mass, &mut Coupled::default(), v, 1e-12);
         }
     }
 

@@ -5,7 +5,7 @@ use crate::row::Row;
 use crate::rows::{impact, key, meeting_time};
 use crate::touching::{Touching, Trouble};
 use crate::vector::dot;
-use crate::zones::{Led, ROUNDING, Zone};
+use crate::zones::{Led, PointsOfPair, ROUNDING, Zone};
 use opruga_math::Lane;
 
 impl<const D: usize> Touching<D> {
@@ -74,11 +74,14 @@ impl<const D: usize> Touching<D> {
         true
     }
 
-    fn points_of_pair(&self, [a, b]: [u32; 2], with_facet: bool) -> ([u32; 6], usize) {
-        let mut out = ([0; 6], 0);
+    /// The points of a pair, or the nodes that carry them.
+    fn points_of_pair(&self, [a, b]: [u32; 2], with_facet: bool) -> PointsOfPair {
+        let mut out = ([0; 16], 0);
         let mut add = |p: u32| {
-            out.0[out.1] = p;
-            out.1 += 1;
+            self.surface.visit_nodes(p, |node, _| {
+                out.0[out.1] = node;
+                out.1 += 1;
+            });
         };
         if with_facet {
             add(a);
@@ -150,6 +153,7 @@ impl<const D: usize> Touching<D> {
                     self.zones.set_led(number, motion.led);
                 }
             }
+            self.lead_carried();
             self.find_passages(h);
         }
     }

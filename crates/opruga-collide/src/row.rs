@@ -2,6 +2,8 @@
 
 use crate::coupled::Coupled;
 use crate::gap::Gap;
+use crate::spread::{Spread, Weighted};
+use crate::surface::Surface;
 use crate::vector::{dot, length, scaled, subtract};
 use opruga_math::Lane;
 
@@ -15,6 +17,8 @@ pub(crate) struct Row<const D: usize> {
     pub(crate) id: u64,
     pub(crate) points: [u32; 4],
     pub(crate) weights: [f64; 4],
+    /// Where the nodes that carry its points stand in [`Spread`], and how many; none where it acts on its points.
+    pub(crate) spread: [u32; 2],
     pub(crate) normal: [f64; D],
     /// The gap at the beginning of the step, less the thickness [m].
     pub(crate) gap: f64,
@@ -40,11 +44,12 @@ pub(crate) struct Row<const D: usize> {
 const IMMOBILE: f64 = 1e-12;
 
 impl<const D: usize> Row<D> {
-    pub(crate) fn new(id: u64, gap: &Gap<D>, thickness: f64, friction: f64, inverse_mass: &[[f64; D]]) -> Row<D> {
-        let mut row = Row {
+    pub(crate) fn new(id: u64, gap: &Gap<D>, thickness: f64, friction: f64) -> Row<D> {
+        Row {
             id,
             points: gap.points,
             weights: gap.weights,
+            spread: [0; 2],
             normal: gap.normal,
             gap: gap.gap - thickness,
             target: 0.0,
@@ -55,16 +60,15 @@ impl<const D: usize> Row<D> {
             friction_impulse: [0.0; D],
             of_obstacle: false,
             coupled: false,
-        };
-        row.weigh(inverse_mass);
-        row
+        }
     }
 
     /// Works out what it weighs.
-    pub(crate) fn weigh(&mut self, inverse_mass: &[[f64; D]]) {
+    pub(crate) fn weigh(&mut self, spread: &Spread, inverse_mass: &[[f64; D]]) {
+        let (points, weights) = self.on(spread);
         let (mut along, mut across) = (0.0, 0.0);
-        for k in 0..=D {
-            let (w, m) = (self.weights[k] * self.weights[k], &inverse_mass[self.points[k] as usize]);
+        for (p, w) in points.iter().zip(weights) {
+            let (w, m) = (w * w, &inverse_mass[*p as usize]);
             let mut most: f64 = 0.0;
             for d in 0..D {
                 along += w * self.normal[d] * self.normal[d] * m[d];
@@ -77,9 +81,9 @@ impl<const D: usize> Row<D> {
     }
 
     /// Works out what it weighs where points follow one another.
-    pub(crate) fn weigh_coupled(&mut self, coupled: &Coupled<D>, inverse_mass: &[[f64; D]]) {
-        let mobility = coupled.mobility((&self.points, &self.weights), inverse_mass);
-        self.weigh(inverse_mass);
+    pub(crate) fn weigh_coupled(&mut self, spread: &Spread, coupled: &Coupled<D>, inverse_mass: &[[f64; D]]) {
+        let mobility = coupled.mobility(self.on(spread), inverse_mass);
+        self.weigh(spread, inverse_mass);
         let free = self.mass.map(|mass| if mass > 0.0 { 1.0 / mass } else { 0.0 });
         // Across the normal the largest row sum is at least what any direction has.
         let (mut along, mut across) = (0.0, 0.0);
@@ -108,9 +112,10 @@ impl<const D: usize> Row<D> {
         if size > most { scaled(&after, most / size) } else { after }
     }
 
-    /// One turn where points follow one another: as [`Row::solve`].
+    /// One turn where points follow one another, or nodes carry them: as [`Row::solve`].
     pub(crate) fn solve_coupled(
         &mut self,
+        spread: &Spread,
         inverse_mass: &[[f64; D]],
         coupled: &mut Coupled<D>,
         v: &mut [[f64; D]],
@@ -118,22 +123,22 @@ impl<const D: usize> Row<D> {
         if self.mass[0] == 0.0 {
             return 0.0;
         }
-        let un = dot(&subtract(&self.mean(v), &self.carry), &self.normal);
+        let un = dot(&subtract(&self.mean(spread, v), &self.carry), &self.normal);
         let old = self.normal_impulse;
         let new = (old + (self.target - un) * self.mass[0]).larger(0.0);
         let mut changed = ((new - old) / self.mass[0]).abs();
         if new != old {
-            coupled.give((&self.points, &self.weights), &scaled(&self.normal, new - old), inverse_mass, v);
+            coupled.give(self.on(spread), &scaled(&self.normal, new - old), inverse_mass, v);
             self.normal_impulse = new;
         }
         if self.friction > 0.0 && (new > 0.0 || old > 0.0) {
-            let u = subtract(&self.mean(v), &self.carry);
+            let u = subtract(&self.mean(spread, v), &self.carry);
             let un = dot(&u, &self.normal);
             let after = self.friction_after(&u, un, new);
             let change = subtract(&after, &self.friction_impulse);
             let largest = length(&change);
             if largest > 0.0 {
-                coupled.give((&self.points, &self.weights), &change, inverse_mass, v);
+                coupled.give(self.on(spread), &change, inverse_mass, v);
                 self.friction_impulse = after;
                 changed = (largest / self.mass[1]).larger(changed);
             }
@@ -141,26 +146,37 @@ impl<const D: usize> Row<D> {
         changed
     }
 
+    /// Spreads it over the nodes that carry its points, if any is carried.
+    pub(crate) fn put_into(&mut self, spread: &mut Spread, surface: &Surface<D>) {
+        self.spread = spread.put(surface, (&self.points[..=D], &self.weights[..=D]));
+    }
+
+    /// The points that it acts on, and their weights.
+    #[inline]
+    pub(crate) fn on<'a>(&'a self, spread: &'a Spread) -> Weighted<'a> {
+        if self.spread[1] == 0 { (&self.points[..=D], &self.weights[..=D]) } else { spread.at(self.spread) }
+    }
+
+    /// What stands for these points beside it.
+    #[inline]
+    pub(crate) fn head(&self) -> [u32; 4] {
+        if self.spread[1] == 0 { self.points } else { Spread::head(self.spread) }
+    }
+
     /// Σ wᵢ aᵢ.
     #[inline]
-    pub(crate) fn mean(&self, of: &[[f64; D]]) -> [f64; D] {
-        let mut sum = [0.0; D];
-        for k in 0..=D {
-            let a = &of[self.points[k] as usize];
-            for d in 0..D {
-                sum[d] += self.weights[k] * a[d];
-            }
-        }
-        sum
+    pub(crate) fn mean(&self, spread: &Spread, of: &[[f64; D]]) -> [f64; D] {
+        mean(self.on(spread), of)
     }
 
     /// Gives its points an impulse [N s].
     #[inline]
-    pub(crate) fn give(&self, impulse: &[f64; D], inverse_mass: &[[f64; D]], v: &mut [[f64; D]]) {
-        for k in 0..=D {
-            let p = self.points[k] as usize;
+    pub(crate) fn give(&self, spread: &Spread, impulse: &[f64; D], inverse_mass: &[[f64; D]], v: &mut [[f64; D]]) {
+        let (points, weights) = self.on(spread);
+        for (p, w) in points.iter().zip(weights) {
+            let p = *p as usize;
             for d in 0..D {
-                v[p][d] += self.weights[k] * impulse[d] * inverse_mass[p][d];
+                v[p][d] += w * impulse[d] * inverse_mass[p][d];
             }
         }
     }
@@ -174,7 +190,7 @@ impl<const D: usize> Row<D> {
         out
     }
 
-    /// One turn: the normal impulse that its bound needs, then the friction that this allows. Gives by how much its velocity changed [m/s].
+    /// One turn, where it acts on its points: the normal impulse that its bound needs, then the friction that this allows. Gives by how much its velocity changed [m/s].
     #[inline(always)]
     pub(crate) fn solve(&mut self, inverse_mass: &[[f64; D]], v: &mut [[f64; D]]) -> f64 {
         // Velocities and inverse masses of its points, which are at most D + 1, come from memory once.
@@ -231,4 +247,17 @@ impl<const D: usize> Row<D> {
         }
         changed
     }
+}
+
+/// Σ wᵢ aᵢ of some points.
+#[inline]
+fn mean<const D: usize>((points, weights): Weighted<'_>, of: &[[f64; D]]) -> [f64; D] {
+    let mut sum = [0.0; D];
+    for (p, w) in points.iter().zip(weights) {
+        let a = &of[*p as usize];
+        for d in 0..D {
+            sum[d] += w * a[d];
+        }
+    }
+    sum
 }

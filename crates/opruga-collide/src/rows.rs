@@ -16,6 +16,7 @@ impl<const D: usize> Touching<D> {
         self.rows.clear();
         self.watched.clear();
         self.heads.clear();
+        self.spread.clear();
         self.close.iter_mut().for_each(Vec::clear);
         let pairs = self.candidates.vertex_facet.len();
         let mut k = 0;
@@ -68,7 +69,7 @@ impl<const D: usize> Touching<D> {
             if meets {
                 self.rows.push(row);
             } else {
-                self.heads.push(row.points);
+                self.heads.push(row.head());
                 self.watched.push(row);
             }
         }
@@ -140,8 +141,10 @@ impl<const D: usize> Touching<D> {
     }
 
     /// The row of a gap, which is not to become negative within the step.
-    pub(crate) fn row(&self, gap: &Gap<D>, law: &PairLaw, h: f64, pair: [u32; 2], with_facet: bool) -> Row<D> {
-        let mut row = Row::new(key(pair, with_facet), gap, law.thickness, law.friction, &self.inverse_mass);
+    pub(crate) fn row(&mut self, gap: &Gap<D>, law: &PairLaw, h: f64, pair: [u32; 2], with_facet: bool) -> Row<D> {
+        let mut row = Row::new(key(pair, with_facet), gap, law.thickness, law.friction);
+        row.put_into(&mut self.spread, &self.surface);
+        row.weigh(&self.spread, &self.inverse_mass);
         row.target = if row.gap > 0.0 { -row.gap / h } else { 0.0 };
         row
     }

@@ -1,7 +1,7 @@
 //! What impulses make of a substep: where points go, and what contact took and gave.
 
 use crate::impulses::part;
-use crate::touching::Touching;
+use crate::touching::{Touching, acting};
 use crate::vector::{dot, subtract};
 use opruga_math::Lane;
 
@@ -14,9 +14,7 @@ impl<const D: usize> Touching<D> {
     pub(crate) fn settle(&mut self, h: f64) {
         for row in &self.rows {
             if row.normal_impulse > 0.0 && !row.of_obstacle {
-                for k in (0..=D).filter(|k| row.weights[*k] != 0.0) {
-                    self.touched[row.points[k] as usize] = true;
-                }
+                acting(&self.spread, row).for_each(|(p, _)| self.touched[p as usize] = true);
             }
         }
         self.recover(h);
@@ -29,12 +27,22 @@ impl<const D: usize> Touching<D> {
                 self.moved[p] = [0.0; D];
             }
         }
+        self.lead_carried();
+    }
+
+    /// Takes carried points where the nodes that carry them end.
+    pub(crate) fn lead_carried(&mut self) {
+        self.surface.follow(&mut self.end);
+        for (p, carrier) in self.surface.carried() {
+            self.touched[p] = carrier.nodes.iter().any(|node| self.touched[*node as usize]);
+        }
     }
 
     /// Books what contact took and gave, and moves the points.
     pub(crate) fn book(&mut self, h: f64) {
         let touched = &self.touched;
-        self.changed.extend((0..self.surface.points() as u32).filter(|p| touched[*p as usize]));
+        let is_node = |p: &u32| self.surface.carrier_of(*p).is_none();
+        self.changed.extend((0..self.surface.points() as u32).filter(|p| touched[*p as usize]).filter(is_node));
         for (k, p) in self.changed.iter().enumerate() {
             self.number[*p as usize] = k as u32;
         }
@@ -44,8 +52,7 @@ impl<const D: usize> Touching<D> {
             if row.normal_impulse == 0.0 {
                 continue;
             }
-            for k in (0..=D).filter(|k| row.weights[*k] != 0.0) {
-                let p = row.points[k];
+            for (p, weight) in acting(&self.spread, row) {
                 if !self.touched[p as usize] {
                     continue;
                 }
@@ -61,12 +68,12 @@ impl<const D: usize> Touching<D> {
                 for d in 0..D {
                     let mean = 0.5 * (v0[d] + v1[d]) - row.carry[d];
                     let [n, t] = [row.normal_impulse * row.normal[d], row.friction_impulse[d]];
-                    along -= row.weights[k] * n * mean;
-                    across -= row.weights[k] * t * mean;
-                    carried += row.weights[k] * (n + t) * row.carry[d];
+                    along -= weight * n * mean;
+                    across -= weight * t * mean;
+                    carried += weight * (n + t) * row.carry[d];
                     if self.inverse_mass[p as usize][d] == 0.0 {
                         // A pin gives back what a contact takes of its motion.
-                        carried -= row.weights[k] * (n + t) * 0.5 * (v0[d] + v1[d]);
+                        carried -= weight * (n + t) * 0.5 * (v0[d] + v1[d]);
                     }
                 }
                 let sum = &mut self.losses[self.number[p as usize] as usize];
@@ -100,7 +107,7 @@ impl<const D: usize> Touching<D> {
     fn recover(&mut self, h: f64) {
         let most = self.laws.recovery_speed * h;
         for row in &self.rows {
-            row.points.iter().for_each(|p| self.moved[*p as usize] = [0.0; D]);
+            row.on(&self.spread).0.iter().for_each(|p| self.moved[*p as usize] = [0.0; D]);
         }
         // Separately where rows share no point: nothing is moved for what overlaps elsewhere.
         for ends in self.turns.starts().windows(2) {
@@ -108,7 +115,7 @@ impl<const D: usize> Touching<D> {
             self.wanted.clear();
             let mut overlap = false;
             for row in rows {
-                let u = subtract(&row.mean(&self.v), &row.carry);
+                let u = subtract(&row.mean(&self.spread, &self.v), &row.carry);
                 let end = row.gap + h * dot(&u, &row.normal);
                 // Sweeps that end early leave less than this.
                 overlap |= end < -OVERLAP * self.thickest[0];
@@ -117,11 +124,9 @@ impl<const D: usize> Touching<D> {
             if !overlap {
                 continue;
             }
-            part(rows, &self.inverse_mass, &self.wanted, &mut self.multipliers, &mut self.moved, most);
+            part(rows, &self.spread, &self.inverse_mass, &self.wanted, &mut self.multipliers, &mut self.moved, most);
             for (row, _) in rows.iter().zip(&self.multipliers).filter(|(_, multiplier)| **multiplier > 0.0) {
-                for k in (0..=D).filter(|k| row.weights[*k] != 0.0) {
-                    self.touched[row.points[k] as usize] = true;
-                }
+                acting(&self.spread, row).for_each(|(p, _)| self.touched[p as usize] = true);
             }
         }
     }

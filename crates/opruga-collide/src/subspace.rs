@@ -8,6 +8,7 @@
 
 use crate::coupled::Coupled;
 use crate::row::Row;
+use crate::spread::Spread;
 use crate::vector::{across, add, dot, scaled, subtract};
 use core::ops::Range;
 use opruga_core::dense::Dense;
@@ -58,11 +59,12 @@ struct Subspace<const D: usize> {
 /// Goes to the impulses at which all contacts that act keep their velocities.
 pub(crate) fn step<const D: usize>(
     rows: &mut [Row<D>],
+    spread: &Spread,
     inverse_mass: &[[f64; D]],
     coupled: &mut Coupled<D>,
     v: &mut [[f64; D]],
 ) {
-    let mut space = Subspace::new(rows, inverse_mass, coupled, v);
+    let mut space = Subspace::new(rows, spread, inverse_mass, coupled, v);
     let mut given = vec![[0.0; D]; space.active.len()];
     while space.is_free.contains(&true) {
         let changes = space.solve();
@@ -87,13 +89,18 @@ pub(crate) fn step<const D: usize>(
         }
     }
     for (active, given) in space.active.iter().zip(&given) {
-        let row = &rows[active.row];
-        coupled.give((&row.points, &row.weights), given, inverse_mass, v);
+        coupled.give(rows[active.row].on(spread), given, inverse_mass, v);
     }
 }
 
 impl<const D: usize> Subspace<D> {
-    fn new(rows: &[Row<D>], inverse_mass: &[[f64; D]], coupled: &Coupled<D>, v: &[[f64; D]]) -> Subspace<D> {
+    fn new(
+        rows: &[Row<D>],
+        spread: &Spread,
+        inverse_mass: &[[f64; D]],
+        coupled: &Coupled<D>,
+        v: &[[f64; D]],
+    ) -> Subspace<D> {
         let (mut active, mut axes, mut left) = (Vec::new(), Vec::new(), Vec::new());
         // Contacts of bodies whose points answer by themselves converge by sweeps, and may be thousands.
         let acts = |row: &Row<D>| row.coupled && row.normal_impulse > 0.0 && row.mass[0] > 0.0;
@@ -104,7 +111,7 @@ impl<const D: usize> Subspace<D> {
             if row.friction > 0.0 && dot(&row.friction_impulse, &row.friction_impulse) < cone * cone {
                 axes.extend(across(&row.normal));
             }
-            let u = subtract(&row.mean(v), &row.carry);
+            let u = subtract(&row.mean(spread, v), &row.carry);
             left.extend(axes[first..].iter().map(|axis| -dot(&u, axis)));
             left[first] += row.target;
             active.push(Active { row: number, unknowns: first..axes.len() });
@@ -114,9 +121,9 @@ impl<const D: usize> Subspace<D> {
         for Active { row, unknowns } in &active {
             for axis in &axes[unknowns.clone()] {
                 moved.fill([0.0; D]);
-                coupled.add_answer((&rows[*row].points, &rows[*row].weights), axis, inverse_mass, &mut moved);
+                coupled.add_answer(rows[*row].on(spread), axis, inverse_mass, &mut moved);
                 for Active { row, unknowns } in &active {
-                    let velocity = rows[*row].mean(&moved);
+                    let velocity = rows[*row].mean(spread, &moved);
                     entries.extend(axes[unknowns.clone()].iter().map(|axis| dot(axis, &velocity)));
                 }
             }
@@ -206,6 +213,7 @@ mod tests {
                 id: k as u64,
                 points: [k as u32 + 1, k as u32, 0, 0],
                 weights: [1.0, -1.0, 0.0, 0.0],
+                spread: [0; 2],
                 normal: [0.0, 1.0],
                 gap: 0.0,
                 target: 0.0,
@@ -217,7 +225,7 @@ mod tests {
                 of_obstacle: false,
                 coupled: true,
             };
-            row.weigh(&inverse_mass);
+            row.weigh(&Spread::default(), &inverse_mass);
             row
         };
         ((0..points - 1).map(row).collect(), inverse_mass)
@@ -228,7 +236,7 @@ mod tests {
         let (mut rows, inverse_mass) = column(40, 0.5);
         let mut v = vec![[0.01, -1.0]; 40];
         v[0] = [0.0; 2];
-        step(&mut rows, &inverse_mass, &mut Coupled::default(), &mut v);
+        step(&mut rows, &Spread::default(), &inverse_mass, &mut Coupled::default(), &mut v);
         assert!(v.iter().flatten().all(|v| v.abs() < 1e-3), "{v:?}");
         // Each carries those above it, beside what it had.
         assert!(rows.iter().enumerate().all(|(k, row)| (row.normal_impulse - 1.0 - (39 - k) as f64).abs() < 0.1));
@@ -240,7 +248,7 @@ mod tests {
         let mut v = vec![[0.0, -1.0]; 10];
         (v[0], v[5], v[9]) = ([0.0; 2], [40.0, -1.0], [0.0, 30.0]);
         let before = v.clone();
-        step(&mut rows, &inverse_mass, &mut Coupled::default(), &mut v);
+        step(&mut rows, &Spread::default(), &inverse_mass, &mut Coupled::default(), &mut v);
         // The last point flies off with what its contact had, and the fast one slides.
         assert!(rows[8].normal_impulse == 0.0 && v[9][1] > v[8][1] && v[5][0] > 30.0);
         assert!(rows.iter().all(|row| row.normal_impulse >= 0.0));

@@ -2,11 +2,12 @@
 
 use crate::closest::facet_normal;
 use crate::vector::{dot, subtract};
-use opruga_mesh::Mesh;
+use opruga_mesh::{Carrier, Mesh, TouchingSurface};
 
 /// Points, edges and facets of the surfaces of some bodies, all of one kind for those who look for contact.
 ///
-/// Points are nodes of the bodies that belong to a boundary, an open surface or a wire. In 2D facets are edges, in 3D triangles.
+/// Points are nodes of the bodies that belong to a boundary, an open surface or a wire, or fixed combinations of nodes: [`Carrier`]. In 2D
+/// facets are edges, in 3D triangles.
 #[derive(Clone, Debug, Default)]
 pub struct Surface<const D: usize> {
     /// The body of every point.
@@ -20,8 +21,11 @@ pub struct Surface<const D: usize> {
     pub edges: Vec<[u32; 2]>,
     /// The facets of each edge that have an inside, as numbers of facets; `u32::MAX` for none.
     pub sides: Vec<[u32; 2]>,
-    /// Where the points, facets and edges of a body begin.
-    starts: Vec<[u32; 3]>,
+    /// Where the points, facets, edges and vertices of a body begin. Points before its vertices only carry others.
+    starts: Vec<[u32; 4]>,
+    /// The points that others carry, ascending, and what carries each: points that move by themselves.
+    carried: Vec<u32>,
+    carriers: Vec<Carrier>,
     /// The first body that is an obstacle, and its first point.
     obstacles: Option<[u32; 2]>,
     /// The facets around a point: `around[ring[p]..ring[p + 1]]`, ascending.
@@ -35,9 +39,15 @@ impl<const D: usize> Surface<D> {
         self.body.len()
     }
 
-    /// The points of a body, by its place among those that were added.
+    /// The points of a body, by its place among those that were added: first those that are nodes, then those that nodes carry.
     pub fn points_of(&self, number: usize) -> core::ops::Range<usize> {
         self.range(number, 0, self.points())
+    }
+
+    /// The points of a body that touch: all but those that only carry others.
+    pub fn vertices_of(&self, number: usize) -> core::ops::Range<usize> {
+        let points = self.points_of(number);
+        self.starts.get(number).map_or(points.end, |start| start[3] as usize)..points.end
     }
 
     /// The facets of a body, by its place among those that were added.
@@ -61,40 +71,26 @@ impl<const D: usize> Surface<D> {
     }
 
     /// Adds the surface of a body: boundary, open surfaces, wires, and without any of these its nodes as points. Gives the nodes that
-    /// are the points which were added, in order.
+    /// are the first points which were added, in order.
     pub fn add(&mut self, mesh: &Mesh<D>, body: u32) -> Vec<u32> {
+        self.add_surface(mesh.touching_surface(true), body)
+    }
+
+    /// Adds the surface of a body. Gives the nodes that are the first points which were added, in order; carried points follow.
+    pub fn add_surface(&mut self, own: TouchingSurface<D>, body: u32) -> Vec<u32> {
         let start = self.points() as u32;
-        self.starts.push([start, self.facets.len() as u32, self.edges.len() as u32]);
-        let mut nodes: Vec<u32> = mesh.facets.iter().flatten().copied().collect();
-        nodes.extend(mesh.sheets.iter().flatten());
-        nodes.extend(mesh.wires.iter().flatten());
-        nodes.sort_unstable();
-        nodes.dedup();
-        if nodes.is_empty() && mesh.cells.is_empty() {
-            nodes = (0..mesh.positions.len() as u32).collect();
-        }
-        self.body.resize(start as usize + nodes.len(), body);
-        let point = |node: u32| start + nodes.binary_search(&node).unwrap_or(0) as u32;
         let first_facet = self.facets.len();
-        for facet in &mesh.facets {
-            self.facets.push(facet.map(point));
-            self.closed.push(true);
-        }
-        let mut wires = Vec::new();
-        if D == 3 {
-            for sheet in &mesh.sheets {
-                self.facets.push(core::array::from_fn(|k| point(sheet[k])));
-                self.closed.push(false);
-            }
-            wires.extend(mesh.wires.iter().map(|wire| wire.map(point)));
-        } else {
-            for wire in &mesh.wires {
-                self.facets.push(core::array::from_fn(|k| point(wire[k])));
-                self.closed.push(false);
-            }
-        }
-        self.join(first_facet, wires, nodes.len());
-        nodes
+        self.starts.push([start, first_facet as u32, self.edges.len() as u32, start + own.carrying as u32]);
+        let points = own.points();
+        self.body.resize(start as usize + points, body);
+        self.facets.extend(own.facets.iter().map(|facet| facet.map(|p| start + p)));
+        self.closed.resize(first_facet + own.closed, true);
+        self.closed.resize(self.facets.len(), false);
+        self.carried.extend(start + own.nodes.len() as u32..start + points as u32);
+        self.carriers.extend(own.carried.iter().map(|own| Carrier { nodes: own.nodes.map(|p| start + p), ..*own }));
+        let wires = own.wires.iter().map(|wire| wire.map(|p| start + p)).collect();
+        self.join(first_facet, wires, points);
+        own.nodes
     }
 
     /// Adds the surface of an obstacle, after all bodies. Edges between faces of one plane are left out.
@@ -182,11 +178,71 @@ impl<const D: usize> Surface<D> {
         !around.is_empty() && around.iter().all(|facet| self.closed[*facet as usize])
     }
 
+    /// What carries a point; none where it is a node.
+    #[inline]
+    pub fn carrier_of(&self, point: u32) -> Option<&Carrier> {
+        self.carried.binary_search(&point).ok().map(|k| &self.carriers[k])
+    }
+
+    /// The points that nodes carry, ascending.
+    pub fn carried(&self) -> impl Iterator<Item = (usize, &Carrier)> {
+        self.carried.iter().map(|p| *p as usize).zip(&self.carriers)
+    }
+
+    /// Whether nodes carry any of some points.
+    #[inline]
+    pub(crate) fn carries_any(&self, points: &[u32]) -> bool {
+        !self.carried.is_empty() && points.iter().any(|p| self.carried.binary_search(p).is_ok())
+    }
+
+    /// Calls back with the points that move by themselves and take part in one, and their weights.
+    #[inline]
+    pub fn visit_nodes(&self, point: u32, mut visit: impl FnMut(u32, f64)) {
+        match if self.carried.is_empty() { None } else { self.carrier_of(point) } {
+            None => visit(point, 1.0),
+            Some(Carrier { nodes, weights }) => {
+                let own = nodes.iter().zip(weights).filter(|(_, weight)| **weight != 0.0);
+                own.for_each(|(node, weight)| visit(*node, *weight));
+            }
+        }
+    }
+
+    /// Lets vectors of carried points follow those of the nodes: positions, velocities, displacements.
+    pub fn follow(&self, vectors: &mut [[f64; D]]) {
+        for (p, carrier) in self.carried() {
+            let mut sum = [0.0; D];
+            for (node, weight) in carrier.nodes.iter().zip(&carrier.weights) {
+                for d in 0..D {
+                    sum[d] += weight * vectors[*node as usize][d];
+                }
+            }
+            vectors[p] = sum;
+        }
+    }
+
+    /// Whether features of one body share a point, or a node that takes part in a point of both.
+    pub(crate) fn share(&self, a: &[u32], b: &[u32]) -> bool {
+        if a.iter().any(|p| b.contains(p)) {
+            return true;
+        }
+        if !self.carries_any(a) && !self.carries_any(b) {
+            return false;
+        }
+        let mut found = false;
+        for p in a {
+            self.visit_nodes(*p, |own, _| {
+                b.iter().for_each(|q| self.visit_nodes(*q, |other, _| found |= own == other))
+            });
+        }
+        found
+    }
+
     /// Bytes on the heap.
     pub fn heap_bytes(&self) -> usize {
         4 * (self.body.capacity() + D * self.facets.capacity() + 4 * self.edges.capacity())
             + self.closed.capacity()
-            + 4 * (3 * self.starts.capacity() + self.ring.capacity() + self.around.capacity())
+            + 4 * (4 * self.starts.capacity() + self.ring.capacity() + self.around.capacity() + self.carried.capacity())
+            + core::mem::size_of::<Carrier>() * self.carriers.capacity()
     }
 }
 

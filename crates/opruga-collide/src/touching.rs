@@ -8,6 +8,7 @@ use crate::law::Laws;
 use crate::reach::Reach;
 use crate::reports::{self, Report};
 use crate::row::{OBSTACLE_BIT, Row};
+use crate::spread::Spread;
 use crate::surface::Surface;
 use crate::vector::{dot, length, subtract};
 use crate::zones::Zones;
@@ -32,7 +33,7 @@ pub struct Touching<const D: usize> {
     pub surface: Surface<D>,
     /// How.
     pub laws: Laws,
-    /// One over the mass of every point along every axis [1/kg]; 0 where it is pinned.
+    /// One over the mass of every point along every axis [1/kg]; 0 where it is pinned, and of points that nodes carry.
     pub inverse_mass: Vec<[f64; D]>,
     /// Bodies whose points follow one another. Their velocities after the motion are the mean ones of the step.
     pub coupled: Coupled<D>,
@@ -57,6 +58,8 @@ pub struct Touching<const D: usize> {
     pub(crate) reach: Reach<D>,
     /// The contacts that are solved for: once solved, in the order of that.
     pub(crate) rows: Vec<Row<D>>,
+    /// What they act on where nodes carry their points.
+    pub(crate) spread: Spread,
     /// Pairs that do not meet by themselves, and their points; those that came into play leave nobody behind.
     pub(crate) watched: Vec<Row<D>>,
     pub(crate) heads: Vec<[u32; 4]>,
@@ -160,12 +163,12 @@ impl<const D: usize> Touching<D> {
         self.rows.clear();
     }
 
-    /// Calls back with the points and the impulses of the last step [N s], but for those of obstacles on points.
+    /// Calls back with the nodes, as points, and the impulses of the last step [N s], but for those of obstacles on points.
     pub fn visit_impulses(&self, mut visit: impl FnMut(usize, [f64; D])) {
         for row in self.rows.iter().filter(|row| row.normal_impulse > 0.0 && !row.of_obstacle) {
             let impulse = row.impulse();
-            for k in (0..=D).filter(|k| row.weights[*k] != 0.0) {
-                visit(row.points[k] as usize, impulse.map(|c| row.weights[k] * c));
+            for (p, weight) in acting(&self.spread, row) {
+                visit(p as usize, impulse.map(|c| weight * c));
             }
         }
     }
@@ -215,6 +218,9 @@ impl<const D: usize> Touching<D> {
     ) -> Result<bool, Trouble> {
         self.changed.clear();
         self.zones.clear();
+        for vectors in self.before.iter_mut().chain(&mut self.after) {
+            self.surface.follow(vectors);
+        }
         let points = self.surface.points();
         self.moved.resize(points, [0.0; D]);
         self.impact.resize(points, [0.0; D]);
@@ -299,6 +305,7 @@ impl<const D: usize> Touching<D> {
         for p in (0..self.coupled.count()).flat_map(|body| self.coupled.points_of(body)) {
             self.end[p] = self.after[0][p];
         }
+        self.surface.follow(&mut self.end);
         self.find_passages(h)
     }
 
@@ -346,9 +353,11 @@ impl<const D: usize> Touching<D> {
         self.start_warm();
         self.turns.begin(self.surface.points());
         loop {
-            let Touching { rows, inverse_mass, coupled, v, turns, surface, laws, after: [_, free], .. } = &mut *self;
-            turns.find_approach(rows, (&surface.body, laws.class.len()), inverse_mass, free);
-            self.counts.turns += Problem { rows, inverse_mass, coupled, v, turns, body: &surface.body }.solve() as u64;
+            let Touching { rows, spread, inverse_mass, coupled, v, turns, surface, laws, after: [_, free], .. } =
+                &mut *self;
+            turns.find_approach(rows, spread, (&surface.body, laws.class.len()), inverse_mass, free);
+            let problem = Problem { rows, spread, inverse_mass, coupled, v, turns, body: &surface.body };
+            self.counts.turns += problem.solve() as u64;
             self.touched.clear();
             self.touched.resize(self.surface.points(), false);
             self.coupled.finish(&self.after[1], &mut self.v, &mut self.touched);
@@ -371,14 +380,11 @@ impl<const D: usize> Touching<D> {
             return true;
         }
         for row in &mut self.rows[first..] {
-            if self.coupled.holds((&row.points, &row.weights)) {
-                if !respond
-                    .as_mut()
-                    .is_some_and(|respond| self.coupled.need((&row.points, &row.weights), &mut **respond))
-                {
+            if self.coupled.holds(row.on(&self.spread)) {
+                if !respond.as_mut().is_some_and(|respond| self.coupled.need(row.on(&self.spread), &mut **respond)) {
                     return false;
                 }
-                row.weigh_coupled(&self.coupled, &self.inverse_mass);
+                row.weigh_coupled(&self.spread, &self.coupled, &self.inverse_mass);
             }
         }
         true
@@ -389,10 +395,11 @@ impl<const D: usize> Touching<D> {
         let before = self.rows.len();
         for (head, row) in self.heads.iter_mut().zip(&self.watched) {
             let [v, free] = [&self.v, &self.after[1]];
-            let pushed = head[..=D].iter().any(|p| *p != CALLED && v[*p as usize] != free[*p as usize]);
-            if pushed && dot(&subtract(&row.mean(v), &row.carry), &row.normal) < row.target {
+            let points = self.spread.points_of::<D>(head);
+            let pushed = points.iter().any(|p| v[*p as usize] != free[*p as usize]);
+            if pushed && dot(&subtract(&row.mean(&self.spread, v), &row.carry), &row.normal) < row.target {
                 self.rows.push(*row);
-                *head = [CALLED; 4];
+                *head = Spread::NOBODY;
             }
         }
         self.rows.len() > before
@@ -417,11 +424,11 @@ impl<const D: usize> Touching<D> {
             let coupled = &self.coupled;
             // What answers as a whole looks for its end between the obstacles.
             let asks = |p: u32| !surface.is_of_obstacle(p) && coupled.body_of(p).is_none();
-            for k in (0..=D).filter(|k| row.weights[*k] != 0.0 && asks(row.points[*k])) {
-                let known = &mut self.known[row.points[k] as usize];
+            for (p, _) in acting(&self.spread, row).filter(|(p, _)| asks(*p)) {
+                let known = &mut self.known[p as usize];
                 if !*known {
                     *known = true;
-                    self.asked.push(row.points[k]);
+                    self.asked.push(p);
                 }
             }
         }
@@ -431,12 +438,13 @@ impl<const D: usize> Touching<D> {
             let (x0, x1) = (self.before[0][p as usize], self.after[0][p as usize]);
             let travel = length(&subtract(&x1, &x0));
             let reach = travel + h * length(&self.v[p as usize]) + self.margin;
-            let (rows, inverse_mass) = (&mut self.rows, &self.inverse_mass);
+            let (rows, spread, inverse_mass) = (&mut self.rows, &self.spread, &self.inverse_mass);
             obstacles(p, &x0, &x1, reach, &mut |touch: Touch<D>| {
                 let mut gap = Gap { points: [p; 4], weights: [0.0; 4], gap: touch.gap_before, normal: touch.normal };
                 gap.weights[0] = 1.0;
                 let id = OBSTACLE_BIT | u64::from(p) << 31 | touch.surface as u64;
-                let mut row = Row::new(id, &gap, 0.0, touch.friction, inverse_mass);
+                let mut row = Row::new(id, &gap, 0.0, touch.friction);
+                row.weigh(spread, inverse_mass);
                 row.carry = touch.velocity;
                 row.target = if row.gap > 0.0 { -row.gap / h } else { 0.0 };
                 row.of_obstacle = true;
@@ -458,9 +466,9 @@ impl<const D: usize> Touching<D> {
                 (row.normal_impulse, row.friction_impulse) = (*along, *across);
                 let impulse = row.impulse();
                 if row.coupled {
-                    self.coupled.give((&row.points, &row.weights), &impulse, &self.inverse_mass, &mut self.v);
+                    self.coupled.give(row.on(&self.spread), &impulse, &self.inverse_mass, &mut self.v);
                 } else {
-                    row.give(&impulse, &self.inverse_mass, &mut self.v);
+                    row.give(&self.spread, &impulse, &self.inverse_mass, &mut self.v);
                 }
             }
         }
@@ -474,16 +482,20 @@ impl<const D: usize> Touching<D> {
         8 * D * (vectors + states)
             + self.surface.heap_bytes()
             + self.coupled.heap_bytes()
+            + self.spread.heap_bytes()
             + self.candidates.heap_bytes()
             + core::mem::size_of::<Row<D>>() * (self.rows.capacity() + self.watched.capacity())
     }
 }
 
+/// The points that a row acts on, and their weights.
+pub(crate) fn acting<'a, const D: usize>(spread: &'a Spread, row: &'a Row<D>) -> impl Iterator<Item = (u32, f64)> + 'a {
+    let (points, weights) = row.on(spread);
+    points.iter().copied().zip(weights.iter().copied()).filter(|(_, weight)| *weight != 0.0)
+}
+
 /// For how many steps candidates of fast points are looked for at once. A search costs about as much as the gaps of eight steps.
 const STEPS: f64 = 8.0;
-
-/// In place of the points of a pair that is solved for.
-const CALLED: u32 = u32::MAX;
 
 /// How often pairs that would pass through one another are solved for along their normals, before what still passes moves as one: four, as an impulse
 /// along one pair may send another one through, but each round leaves fewer.

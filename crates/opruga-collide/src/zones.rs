@@ -5,6 +5,9 @@ use opruga_math::symmetric;
 /// Differences of speeds, relative to 1 m/s or to themselves, that are rounding.
 pub(crate) const ROUNDING: f64 = 1e-9;
 
+/// The points of a pair, at most four nodes for each of its four, and their number.
+pub(crate) type PointsOfPair = ([u32; 16], usize);
+
 /// The zones of a step, and what their points did before.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Zones<const D: usize> {
@@ -148,7 +151,7 @@ impl<const D: usize> Zones<D> {
     }
 
     /// Whether some points belong to one zone.
-    pub(crate) fn hold(&self, (points, count): &([u32; 6], usize)) -> bool {
+    pub(crate) fn hold(&self, (points, count): &PointsOfPair) -> bool {
         !self.parent.is_empty() && points[..*count].windows(2).all(|pair| self.root(pair[0]) == self.root(pair[1]))
     }
 

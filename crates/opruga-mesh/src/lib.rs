@@ -56,6 +56,7 @@ mod soup;
 mod sphere;
 mod stuffing;
 mod surface;
+mod touching_surface;
 mod transform;
 
 pub use adjacency::{Adjacency, node_neighbours};
@@ -93,3 +94,4 @@ pub use skin::{Area, Skin};
 pub use soup::{Turned, weld};
 pub use sphere::MAXIMUM_SUBDIVISIONS;
 pub use stuffing::{LARGEST_DIHEDRAL_ANGLE, SMALLEST_DIHEDRAL_ANGLE};
+pub use touching_surface::{Carrier, TouchingSurface};

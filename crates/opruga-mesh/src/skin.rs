@@ -11,6 +11,9 @@ pub struct Skin {
     pub triangles: Vec<[u32; 3]>,
     /// In the plane: areas between the points of the skin, painted one over another.
     pub areas: Vec<Area>,
+    /// In the plane: edges between the points of the skin, with the inside to their left. A body that is filled by a lattice touches others
+    /// with them; empty where the boundary of the cells is that of the drawing.
+    pub outline: Vec<[u32; 2]>,
     /// The nodes that carry each point.
     pub carriers: Vec<[u32; 4]>,
     /// Their weights, which add up to 1.

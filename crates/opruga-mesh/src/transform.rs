@@ -78,6 +78,7 @@ impl<const D: usize> Mesh<D> {
         self.sheet_quadrilaterals.iter_mut().for_each(|quadrilateral| quadrilateral.swap(1, 3));
         self.cells.turn_all();
         self.skin.iter_mut().flat_map(|skin| &mut skin.triangles).for_each(|triangle| triangle.swap(0, 1));
+        self.skin.iter_mut().flat_map(|skin| &mut skin.outline).for_each(|edge| edge.swap(0, 1));
     }
 }
 

@@ -71,11 +71,12 @@ impl<const D: usize> Meeting<D> {
             opened.push(Opened { island: pushed.island, first, step: begun? });
             first += island.system.nodes * D;
         }
-        let x = self.touching.before[0].clone();
+        let mut x = self.touching.before[0].clone();
+        self.touching.surface.follow(&mut x);
         self.move_outlines(step.time);
-        let ahead = (0..points).map(|p| match coordinates[p] {
-            Some(_) => [0.0; D],
-            None => std::array::from_fn(|d| self.touching.after[0][p][d] - x[p][d]),
+        let ahead = (0..points).map(|p| match self.touching.surface.is_of_obstacle(p as u32) {
+            false => [0.0; D],
+            true => std::array::from_fn(|d| self.touching.after[0][p][d] - x[p][d]),
         });
         let mut search = Search {
             ahead: ahead.collect(),
@@ -110,12 +111,16 @@ impl<const D: usize> Search<'_, '_, D> {
         let Search { islands, touching, barrier, opened, coordinates, moved, x, pressed, rubbing, .. } = self;
         let mut forces = vec![[0.0; D]; x.len()];
         let mut losses = vec![[0.0; 2]; x.len()];
+        let surface = &touching.surface;
         let mut enter = |points: &[u32; 4], weights: &[f64; 4], force: &[f64; D], account: usize| {
-            for (p, w) in points.iter().map(|p| *p as usize).zip(weights) {
-                for d in 0..D {
-                    forces[p][d] += w * force[d];
-                    losses[p][account] -= w * force[d] * moved[p][d];
-                }
+            for (p, w) in points.iter().zip(weights) {
+                surface.visit_nodes(*p, |node, share| {
+                    let node = node as usize;
+                    for d in 0..D {
+                        forces[node][d] += w * share * force[d];
+                        losses[node][account] -= w * share * force[d] * moved[node][d];
+                    }
+                });
             }
         };
         let friction_of = |pair: &Pressed<D>| {
@@ -159,6 +164,7 @@ impl<const D: usize> Search<'_, '_, D> {
                 }
             }
         }
+        touching.surface.follow(&mut touching.after[0]);
         let Touching { surface, laws, most, after: [end, _], .. } = &*touching;
         barrier.look(surface, laws, [&x, end], *most)?;
         if barrier.free_part(surface, laws, [&x, end]) < 1.0 {

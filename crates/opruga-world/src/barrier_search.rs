@@ -111,36 +111,8 @@ pub(crate) struct Search<'a, 'b, const D: usize> {
     pub(crate) stretch: f64,
 }
 
-/// Adds a vector of a pair to those of its points.
-fn scatter<const D: usize>(
-    coordinates: &[Option<(usize, usize)>],
-    points: &[u32; 4],
-    weights: &[f64; 4],
-    force: &[f64; D],
-    to: &mut [f64],
-) {
-    for (p, w) in points.iter().zip(weights).filter(|(_, w)| **w != 0.0) {
-        if let Some((_, at)) = coordinates[*p as usize] {
-            (0..D).for_each(|d| to[at + d] += w * force[d]);
-        }
-    }
-}
-
-/// Σ wᵢ aᵢ of the points of a pair.
-fn gather<const D: usize>(
-    coordinates: &[Option<(usize, usize)>],
-    points: &[u32; 4],
-    weights: &[f64; 4],
-    from: &[f64],
-) -> [f64; D] {
-    let mut sum = [0.0; D];
-    for (p, w) in points.iter().zip(weights).filter(|(_, w)| **w != 0.0) {
-        if let Some((_, at)) = coordinates[*p as usize] {
-            (0..D).for_each(|d| sum[d] += w * from[at + d]);
-        }
-    }
-    sum
-}
+/// The points of a pair and their weights.
+type Weighted<'a> = (&'a [u32; 4], &'a [f64; 4]);
 
 /// The factors of all bodies, one beside the other.
 struct Factors<'a, const D: usize>(&'a [Opened<D>]);
@@ -168,6 +140,10 @@ impl<const D: usize> Search<'_, '_, D> {
             let Opened { island, first, step } = &self.opened[body];
             let stiffness = step.stiffness(&self.islands[*island].system, (at - first) / D);
             self.barrier.softness[p] = if stiffness > 0.0 { 1.0 / stiffness } else { 0.0 };
+        }
+        for (p, carrier) in self.touching.surface.carried() {
+            let own = carrier.nodes.iter().zip(&carrier.weights);
+            self.barrier.softness[p] = own.map(|(node, w)| w * w * self.barrier.softness[*node as usize]).sum();
         }
         Ok(())
     }
@@ -287,20 +263,44 @@ impl<const D: usize> Search<'_, '_, D> {
         StepError::of(name, Refusal::NoCommonEnd { iterations }).into()
     }
 
+    /// Adds a vector of a pair to those of its points.
+    fn scatter(&self, (points, weights): Weighted<'_>, force: &[f64; D], to: &mut [f64]) {
+        for (p, w) in points.iter().zip(weights).filter(|(_, w)| **w != 0.0) {
+            self.touching.surface.visit_nodes(*p, |node, share| {
+                if let Some((_, at)) = self.coordinates[node as usize] {
+                    (0..D).for_each(|d| to[at + d] += w * share * force[d]);
+                }
+            });
+        }
+    }
+
+    /// Σ wᵢ aᵢ of the points of a pair.
+    fn gather(&self, (points, weights): Weighted<'_>, from: &[f64]) -> [f64; D] {
+        let mut sum = [0.0; D];
+        for (p, w) in points.iter().zip(weights).filter(|(_, w)| **w != 0.0) {
+            self.touching.surface.visit_nodes(*p, |node, share| {
+                if let Some((_, at)) = self.coordinates[node as usize] {
+                    (0..D).for_each(|d| sum[d] += w * share * from[at + d]);
+                }
+            });
+        }
+        sum
+    }
+
     /// ∂(B + D)/∂u [N].
     fn gradient(&self) -> Vec<f64> {
         let mut out = vec![0.0; self.length];
         for pair in &self.pressed {
-            scatter(&self.coordinates, &pair.points, &pair.weights, &scaled(&pair.normal, -pair.force), &mut out);
-            for (p, fading) in pair.points.iter().zip(&pair.fading) {
-                if let Some((_, at)) = self.coordinates[*p as usize] {
-                    (0..D).for_each(|d| out[at + d] += fading[d]);
-                }
+            self.scatter((&pair.points, &pair.weights), &scaled(&pair.normal, -pair.force), &mut out);
+            for (k, fading) in pair.fading.iter().enumerate() {
+                let mut one = [0.0; 4];
+                one[k] = 1.0;
+                self.scatter((&pair.points, &one), fading, &mut out);
             }
         }
         for rub in &self.rubbing {
             let force = rub.force(&rub.slip(&self.moved));
-            scatter(&self.coordinates, &rub.points, &rub.weights, &scaled(&force, -1.0), &mut out);
+            self.scatter((&rub.points, &rub.weights), &scaled(&force, -1.0), &mut out);
         }
         out
     }
@@ -308,7 +308,7 @@ impl<const D: usize> Search<'_, '_, D> {
     /// y += ∂²(B + D)/∂u² x, where `obstacles` is how the points of obstacles move.
     fn stiffen(&self, x: &[f64], obstacles: Option<&[[f64; D]]>, y: &mut [f64]) {
         let relative = |points: &[u32; 4], weights: &[f64; 4]| {
-            let mut motion: [f64; D] = gather(&self.coordinates, points, weights, x);
+            let mut motion = self.gather((points, weights), x);
             if let Some(ahead) = obstacles {
                 for (p, w) in points.iter().zip(weights) {
                     (0..D).for_each(|d| motion[d] += w * ahead[*p as usize][d]);
@@ -319,12 +319,12 @@ impl<const D: usize> Search<'_, '_, D> {
         for pair in &self.pressed {
             let motion = relative(&pair.points, &pair.weights);
             let along: f64 = (0..D).map(|d| motion[d] * pair.normal[d]).sum();
-            scatter(&self.coordinates, &pair.points, &pair.weights, &scaled(&pair.normal, pair.curvature * along), y);
+            self.scatter((&pair.points, &pair.weights), &scaled(&pair.normal, pair.curvature * along), y);
         }
         for rub in &self.rubbing {
             let motion = relative(&rub.points, &rub.weights);
             let force = rub.stiffen(&rub.slip(&self.moved), &motion);
-            scatter(&self.coordinates, &rub.points, &rub.weights, &force, y);
+            self.scatter((&rub.points, &rub.weights), &force, y);
         }
     }
 
@@ -429,6 +429,7 @@ impl<const D: usize> Search<'_, '_, D> {
             };
         }
         let Touching { surface, laws, most, .. } = &*self.touching;
+        surface.follow(&mut self.trial);
         self.barrier.look(surface, laws, [&self.x, &self.trial], *most)?;
         let far = std::mem::take(&mut self.trial);
         let mut part = self.barrier.free_part(surface, laws, [&self.x, &far]);

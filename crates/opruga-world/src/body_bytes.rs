@@ -114,6 +114,7 @@ impl Writer<'_> {
                 area.rings.iter().for_each(|ring| out.list(ring));
                 out.indices(&area.triangles);
             }
+            out.indices(&skin.outline);
             out.indices(&skin.carriers);
             out.vectors(&skin.weights);
         });
@@ -280,7 +281,8 @@ impl Reader<'_> {
                 let rings = (0..n).map(|_| reader.list()).collect::<Result<_, _>>()?;
                 areas.push(Area { colour, rings, triangles: reader.indices()? });
             }
-            Ok(Skin { triangles, areas, carriers: reader.indices()?, weights: reader.vectors::<4>()? })
+            let outline = reader.indices()?;
+            Ok(Skin { triangles, areas, outline, carriers: reader.indices()?, weights: reader.vectors::<4>()? })
         })?;
         Ok(mesh)
     }

@@ -7,7 +7,7 @@ use opruga_core::error::BuildError;
 use opruga_core::integrator::Integrator;
 use opruga_core::spec::{Value, Values};
 use opruga_math::Lane;
-use opruga_mesh::Mesh;
+use opruga_mesh::{Mesh, TouchingSurface};
 
 /// The distance of surfaces in contact where the scene is silent, relative to the mean edge: small beside every facet, and many times what
 /// sweeps and rounding leave of a gap.
@@ -17,6 +17,11 @@ impl<const D: usize> BodyBlueprint<D> {
     /// Whether the body touches anything where the scene has contact.
     pub(crate) fn touches(&self) -> bool {
         self.contact.as_ref().is_none_or(|own| own.flag("touch"))
+    }
+    /// The surface with which it touches: by default the skin that it carries, if any.
+    pub(crate) fn touching_surface(&self) -> TouchingSurface<D> {
+        let cells = self.contact.as_ref().is_some_and(|own| own.text("surface") == Some("cells"));
+        self.mesh.touching_surface(!cells)
     }
     /// The group that `[[contact.pair]]` knows it by.
     pub fn contact_group(&self) -> &str {
@@ -35,22 +40,20 @@ pub(crate) struct Edges {
 }
 
 /// The lengths of the edges of a surface at rest.
-pub(crate) fn edges_of<const D: usize>(mesh: &Mesh<D>) -> Edges {
+pub(crate) fn edges_of<const D: usize>(surface: &TouchingSurface<D>, mesh: &Mesh<D>) -> Edges {
     let (mut sum, mut count, mut shortest) = (0.0, 0, f64::INFINITY);
+    let positions = surface.positions(&mesh.positions);
     let mut add = |a: u32, b: u32| {
-        let (a, b) = (&mesh.positions[a as usize], &mesh.positions[b as usize]);
+        let (a, b) = (&positions[a as usize], &positions[b as usize]);
         let square: f64 = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum();
         sum += square.sqrt();
         count += 1;
         shortest = if square.sqrt() < shortest { square.sqrt() } else { shortest };
     };
-    for facet in &mesh.facets {
+    for facet in &surface.facets {
         (0..if D == 2 { 1 } else { D }).for_each(|k| add(facet[k], facet[(k + 1) % D]));
     }
-    for sheet in &mesh.sheets {
-        (0..3).for_each(|k| add(sheet[k], sheet[(k + 1) % 3]));
-    }
-    mesh.wires.iter().for_each(|[a, b]| add(*a, *b));
+    surface.wires.iter().for_each(|[a, b]| add(*a, *b));
     Edges { sum, count, shortest }
 }
 
@@ -78,7 +81,7 @@ pub(crate) fn laws<const D: usize>(
         let body = &scene.bodies[*number];
         let own = body.contact.as_ref();
         let number_of = |name: &str| own.and_then(|own| own.number(name)).or_else(|| values.number(name));
-        let edge = || match edges_of(&body.mesh) {
+        let edge = || match edges_of(&body.touching_surface(), &body.mesh) {
             Edges { count: 0, .. } => mean_edge,
             Edges { sum, count, .. } => sum / count as f64,
         };
@@ -159,8 +162,11 @@ pub(crate) fn check<const D: usize>(
     if body.touches() && is_barrier(contact) && !integrator.takes_pushes() {
         return Err(BuildError::of("contact", Refusal::NoBarrier { integrator: integrator.name() }));
     }
-    let shortest = edges_of(&body.mesh).shortest;
-    if let Some(reach) = contact.values.number("reach").filter(|reach| is_barrier(contact) && *reach >= shortest) {
+    let shortest = || edges_of(&body.touching_surface(), &body.mesh).shortest;
+    let reach = contact.values.number("reach").filter(|_| is_barrier(contact));
+    if let Some((reach, shortest)) =
+        reach.map(|reach| (reach, shortest())).filter(|(reach, shortest)| reach >= shortest)
+    {
         return Err(BuildError::of("contact.reach", Refusal::Reach { reach, shortest }));
     }
     if scene.surroundings.unfold {

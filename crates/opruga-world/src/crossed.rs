@@ -10,7 +10,7 @@ use opruga_mesh::{Crossings, Mesh, crossing_edges, winding_number};
 pub struct Crossed {
     /// The bodies, by their place in the scene.
     pub bodies: [usize; 2],
-    /// A facet of each, in the order facets, open surfaces, wires of its mesh; none where one body lies in the other without crossing it.
+    /// A facet of each, in the order of the surface that touches: boundary or skin, open surfaces, wires; none where one body lies in the other without crossing it.
     pub facets: Option<[u32; 2]>,
 }
 
@@ -95,17 +95,14 @@ impl<const D: usize> World<D> {
     fn surfaces(&self, bodies: &[usize]) -> Surfaces<D> {
         let mut out = Surfaces { positions: Vec::new(), facets: Vec::new(), origin: Vec::new(), closed: Vec::new() };
         for body in bodies {
-            let mesh = &self.blueprint.bodies[*body].mesh;
+            let own = &self.blueprint.bodies[*body];
             let (first, begin) = (out.positions.len() as u32, out.facets.len());
-            out.positions.extend((0..mesh.nodes() as u32).map(|node| self.position(*body, node)));
-            out.facets.extend(mesh.facets.iter().map(|facet| facet.map(|node| first + node)));
-            if !mesh.facets.is_empty() {
-                out.closed.push((*body, begin..out.facets.len()));
-            }
-            if D == 2 {
-                out.facets.extend(mesh.wires.iter().map(|wire| core::array::from_fn(|k| first + wire[k])));
-            } else {
-                out.facets.extend(mesh.sheets.iter().map(|sheet| core::array::from_fn(|k| first + sheet[k])));
+            let nodes: Vec<[f64; D]> = (0..own.mesh.nodes() as u32).map(|node| self.position(*body, node)).collect();
+            let surface = own.touching_surface();
+            out.positions.extend(surface.positions(&nodes));
+            out.facets.extend(surface.facets.iter().map(|facet| facet.map(|point| first + point)));
+            if surface.closed > 0 {
+                out.closed.push((*body, begin..begin + surface.closed));
             }
             out.origin.extend((0..(out.facets.len() - begin) as u32).map(|number| (*body, number)));
         }

@@ -20,7 +20,7 @@ pub(crate) struct Meeting<const D: usize> {
     colliders: Option<Arc<Colliders<D>>>,
     /// For every island of the group the first of its points and where their nodes lie in its columns, body by body.
     columns: Vec<Vec<(u32, Vec<u32>)>>,
-    /// The island of every point and the index in its columns.
+    /// The island of every point and the index in its columns; `u32::MAX` for one that nodes carry.
     points: Vec<(u32, u32)>,
     /// The bodies that touch, by their place in the scene.
     pub(crate) bodies: Vec<usize>,
@@ -99,7 +99,8 @@ impl<const D: usize> Meeting<D> {
         for (own, number) in cluster.bodies.iter().enumerate() {
             let (island, lane) = scene.seats[*number as usize];
             let first = touching.surface.points() as u32;
-            let nodes = touching.surface.add(&blueprint.bodies[scene.bodies[*number as usize]].mesh, own as u32);
+            let surface = blueprint.bodies[scene.bodies[*number as usize]].touching_surface();
+            let nodes = touching.surface.add_surface(surface, own as u32);
             let Island { system, integrator, .. } = &all[island];
             let island = islands.binary_search(&island).unwrap_or(0);
             let indices: Vec<u32> = nodes.iter().map(|n| system.layout.place(*n as usize, lane) as u32).collect();
@@ -112,10 +113,12 @@ impl<const D: usize> Meeting<D> {
                 points.push((island as u32, *index));
             }
             if integrator.takes_pushes() {
-                touching.coupled.add(first as usize..touching.surface.points());
+                touching.coupled.add(first as usize..first as usize + indices.len());
                 pushed.push(Pushed::new(island, indices.clone()));
                 workspace.fit(system);
             }
+            points.resize(touching.surface.points(), (island as u32, u32::MAX));
+            touching.inverse_mass.resize(touching.surface.points(), [0.0; D]);
             columns[island].push((first, indices));
         }
         let mut outlines = Vec::new();

@@ -74,7 +74,8 @@ impl<const D: usize> SceneContact<D> {
         let mut known: Vec<&Values> = Vec::new();
         let mut rules = Vec::with_capacity(bodies.len());
         for body in &bodies {
-            let own = edges_of(&scene.bodies[*body].mesh);
+            let blueprint = &scene.bodies[*body];
+            let own = edges_of(&blueprint.touching_surface(), &blueprint.mesh);
             (length, edges) = (length + own.sum, edges + own.count);
             shortest = own.shortest.smaller(shortest);
             let rule = scene.bodies[*body].integrator.as_ref().unwrap_or(&scene.integrator);

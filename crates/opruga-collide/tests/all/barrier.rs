@@ -42,6 +42,8 @@ fn blocks<const D: usize>(apart: f64, angle: f64, seed: &mut u64) -> (Surface<D>
             at.iter_mut().for_each(|c| *c += 0.01 * random(seed));
             x.push(at);
         }
+        x.resize(surface.points(), [0.0; D]);
+        surface.follow(&mut x);
     }
     (surface, x)
 }

@@ -21,7 +21,7 @@ pub struct Painted {
 /// Paints areas on a body, one over another: each point belongs to the cell in which it lies, or to the nearest one.
 ///
 /// A square carries its points by bilinear weights, a triangle by barycentric ones. A body without cells carries by triangles between the nodes of
-/// its outline `rings`.
+/// its outline `rings`. A body of squares touches others with what bounds it: `rings`, in edges of about half a cell.
 ///
 /// # Errors
 /// [`OutlineError::TooCoarse`] where the rings of a body without cells meet, [`OutlineError::Mesh`] for too many points.
@@ -61,12 +61,51 @@ pub fn carry(mesh: &mut Mesh<2>, rings: &[Ring], painted: &[Painted]) -> Result<
         }
         skin.areas.push(made);
     }
+    if let Some([a, b, ..]) = mesh.cells.quadrilaterals.first() {
+        let side = distance(mesh.positions[*a as usize], mesh.positions[*b as usize]);
+        skin.follow(&grid, &followed(rings, EDGE * side));
+    }
     if skin.carriers.len() > u32::MAX as usize / 4 {
         let most = crate::MAXIMUM_NODES;
         return Err(MeshError::TooManyNodes { nodes: skin.carriers.len() as u64, most }.into());
     }
     mesh.skin = Some(skin);
     Ok(())
+}
+
+/// The length of the edges with which a lattice touches, relative to its cells: longer ones cut curves off, and would not bend as the cells
+/// do; shorter ones show what no cell does.
+const EDGE: f64 = 0.5;
+
+/// Rings with edges about so long [m]; where such edges would cross, those of the drawing, of which long ones are cut.
+fn followed(rings: &[Ring], length: f64) -> Vec<Ring> {
+    super::resampled(rings, length).unwrap_or_else(|_| {
+        let cut = |ring: &Ring| {
+            let pieces = ring.edges().flat_map(|(a, b)| {
+                let count = (distance(a, b) / length).ceil();
+                let count = if count > 1.0 { count } else { 1.0 };
+                let at = move |k: u32| core::array::from_fn(|d| a[d] + f64::from(k) / count * (b[d] - a[d]));
+                (0..count as u32).map(at)
+            });
+            Ring { points: pieces.collect(), ..ring.clone() }
+        };
+        rings.iter().map(cut).collect()
+    })
+}
+
+impl Skin {
+    /// Takes rings for what touches others.
+    fn follow(&mut self, grid: &Grid<'_>, rings: &[Ring]) {
+        for ring in rings {
+            let (first, count) = (self.carriers.len() as u32, ring.points.len() as u32);
+            for point in &ring.points {
+                let (nodes, weights) = grid.carrier(*point);
+                self.carriers.push(nodes);
+                self.weights.push(weights);
+            }
+            self.outline.extend((0..count).map(|k| [first + k, first + (k + 1) % count]));
+        }
+    }
 }
 
 /// A cell that carries points.

@@ -158,3 +158,43 @@ proptest! {
         prop_assert!((by_rings / drawn - 1.0).abs() < 1e-5 && (by_triangles / drawn - 1.0).abs() < 1e-5, "{} {} {}", by_rings, by_triangles, drawn);
     }
 }
+
+/// A body of squares touches with the outline of the drawing, in edges of about half a square, however it is moved; a mirrored one too.
+#[test]
+fn lattices_touch_with_their_outline() {
+    let rings = nested(vec![square(0.0, 2.0), square(0.7, 1.3)]);
+    let mut mesh = outline::squares(&rings, 0.3).expect("squares");
+    outline::carry(&mut mesh, &rings, &[Painted { rings: rings.clone(), colour: None }]).expect("carried");
+    let area = |mesh: &Mesh<2>, by: &dyn Fn([f64; 2]) -> [f64; 2]| {
+        let surface = mesh.touching_surface(true);
+        let nodes: Vec<[f64; 2]> = mesh.positions.iter().map(|p| by(*p)).collect();
+        let points = surface.positions(&nodes);
+        let length = |[a, b]: &[u32; 2]| {
+            let (a, b) = (points[*a as usize], points[*b as usize]);
+            (a[0] - b[0]).hypot(a[1] - b[1])
+        };
+        let longest = surface.facets.iter().map(length).fold(0.0, f64::max);
+        (opruga_mesh::signed_volume(&surface.facets, &points), longest, surface.closed == surface.facets.len())
+    };
+    let (hollow, longest, closed) = area(&mesh, &|p| p);
+    assert!((hollow - (4.0 - 0.36)).abs() < 1e-9 && longest < 0.2 && closed, "{hollow} {longest}");
+    let (bent, ..) = area(&mesh, &|[x, y]| [x + 0.5 * y, 2.0 * y]);
+    assert!((bent - 2.0 * hollow).abs() < 1e-9, "{bent}");
+    assert!(mesh.touching_surface(false).carried.is_empty());
+    mesh.mirror([1.0, 0.0], [0.0; 2]).expect("mirrored");
+    let (mirrored, ..) = area(&mesh, &|p| p);
+    assert!((mirrored - hollow).abs() < 1e-9, "{mirrored}");
+}
+
+/// Detail that edges of half a square would cross is kept as it is drawn.
+#[test]
+fn outlines_too_fine_for_their_squares_keep_their_points() {
+    // Two prongs with a slit of a hundredth between them.
+    let prongs = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.51, 1.0], [0.5, 0.1], [0.49, 1.0], [0.0, 1.0]];
+    let rings = nested(vec![Ring { points: prongs, part: 0 }]);
+    let mut mesh = outline::squares(&rings, 0.4).expect("squares");
+    outline::carry(&mut mesh, &rings, &[Painted { rings: rings.clone(), colour: None }]).expect("carried");
+    let surface = mesh.touching_surface(true);
+    let area = opruga_mesh::signed_volume(&surface.facets, &surface.positions(&mesh.positions));
+    assert!((area - rings[0].area().abs()).abs() < 0.05 * area, "{area} {}", rings[0].area());
+}

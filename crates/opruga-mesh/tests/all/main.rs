@@ -9,3 +9,4 @@ mod remeshing;
 mod stuffing;
 mod surfaces;
 mod topology;
+mod touching_surfaces;

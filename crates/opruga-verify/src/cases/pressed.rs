@@ -42,6 +42,12 @@ pub(super) const CASES: &[Case] = &[
     Case { name: "contact-patch-quadrilaterals", measure: |lab, n| pressures::<2>(lab, n, Cells::Boxes), ..PATCH },
     Case { name: "contact-patch-tetrahedra", measure: |lab, n| pressures::<3>(lab, n, Cells::Linear), ..PATCH },
     Case {
+        name: "contact-patch-hexahedra",
+        levels: &[2.0, 3.0],
+        measure: |lab, n| pressures::<3>(lab, n, Cells::Boxes),
+        ..PATCH
+    },
+    Case {
         name: "contact-patch-barrier",
         measure: |lab, reach| Ok(patch::<2>(lab, 3.0, Cells::Linear, Some(reach))?.worst),
         ..BARRIER
@@ -128,9 +134,10 @@ fn solid(law: &str, pins: &[String]) -> String {
 
 /// The area (in the plane the length) of the boundary at a height that belongs to each node.
 fn shares<const D: usize>(mesh: &Mesh<D>, height: f64) -> Vec<f64> {
-    let mut out = vec![0.0; mesh.positions.len()];
-    for facet in &mesh.facets {
-        let corners: Vec<[f64; D]> = facet.iter().map(|node| mesh.positions[*node as usize]).collect();
+    let surface = mesh.touching_surface(true);
+    let (positions, mut of_points) = (surface.positions(&mesh.positions), vec![0.0; surface.points()]);
+    for facet in &surface.facets {
+        let corners: Vec<[f64; D]> = facet.iter().map(|point| positions[*point as usize]).collect();
         if corners.iter().any(|x| (x[1] - height).abs() > 1e-9) {
             continue;
         }
@@ -140,8 +147,14 @@ fn shares<const D: usize>(mesh: &Mesh<D>, height: f64) -> Vec<f64> {
         } else {
             0.5 * (edge(1, 0) * edge(2, D - 1) - edge(2, 0) * edge(1, D - 1)).abs()
         };
-        facet.iter().for_each(|node| out[*node as usize] += measure / D as f64);
+        facet.iter().for_each(|point| of_points[*point as usize] += measure / D as f64);
     }
+    let (nodes, carried) = of_points.split_at_mut(surface.nodes.len());
+    for (carrier, share) in surface.carried.iter().zip(carried) {
+        carrier.nodes.iter().zip(&carrier.weights).for_each(|(node, weight)| nodes[*node as usize] += weight * *share);
+    }
+    let mut out = vec![0.0; mesh.positions.len()];
+    surface.nodes.iter().zip(nodes).for_each(|(node, share)| out[*node as usize] = *share);
     out
 }
 

@@ -15,7 +15,7 @@ pub const CONTACT: Section = Section {
         "contact",
         "How deformable bodies touch one another and themselves",
         "Without this section bodies pass through one another. Boundaries, open surfaces and wires touch, points where a body has none \
-         of these; a body filled by a lattice touches with the boundary of its cells. Edges and facets touch the corners and edges of obstacles too, not nodes alone. A substep moves all bodies freely, and then gives impulses to pairs of a vertex and a facet, and in space of two edges.",
+         of these; a body filled by a lattice touches with the surface that it carries. Edges and facets touch the corners and edges of obstacles too, not nodes alone. A substep moves all bodies freely, and then gives impulses to pairs of a vertex and a facet, and in space of two edges.",
         &[
             Field::new(
                 "response",
@@ -113,6 +113,14 @@ pub const BODY_CONTACT: Section = Section {
             Field::new("restitution", Allowed::FRACTION, "", Default::Absent, RESTITUTION),
             Field::new("thickness", Allowed::POSITIVE, "m", Default::Absent, THICKNESS),
             Field::new("self", Allowed::Boolean, "", Default::Absent, "Whether it touches itself."),
+            Field::new(
+                "surface",
+                Allowed::Choice(&["skin", "cells"]),
+                "",
+                Default::Text("skin"),
+                "With what a body filled by a lattice touches other bodies: `skin`, the surface that it carries and that is drawn; `cells`, the \
+                 boundary of its cells, which reaches beyond that.",
+            ),
             Field::new("touch", Allowed::Boolean, "", Default::Boolean(true), "Whether it touches anything at all."),
         ],
     ),

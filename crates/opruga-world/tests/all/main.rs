@@ -26,6 +26,7 @@ mod real_time;
 mod refusals;
 mod robust_steps;
 mod shapes_of_cells;
+mod skins;
 mod slender_cells;
 mod statics;
 mod stiff_bodies;
