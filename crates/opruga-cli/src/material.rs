@@ -78,13 +78,13 @@ fn values(call: &Material, dimension: usize) -> Result<Values, Failure> {
         let own: Vec<&str> = law::own_fields(&call.name).collect();
         let Some(field) = own.iter().find(|own| **own == field.trim()) else {
             let (law, text, known) = (call.name.clone(), visible(text), own.join(", "));
-            let near = nearest(field, own.iter().copied());
+            let closest = nearest(field, own.iter().copied());
             let field = visible(field);
             let error = SceneError::of(match own.is_empty() {
                 true => CallError::NoFields { field, law, text },
                 false => CallError::NoFieldOfLaw { field, law, text, known },
             });
-            return Err(refuse(error.path("--set").nearest(near)));
+            return Err(refuse(error.path("--set").nearest(closest)));
         };
         let number = value.trim().parse::<f64>().map_or_else(|_| Value::Text(value.trim().into()), Value::Number);
         given.push(("--set", field, number));

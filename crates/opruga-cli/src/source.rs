@@ -160,7 +160,7 @@ fn missing(name: &str) -> SceneError {
         .map(|file| folder.map_or(file.clone(), |folder| folder.join(&file).display().to_string()))
         .collect();
     let with_ending = format!("{name}.toml");
-    let near: Vec<String> = match files.iter().find(|file| **file == with_ending) {
+    let closest: Vec<String> = match files.iter().find(|file| **file == with_ending) {
         Some(file) => vec![file.clone()],
         None => {
             let scenes = opruga::scenes::names().map(String::from);
@@ -169,10 +169,10 @@ fn missing(name: &str) -> SceneError {
         }
     };
     let scenes = || opruga::scenes::names().collect::<Vec<_>>().join(", ");
-    let quoted: Vec<String> = near.iter().map(|near| format!("`{}`", visible(near))).collect();
+    let quoted: Vec<String> = closest.iter().map(|name| format!("`{}`", visible(name))).collect();
     SceneError::of(match quoted.split_last() {
-        Some((last, [])) => CallError::NoSceneNear { near: last.clone() },
-        Some((last, others)) => CallError::NoSceneNearOf { near: others.join(", "), last: last.clone() },
+        Some((last, [])) => CallError::NoSceneNear { closest: last.clone() },
+        Some((last, others)) => CallError::NoSceneNearOf { closest: others.join(", "), last: last.clone() },
         None => CallError::NoScene { scenes: scenes() },
     })
 }

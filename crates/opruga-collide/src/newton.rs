@@ -247,16 +247,16 @@ impl<const D: usize> Equations<D> {
                 line[size] = lost[contact.first + k];
             };
             let own = unknowns.partition_point(|k| *k < contact.first);
-            let held = |k: usize| PROXIMAL / contact.mass[usize::from(k > 0)];
+            let resistance = |k: usize| PROXIMAL / contact.mass[usize::from(k > 0)];
             let normal = lines.next()?;
             line_of(0, normal);
-            normal[own] += held(0);
+            normal[own] += resistance(0);
             let normal = &*normal;
             let mut of_axes: [Vec<f64>; D] = std::array::from_fn(|_| Vec::new());
             for k in 1..contact.count {
                 of_axes[k].resize(stride, 0.0);
                 line_of(k, &mut of_axes[k]);
-                of_axes[k][own + k] += held(k);
+                of_axes[k][own + k] += resistance(k);
             }
             for k in 1..contact.count {
                 let line = lines.next()?;

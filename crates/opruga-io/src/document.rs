@@ -3,7 +3,7 @@
 use crate::brackets::unclosed;
 use crate::limits::Limits;
 use crate::problem::{MOST_SHOWN, SceneError, visible};
-use crate::scene::ValueKind;
+use crate::scene::errors::ValueKind;
 use crate::source::Source;
 use crate::text_errors::{OverrideError, TextError, TextHint};
 use toml::Spanned;

@@ -1,6 +1,6 @@
 //! What is wrong, where, and what would be right: for people and, as JSON, for programs.
 
-use crate::scene::FieldError;
+use crate::scene::errors::FieldError;
 use core::fmt;
 use opruga_math::message::{AnyMessage, Message};
 use opruga_math::words::number;

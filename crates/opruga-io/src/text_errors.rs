@@ -1,6 +1,6 @@
 //! What is wrong with the text of a scene, with overrides and with files, before anything in them is understood.
 
-use crate::scene::ValueKind;
+use crate::scene::errors::ValueKind;
 use opruga_math::{messages, terms};
 
 terms! {

@@ -111,9 +111,9 @@ read-failed-FileUnreadable = datoteka se ne može pročitati: „{ $reason }”
 read-failed-NoScene = nema takve datoteke, a ni takva prizora u programu
     .hint = prizori iz programa: { $scenes }
 read-failed-NoSceneNear = nema takve datoteke, a ni takva prizora u programu
-    .hint = misliš li { $near }?
+    .hint = misliš li { $closest }?
 read-failed-NoSceneNearOf = nema takve datoteke, a ni takva prizora u programu
-    .hint = misliš li { $near } ili { $last }?
+    .hint = misliš li { $closest } ili { $last }?
 read-not_regular_file-NotARegularFile = ovo nije obična datoteka
 scene-no_scene-ShapeFile = ovo je datoteka oblika, a ne prizor
     .hint = prizor je imenuje: shape = {"{"} kind = "{ $kind }", file = "{ $file }", … {"}"}; `opruga mesh` je pregledava

@@ -482,12 +482,12 @@ part-promised-Bytes = bajtova
 part-promised-Numbers = brojeva
 part-promised-Letters = bajtova teksta
 
-## Held
+## Content
 
-part-held-Body = tijelo
-part-held-Mass = masu
-part-held-Pin = pribadaču
-part-held-Command = naredbu
+part-content-Body = tijelo
+part-content-Mass = masu
+part-content-Pin = pribadaču
+part-content-Command = naredbu
 
 ## RefusalHint
 

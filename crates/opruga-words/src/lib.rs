@@ -114,7 +114,7 @@ impl Translation {
             },
             _ => None,
         });
-        let texts = messages.enumerate().map(|(place, message)| match (place, name) {
+        let texts = messages.enumerate().map(|(index, message)| match (index, name) {
             (0, "ALLOWED") => self.allowed(&**message?),
             (0, _) => self.hint(&**message?),
             _ => Some(self.text_or_english(&**message?)),

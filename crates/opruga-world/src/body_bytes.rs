@@ -4,7 +4,7 @@ use crate::blueprint::{Action, BodyBlueprint, CommandBlueprint, Mass, PinBluepri
 use crate::bytes::{Reader, Writer};
 use crate::error::WorldError;
 use crate::inputs::{read_action, read_selector, write_action, write_selector};
-use crate::path_faults::{Held, Promised, SnapshotFault};
+use crate::path_faults::{Content, Promised, SnapshotFault};
 use crate::registry::Registry;
 use crate::schema;
 use opruga_core::spec::{Spec, Value, Values};
@@ -12,7 +12,7 @@ use opruga_mesh::{Area, Mesh, Skin};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-fn damaged(what: Held) -> WorldError {
+fn damaged(what: Content) -> WorldError {
     WorldError::snapshot(SnapshotFault::Unknown { what })
 }
 
@@ -198,10 +198,10 @@ impl Reader<'_> {
     /// A body whose mesh is still to come.
     pub(crate) fn body<const D: usize>(&mut self, registry: &Registry<D>) -> Result<BodyBlueprint<D>, WorldError> {
         let name = self.text()?;
-        let [translation, velocity] = self.vectors::<D>()?[..] else { return Err(damaged(Held::Body)) };
+        let [translation, velocity] = self.vectors::<D>()?[..] else { return Err(damaged(Content::Body)) };
         let angular_velocity = self.numbers()?;
         let rows = self.vectors::<D>()?;
-        let Some((gradient, node_velocities)) = rows.split_at_checked(D) else { return Err(damaged(Held::Body)) };
+        let Some((gradient, node_velocities)) = rows.split_at_checked(D) else { return Err(damaged(Content::Body)) };
         let velocity_gradient = core::array::from_fn(|row| gradient[row]);
         let (kind, numbers) = (self.count()?, self.numbers()?);
         let mass = match (kind, numbers.as_slice()) {
@@ -209,7 +209,7 @@ impl Reader<'_> {
             (1, [density]) => Mass::Density(*density),
             (2, densities) => Mass::DensityOfCells(Arc::from(densities)),
             (3, [mass]) => Mass::Node(*mass),
-            _ => return Err(damaged(Held::Mass)),
+            _ => return Err(damaged(Content::Mass)),
         };
         let thickness = self.number()?;
         let integrator = self.own_integrator(registry)?;
@@ -221,7 +221,7 @@ impl Reader<'_> {
             .collect::<Result<Vec<_>, _>>()?;
         let contact = models.pop_if(|last| last.kind() == own.kind);
         if models.iter().any(|model| model.kind() == own.kind) {
-            return Err(damaged(Held::Body));
+            return Err(damaged(Content::Body));
         }
         let mut pins = Vec::new();
         for _ in 0..self.length()? {
@@ -230,7 +230,7 @@ impl Reader<'_> {
             for axis in &mut axes {
                 *axis = self.count()? == 1;
             }
-            let Value::Rows(motion) = self.value()? else { return Err(damaged(Held::Pin)) };
+            let Value::Rows(motion) = self.value()? else { return Err(damaged(Content::Pin)) };
             pins.push(PinBlueprint { select, axes, motion });
         }
         let mesh = Arc::new(Mesh::default());
@@ -305,7 +305,7 @@ impl Reader<'_> {
                 models: self.optional(|reader| reader.models(registry))?,
                 integrator: self.own_integrator(registry)?,
             },
-            _ => return Err(damaged(Held::Command)),
+            _ => return Err(damaged(Content::Command)),
         };
         Ok(CommandBlueprint { at, until, action })
     }

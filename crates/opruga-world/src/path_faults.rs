@@ -106,7 +106,7 @@ messages! {
         "part.snapshot" #[error("the channel `{channel}` holds {number}")]
         ChannelNumber { channel: String, number: f64 },
         "part.snapshot" #[error("it holds {what} of a kind that is unknown here")]
-        Unknown { what: Held },
+        Unknown { what: Content },
         "part.snapshot" #[error("it holds `{kind}` of a kind that is unknown here")]
         UnknownKind { kind: String },
         "part.snapshot" #[error("its gravity is missing")]
@@ -165,5 +165,5 @@ terms! {
 
 terms! {
     /// What a snapshot holds of a kind that is unknown.
-    pub enum Held = "part.held" { Body = "a body", Mass = "a mass", Pin = "a pin", Command = "a command" }
+    pub enum Content = "part.content" { Body = "a body", Mass = "a mass", Pin = "a pin", Command = "a command" }
 }

@@ -127,8 +127,8 @@ impl<const D: usize> World<D> {
         }
         let most =
             |numbers: &[f64]| numbers.iter().fold(0.0, |most: f64, x| if x.abs() > most { x.abs() } else { most });
-        let refuse = |place: Place, kind: &str, refusal: Refusal| {
-            Err(WorldError::Build { place, source: BuildError::of(kind, refusal) })
+        let refuse = |part: Place, kind: &str, refusal: Refusal| {
+            Err(WorldError::Build { place: part, source: BuildError::of(kind, refusal) })
         };
         let g = most(&self.blueprint.surroundings.gravity);
         if g > LARGEST {

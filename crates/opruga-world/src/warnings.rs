@@ -2,7 +2,7 @@
 
 use crate::error::{Place, WorldError};
 use crate::faults::{BlueprintFault, NameFault};
-use crate::path_faults::{Held, PathFault, Promised, SnapshotFault};
+use crate::path_faults::{Content, PathFault, Promised, SnapshotFault};
 use crate::refusals::Refusal;
 use opruga_math::message::{AnyMessage, if_any};
 use opruga_math::words::{counted, number, rounded};
@@ -27,7 +27,7 @@ pub const MESSAGES: &[&[opruga_math::message::Variant]] = &[
     PathFault::VARIANTS,
     SnapshotFault::VARIANTS,
     Promised::VARIANTS,
-    Held::VARIANTS,
+    Content::VARIANTS,
     NameFault::VARIANTS,
     BlueprintFault::VARIANTS,
 ];

@@ -211,8 +211,8 @@ fn held(reader: &mut Reader<'_>, node: &Node, path: &str) -> Option<(Option<u32>
         Data::Text(word) if word == "nearest_facet" => Some((None, true)),
         Data::Text(word) => {
             let about = FieldError::Word { field: "node".into(), value: value.shown() };
-            let near = nearest(word, WORDS.into_iter());
-            reader.report(value.place, SceneError::of(about).path(here).allows(Wanted::Node).nearest(near));
+            let closest = nearest(word, WORDS.into_iter());
+            reader.report(value.place, SceneError::of(about).path(here).allows(Wanted::Node).nearest(closest));
             None
         }
         Data::Integer(..) => Some((Some(reader.natural(value, &here)?), false)),

@@ -10,7 +10,7 @@ mod body_list;
 mod copies;
 mod cost;
 mod dimension;
-mod errors;
+pub(crate) mod errors;
 mod lifetimes;
 mod moments;
 mod names;
@@ -37,7 +37,7 @@ use crate::source::Source;
 use crate::text_errors::Measured;
 use body_list::Bodies;
 pub(crate) use cost::{Cost, CostError, shown};
-pub(crate) use errors::{FieldError, MESSAGES, ValueKind};
+pub(crate) use errors::MESSAGES;
 use errors::{Part, ReferenceError, SceneHint};
 use moments::Frames;
 use opruga_core::spec::{Values, nearest};
@@ -288,8 +288,8 @@ fn contact<const D: usize>(reader: &mut Reader<'_>, root: &Node, bodies: &Bodies
             let groups = || bodies.list.iter().map(|body| body.contact_group());
             if let Some(group) = pair.text(field).filter(|group| groups().all(|known| known != *group)) {
                 let about = BlueprintFault::NoMember { group: visible(group), known: listed(groups()) };
-                let near = nearest(pair.text(field).unwrap_or(""), groups());
-                let error = SceneError::of(about).path(join(&path, field)).nearest(near);
+                let closest = nearest(pair.text(field).unwrap_or(""), groups());
+                let error = SceneError::of(about).path(join(&path, field)).nearest(closest);
                 reader.report(place_of(item, field), error);
             }
         }

@@ -34,8 +34,9 @@ impl Reader<'_> {
                 Data::Text(text) if words.contains(&text.as_str()) => Value::Text(text.clone()),
                 Data::Text(text) => {
                     let about = FieldError::Word { field: name.into(), value: node.shown() };
-                    let near = nearest(text, words.iter().copied());
-                    let error = SceneError::of(about).path(path).allows(range.describe(self.dimension)).nearest(near);
+                    let closest = nearest(text, words.iter().copied());
+                    let error =
+                        SceneError::of(about).path(path).allows(range.describe(self.dimension)).nearest(closest);
                     self.report(node.place, error);
                     return None;
                 }

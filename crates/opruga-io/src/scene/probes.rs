@@ -62,9 +62,9 @@ fn recorded(reader: &mut Reader<'_>, node: &Node, path: &str) -> Vec<Recorded> {
             }
             Some((_, recorded)) => out.push(*recorded),
             None => {
-                let near = nearest(item.text().unwrap_or(""), words());
+                let closest = nearest(item.text().unwrap_or(""), words());
                 let error = SceneError::of(ReferenceError::Records { value: item.shown() }).path(place);
-                reader.report(item.place, error.allowed(listed(words())).nearest(near));
+                reader.report(item.place, error.allowed(listed(words())).nearest(closest));
             }
         }
     }

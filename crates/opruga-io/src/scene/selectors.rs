@@ -131,12 +131,12 @@ pub(crate) fn check<const D: usize>(
 ) -> bool {
     let Some(fault) = selector.fault(body) else { return true };
     let groups: Vec<&str> = body.mesh.groups.keys().map(String::as_str).collect();
-    let near = match &fault {
+    let closest = match &fault {
         SelectorFault::NoGroup(group) => nearest(group, groups.iter().copied()),
         _ => None,
     };
     let is_empty = fault == SelectorFault::Nothing;
-    let error = SceneError::of(fault.about(body, &visible)).path(path).nearest(near);
+    let error = SceneError::of(fault.about(body, &visible)).path(path).nearest(closest);
     if !is_empty {
         reader.report(place, error);
         return false;

@@ -136,9 +136,9 @@ messages! {
         NoArc { arc: i64, least: i64, most: i64 },
         "map.syntax" #[error("a ring is not closed")] #[value("{count}")] #[allowed("four or more positions, the last like the first")]
         OpenRing { count: usize },
-        "map.hole" #[error("hole {hole} lies outside of its polygon")] #[value("{place}")]
+        "map.hole" #[error("hole {hole} lies outside of its polygon")] #[value("{position}")]
         #[allowed("holes inside of the first ring of a polygon")] #[hint("islands are polygons of their own")]
-        Hole { hole: usize, place: String },
+        Hole { hole: usize, position: String },
         "map.unknown_feature" #[error("`{feature}` is nothing")] #[value("{feature}")] #[allowed("features with polygons")]
         Nothing { feature: String },
         "map.unknown_feature" #[error("`{feature}` is a feature without geometry")] #[value("{feature}")] #[allowed("features with polygons")]

@@ -252,8 +252,8 @@ impl<'a> Reader<'a, '_, '_, '_> {
         for p in &rows {
             let q = core::array::from_fn(|i| (0..3).map(|k| map[i][k] * p[k]).sum::<f64>() + map[i][3]);
             if q.iter().any(|x: &f64| !x.is_finite()) {
-                let (vertex, place) = (self.found.positions.len() - first, format!("{q:?}"));
-                return Err(self.refuse(raw, GltfError::NotFinitePlace { vertex, place }));
+                let (vertex, position) = (self.found.positions.len() - first, format!("{q:?}"));
+                return Err(self.refuse(raw, GltfError::NotFinitePosition { vertex, position }));
             }
             self.found.positions.push(q);
         }

@@ -45,8 +45,8 @@ messages! {
         Mode { mode: u32 },
         "gltf.syntax" #[error("a primitive has no POSITION")] #[allowed("an attribute POSITION")]
         NoPosition {},
-        "scene.not_finite" #[error("a coordinate of vertex {vertex} is not finite")] #[value("{place}")] #[allowed("finite numbers")]
-        NotFinitePlace { vertex: usize, place: String },
+        "scene.not_finite" #[error("a coordinate of vertex {vertex} is not finite")] #[value("{position}")] #[allowed("finite numbers")]
+        NotFinitePosition { vertex: usize, position: String },
         "gltf.syntax" #[error("a primitive has {corners} corners")] #[value("{corners}")] #[allowed("three for every triangle")]
         Corners { corners: usize },
         "gltf.unsupported" #[error("sparse accessors cannot be read")] #[value("sparse")]

@@ -307,8 +307,8 @@ impl<'a> Reader<'a, '_> {
             && let Some(k) = lies_outside((outer, holes))
             && self.checks_holes(outer)
         {
-            let place = holes[k].first().map_or(String::new(), |p| format!("{}, {}", p[0], p[1]));
-            return Err(refuse(self.source, geometry.get(), SceneError::of(MapError::Hole { hole: k + 1, place })));
+            let position = holes[k].first().map_or(String::new(), |p| format!("{}, {}", p[0], p[1]));
+            return Err(refuse(self.source, geometry.get(), SceneError::of(MapError::Hole { hole: k + 1, position })));
         }
         Ok(out)
     }

@@ -71,25 +71,25 @@ messages! {
         NothingToFill { filling: String },
         "mesh.open" #[error("an open surface cannot be remeshed")] #[allowed("a closed surface")] #[hint("close it with `open = \"cap\"`")]
         NotRemeshed {},
-        "mesh.open" #[error("the surface is not closed: {}, through {places}", counted(*loops as u64, "free boundary", "free boundaries"))]
+        "mesh.open" #[error("the surface is not closed: {}, through {positions}", counted(*loops as u64, "free boundary", "free boundaries"))]
         #[value("{loops}")] #[allowed("a closed surface")]
-        Open { loops: usize, places: String },
+        Open { loops: usize, positions: String },
         "mesh.dimension" #[error("a closed surface is flat: it encloses no volume")] #[value("{volume}")]
         #[allowed("a volume above 1e-12 of its extent cubed")]
         Flat { volume: String },
-        "mesh.non_manifold" #[error("parts of the surface hang together by a vertex: {places}")] #[value("{count}")]
+        "mesh.non_manifold" #[error("parts of the surface hang together by a vertex: {positions}")] #[value("{count}")]
         #[allowed("triangles that go once around every vertex")] #[hint("move the parts apart, or give each a vertex of its own")]
-        Pinched { places: String, count: usize },
-        "mesh.non_manifold" #[error("more than two triangles meet at {}: {places}", counted(*count as u64, "edge", "edges"))]
+        Pinched { positions: String, count: usize },
+        "mesh.non_manifold" #[error("more than two triangles meet at {}: {positions}", counted(*count as u64, "edge", "edges"))]
         #[value("{count}")] #[allowed("at most two")]
-        CrowdedEdges { count: usize, places: String },
+        CrowdedEdges { count: usize, positions: String },
         "mesh.non_orientable" #[error("the surface has only one side, as a Möbius band")] #[value("{facet}")]
         OneSided { facet: u32 },
         "mesh.self_intersection"
-        #[error("the surface meets itself: triangle {first} around ({first_place}) crosses, touches or overlaps triangle {second} around ({second_place})")]
+        #[error("the surface meets itself: triangle {first} around ({first_center}) crosses, touches or overlaps triangle {second} around ({second_center})")]
         #[value("{}", pairs(*count, *complete))] #[allowed("triangles that meet at common vertices and edges only")]
         #[hint("`overlap = \"keep\"` takes the surface as it is")]
-        MeetsItself { first: u32, first_place: String, second: u32, second_place: String, count: usize, complete: bool },
+        MeetsItself { first: u32, first_center: String, second: u32, second_center: String, count: usize, complete: bool },
         "mesh.size" #[error("the surface has no extent, or one out of range")] #[value("{extent}")] #[allowed("an extent from 1e-150 to 1e150")]
         Extent { extent: String },
         "scene.not_finite" #[error("a coordinate of vertex {vertex} is {value}")] #[value("{value}")] #[allowed("a finite number")]

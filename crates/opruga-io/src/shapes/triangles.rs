@@ -86,8 +86,8 @@ impl Triangles {
             self.triangles.push([a, b, c]);
             return Ok(1);
         }
-        let places: Vec<[f64; 3]> = corners.iter().map(|corner| self.positions[*corner as usize]).collect();
-        let cut = cut_face(&places).map_err(|error| match error {
+        let positions: Vec<[f64; 3]> = corners.iter().map(|corner| self.positions[*corner as usize]).collect();
+        let cut = cut_face(&positions).map_err(|error| match error {
             FaceError::Crossing => FaceProblem::Crossing {},
             FaceError::Folded(off) => FaceProblem::Bent { off: rounded(off, 2) },
         })?;
@@ -333,8 +333,8 @@ fn orient(
             .iter()
             .take(8)
             .map(|node| format!("({})", mesh.positions[*node as usize].map(|x| x.to_string()).join(", ")));
-        let places = shown.collect::<Vec<_>>().join(", ");
-        let error = SceneError::of(SurfaceError::Pinched { places, count: pinched.len() });
+        let positions = shown.collect::<Vec<_>>().join(", ");
+        let error = SceneError::of(SurfaceError::Pinched { positions, count: pinched.len() });
         let facet = mesh.facets.iter().position(|facet| facet.contains(first)).unwrap_or(0);
         return Err(found.at(source, facet as u32, error));
     }
@@ -371,8 +371,8 @@ fn compare(
         let mean: [f64; 3] = core::array::from_fn(|d| (corners[0][d] + corners[1][d] + corners[2][d]) / 3.0);
         mean.map(number).join(", ")
     };
-    let (first_place, second_place) = (middle(first), middle(second));
-    let error = SurfaceError::MeetsItself { first, first_place, second, second_place, count, complete };
+    let (first_center, second_center) = (middle(first), middle(second));
+    let error = SurfaceError::MeetsItself { first, first_center, second, second_center, count, complete };
     let error = SceneError::of(error);
     // Those that close a free boundary stand nowhere in the file.
     Err(match [second, first].into_iter().find(of_file) {
@@ -393,17 +393,17 @@ fn refused(mesh: &Mesh<3>, found: &Triangles, source: Option<&Source<'_>>, error
     let place = |node: u32| mesh.positions[node as usize].map(number).join(", ");
     match error {
         MeshError::Open { loops, nodes } => {
-            let places: Vec<String> = nodes.iter().take(8).map(|n| format!("({})", place(*n))).collect();
+            let positions: Vec<String> = nodes.iter().take(8).map(|n| format!("({})", place(*n))).collect();
             let hint = match told::seams(mesh) {
                 0 => ShapeHint::CapOrSheet {},
                 count => ShapeHint::Weld { count },
             };
-            SceneError::of(SurfaceError::Open { loops, places: places.join(", ") }).advice(hint)
+            SceneError::of(SurfaceError::Open { loops, positions: positions.join(", ") }).advice(hint)
         }
         MeshError::NonManifoldEdges { edges } => {
-            let places: Vec<String> =
+            let positions: Vec<String> =
                 edges.iter().take(8).map(|[a, b]| format!("({}) – ({})", place(*a), place(*b))).collect();
-            SceneError::of(SurfaceError::CrowdedEdges { count: edges.len(), places: places.join("; ") })
+            SceneError::of(SurfaceError::CrowdedEdges { count: edges.len(), positions: positions.join("; ") })
         }
         MeshError::NonOrientable { facet } => found.at(source, facet, SceneError::of(SurfaceError::OneSided { facet })),
         problem => SceneError::of(MeshFileError::Topology { problem }),
