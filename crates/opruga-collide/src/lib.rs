@@ -66,6 +66,7 @@ mod closest;
 mod collider;
 mod contacts;
 mod coupled;
+mod elimination;
 mod entries;
 mod facet_contacts;
 mod facets;

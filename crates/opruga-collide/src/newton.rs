@@ -16,10 +16,11 @@
 //! formulations and numerical comparisons (2018), section 6 (proximal point with Newton's method).
 
 use crate::coupled::Coupled;
+use crate::elimination::{Add, Eliminate};
 use crate::row::Row;
 use crate::spread::Spread;
 use crate::vector::{across, add, dot, scaled, subtract};
-use opruga_math::{Pack, Simd, WIDTH, Work};
+use opruga_math::{Simd, WIDTH};
 
 /// The most unknowns. An elimination takes ⅓ n³ products: 0.2 · 10⁹ for so many, as much as a hundred sweeps take over bodies of so many points.
 const MOST_UNKNOWNS: usize = 900;
@@ -61,8 +62,18 @@ struct Equations<const D: usize> {
     stride: usize,
     /// Velocities without impulses, less the targets [m/s].
     free: Vec<f64>,
-    /// The impulses that changes are counted from [N s].
+    /// The impulses that changes are counted from [N s], and what holds changes back [1/kg].
     center: Vec<f64>,
+    resistance: Vec<f64>,
+}
+
+/// Impulses, what they give, and what they miss.
+struct Trial {
+    impulses: Vec<f64>,
+    /// Velocities, less the targets and with what holds changes of impulses back [m/s].
+    velocities: Vec<f64>,
+    /// What the laws of the contacts miss [m/s].
+    missed: Vec<f64>,
 }
 
 /// Whether so many contacts are few enough.
@@ -89,18 +100,18 @@ pub(crate) fn step<const D: usize>(
 ) {
     let equations = Equations::new(rows, spread, inverse_mass, coupled, v);
     let old = equations.center.clone();
-    let mut impulses = old.clone();
-    let mut missed = equations.missed(&impulses);
-    let (mut best, before) = ((square(&missed), old.clone()), square(&missed));
+    let mut trial = equations.trial(old.clone(), equations.velocities(&old));
+    let before = square(&trial.missed);
+    let mut best = (before, old.clone());
     for _ in 0..MOST_ITERATIONS {
-        if missed.iter().all(|missed| missed.abs() <= enough) {
+        if trial.missed.iter().all(|missed| missed.abs() <= enough) {
             break;
         }
-        let Some(correction) = equations.correction(&impulses, &missed) else { break };
-        (impulses, missed) = equations.search(&impulses, &missed, &correction);
-        let size = square(&missed);
+        let Some(correction) = equations.correction(&trial) else { break };
+        trial = equations.search(&trial, &correction);
+        let size = square(&trial.missed);
         if size < best.0 {
-            best = (size, impulses.clone());
+            best = (size, trial.impulses.clone());
         }
     }
     if best.0 >= before || before.is_nan() {
@@ -131,7 +142,7 @@ impl<const D: usize> Equations<D> {
         }
         let stride = size.next_multiple_of(WIDTH);
         let (mut mobility, mut moved) = (vec![0.0; size * stride], vec![[0.0; D]; v.len()]);
-        let (mut center, mut free) = (Vec::with_capacity(size), Vec::with_capacity(size));
+        let (mut center, mut free, mut resistance) = (Vec::new(), Vec::new(), Vec::new());
         for contact in &contacts {
             let row = &rows[contact.row];
             let (impulse, u) = (row.impulse(), subtract(&row.mean(spread, v), &row.carry));
@@ -145,10 +156,11 @@ impl<const D: usize> Equations<D> {
                     own.iter_mut().zip(&other.axes).for_each(|(entry, axis)| *entry = dot(axis, &velocity));
                 }
                 center.push(dot(&impulse, axis));
+                resistance.push(PROXIMAL / contact.mass[usize::from(k > 0)]);
                 free.push(dot(&u, axis) - if k == 0 { row.target } else { 0.0 });
             }
         }
-        let mut equations = Equations { contacts, mobility, stride, free, center };
+        let mut equations = Equations { contacts, mobility, stride, free, center, resistance };
         let by_impulses = equations.by_impulses(&equations.center);
         equations.free.iter_mut().zip(&by_impulses).for_each(|(free, given)| *free -= given);
         equations
@@ -164,16 +176,19 @@ impl<const D: usize> Equations<D> {
         out
     }
 
-    /// The velocities at trial impulses, less the targets and with what holds changes back [m/s].
+    /// The velocities at impulses, less the targets and with what holds changes back [m/s].
     fn velocities(&self, impulses: &[f64]) -> Vec<f64> {
-        let mut out = self.by_impulses(impulses);
-        out.iter_mut().zip(&self.free).for_each(|(u, free)| *u += free);
-        for contact in &self.contacts {
-            for k in 0..contact.count {
-                let (at, mass) = (contact.first + k, contact.mass[usize::from(k > 0)]);
-                out[at] += PROXIMAL / mass * (impulses[at] - self.center[at]);
-            }
+        let mut out = self.by_changes(impulses);
+        for (at, (u, free)) in out.iter_mut().zip(&self.free).enumerate() {
+            *u += free - self.resistance[at] * self.center[at];
         }
+        out
+    }
+
+    /// How velocities change with impulses, what holds changes back included.
+    fn by_changes(&self, impulses: &[f64]) -> Vec<f64> {
+        let mut out = self.by_impulses(impulses);
+        out.iter_mut().zip(&self.resistance).zip(impulses).for_each(|((u, resistance), x)| *u += resistance * x);
         out
     }
 
@@ -206,23 +221,21 @@ impl<const D: usize> Equations<D> {
         (Case::Slides(scaled(&wanted, 1.0 / size), most / size), missed)
     }
 
-    fn missed(&self, impulses: &[f64]) -> Vec<f64> {
-        let u = self.velocities(impulses);
+    fn trial(&self, impulses: Vec<f64>, velocities: Vec<f64>) -> Trial {
         let mut out = vec![0.0; impulses.len()];
         for contact in &self.contacts {
-            let (_, missed) = self.case(contact, impulses, &u);
+            let (_, missed) = self.case(contact, &impulses, &velocities);
             out[contact.first..contact.first + contact.count].copy_from_slice(&missed[..contact.count]);
         }
-        out
+        Trial { impulses, velocities, missed: out }
     }
 
     /// Newton's correction of the impulses; none where its equations have no solution.
-    fn correction(&self, impulses: &[f64], missed: &[f64]) -> Option<Vec<f64>> {
-        let u = self.velocities(impulses);
+    fn correction(&self, Trial { impulses, velocities: u, missed }: &Trial) -> Option<Vec<f64>> {
         let mut out = vec![0.0; impulses.len()];
         let mut present = Vec::new();
         for contact in &self.contacts {
-            match self.case(contact, impulses, &u).0 {
+            match self.case(contact, impulses, u).0 {
                 // What is apart loses its impulse.
                 Case::Apart => {
                     for k in contact.first..contact.first + contact.count {
@@ -247,7 +260,7 @@ impl<const D: usize> Equations<D> {
                 line[size] = lost[contact.first + k];
             };
             let own = unknowns.partition_point(|k| *k < contact.first);
-            let resistance = |k: usize| PROXIMAL / contact.mass[usize::from(k > 0)];
+            let resistance = |k: usize| self.resistance[contact.first + k];
             let normal = lines.next()?;
             line_of(0, normal);
             normal[own] += resistance(0);
@@ -288,17 +301,16 @@ impl<const D: usize> Equations<D> {
         out.iter().all(|x| x.is_finite()).then_some(out)
     }
 
-    /// The impulses along a correction that miss less, halving it; where none does, those that miss least of all tried, or a tenth of it.
-    fn search(&self, impulses: &[f64], missed: &[f64], correction: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let at = |part: f64| -> (Vec<f64>, Vec<f64>) {
-            let trial: Vec<f64> = impulses.iter().zip(correction).map(|(x, c)| x + part * c).collect();
-            let missed = self.missed(&trial);
-            (trial, missed)
-        };
-        let (now, mut part) = (square(missed), 1.0);
+    /// The impulses along a correction that miss less, halving it; where none does, a tenth of it.
+    fn search(&self, from: &Trial, correction: &[f64]) -> Trial {
+        let change = self.by_changes(correction);
+        let along = |x: &[f64], c: &[f64], part: f64| x.iter().zip(c).map(|(x, c)| x + part * c).collect();
+        let at =
+            |part: f64| self.trial(along(&from.impulses, correction, part), along(&from.velocities, &change, part));
+        let (now, mut part) = (square(&from.missed), 1.0);
         for _ in 0..MOST_HALVINGS {
             let trial = at(part);
-            if square(&trial.1) < (1.0 - 1e-4 * part) * now {
+            if square(&trial.missed) < (1.0 - 1e-4 * part) * now {
                 return trial;
             }
             part *= 0.5;
@@ -309,84 +321,6 @@ impl<const D: usize> Equations<D> {
 
 fn square(of: &[f64]) -> f64 {
     of.iter().map(|x| x * x).sum()
-}
-
-/// to += factor from, for whole packs.
-struct Add<'a> {
-    from: &'a [f64],
-    factor: f64,
-    to: &'a mut [f64],
-}
-
-impl Work for Add<'_> {
-    type Output = ();
-    #[inline(always)]
-    fn run<P: Pack>(self) {
-        add_rows::<P>(self.from, self.factor, self.to);
-    }
-}
-
-/// A loop by numbers, because adapters of iterators are compiled without the vector instructions of their caller.
-#[inline(always)]
-fn add_rows<P: Pack>(from: &[f64], factor: f64, to: &mut [f64]) {
-    let (factor, from, to) = (P::splat(factor), from.as_chunks::<WIDTH>().0, to.as_chunks_mut::<WIDTH>().0);
-    let count = if from.len() < to.len() { from.len() } else { to.len() };
-    let mut k = 0;
-    while k < count {
-        (P::load(&to[k]) + factor * P::load(&from[k])).store(&mut to[k]);
-        k += 1;
-    }
-}
-
-/// Replaces the last column by the solution, by elimination with the largest pivot of each column; says whether there is one.
-struct Eliminate<'a> {
-    /// Rows of `stride` numbers, a multiple of eight: `size` columns and the right-hand side.
-    matrix: &'a mut [f64],
-    size: usize,
-    stride: usize,
-}
-
-impl Work for Eliminate<'_> {
-    type Output = bool;
-    #[inline(always)]
-    fn run<P: Pack>(self) -> bool {
-        let Eliminate { matrix, size, stride } = self;
-        for k in 0..size {
-            let mut pivot = k;
-            for i in k + 1..size {
-                if matrix[i * stride + k].abs() > matrix[pivot * stride + k].abs() {
-                    pivot = i;
-                }
-            }
-            let largest = matrix[pivot * stride + k].abs();
-            if largest == 0.0 || largest.is_nan() {
-                return false;
-            }
-            let (upper, lower) = matrix.split_at_mut((k + 1) * stride);
-            let row = &mut upper[k * stride..];
-            if pivot > k {
-                row.swap_with_slice(&mut lower[(pivot - k - 1) * stride..][..stride]);
-            }
-            let first = k / WIDTH * WIDTH;
-            let mut i = 0;
-            while i < size - k - 1 {
-                let line = &mut lower[i * stride..(i + 1) * stride];
-                let factor = line[k] / row[k];
-                if factor != 0.0 {
-                    add_rows::<P>(&row[first..stride], -factor, &mut line[first..]);
-                }
-                i += 1;
-            }
-        }
-        for k in (0..size).rev() {
-            let mut x = matrix[k * stride + size];
-            for l in k + 1..size {
-                x -= matrix[k * stride + l] * matrix[l * stride + size];
-            }
-            matrix[k * stride + size] = x / matrix[k * stride + k];
-        }
-        true
-    }
 }
 
 #[cfg(test)]
