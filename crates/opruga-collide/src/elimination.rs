@@ -154,7 +154,7 @@ fn take_away<P: Pack>(block: &[f64], lower: &mut [f64], first: usize, next: usiz
                 let row = P::load(&block[l * width + at]);
                 let mut r = 0;
                 while r < LINES {
-                    sums[r] = sums[r] + P::splat(-factors[r][l]) * row;
+                    sums[r] += P::splat(-factors[r][l]) * row;
                     r += 1;
                 }
                 l += 1;

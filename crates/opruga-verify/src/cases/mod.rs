@@ -5,6 +5,7 @@
 
 mod balloons;
 mod beams;
+mod belts;
 mod boundary;
 mod boundary_bodies;
 mod boundary_shell;
@@ -68,6 +69,7 @@ pub fn cases() -> impl Iterator<Item = &'static Case> {
         vibrations::CASES,
         contact::CASES,
         meetings::CASES,
+        belts::CASES,
         volumes::DYNAMICS,
         matching::DYNAMICS,
         integrators::CASES,
