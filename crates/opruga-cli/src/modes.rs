@@ -14,7 +14,7 @@ use opruga::io::scene;
 use opruga::math::words::{number, rounded};
 use opruga::pictures::{Scenery, rest_of};
 use opruga::world::modes::Mode;
-use opruga::{AnyBody, AnyWorld};
+use opruga::{AnyBody, AnyWorld, Registries, catalogue_of};
 use serde_json::json;
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -26,30 +26,30 @@ const ROUNDING: f64 = 1e-15;
 const AMPLITUDE: f64 = 0.12;
 
 /// Finds the modes of a body, prints them, and draws their shapes.
-pub(crate) fn modes(call: &Modes) -> Result<u8, Failure> {
+pub(crate) fn modes(call: &Modes, registries: &Registries) -> Result<u8, Failure> {
     if !(0.0..=1e9).contains(&call.after) {
         return Err(Failure::range("--after", call.after, "0 to 1e9"));
     }
     let Opened { source, reading, options, mut blueprint, files } =
-        open(&call.scene, &call.set, call.allow_outside, call.json)?;
+        open(&call.scene, registries, &call.set, call.allow_outside, call.json)?;
     let mut uses = uses::of_scene(&source, &reading.files, files.iter());
     uses.folder(&folder_of(call, &source), uses::modes_writes);
     uses::apart(&uses)?;
-    look_for_equilibrium(call, &mut blueprint);
-    leave_statics(call, &mut blueprint);
+    look_for_equilibrium(call, registries, &mut blueprint);
+    leave_statics(call, registries, &mut blueprint);
     of_world(call, &source, &reading, &mut *source.build(blueprint, &reading, &options)?)
 }
 
 /// The integrator with a role among those that scenes can name.
-fn integrator_with(role: Role) -> Option<&'static Spec> {
-    opruga::catalogue().integrators.into_iter().find(|spec| spec.has_role(role))
+fn integrator_with(registries: &Registries, role: Role) -> Option<&'static Spec> {
+    catalogue_of(registries).integrators.into_iter().find(|spec| spec.has_role(role))
 }
 
 /// Gives every body the integrator `equilibrium` where that is asked for, with what it understands of the parameters of the
 /// one that it had: the tolerance, the number of iterations, the linear solver.
-fn look_for_equilibrium(call: &Modes, blueprint: &mut AnyBlueprint) {
+fn look_for_equilibrium(call: &Modes, registries: &Registries, blueprint: &mut AnyBlueprint) {
     let dimension = blueprint.scene().dimension();
-    let Some(spec) = integrator_with(Role::Statics).filter(|_| call.equilibrium) else { return };
+    let Some(spec) = integrator_with(registries, Role::Statics).filter(|_| call.equilibrium) else { return };
     for values in blueprint.integrators_mut() {
         let mut statics = Values::defaults(spec, dimension);
         for (name, value) in values.iter() {
@@ -62,10 +62,10 @@ fn look_for_equilibrium(call: &Modes, blueprint: &mut AnyBlueprint) {
 
 /// Lets statics be where no frame is run: modes are those of a state, no integrator takes part in them, and bodies that nothing holds,
 /// which statics refuses, have modes as all others do. What takes its place goes with every body and every step.
-fn leave_statics(call: &Modes, blueprint: &mut AnyBlueprint) {
+fn leave_statics(call: &Modes, registries: &Registries, blueprint: &mut AnyBlueprint) {
     let dimension = blueprint.scene().dimension();
     let runs = call.equilibrium || call.after > 0.0;
-    let Some(spec) = integrator_with(Role::OfferedImplicit).filter(|_| !runs) else { return };
+    let Some(spec) = integrator_with(registries, Role::OfferedImplicit).filter(|_| !runs) else { return };
     for values in blueprint.integrators_mut().into_iter().filter(|values| values.spec().has_role(Role::Statics)) {
         *values = Values::defaults(spec, dimension);
     }

@@ -19,14 +19,14 @@ use opruga::io::tables::WarningSummary;
 use opruga::io::{SceneError, scene};
 use opruga::math::words::{counted, number};
 use opruga::recordings::{Playback, TapeError};
-use opruga::{AnyWorld, Options};
+use opruga::{AnyWorld, Options, Registries};
 use serde_json::{Value, json};
 use std::fs::File;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Replays a recording.
-pub(crate) fn replay(call: &Replay) -> Result<u8, Failure> {
+pub(crate) fn replay(call: &Replay, registries: &Registries) -> Result<u8, Failure> {
     for (option, time) in [("--from", call.from), ("--to", call.to)] {
         if let Some(time) = time.filter(|time| !(0.0..=1e9).contains(time)) {
             return Err(Failure::range(option, time, "0 to 1e9"));
@@ -36,7 +36,7 @@ pub(crate) fn replay(call: &Replay) -> Result<u8, Failure> {
         return Err(Failure::range("--fps", fps, "numbers above 0 up to 240"));
     }
     let simd = simd_from_environment()?;
-    let (recording, source) = recordings::open(&call.file)?;
+    let (recording, source) = recordings::open(&call.file, registries)?;
     if call.writes() || !call.verify {
         let mut uses = uses::of_file("the recording", &call.file);
         uses.folder(&folder_of(call, &source), uses::replay_writes);
@@ -175,7 +175,7 @@ impl Job<'_> {
         match folder.filter(|_| same) {
             Some(folder) => {
                 // From its first frame again, in a world that knows nothing of the last one.
-                let (again, _) = recordings::open(&self.call.file)?;
+                let (again, _) = recordings::open(&self.call.file, &self.source.registries)?;
                 self.show(&mut *build(blueprint)?, &mut play(again)?, stop, Some((folder, verified)))
             }
             None => {

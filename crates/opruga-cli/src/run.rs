@@ -18,7 +18,7 @@ use opruga::io::scene;
 use opruga::io::tables::WarningSummary;
 use opruga::math::words::{counted, number, rounded};
 use opruga::recordings::TapeHint;
-use opruga::{AnyWorld, Options, Simd};
+use opruga::{AnyWorld, Options, Registries, Simd};
 use std::collections::BTreeMap;
 use std::io::IsTerminal as _;
 use std::path::PathBuf;
@@ -27,7 +27,7 @@ use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 /// Runs a scene.
-pub(crate) fn run(call: &Run) -> Result<u8, Failure> {
+pub(crate) fn run(call: &Run, registries: &Registries) -> Result<u8, Failure> {
     if let Some(seconds) = call.seconds.filter(|s| !(0.0..=1e9).contains(s)) {
         return Err(Failure::range("--seconds", seconds, "0 to 1e9"));
     }
@@ -44,9 +44,9 @@ pub(crate) fn run(call: &Run) -> Result<u8, Failure> {
         set.push(("time.seconds".into(), seconds.to_string()));
     }
     let (source, resumed) = match &call.resume {
-        None => (Source::find(call.scene.as_deref().unwrap_or("ball"))?, None),
+        None => (Source::find(call.scene.as_deref().unwrap_or("ball"), registries)?, None),
         Some(path) => {
-            let (saved, source) = checkpoints::open(path)?;
+            let (saved, source) = checkpoints::open(path, registries)?;
             set.splice(0..0, saved.calling.overrides.clone());
             (source, Some(saved))
         }

@@ -3,6 +3,7 @@
 use crate::arguments::Run;
 use crate::failure::Failure;
 use crate::interrupt;
+use opruga::Registries;
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
@@ -16,11 +17,11 @@ const PATIENCE: Duration = Duration::from_secs(60);
 const NO_WINDOW: i32 = 5;
 
 /// What `opruga` without a command does: it opens the window where there is a screen, and runs without one otherwise.
-pub(crate) fn first() -> Result<u8, Failure> {
+pub(crate) fn first(registries: &Registries) -> Result<u8, Failure> {
     let headless = |why: &str| {
         eprintln!("{why}: running the scene `ball` without a window (`opruga --help` tells what else there is)");
         let out = Some(crate::run::fresh_folder("ball"));
-        crate::watch::run(&Run { out, ..Run::default_scene() })
+        crate::watch::run(&Run { out, ..Run::default_scene() }, registries)
     };
     if !has_screen(|name| std::env::var_os(name)) {
         return headless("there is no screen here");
@@ -43,8 +44,8 @@ pub(crate) fn studio(scene: Option<&str>) -> Result<u8, Failure> {
 }
 
 /// `opruga view FILE`. What is no recording is told before a window opens.
-pub(crate) fn view(path: &Path) -> Result<u8, Failure> {
-    let _ = crate::recordings::open(path)?;
+pub(crate) fn view(path: &Path, registries: &Registries) -> Result<u8, Failure> {
+    let _ = crate::recordings::open(path, registries)?;
     let shown = path.display().to_string();
     if !has_screen(|name| std::env::var_os(name)) {
         let hint = format!("`opruga replay {}` writes its pictures", crate::source::argument(&shown));

@@ -4,6 +4,7 @@ use crate::arguments::Verify;
 use crate::failure::{Failure, print_data};
 use crate::interrupt;
 use crate::run::simd_from_environment;
+use opruga::Registries;
 use opruga::core::spec::nearest;
 use opruga::io::output_folder::{Existing, OutputFolder};
 use opruga::io::problem::visible;
@@ -15,7 +16,7 @@ use std::fmt::Write as _;
 use std::io::IsTerminal;
 
 /// Runs the cases; 1 where one fails.
-pub(crate) fn verify(call: &Verify) -> Result<u8, Failure> {
+pub(crate) fn verify(call: &Verify, registries: &Registries) -> Result<u8, Failure> {
     let cases = chosen(&call.filter)?;
     if !(0.5..=2.0).contains(&call.stiffer) {
         return Err(Failure::range("--stiffer", call.stiffer, "0.5 to 2"));
@@ -24,7 +25,7 @@ pub(crate) fn verify(call: &Verify) -> Result<u8, Failure> {
         print_data(&if call.json { list_as_json(&cases) } else { list(&cases) })?;
         return Ok(0);
     }
-    let lab = Lab { simd: simd_from_environment()?, stiffer: call.stiffer };
+    let lab = Lab { simd: simd_from_environment()?, stiffer: call.stiffer, registries: registries.clone() };
     let stop = interrupt::asked_to_stop();
     // Whether the report can be written is known before the work.
     let existing = if call.force { Existing::Replace } else { Existing::Refuse };

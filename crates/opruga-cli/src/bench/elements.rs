@@ -13,7 +13,7 @@ use opruga::core::state::{Columns, Layout, Parameter, View};
 use opruga::core::tile::{TILE, Tile};
 use opruga::math::{Column, WIDTH};
 use opruga::mesh::Mesh;
-use opruga::{Registry, Simd};
+use opruga::{Registries, Registry, Simd};
 use opruga_solve::BlockMatrix;
 use serde_json::json;
 
@@ -53,9 +53,8 @@ fn materials(spec: &Spec) -> &'static [&'static str] {
 }
 
 /// Measures and prints.
-pub(crate) fn bench(call: &BenchElements) -> Result<u8, Failure> {
-    let registry = Registry::<3>::default();
-    let model = registry.model("fem").ok_or_else(|| Failure::call("there are no finite elements"))?;
+pub(crate) fn bench(call: &BenchElements, registries: &Registries) -> Result<u8, Failure> {
+    let model = registries.space.model("fem").ok_or_else(|| Failure::call("there are no finite elements"))?;
     let names = materials(model.spec());
     if let Some(name) = call.material.as_deref().filter(|name| !names.contains(name)) {
         return Err(Failure::range("--material", format!("`{name}`"), &names.join(", ")));
@@ -76,11 +75,14 @@ pub(crate) fn bench(call: &BenchElements) -> Result<u8, Failure> {
                 continue;
             }
             let values = vec![("material", Value::Text(material.into())), modulus()];
-            rows.push(Subject { model: "fem", element, elements: mesh.cells.len(), material, mesh, values }.measure()?);
+            rows.push(
+                Subject { model: "fem", element, elements: mesh.cells.len(), material, mesh, values }
+                    .measure(&registries.space)?,
+            );
         }
     }
     if call.material.is_none() {
-        survey(&boxes, &tetrahedra, &mut rows)?;
+        survey(registries, &boxes, &tetrahedra, &mut rows)?;
     }
     let machine = Machine::measure(Simd::best());
     if call.json {
@@ -110,7 +112,8 @@ fn modulus() -> (&'static str, Value) {
 const RING: u32 = 4096;
 
 /// The other methods, each with the landed model beside which it stands.
-fn survey(boxes: &Mesh<3>, tetrahedra: &Mesh<3>, rows: &mut Vec<Row>) -> Result<(), Failure> {
+fn survey(registries: &Registries, boxes: &Mesh<3>, tetrahedra: &Mesh<3>, rows: &mut Vec<Row>) -> Result<(), Failure> {
+    let Registries { plane, space } = registries;
     let refused = |error: opruga::mesh::MeshError| Failure::call(error.to_string());
     let of = |rows: &[Row], element: &str, material: &str| {
         rows.iter().find(|row| row.element == element && row.material == material).map_or(f64::NAN, Row::best)
@@ -120,17 +123,18 @@ fn survey(boxes: &Mesh<3>, tetrahedra: &Mesh<3>, rows: &mut Vec<Row>) -> Result<
     let (model, element, material) = ("finite_volume", "tetrahedron", "linear");
     let elements = tetrahedra.cells.len();
     let subject = Subject { model, element, elements, material, mesh: tetrahedra, values };
-    rows.push(subject.measure()?.beside(tetrahedron));
+    rows.push(subject.measure(space)?.beside(tetrahedron));
 
     let (model, element, material) = ("finite_difference", "hexahedron", "St. Venant-Kirchhoff");
     let hexahedron = of(rows, "hexahedron", "neo_hookean");
     let subject =
         Subject { model, element, elements: boxes.cells.len(), material, mesh: boxes, values: vec![modulus()] };
-    rows.push(subject.measure()?.beside(hexahedron));
+    rows.push(subject.measure(space)?.beside(hexahedron));
 
     let ring = Mesh::<2>::ring(0.5, RING, [0.0; 2], 0.0).map_err(refused)?;
     let ring = |model, material, values| {
-        Subject { model, element: "vertex of a ring", elements: RING as usize, material, mesh: &ring, values }.measure()
+        Subject { model, element: "vertex of a ring", elements: RING as usize, material, mesh: &ring, values }
+            .measure(plane)
     };
     let springs = ring("mass_spring", "springs", vec![("stiffness", Value::Number(1e5))])?;
     let spring = springs.best();
@@ -143,7 +147,8 @@ fn survey(boxes: &Mesh<3>, tetrahedra: &Mesh<3>, rows: &mut Vec<Row>) -> Result<
     let clusters = |material, region: Option<f64>| {
         let mut values = vec![("stiffness", Value::Number(1e3)), ("fit_share", Value::Number(0.5))];
         values.extend(region.map(|side| ("region", Value::Number(side))));
-        Subject { model: "shape_matching", element: "node", elements: nodes, material, mesh: boxes, values }.measure()
+        Subject { model: "shape_matching", element: "node", elements: nodes, material, mesh: boxes, values }
+            .measure(space)
     };
     rows.push(clusters("one cluster", None)?);
     rows.push(clusters("overlapping clusters", Some(side))?);
@@ -152,7 +157,7 @@ fn survey(boxes: &Mesh<3>, tetrahedra: &Mesh<3>, rows: &mut Vec<Row>) -> Result<
     let ball = Mesh::<3>::icosphere(0.5, 3).map_err(refused)?;
     let (model, element, material) = ("boundary_element", "vertex of a sphere", "isotropic");
     let elements = ball.positions.len();
-    rows.push(Subject { model, element, elements, material, mesh: &ball, values: vec![modulus()] }.measure()?);
+    rows.push(Subject { model, element, elements, material, mesh: &ball, values: vec![modulus()] }.measure(space)?);
     Ok(())
 }
 
@@ -168,8 +173,7 @@ impl Row {
 
 impl<const D: usize> Subject<'_, D> {
     /// Builds the model and takes its times.
-    fn measure(self) -> Result<Row, Failure> {
-        let registry = Registry::<D>::default();
+    fn measure(self, registry: &Registry<D>) -> Result<Row, Failure> {
         let model = registry.model(self.model).ok_or_else(|| Failure::call(format!("there is no {}", self.model)))?;
         let mut values = Values::defaults(model.spec(), D);
         for (name, value) in &self.values {

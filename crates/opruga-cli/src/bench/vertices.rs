@@ -6,7 +6,8 @@ use opruga::blueprint::{Blueprint, BodyBlueprint, ColliderBlueprint, Mass, Time}
 use opruga::core::spec::{Value, Values};
 use opruga::io::problem::visible;
 use opruga::math::calibration::inverse_roots;
-use opruga::{Options, Simd, World, mesh};
+use opruga::{Options, Registries, Registry, Simd, World, mesh};
+use std::sync::Arc;
 use std::time::Instant;
 
 /// One row of the benchmark.
@@ -68,8 +69,11 @@ fn values(spec: &'static opruga::core::spec::Spec, fields: &[(&str, Value)]) -> 
 
 /// Rings as in the baseline: masses of 1 kg, edges of 0.1 m, k = 1600 N/m, c = 40 N·s/m, a gas that pulls every edge
 /// with 160 N at rest, a floor below. They start 60 m above it and are in flight while they are timed.
-pub(crate) fn rings(bodies: usize, vertices: usize, integrator: &str) -> Result<Blueprint<2>, String> {
-    let registry = opruga::Registry::<2>::default();
+pub(crate) fn rings(
+    (bodies, vertices): (usize, usize),
+    registry: &Registry<2>,
+    integrator: &str,
+) -> Result<Blueprint<2>, String> {
     let spec =
         |found: Option<&'static opruga::core::spec::Spec>| found.ok_or("the registry lacks a part of the benchmark");
     let springs = spec(registry.model("mass_spring").map(|m| m.spec()))?;
@@ -103,15 +107,16 @@ pub(crate) fn rings(bodies: usize, vertices: usize, integrator: &str) -> Result<
 
 /// Times one row; `draw` is called once a frame.
 pub(crate) fn time(
-    bodies: usize,
-    vertices: usize,
+    (bodies, vertices): (usize, usize),
+    registries: &Registries,
     integrator: &str,
     options: &Options,
     seconds: f64,
     mut draw: Option<&mut dyn FnMut(&mut World<2>)>,
 ) -> Result<Row, String> {
-    let blueprint = rings(bodies, vertices, integrator)?;
-    let mut world = World::new(blueprint, options.clone()).map_err(|e| e.to_string())?;
+    let blueprint = rings((bodies, vertices), &registries.plane, integrator)?;
+    let mut world =
+        World::with_registry(blueprint, options.clone(), Arc::clone(&registries.plane)).map_err(|e| e.to_string())?;
     let total = bodies * vertices;
     // 200 frames of 16 ms keep the rings in flight; then they start again.
     const FLIGHT: usize = 199;

@@ -4,6 +4,7 @@ use super::errors::SweepError;
 use super::{Axis, Design, Metric, Sweep};
 use opruga_io::problem::visible;
 use opruga_io::{Files, SceneError, overrides};
+use opruga_world::Registries;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -66,11 +67,11 @@ impl Question {
         serde_json::to_string_pretty(self).unwrap_or_default()
     }
 
-    /// The sweep that is asked for.
+    /// The sweep that is asked for, with the models and integrators that its scene can name.
     ///
     /// # Errors
     /// All that is wrong with the parameters, the metrics and the files.
-    pub fn sweep(&self) -> Result<Sweep, Vec<SceneError>> {
+    pub fn sweep(&self, registries: &Registries) -> Result<Sweep, Vec<SceneError>> {
         let (mut errors, mut axes, mut fixed) = (Vec::new(), Vec::new(), Vec::new());
         for set in &self.set {
             match Axis::parse(set) {
@@ -105,6 +106,7 @@ impl Question {
             metrics,
             allow_unstable: self.allow_unstable,
             lenient: self.lenient,
+            registries: registries.clone(),
         })
     }
 
