@@ -31,6 +31,7 @@ mod watch;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
+use errors::CallFault;
 use failure::Failure;
 use opruga::Registries;
 use std::process::ExitCode;
@@ -42,8 +43,8 @@ fn main() -> ExitCode {
         Err(error) if error.use_stderr() && std::env::args_os().any(|word| word == "--json") => {
             // Whoever asks for JSON reads errors as JSON, those of the call too.
             let text = error.to_string();
-            let message = text.trim_start_matches("error: ").split("\n\n").next().unwrap_or_default().to_string();
-            let failure = Failure::Call { message, hint: Some("--help tells what can be said".into()) };
+            let text = text.trim_start_matches("error: ").split("\n\n").next().unwrap_or_default().to_string();
+            let failure = Failure::call(CallFault::Arguments { text });
             failure.print(true);
             return ExitCode::from(failure.exit_code());
         }

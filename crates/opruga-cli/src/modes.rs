@@ -1,6 +1,7 @@
 //! `opruga modes`: natural frequencies and their shapes.
 
 use crate::arguments::Modes;
+use crate::errors::{CallFault, CallRange};
 use crate::failure::{Failure, print_data};
 use crate::opened::{Opened, open};
 use crate::run::default_folder;
@@ -28,7 +29,7 @@ const AMPLITUDE: f64 = 0.12;
 /// Finds the modes of a body, prints them, and draws their shapes.
 pub(crate) fn modes(call: &Modes, registries: &Registries) -> Result<u8, Failure> {
     if !(0.0..=1e9).contains(&call.after) {
-        return Err(Failure::range("--after", call.after, "0 to 1e9"));
+        return Err(Failure::range("--after", call.after, CallRange::Between { least: 0.0, most: 1e9 }));
     }
     let Opened { source, reading, options, mut blueprint, files } =
         open(&call.scene, registries, &call.set, call.allow_outside, call.json)?;
@@ -78,11 +79,11 @@ fn folder_of(call: &Modes, source: &Source) -> PathBuf {
 
 fn of_world(call: &Modes, source: &Source, reading: &scene::Options, world: &mut dyn AnyWorld) -> Result<u8, Failure> {
     let body = match &call.body {
-        None => world.bodies().first().copied().ok_or_else(|| Failure::call("the scene has no body"))?,
+        None => world.bodies().first().copied().ok_or_else(|| Failure::call(CallFault::NoBody {}))?,
         Some(name) => world.body(name).ok_or_else(|| {
             let bodies = world.bodies().into_iter().filter_map(|body| world.scene().body(body));
             let names: Vec<&str> = bodies.map(AnyBody::name).collect();
-            Failure::range("--body", format!("`{name}`"), &names.join(", "))
+            Failure::range("--body", format!("`{name}`"), CallRange::OneOf { names: names.join(", ") })
         })?,
     };
     // To the state about which the body swings.
@@ -191,7 +192,7 @@ fn draw_shapes(
         let factor = if most > 0.0 { AMPLITUDE * extent / most } else { 0.0 };
         for (node, (x, shape)) in start.iter().zip(&mode.shape).enumerate() {
             let place = core::array::from_fn(|d| x[d] + factor * shape[d]);
-            world.place_node(body, node as u32, place, [0.0; 3]).map_err(|e| Failure::call(e.to_string()))?;
+            world.place_node(body, node as u32, place, [0.0; 3]).map_err(Failure::call)?;
         }
         let mut picture = scenery.picture(&scenery.capture(world, false));
         let legend = picture.legend.take().unwrap_or_default();

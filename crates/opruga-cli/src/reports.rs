@@ -2,6 +2,7 @@
 
 use crate::arguments::{Bench, BenchVertices, Check};
 use crate::bench::vertices as bench;
+use crate::errors::{CallFault, CallRange};
 use crate::failure::{Failure, print_data};
 use crate::language::translation;
 use crate::outputs::cells;
@@ -220,7 +221,7 @@ fn listed(as_json: bool, registries: &Registries) -> String {
 pub(crate) fn new(name: &str, force: bool) -> Result<u8, Failure> {
     let stem = name.strip_suffix(".toml").unwrap_or(name);
     if stem.is_empty() || stem.ends_with(['/', '\\']) {
-        return Err(Failure::range("NAME", format!("`{name}`"), "the name of a file"));
+        return Err(Failure::range("NAME", format!("`{name}`"), CallRange::FileName {}));
     }
     let path = PathBuf::from(format!("{stem}.toml"));
     let title = path.file_stem().map_or_else(|| stem.to_string(), |s| s.to_string_lossy().into_owned());
@@ -256,16 +257,15 @@ pub(crate) fn bench(what: &Bench, registries: &Registries) -> Result<u8, Failure
 
 fn bench_vertices(call: &BenchVertices, registries: &Registries) -> Result<u8, Failure> {
     if !(call.seconds > 0.0 && call.seconds <= 600.0) {
-        return Err(Failure::range("--seconds", call.seconds, "numbers above 0 up to 600"));
+        return Err(Failure::range("--seconds", call.seconds, CallRange::PositiveUpTo { most: 600.0 }));
     }
     let integrators: Vec<&str> = registries.plane.integrators().iter().map(|s| s.kind).collect();
     if !integrators.contains(&call.integrator.as_str()) {
-        let hint = match nearest(&call.integrator, integrators.iter().copied()) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => format!("the integrators are {}", integrators.join(", ")),
-        };
-        let message = format!("there is no integrator `{}`", visible(&call.integrator));
-        return Err(Failure::Call { message, hint: Some(hint) });
+        let name = visible(&call.integrator);
+        return Err(Failure::call(match nearest(&call.integrator, integrators.iter().copied()) {
+            Some(closest) => CallFault::NoIntegratorNear { name, closest },
+            None => CallFault::NoIntegrator { name, known: integrators.join(", ") },
+        }));
     }
     let chosen = call.only.as_deref().map(bench::row).transpose()?;
     if let Some(path) = &call.plot {

@@ -4,7 +4,7 @@ mod findings;
 
 use crate::arguments::Sweep as Call;
 use crate::bench::processor_time;
-use crate::errors::CallError;
+use crate::errors::{CallError, CallRange};
 use crate::failure::{Failure, print_data};
 use crate::interrupt;
 use crate::run::{default_folder, simd_from_environment};
@@ -132,7 +132,7 @@ fn no_sweep(path: &Path) -> Failure {
 /// The question of a call, with all that the scene names, and the folder for its answer.
 fn question_of(call: &Call, registries: &Registries) -> Result<(Question, PathBuf), Failure> {
     if let Some(seconds) = call.seconds.filter(|s| !(0.0..=1e9).contains(s)) {
-        return Err(Failure::range("--seconds", seconds, "0 to 1e9"));
+        return Err(Failure::range("--seconds", seconds, CallRange::Between { least: 0.0, most: 1e9 }));
     }
     let source = Source::find(call.scene.as_deref().unwrap_or_default(), registries)?;
     let scene = String::from_utf8(source.bytes.clone()).map_err(|_| {

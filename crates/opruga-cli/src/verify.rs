@@ -1,6 +1,7 @@
 //! `opruga verify`: the engine against closed forms and published numbers.
 
 use crate::arguments::Verify;
+use crate::errors::{CallFault, CallRange};
 use crate::failure::{Failure, print_data};
 use crate::interrupt;
 use crate::run::simd_from_environment;
@@ -19,7 +20,7 @@ use std::io::IsTerminal;
 pub(crate) fn verify(call: &Verify, registries: &Registries) -> Result<u8, Failure> {
     let cases = chosen(&call.filter)?;
     if !(0.5..=2.0).contains(&call.stiffer) {
-        return Err(Failure::range("--stiffer", call.stiffer, "0.5 to 2"));
+        return Err(Failure::range("--stiffer", call.stiffer, CallRange::Between { least: 0.5, most: 2.0 }));
     }
     if call.list {
         print_data(&if call.json { list_as_json(&cases) } else { list(&cases) })?;
@@ -74,11 +75,12 @@ fn chosen(words: &[String]) -> Result<Vec<&'static Case>, Failure> {
         if !opruga_verify::cases().any(of_word) {
             let families = Family::ALL.map(Family::name);
             let known = opruga_verify::cases().map(|case| case.name).chain(families);
-            let near = nearest(word, known).map(|name| format!("did you mean `{name}`? "));
-            return Err(Failure::Call {
-                message: format!("no case is called `{}`; families are {}", visible(word), families.join(", ")),
-                hint: Some(format!("{}`opruga verify --list` shows all cases", near.unwrap_or_default())),
-            });
+            let closest = nearest(word, known);
+            let (word, families) = (visible(word), families.join(", "));
+            return Err(Failure::call(match closest {
+                Some(closest) => CallFault::NoCaseNear { word, families, closest },
+                None => CallFault::NoCase { word, families },
+            }));
         }
     }
     let wanted = |case: &&Case| {

@@ -1,6 +1,7 @@
 //! `--watch`: doing again what was asked for whenever the scene or a file that it names changes, until Ctrl-C.
 
 use crate::arguments::{Check, Run};
+use crate::errors::CallFault;
 use crate::failure::Failure;
 use crate::source::Source;
 use crate::{interrupt, reports};
@@ -56,10 +57,7 @@ fn again_and_again(
     if !path.is_file() {
         // A file that is missing is told as ever.
         Source::find(scene, registries)?;
-        return Err(Failure::Call {
-            message: format!("`{}` comes with the program and never changes: --watch needs a file", visible(scene)),
-            hint: Some("`opruga new NAME` writes one".into()),
-        });
+        return Err(Failure::call(CallFault::NeverChanges { scene: visible(scene) }));
     }
     interrupt::asked_to_stop();
     loop {

@@ -6,6 +6,7 @@
 
 use super::{Machine, best};
 use crate::arguments::BenchElements;
+use crate::errors::{CallFault, CallRange};
 use crate::failure::{Failure, print_data};
 use opruga::core::potential::{Definiteness, Ingredients, Potential};
 use opruga::core::spec::{Allowed, Spec, Value, Values};
@@ -54,12 +55,12 @@ fn materials(spec: &Spec) -> &'static [&'static str] {
 
 /// Measures and prints.
 pub(crate) fn bench(call: &BenchElements, registries: &Registries) -> Result<u8, Failure> {
-    let model = registries.space.model("fem").ok_or_else(|| Failure::call("there are no finite elements"))?;
+    let model = registries.space.model("fem").ok_or_else(|| Failure::call(CallFault::NoModel { name: "fem" }))?;
     let names = materials(model.spec());
     if let Some(name) = call.material.as_deref().filter(|name| !names.contains(name)) {
-        return Err(Failure::range("--material", format!("`{name}`"), &names.join(", ")));
+        return Err(Failure::range("--material", format!("`{name}`"), CallRange::OneOf { names: names.join(", ") }));
     }
-    let refused = |error: opruga::mesh::MeshError| Failure::call(error.to_string());
+    let refused = |error: opruga::mesh::MeshError| Failure::call(error);
     let grid = |cells: u32| Mesh::<3>::grid([0.0; 3], [1.0; 3], [cells; 3]);
     let boxes = grid(call.cells).map_err(refused)?;
     let tetrahedra = boxes.clone().into_simplices().map_err(refused)?;
@@ -114,7 +115,7 @@ const RING: u32 = 4096;
 /// The other methods, each with the landed model beside which it stands.
 fn survey(registries: &Registries, boxes: &Mesh<3>, tetrahedra: &Mesh<3>, rows: &mut Vec<Row>) -> Result<(), Failure> {
     let Registries { plane, space } = registries;
-    let refused = |error: opruga::mesh::MeshError| Failure::call(error.to_string());
+    let refused = |error: opruga::mesh::MeshError| Failure::call(error);
     let of = |rows: &[Row], element: &str, material: &str| {
         rows.iter().find(|row| row.element == element && row.material == material).map_or(f64::NAN, Row::best)
     };
@@ -174,10 +175,10 @@ impl Row {
 impl<const D: usize> Subject<'_, D> {
     /// Builds the model and takes its times.
     fn measure(self, registry: &Registry<D>) -> Result<Row, Failure> {
-        let model = registry.model(self.model).ok_or_else(|| Failure::call(format!("there is no {}", self.model)))?;
+        let model = registry.model(self.model).ok_or_else(|| Failure::call(CallFault::NoModel { name: self.model }))?;
         let mut values = Values::defaults(model.spec(), D);
         for (name, value) in &self.values {
-            values.set(model.spec(), name, value.clone(), D).map_err(|e| Failure::call(e.to_string()))?;
+            values.set(model.spec(), name, value.clone(), D).map_err(Failure::call)?;
         }
         let potential = model.build(&Ingredients {
             mesh: self.mesh,
@@ -190,7 +191,7 @@ impl<const D: usize> Subject<'_, D> {
             step: 1e-3,
             break_off: &Default::default(),
         });
-        let potential = potential.map_err(|e| Failure::call(e.to_string()))?;
+        let potential = potential.map_err(|error| Failure::call(error.about))?;
         let (forces, [hessian, clamped_hessian]) = times(&*potential, self.mesh, self.elements)?;
         let Subject { model, element, elements, material, .. } = self;
         Ok(Row { model, element, elements, material, forces, hessian, clamped_hessian, ratio: None })
@@ -241,7 +242,7 @@ fn times<const D: usize>(solid: &dyn Potential<D>, mesh: &Mesh<D>, elements: usi
         forces.push((simd.name(), per_element(seconds)));
     }
     if let Some(error) = refused {
-        return Err(Failure::call(error.to_string()));
+        return Err(Failure::call(error));
     }
     let view = &views[turn];
     let mut matrix = BlockMatrix::<D>::default();

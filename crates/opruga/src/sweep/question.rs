@@ -1,6 +1,6 @@
 //! What was asked of a sweep, as it lies in the sweep's folder, so that it can go on.
 
-use super::errors::SweepError;
+use super::errors::{QuestionDifference, SweepError};
 use super::{Axis, Design, Metric, Sweep};
 use opruga_io::problem::visible;
 use opruga_io::{Files, SceneError, overrides};
@@ -115,21 +115,20 @@ impl Question {
         *self == Question { file: self.file.clone(), ..other.clone() }
     }
 
-    /// In what an earlier question was another one, in words.
-    pub fn difference(&self, before: &Question) -> String {
-        let lists = |new: &[String], old: &[String]| format!("{} instead of {}", old.join(" "), new.join(" "));
-        let said = if self.scene != before.scene {
-            "the text of the scene was another".to_string()
+    /// In what an earlier question was another one.
+    pub fn difference(&self, before: &Question) -> QuestionDifference {
+        let listed = |list: &[String]| visible(&list.join(" "));
+        if self.scene != before.scene {
+            QuestionDifference::Scene {}
         } else if self.files != before.files {
-            "a file that the scene names was another".to_string()
+            QuestionDifference::File {}
         } else if self.set != before.set {
-            format!("--set {}", lists(&self.set, &before.set))
+            QuestionDifference::Set { before: listed(&before.set), now: listed(&self.set) }
         } else if self.metrics != before.metrics {
-            format!("--metric {}", lists(&self.metrics, &before.metrics))
+            QuestionDifference::Metric { before: listed(&before.metrics), now: listed(&self.metrics) }
         } else {
-            "other points were asked for".to_string()
-        };
-        visible(&said)
+            QuestionDifference::Points {}
+        }
     }
 }
 
