@@ -82,7 +82,7 @@ pub fn sweep_folder(bytes: &[u8]) {
     };
     // Reading what was written asks the same.
     assert!(Question::read(question.to_text().as_bytes()).is_ok_and(|again| again.same(&question)));
-    let sweep = match question.sweep() {
+    let sweep = match question.sweep(&opruga::Registries::default()) {
         Ok(sweep) => sweep,
         Err(errors) => return errors.iter().for_each(|error| printable(error.to_string())),
     };

@@ -87,7 +87,7 @@ fn physics_crates_do_no_input_or_output() {
     }
 }
 
-/// Layers above models and integrators ask for a role (`Spec::has_role`) and know no kind by its word. Benchmarks choose theirs by name.
+/// Layers above models, integrators and obstacles ask for a role (`Spec::has_role`) or a capability, and know no kind by its word. Benchmarks choose theirs by name.
 #[test]
 fn layers_above_compare_no_model_and_no_integrator_by_name() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the workspace");
@@ -98,6 +98,7 @@ fn layers_above_compare_no_model_and_no_integrator_by_name() {
             let words = text.split("kind: \"").skip(1).filter_map(|rest| rest.split('"').next().map(String::from));
             words.collect::<Vec<_>>()
         })
+        .chain(["half_space", "capsule", "triangle_mesh"].map(String::from))
         .collect();
     assert!(kinds.iter().any(|kind| kind == "mass_spring") && kinds.iter().any(|kind| kind == "newmark"), "{kinds:?}");
     for name in ["opruga-world", "opruga-io", "opruga", "opruga-studio", "opruga-cli"] {
@@ -108,14 +109,65 @@ fn layers_above_compare_no_model_and_no_integrator_by_name() {
             }
             let product = text.split("#[cfg(test)]").next().unwrap_or("");
             for kind in &kinds {
-                for form in ["kind() == ", ".model(", ".integrator(", "spec.kind == "] {
-                    let compared = format!("{form}\"{kind}\"");
-                    // A command has the word of a model: `drag`.
-                    assert!(!product.contains(&compared) || kind == "drag", "{path} says {compared}");
+                // Words of selectors, commands, loads, readings and fields of `[world]` too.
+                let selects = kind == "half_space" && path.ends_with("selectors.rs");
+                if selects || ["drag", "pressure"].contains(&kind.as_str()) {
+                    continue;
+                }
+                for (before, after) in [("== ", ""), ("!= ", ""), ("Some(", ")"), ("model(", ""), ("integrator(", "")] {
+                    let compared = format!("{before}\"{kind}\"{after}");
+                    assert!(!product.contains(&compared), "{path} says {compared}");
+                }
+                for after in [" =>", " |"] {
+                    let matched = format!("\"{kind}\"{after}");
+                    assert!(!product.contains(&matched), "{path} says {matched}");
                 }
             }
         }
     }
+}
+
+/// Programs choose the models and integrators of their scenes and hand them on; no layer between takes those of the library by itself. What
+/// offers them as a default can be given others.
+#[test]
+fn registries_are_passed_in() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the workspace");
+    let defaults = [
+        "opruga-world/src/registry.rs",
+        "opruga-world/src/any_scene.rs",
+        "opruga-world/src/start.rs",
+        "opruga/src/lib.rs",
+        "opruga/src/sweep/programs.rs",
+        "opruga-verify/src/lab.rs",
+    ];
+    let programs = ["opruga-cli/src/main.rs", "opruga-studio/src/main.rs"];
+    let mut found = Vec::new();
+    for name in ["opruga-world", "opruga-io", "opruga-draw", "opruga", "opruga-verify", "opruga-studio", "opruga-cli"] {
+        for (path, text) in sources(&root.join("crates").join(name).join("src")) {
+            let path = path.strip_prefix(root.join("crates")).expect("a crate").to_string_lossy().replace('\\', "/");
+            let product = text.split("#[cfg(test)]").next().unwrap_or("");
+            let lines = product.lines().filter(|line| !line.trim_start().starts_with("//"));
+            let taken = |line: &str| {
+                [
+                    "Registry::default()",
+                    "Registries::default()",
+                    "catalogue()",
+                    "opruga_models::all",
+                    "opruga_integrators::all",
+                ]
+                .iter()
+                .any(|form| line.contains(form))
+                    || line.contains("Registry::<") && line.contains("default()")
+            };
+            if !path.contains("/tests") && lines.into_iter().any(taken) {
+                found.push(path);
+            }
+        }
+    }
+    found.sort_unstable();
+    let mut known: Vec<&str> = defaults.into_iter().chain(programs).collect();
+    known.sort_unstable();
+    assert_eq!(found, known);
 }
 
 /// The sources of a folder and of the folders in it.

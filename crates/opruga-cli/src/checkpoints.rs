@@ -3,7 +3,6 @@
 use crate::errors::CallError;
 use crate::failure::Failure;
 use crate::source::{Source, argument};
-use opruga::AnyWorld;
 use opruga::io::checkpoint::{Checkpoint, CheckpointError};
 use opruga::io::output_folder::OutputFolder;
 use opruga::io::safe_write::WriteError;
@@ -11,6 +10,7 @@ use opruga::io::scene;
 use opruga::io::tables::{NumberTable, WarningSummary};
 use opruga::io::{Files, SceneError};
 use opruga::math::words::number;
+use opruga::{AnyWorld, Registries};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -115,8 +115,8 @@ impl SavedRun {
 /// Reads a checkpoint: how far the run was, and its scene.
 ///
 /// A damaged or missing one is an error that names the one before it, if that is whole.
-pub(crate) fn open(path: &Path) -> Result<(SavedRun, Source), Failure> {
-    let error = match read(path) {
+pub(crate) fn open(path: &Path, registries: &Registries) -> Result<(SavedRun, Source), Failure> {
+    let error = match read(path, registries) {
         Ok(whole) => return Ok(whole),
         Err(error) => SceneError { file: path.display().to_string(), ..*error },
     };
@@ -125,7 +125,7 @@ pub(crate) fn open(path: &Path) -> Result<(SavedRun, Source), Failure> {
         inside.is_file().then(|| format!("did you mean {}?", inside.display()))
     } else {
         let older = previous(path);
-        read(&older).ok().map(|(run, _)| {
+        read(&older, registries).ok().map(|(run, _)| {
             format!(
                 "the checkpoint before it is whole, at t = {} s: --resume {}",
                 number(run.time),
@@ -146,14 +146,15 @@ fn previous(path: &Path) -> PathBuf {
     PathBuf::from(name)
 }
 
-fn read(path: &Path) -> Result<(SavedRun, Source), Box<SceneError>> {
+fn read(path: &Path, registries: &Registries) -> Result<(SavedRun, Source), Box<SceneError>> {
     let limits = scene::Limits { file_bytes: 1 << 40, ..scene::Limits::default() };
     let bytes = scene::bytes_of(path, &limits)?;
     let checkpoint = Checkpoint::read(&bytes).map_err(|e: CheckpointError| SceneError::from(&e))?;
     let run = SavedRun::read(&checkpoint.payload).ok_or_else(|| SceneError::of(CallError::OtherVersion {}))?;
     let file = format!("scene {} (in {})", run.name, path.display());
     let files = Files::held(run.calling.files.clone());
-    let source = Source { name: run.name.clone(), file, path: None, bytes: checkpoint.scene.into_bytes(), files };
+    let (name, bytes, registries) = (run.name.clone(), checkpoint.scene.into_bytes(), registries.clone());
+    let source = Source { name, file, path: None, bytes, files, registries };
     Ok((run, source))
 }
 

@@ -1,5 +1,7 @@
 //! What the command line refuses beside what the library refuses.
 
+use opruga::math::words::number;
+
 opruga::math::messages! {
     /// Why a call is refused.
     #[derive(Clone, Debug, PartialEq)]
@@ -37,5 +39,87 @@ opruga::math::messages! {
         NoFields { field: String, law: String, text: String },
         "checkpoint.version" #[error("the checkpoint belongs to another version of the program")]
         OtherVersion {},
+    }
+}
+
+opruga::math::messages! {
+    /// What a value of the call may be.
+    #[derive(Clone, Debug, PartialEq)]
+    pub(crate) enum CallRange {
+        "part.call_range" #[error("{} to {}", number(*least), number(*most))]
+        Between { least: f64, most: f64 },
+        "part.call_range" #[error("numbers above 0")]
+        Positive {},
+        "part.call_range" #[error("numbers above 0 up to {}", number(*most))]
+        PositiveUpTo { most: f64 },
+        "part.call_range" #[error("the name of a file")]
+        FileName {},
+        "part.call_range" #[error("{names}")]
+        OneOf { names: String },
+    }
+    /// Why a call makes no sense.
+    #[derive(Clone, Debug, PartialEq)]
+    pub(crate) enum CallFault {
+        "call" #[error("{text}")] #[hint("--help tells what can be said")]
+        Arguments { text: String },
+        "call" #[error("{option} is {value}; allowed: {allowed}")]
+        OutOfRange { option: &'static str, value: String, allowed: CallRange },
+        "call" #[error("OPRUGA_SIMD={name}: allowed are scalar, sse2, avx2, avx512")]
+        NoInstructions { name: String },
+        "call" #[error("there is no integrator `{name}`")] #[hint("did you mean `{closest}`?")]
+        NoIntegratorNear { name: String, closest: String },
+        "call" #[error("there is no integrator `{name}`")] #[hint("the integrators are {known}")]
+        NoIntegrator { name: String, known: String },
+        "call" #[error("there is no model `{name}`")]
+        NoModel { name: &'static str },
+        "call" #[error("there is no obstacle `{name}`")]
+        NoObstacle { name: &'static str },
+        "call" #[error("{path} cannot be written: files ending in `.{ending}` are unknown")] #[hint("{known} can")]
+        UnknownEnding { path: String, ending: String, known: &'static str },
+        "call" #[error("{path} is no name of a file in UTF-8")]
+        NotUtf8 { path: String },
+        "call" #[error("--size is missing")] #[hint("--size H: about the length of edges [m]")]
+        NoSize {},
+        "call" #[error("--scale-to is missing")] #[hint("--scale-to L: the longer side of the drawing [m]")]
+        NoScale {},
+        "call" #[error("--set text=… is missing")]
+        #[hint("--set text=… such as --set text=opruga, says what is written in the letters of the font")]
+        NoText {},
+        "call" #[error("{path} has cells already")] #[hint("without --size and --scale-to it is shown, and written in another format")]
+        HasCells { path: String },
+        "call" #[error("{path}: files ending in `.{ending}` hold no shape")]
+        #[hint("files that can be read end in .obj, .stl, .ply, .gltf, .glb, .svg, .png, .json, .geojson, .topojson, .ttf, .otf, {meshes}")]
+        NoShape { path: String, ending: String, meshes: &'static str },
+        "call" #[error("{path}: files ending in `.toml` hold no shape")] #[hint("a scene is read by `opruga check` and `opruga run`")]
+        SceneAsShape { path: String },
+        "call" #[error("the file holds nothing that fills a body")]
+        NothingFills {},
+        "call" #[error("no film can have {rate} pictures per second: --fps {fps}, frames of {frame} s")]
+        #[hint("0.0001 to 10000 are possible; --no-pictures does without a film")]
+        FilmRate { rate: String, fps: String, frame: String },
+        "call" #[error("--gltf, --pc2 and --mdd hold the whole run in memory, more than {bytes} bytes")]
+        #[hint("a lower --fps, or --from and --to")]
+        RunTooLong { bytes: usize },
+        "call" #[error("no frame lies from {} s to {} s: the recording has those from {} s to {} s, {} s apart", number(*from), number(*to), number(*first), number(*last), number(*apart))]
+        NoFrame { from: f64, to: f64, first: f64, last: f64, apart: f64 },
+        "call" #[error("the checkpoint is at t = {} s, and the run ends at {} s: nothing is left to do", number(*time), number(*end))]
+        #[hint("--seconds is the simulated time at which the run ends: give one above {}", number(*time))]
+        NothingLeft { time: f64, end: f64 },
+        "call" #[error("`{scene}` comes with the program and never changes: --watch needs a file")] #[hint("`opruga new NAME` writes one")]
+        NeverChanges { scene: String },
+        "call" #[error("there is no screen here to open a window on")] #[hint("`opruga run {scene}` runs without a window and writes pictures")]
+        NoScreen { scene: String },
+        "call" #[error("there is no screen here to open a window on")] #[hint("`opruga replay {file}` writes its pictures")]
+        NoScreenForRecording { file: String },
+        "call" #[error("the program `opruga-studio` does not lie beside this one")] #[hint("cargo install --path crates/opruga-studio")]
+        NoStudio {},
+        "call" #[error("the studio cannot be started: {reason}")]
+        StudioNotStarted { reason: String },
+        "call" #[error("the scene has no body")]
+        NoBody {},
+        "call" #[error("no case is called `{word}`; families are {families}")] #[hint("did you mean `{closest}`? `opruga verify --list` shows all cases")]
+        NoCaseNear { word: String, families: String, closest: String },
+        "call" #[error("no case is called `{word}`; families are {families}")] #[hint("`opruga verify --list` shows all cases")]
+        NoCase { word: String, families: String },
     }
 }

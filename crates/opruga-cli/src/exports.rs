@@ -1,6 +1,7 @@
 //! Frames of a world for other programs: one file a frame, or whole runs in one file.
 
 use crate::arguments::Replay;
+use crate::errors::CallFault;
 use crate::failure::Failure;
 use opruga::io::output_folder::OutputFolder;
 use opruga::io::series::{CellField, Format, Shape};
@@ -90,8 +91,7 @@ impl Tracks {
         }
         let bytes: usize = self.0.values().map(Track::bytes).sum();
         if bytes > MOST_BYTES {
-            let message = format!("--gltf, --pc2 and --mdd hold the whole run in memory, more than {MOST_BYTES} bytes");
-            return Err(Failure::Call { message, hint: Some("a lower --fps, or --from and --to".into()) });
+            return Err(Failure::call(CallFault::RunTooLong { bytes: MOST_BYTES }));
         }
         Ok(())
     }

@@ -1,8 +1,10 @@
 //! Why a command failed, for people and for programs, and the exit code.
 
+use crate::errors::{CallFault, CallRange};
 use crate::language::translation;
-use opruga::io::problem::{SceneError, count_of, shown};
+use opruga::io::problem::{Label, SceneError, count_of, in_words, shown};
 use opruga::io::safe_write::WriteError;
+use opruga::math::message::AnyMessage;
 use serde_json::{Value, json};
 
 /// Why a command failed.
@@ -21,7 +23,7 @@ pub(crate) enum Failure {
     /// A check of the run failed: its code, and what it found.
     Check { code: &'static str, message: String },
     /// The call makes no sense.
-    Call { message: String, hint: Option<String> },
+    Call(AnyMessage),
     /// Ctrl-C or a signal to end; the files are closed.
     Interrupted,
     /// Whoever reads our output has gone.
@@ -53,13 +55,13 @@ impl From<Vec<SceneError>> for Failure {
 
 impl Failure {
     /// A number of the call that is out of its range.
-    pub(crate) fn range(option: &str, value: impl core::fmt::Display, allowed: &str) -> Failure {
-        Failure::call(format!("{option} is {value}; allowed: {allowed}"))
+    pub(crate) fn range(option: &'static str, value: impl core::fmt::Display, allowed: CallRange) -> Failure {
+        Failure::call(CallFault::OutOfRange { option, value: value.to_string(), allowed })
     }
 
     /// A call that makes no sense.
-    pub(crate) fn call(message: impl Into<String>) -> Failure {
-        Failure::Call { message: message.into(), hint: None }
+    pub(crate) fn call(fault: impl Into<AnyMessage>) -> Failure {
+        Failure::Call(fault.into())
     }
 
     /// 1 a check failed · 2 bad call or content · 3 diverged · 4 reading and writing · 130 interrupted.
@@ -69,7 +71,7 @@ impl Failure {
             Failure::Run(error) if error.code.starts_with("run.") => 3,
             Failure::Run(error) => error.exit_code() as u8,
             Failure::Check { .. } => 1,
-            Failure::Call { .. } => 2,
+            Failure::Call(_) => 2,
             Failure::Write(_) | Failure::Draw(_) | Failure::Output(_) => 4,
             Failure::Interrupted => 130,
             Failure::ClosedPipe => 0,
@@ -96,7 +98,7 @@ impl Failure {
             Failure::Draw(message) => plain("draw.failed", message.clone(), None),
             Failure::Output(message) => plain("write.failed", message.clone(), None),
             Failure::Check { code, message } => plain(code, message.clone(), None),
-            Failure::Call { message, hint } => plain("call", message.clone(), hint.as_deref()),
+            Failure::Call(fault) => plain("call", fault.to_string(), fault.hint().as_deref()),
             Failure::Interrupted => plain("interrupted", "interrupted; the files are closed".into(), None),
             Failure::ClosedPipe => Value::Null,
         }
@@ -122,9 +124,11 @@ impl Failure {
             Failure::Draw(message) => writeln!(err, "error[draw.failed]: {message}"),
             Failure::Output(message) => writeln!(err, "error[write.failed]: {message}"),
             Failure::Check { code, message } => writeln!(err, "error[{code}]: {message}"),
-            Failure::Call { message, hint } => {
-                let _ = writeln!(err, "error: {message}");
-                hint.as_ref().map_or(Ok(()), |h| writeln!(err, "  = hint: {h}"))
+            Failure::Call(fault) => {
+                let own = translation();
+                let _ = writeln!(err, "{}: {}", in_words(own, &Label::Error), in_words(own, &**fault));
+                let hint = own.map_or_else(|| fault.hint(), |own| own.hint(&**fault));
+                hint.map_or(Ok(()), |hint| writeln!(err, "  = {}: {hint}", in_words(own, &Label::Hint)))
             }
             Failure::Interrupted => writeln!(err, "interrupted; the files are closed"),
             Failure::ClosedPipe => Ok(()),

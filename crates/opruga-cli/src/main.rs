@@ -31,7 +31,9 @@ mod watch;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
+use errors::CallFault;
 use failure::Failure;
+use opruga::Registries;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
@@ -41,8 +43,8 @@ fn main() -> ExitCode {
         Err(error) if error.use_stderr() && std::env::args_os().any(|word| word == "--json") => {
             // Whoever asks for JSON reads errors as JSON, those of the call too.
             let text = error.to_string();
-            let message = text.trim_start_matches("error: ").split("\n\n").next().unwrap_or_default().to_string();
-            let failure = Failure::Call { message, hint: Some("--help tells what can be said".into()) };
+            let text = text.trim_start_matches("error: ").split("\n\n").next().unwrap_or_default().to_string();
+            let failure = Failure::call(CallFault::Arguments { text });
             failure.print(true);
             return ExitCode::from(failure.exit_code());
         }
@@ -56,9 +58,11 @@ fn main() -> ExitCode {
     };
     language::choose(arguments.language);
     let json = arguments.command.as_ref().is_some_and(Command::json);
+    // Whatever a scene can name is handed on from here.
+    let registries = Registries::default();
     let outcome = match &arguments.command {
-        None => studio::first(),
-        Some(command) => run_command(command),
+        None => studio::first(&registries),
+        Some(command) => run_command(command, &registries),
     };
     match outcome {
         Ok(code) => ExitCode::from(code),
@@ -70,22 +74,23 @@ fn main() -> ExitCode {
     }
 }
 
-fn run_command(command: &Command) -> Result<u8, Failure> {
+/// Does what a call asks for, with the models and integrators that its scenes can name.
+fn run_command(command: &Command, registries: &Registries) -> Result<u8, Failure> {
     match command {
-        Command::Run(run) => watch::run(run),
+        Command::Run(run) => watch::run(run, registries),
         Command::Studio { scene } => studio::studio(scene.as_deref()),
-        Command::View { recording } => studio::view(recording),
-        Command::Modes(call) => modes::modes(call),
+        Command::View { recording } => studio::view(recording, registries),
+        Command::Modes(call) => modes::modes(call, registries),
         Command::Mesh(call) => mesh::mesh(call),
         Command::Material(call) => material::material(call),
-        Command::Check(check) => watch::check(check),
-        Command::Sweep(call) => sweep::sweep(call),
-        Command::Replay(replay) => replay::replay(replay),
-        Command::List { json } => reports::list(*json),
+        Command::Check(check) => watch::check(check, registries),
+        Command::Sweep(call) => sweep::sweep(call, registries),
+        Command::Replay(replay) => replay::replay(replay, registries),
+        Command::List { json } => reports::list(*json, registries),
         Command::New { name, force, .. } => reports::new(name, *force),
-        Command::Reference { schema } => reports::reference(*schema),
-        Command::Bench { what } => reports::bench(what),
-        Command::Verify(call) => verify::verify(call),
+        Command::Reference { schema } => reports::reference(*schema, registries),
+        Command::Bench { what } => reports::bench(what, registries),
+        Command::Verify(call) => verify::verify(call, registries),
     }
 }
 

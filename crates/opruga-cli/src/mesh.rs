@@ -2,14 +2,16 @@
 #![allow(clippy::result_large_err, reason = "errors are rare, and say much")]
 
 use crate::arguments::Mesh as Call;
-use crate::errors::CallError;
+use crate::errors::{CallError, CallFault, CallRange};
 use crate::failure::{Failure, print_data};
 use crate::language::translation;
 use crate::source::overrides;
 use crate::uses;
 use opruga::core::spec::Values;
 use opruga::draw::{self, BodyPicture, ColourMap, Facets, Legend, Picture};
-use opruga::io::problem::visible;
+use opruga::io::meshes::{LeftOut, NotInFormat};
+use opruga::io::outputs_apart::Use;
+use opruga::io::problem::{in_words, visible};
 use opruga::io::safe_write::{safe_write, try_write};
 use opruga::io::scene::{self, Limits};
 use opruga::io::shapes::{Problem, body, kind_of_file};
@@ -25,7 +27,7 @@ use std::sync::Arc;
 pub(crate) fn mesh(call: &Call) -> Result<u8, Failure> {
     for (option, value) in [("--size", call.size), ("--scale-to", call.scale_to)] {
         if let Some(value) = value.filter(|value| !(*value > 0.0 && value.is_finite())) {
-            return Err(Failure::range(option, value, "numbers above 0"));
+            return Err(Failure::range(option, value, CallRange::Positive {}));
         }
     }
     let ending = |path: &Path| path.extension().map_or(String::new(), |e| e.to_string_lossy().to_ascii_lowercase());
@@ -33,11 +35,10 @@ pub(crate) fn mesh(call: &Call) -> Result<u8, Failure> {
     if let Some((path, ending)) = &out
         && !matches!(ending.as_str(), "msh" | "vtk" | "vtu" | "mesh" | "mfem" | "node" | "ele")
     {
-        let message =
-            format!("{} cannot be written: files ending in `.{}` are unknown", path.display(), visible(ending));
-        return Err(Failure::Call { message, hint: Some(format!("{} can", meshes::WRITTEN)) });
+        let (path, ending) = (path.display().to_string(), visible(ending));
+        return Err(Failure::call(CallFault::UnknownEnding { path, ending, known: meshes::WRITTEN }));
     }
-    let mut uses = uses::of_file("the input", &call.input);
+    let mut uses = uses::of_file(Use::Input {}, &call.input);
     let written =
         |path: &Path, ending: &str| meshes::endings(ending).into_iter().map(|e| path.with_extension(e)).collect();
     let written: Vec<PathBuf> = out.as_ref().map_or_else(Vec::new, |(path, ending)| written(path, ending));
@@ -48,7 +49,7 @@ pub(crate) fn mesh(call: &Call) -> Result<u8, Failure> {
     uses::apart(&uses)?;
     let folder = call.input.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let Some(name) = call.input.file_name().and_then(|name| name.to_str()) else {
-        return Err(Failure::call(format!("{} is no name of a file in UTF-8", call.input.display())));
+        return Err(Failure::call(CallFault::NotUtf8 { path: call.input.display().to_string() }));
     };
     let (dimension, shape) = shape(call, folder, name, &ending(&call.input))?;
     let files = Files::in_folder(folder);
@@ -56,7 +57,7 @@ pub(crate) fn mesh(call: &Call) -> Result<u8, Failure> {
     let mut named = Vec::new();
     let mut apart = |named: &[String]| {
         let beside = named.iter().filter_map(|name| Some((name, files.path_of(name)?)));
-        beside.for_each(|(name, path)| uses.input(format!("`{name}`, which the input names"), &path));
+        beside.for_each(|(name, path)| uses.input(Use::NamedByInput { name: name.clone() }, &path));
         uses::apart(&uses)
     };
     if dimension == 2 {
@@ -83,18 +84,14 @@ fn picture_of(call: &Call, out: Option<&(&Path, String)>) -> Option<PathBuf> {
 fn shape(call: &Call, folder: &Path, name: &str, ending: &str) -> Result<(usize, Values), Failure> {
     let set = overrides(&call.set)?;
     let is_set = |field: &str| set.iter().any(|(path, _)| path == field);
-    let needs = |what: &str, why: &str| Failure::Call {
-        message: format!("{what} is missing"),
-        hint: Some(format!("{what} {why}")),
-    };
     let word = |field: &str, value: &str| (field.to_string(), serde_json::Value::from(value).to_string());
     // Lengths that `--set` gives are not asked for once more.
-    let length = |field: &str, given: Option<f64>, missing: Option<Failure>| match (given, missing) {
+    let length = |field: &str, given: Option<f64>, missing: Option<CallFault>| match (given, missing) {
         (Some(length), _) => Ok(Some((field.to_string(), format!("{length:?}")))),
-        (None, Some(missing)) if !is_set(field) => Err(missing),
+        (None, Some(missing)) if !is_set(field) => Err(Failure::call(missing)),
         _ => Ok(None),
     };
-    let spacing = || length("spacing", call.size, Some(needs("--size", "H: about the length of edges [m]")));
+    let spacing = || length("spacing", call.size, Some(CallFault::NoSize {}));
     // What the call says by options of its own, then what it sets.
     let made = |kind: &str, dimension: usize, fields: Vec<(String, String)>| {
         let all = [&[word("file", name)], &fields[..], &set[..]].concat();
@@ -111,8 +108,7 @@ fn shape(call: &Call, folder: &Path, name: &str, ending: &str) -> Result<(usize,
     let outline = |kind: &str| {
         let mut fields = vec![word("overlap", "union"), word("filling", "triangles")];
         fields.extend(spacing()?);
-        let missing = needs("--scale-to", "L: the longer side of the drawing [m]");
-        fields.extend(length("size", call.scale_to, Some(missing))?);
+        fields.extend(length("size", call.scale_to, Some(CallFault::NoScale {}))?);
         made(kind, 2, fields)
     };
     match ending {
@@ -132,30 +128,22 @@ fn shape(call: &Call, folder: &Path, name: &str, ending: &str) -> Result<(usize,
                 return surface(false);
             }
             if call.size.is_some() || call.scale_to.is_some() {
-                return Err(Failure::Call {
-                    message: format!("{} has cells already", path.display()),
-                    hint: Some("without --size and --scale-to it is shown, and written in another format".into()),
-                });
+                return Err(Failure::call(CallFault::HasCells { path: path.display().to_string() }));
             }
             let mending = vec![word("inverted", "turn"), word("unreferenced", "leave_out")];
             let dimension = if found.dimension() == 3 { 3 } else { 2 };
             made("mesh", dimension, if call.mend { mending } else { Vec::new() })
         }
         "obj" | "stl" | "ply" | "gltf" | "glb" => surface(call.mend),
-        "ttf" | "otf" if !is_set("text") => {
-            let hint = "such as --set text=opruga, says what is written in the letters of the font";
-            Err(needs("--set text=…", hint))
-        }
+        "ttf" | "otf" if !is_set("text") => Err(Failure::call(CallFault::NoText {})),
         _ => match kind_of_file(name) {
             Some(kind) => outline(kind),
             None => {
-                let known = ".obj, .stl, .ply, .gltf, .glb, .svg, .png, .json, .geojson, .topojson, .ttf, .otf";
-                let hint = match ending {
-                    "toml" => "a scene is read by `opruga check` and `opruga run`".to_string(),
-                    _ => format!("files that can be read end in {known}, {}", meshes::ENDINGS),
-                };
-                let message = format!("{}: files ending in `.{}` hold no shape", call.input.display(), visible(ending));
-                Err(Failure::Call { message, hint: Some(hint) })
+                let path = call.input.display().to_string();
+                Err(Failure::call(match ending {
+                    "toml" => CallFault::SceneAsShape { path },
+                    _ => CallFault::NoShape { path, ending: visible(ending), meshes: meshes::ENDINGS },
+                }))
             }
         },
     }
@@ -263,10 +251,10 @@ fn finish<const D: usize>(
     notices: &[Notice],
     out: Option<(&Path, String)>,
 ) -> Result<u8, Failure> {
-    let refuse = |error: opruga::mesh::MeshError| Failure::call(error.to_string());
+    let refuse = |error: opruga::mesh::MeshError| Failure::call(error);
     let mesh = if call.order == 2 { mesh.into_quadratic().map_err(refuse)? } else { mesh };
     let Some(quality) = mesh.cell_quality() else {
-        return Err(Failure::call("the file holds nothing that fills a body"));
+        return Err(Failure::call(CallFault::NothingFills {}));
     };
     let (mut written, mut left_out) = (Vec::new(), Vec::new());
     if let Some((path, ending)) = &out {
@@ -279,8 +267,7 @@ fn finish<const D: usize>(
         // What the call asks for is told, and no error.
         let odd = notices.iter().filter(|notice| !Notice::is_asked_for(notice.about.code));
         let of_format = left_out.iter().map(|what| {
-            let error =
-                SceneError::new("mesh.left_out", format!("left out, since the format has no place for it: {what}"));
+            let error = SceneError::of(NotInFormat::LeftOutOfFormat { what: what.clone() });
             SceneError { file: out.as_ref().map_or(String::new(), |(path, _)| path.display().to_string()), ..error }
         });
         let errors: Vec<SceneError> = odd.map(|notice| notice.about.clone()).chain(of_format).collect();
@@ -319,7 +306,7 @@ fn print<const D: usize>(
     mesh: &Mesh<D>,
     quality: &CellQuality,
     notices: &[Notice],
-    left_out: &[String],
+    left_out: &[LeftOut],
     files: &[String],
 ) -> Result<(), Failure> {
     let degrees = |angle: f64| angle.to_degrees();
@@ -339,7 +326,7 @@ fn print<const D: usize>(
             "groups": mesh.groups.keys().collect::<Vec<_>>(), "cell_groups": mesh.cell_groups.keys().collect::<Vec<_>>(),
             "cell_values": mesh.cell_values.keys().collect::<Vec<_>>(),
             "node_values": mesh.node_values.keys().collect::<Vec<_>>(),
-            "warnings": warnings, "left_out": left_out, "files": files,
+            "warnings": warnings, "left_out": left_out.iter().map(LeftOut::to_string).collect::<Vec<_>>(), "files": files,
         });
         return print_data(&format!("{row}\n"));
     }
@@ -372,7 +359,8 @@ fn print<const D: usize>(
         }
     }
     for what in left_out {
-        text += &format!("left out, since the format has no place for it: {what}\n");
+        let told = NotInFormat::LeftOutOfFormat { what: what.clone() };
+        text += &format!("{}\n", in_words(translation(), &told));
     }
     for file in files {
         text += &format!("written: {file}\n");

@@ -1,6 +1,7 @@
 //! `opruga modes`: natural frequencies and their shapes.
 
 use crate::arguments::Modes;
+use crate::errors::{CallFault, CallRange};
 use crate::failure::{Failure, print_data};
 use crate::opened::{Opened, open};
 use crate::run::default_folder;
@@ -14,7 +15,7 @@ use opruga::io::scene;
 use opruga::math::words::{number, rounded};
 use opruga::pictures::{Scenery, rest_of};
 use opruga::world::modes::Mode;
-use opruga::{AnyBody, AnyWorld};
+use opruga::{AnyBody, AnyWorld, Registries, catalogue_of};
 use serde_json::json;
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -26,30 +27,30 @@ const ROUNDING: f64 = 1e-15;
 const AMPLITUDE: f64 = 0.12;
 
 /// Finds the modes of a body, prints them, and draws their shapes.
-pub(crate) fn modes(call: &Modes) -> Result<u8, Failure> {
+pub(crate) fn modes(call: &Modes, registries: &Registries) -> Result<u8, Failure> {
     if !(0.0..=1e9).contains(&call.after) {
-        return Err(Failure::range("--after", call.after, "0 to 1e9"));
+        return Err(Failure::range("--after", call.after, CallRange::Between { least: 0.0, most: 1e9 }));
     }
     let Opened { source, reading, options, mut blueprint, files } =
-        open(&call.scene, &call.set, call.allow_outside, call.json)?;
+        open(&call.scene, registries, &call.set, call.allow_outside, call.json)?;
     let mut uses = uses::of_scene(&source, &reading.files, files.iter());
     uses.folder(&folder_of(call, &source), uses::modes_writes);
     uses::apart(&uses)?;
-    look_for_equilibrium(call, &mut blueprint);
-    leave_statics(call, &mut blueprint);
+    look_for_equilibrium(call, registries, &mut blueprint);
+    leave_statics(call, registries, &mut blueprint);
     of_world(call, &source, &reading, &mut *source.build(blueprint, &reading, &options)?)
 }
 
 /// The integrator with a role among those that scenes can name.
-fn integrator_with(role: Role) -> Option<&'static Spec> {
-    opruga::catalogue().integrators.into_iter().find(|spec| spec.has_role(role))
+fn integrator_with(registries: &Registries, role: Role) -> Option<&'static Spec> {
+    catalogue_of(registries).integrators.into_iter().find(|spec| spec.has_role(role))
 }
 
 /// Gives every body the integrator `equilibrium` where that is asked for, with what it understands of the parameters of the
 /// one that it had: the tolerance, the number of iterations, the linear solver.
-fn look_for_equilibrium(call: &Modes, blueprint: &mut AnyBlueprint) {
+fn look_for_equilibrium(call: &Modes, registries: &Registries, blueprint: &mut AnyBlueprint) {
     let dimension = blueprint.scene().dimension();
-    let Some(spec) = integrator_with(Role::Statics).filter(|_| call.equilibrium) else { return };
+    let Some(spec) = integrator_with(registries, Role::Statics).filter(|_| call.equilibrium) else { return };
     for values in blueprint.integrators_mut() {
         let mut statics = Values::defaults(spec, dimension);
         for (name, value) in values.iter() {
@@ -62,10 +63,10 @@ fn look_for_equilibrium(call: &Modes, blueprint: &mut AnyBlueprint) {
 
 /// Lets statics be where no frame is run: modes are those of a state, no integrator takes part in them, and bodies that nothing holds,
 /// which statics refuses, have modes as all others do. What takes its place goes with every body and every step.
-fn leave_statics(call: &Modes, blueprint: &mut AnyBlueprint) {
+fn leave_statics(call: &Modes, registries: &Registries, blueprint: &mut AnyBlueprint) {
     let dimension = blueprint.scene().dimension();
     let runs = call.equilibrium || call.after > 0.0;
-    let Some(spec) = integrator_with(Role::OfferedImplicit).filter(|_| !runs) else { return };
+    let Some(spec) = integrator_with(registries, Role::OfferedImplicit).filter(|_| !runs) else { return };
     for values in blueprint.integrators_mut().into_iter().filter(|values| values.spec().has_role(Role::Statics)) {
         *values = Values::defaults(spec, dimension);
     }
@@ -78,11 +79,11 @@ fn folder_of(call: &Modes, source: &Source) -> PathBuf {
 
 fn of_world(call: &Modes, source: &Source, reading: &scene::Options, world: &mut dyn AnyWorld) -> Result<u8, Failure> {
     let body = match &call.body {
-        None => world.bodies().first().copied().ok_or_else(|| Failure::call("the scene has no body"))?,
+        None => world.bodies().first().copied().ok_or_else(|| Failure::call(CallFault::NoBody {}))?,
         Some(name) => world.body(name).ok_or_else(|| {
             let bodies = world.bodies().into_iter().filter_map(|body| world.scene().body(body));
             let names: Vec<&str> = bodies.map(AnyBody::name).collect();
-            Failure::range("--body", format!("`{name}`"), &names.join(", "))
+            Failure::range("--body", format!("`{name}`"), CallRange::OneOf { names: names.join(", ") })
         })?,
     };
     // To the state about which the body swings.
@@ -191,7 +192,7 @@ fn draw_shapes(
         let factor = if most > 0.0 { AMPLITUDE * extent / most } else { 0.0 };
         for (node, (x, shape)) in start.iter().zip(&mode.shape).enumerate() {
             let place = core::array::from_fn(|d| x[d] + factor * shape[d]);
-            world.place_node(body, node as u32, place, [0.0; 3]).map_err(|e| Failure::call(e.to_string()))?;
+            world.place_node(body, node as u32, place, [0.0; 3]).map_err(Failure::call)?;
         }
         let mut picture = scenery.picture(&scenery.capture(world, false));
         let legend = picture.legend.take().unwrap_or_default();

@@ -4,9 +4,9 @@ use crate::failure::Failure;
 use crate::language::translation;
 use crate::run::simd_from_environment;
 use crate::source::{Source, Whole, overrides};
-use opruga::Options;
 use opruga::blueprint::AnyBlueprint;
 use opruga::io::scene;
+use opruga::{Options, Registries};
 
 /// A scene of a call that has no options of its own for reading it.
 pub(crate) struct Opened {
@@ -19,8 +19,14 @@ pub(crate) struct Opened {
 }
 
 /// Finds and reads a scene with overrides, and tells what is odd about it unless the call wants to hear nothing.
-pub(crate) fn open(scene: &str, set: &[String], allow_outside: bool, quiet: bool) -> Result<Opened, Failure> {
-    let source = Source::find(scene)?;
+pub(crate) fn open(
+    scene: &str,
+    registries: &Registries,
+    set: &[String],
+    allow_outside: bool,
+    quiet: bool,
+) -> Result<Opened, Failure> {
+    let source = Source::find(scene, registries)?;
     let reading = scene::Options {
         overrides: overrides(set)?,
         files: source.files.clone().allow_outside(allow_outside),

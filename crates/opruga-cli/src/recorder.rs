@@ -1,5 +1,6 @@
 //! What is kept of a run while it runs: rows of tables, and moments for pictures.
 
+use crate::errors::CallFault;
 use crate::failure::Failure;
 use opruga::blueprint::Recorded;
 use opruga::core::spec::Role;
@@ -175,10 +176,8 @@ impl Recorder {
         }
         let rate = film_rate(every, frame);
         if drawn && draw::Mp4Writer::new(std::io::sink(), [16, 16], rate).is_err() {
-            return Err(Failure::Call {
-                message: format!("no film can have {rate:e} pictures per second: --fps {fps}, frames of {frame} s"),
-                hint: Some("0.0001 to 10000 are possible; --no-pictures does without a film".into()),
-            });
+            let (rate, fps, frame) = (format!("{rate:e}"), fps.to_string(), frame.to_string());
+            return Err(Failure::call(CallFault::FilmRate { rate, fps, frame }));
         }
         if every == wanted
             && let Some(said) = asked.and_then(|asked| other_rate(asked, every, frame)).filter(|_| notes)

@@ -4,11 +4,11 @@ use crate::checkpoints::Calling;
 use crate::errors::CallError;
 use crate::failure::Failure;
 use crate::source::Source;
-use opruga::AnyWorld;
 use opruga::io::recording::{Asset, Header, Recording, RecordingError};
 use opruga::io::safe_write::WriteError;
 use opruga::io::{Files, SceneError};
 use opruga::recordings::{Tape, states_apart};
+use opruga::{AnyWorld, Registries};
 use std::fs::File;
 use std::path::Path;
 
@@ -40,7 +40,7 @@ pub(crate) fn begin(
 }
 
 /// Opens a recording for reading; its scene is inside.
-pub(crate) fn open(path: &Path) -> Result<(Recording<File>, Source), Failure> {
+pub(crate) fn open(path: &Path, registries: &Registries) -> Result<(Recording<File>, Source), Failure> {
     let refuse = |error: SceneError| Failure::Run(Box::new(SceneError { file: path.display().to_string(), ..error }));
     let about = std::fs::metadata(path).and_then(|about| Ok((about, File::open(path)?)));
     let (about, file) = about.map_err(|e| refuse(SceneError::from(&RecordingError::from(e))))?;
@@ -51,7 +51,7 @@ pub(crate) fn open(path: &Path) -> Result<(Recording<File>, Source), Failure> {
     let header = recording.header();
     let file = format!("scene {} (in {})", header.name, path.display());
     let held = header.assets.iter().map(|asset| (asset.name.clone(), asset.bytes.as_slice().into()));
-    let source =
-        Source { name: header.name.clone(), file, path: None, bytes: header.scene.clone(), files: Files::held(held) };
+    let (name, bytes, files) = (header.name.clone(), header.scene.clone(), Files::held(held));
+    let source = Source { name, file, path: None, bytes, files, registries: registries.clone() };
     Ok((recording, source))
 }

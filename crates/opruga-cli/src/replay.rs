@@ -1,6 +1,7 @@
 //! `opruga replay`: a recorded run seen again, exported, or computed again and compared.
 
 use crate::arguments::Replay;
+use crate::errors::{CallFault, CallRange};
 use crate::exports::{self, Tracks};
 use crate::failure::{Failure, print_data};
 use crate::interrupt;
@@ -13,32 +14,33 @@ use crate::uses;
 use core::ops::RangeInclusive;
 use opruga::blueprint::AnyBlueprint;
 use opruga::io::output_folder::{Existing, OutputFolder};
+use opruga::io::outputs_apart::Use;
 use opruga::io::recording::{Ending, Recording, RecordingError};
 use opruga::io::series::{Format, write_pvd, write_vtk_series};
 use opruga::io::tables::WarningSummary;
 use opruga::io::{SceneError, scene};
 use opruga::math::words::{counted, number};
 use opruga::recordings::{Playback, TapeError};
-use opruga::{AnyWorld, Options};
+use opruga::{AnyWorld, Options, Registries};
 use serde_json::{Value, json};
 use std::fs::File;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Replays a recording.
-pub(crate) fn replay(call: &Replay) -> Result<u8, Failure> {
+pub(crate) fn replay(call: &Replay, registries: &Registries) -> Result<u8, Failure> {
     for (option, time) in [("--from", call.from), ("--to", call.to)] {
         if let Some(time) = time.filter(|time| !(0.0..=1e9).contains(time)) {
-            return Err(Failure::range(option, time, "0 to 1e9"));
+            return Err(Failure::range(option, time, CallRange::Between { least: 0.0, most: 1e9 }));
         }
     }
     if let Some(fps) = call.pictures.fps.filter(|fps| !(*fps > 0.0 && *fps <= 240.0)) {
-        return Err(Failure::range("--fps", fps, "numbers above 0 up to 240"));
+        return Err(Failure::range("--fps", fps, CallRange::PositiveUpTo { most: 240.0 }));
     }
     let simd = simd_from_environment()?;
-    let (recording, source) = recordings::open(&call.file)?;
+    let (recording, source) = recordings::open(&call.file, registries)?;
     if call.writes() || !call.verify {
-        let mut uses = uses::of_file("the recording", &call.file);
+        let mut uses = uses::of_file(Use::Recording {}, &call.file);
         uses.folder(&folder_of(call, &source), uses::replay_writes);
         uses::apart(&uses)?;
     }
@@ -102,15 +104,9 @@ fn wanted_frames(call: &Replay, recording: &Recording<File>) -> Result<RangeIncl
     let from = call.from.map_or(frames.start, |from| (from / length - 1e-9).ceil() as u64).max(frames.start);
     let to = call.to.map_or(last, |to| (to / length + 1e-9).floor() as u64).min(last);
     if from > to {
-        let message = format!(
-            "no frame lies from {} s to {} s: the recording has those from {} s to {} s, {} s apart",
-            call.from.unwrap_or(0.0),
-            number(call.to.unwrap_or(time(last))),
-            number(time(frames.start)),
-            number(time(last)),
-            number(length)
-        );
-        return Err(Failure::call(message));
+        let (from, to) = (call.from.unwrap_or(0.0), call.to.unwrap_or(time(last)));
+        let (first, last) = (time(frames.start), time(last));
+        return Err(Failure::call(CallFault::NoFrame { from, to, first, last, apart: length }));
     }
     Ok(from..=to)
 }
@@ -175,7 +171,7 @@ impl Job<'_> {
         match folder.filter(|_| same) {
             Some(folder) => {
                 // From its first frame again, in a world that knows nothing of the last one.
-                let (again, _) = recordings::open(&self.call.file)?;
+                let (again, _) = recordings::open(&self.call.file, &self.source.registries)?;
                 self.show(&mut *build(blueprint)?, &mut play(again)?, stop, Some((folder, verified)))
             }
             None => {

@@ -2,6 +2,7 @@
 
 use crate::arguments::{Bench, BenchVertices, Check};
 use crate::bench::vertices as bench;
+use crate::errors::{CallFault, CallRange};
 use crate::failure::{Failure, print_data};
 use crate::language::translation;
 use crate::outputs::cells;
@@ -16,15 +17,15 @@ use opruga::io::safe_write::{safe_write, try_write};
 use opruga::io::tables::CellSummary;
 use opruga::io::{Notice, scene};
 use opruga::math::words::{counted, number, rounded};
-use opruga::{AnyWorld, Options, Warning, World};
+use opruga::{AnyWorld, Options, Registries, Warning, World, catalogue_of};
 use serde_json::json;
 use std::fmt::Write as _;
 use std::io::IsTerminal as _;
 use std::path::PathBuf;
 
 /// Reads a scene, builds its world, and says what is in it.
-pub(crate) fn check(call: &Check) -> Result<u8, Failure> {
-    let source = Source::find(&call.scene)?;
+pub(crate) fn check(call: &Check, registries: &Registries) -> Result<u8, Failure> {
+    let source = Source::find(&call.scene, registries)?;
     let reading = scene::Options {
         lenient: call.lenient,
         strict: call.strict,
@@ -155,15 +156,20 @@ fn kinds(specs: &[&'static Spec]) -> Vec<Kind> {
 }
 
 /// Lists what there is.
-pub(crate) fn list(as_json: bool) -> Result<u8, Failure> {
-    let catalogue = opruga::catalogue();
+pub(crate) fn list(as_json: bool, registries: &Registries) -> Result<u8, Failure> {
+    print_data(&listed(as_json, registries))?;
+    Ok(0)
+}
+
+fn listed(as_json: bool, registries: &Registries) -> String {
+    let catalogue = catalogue_of(registries);
     let sections = [
         ("models", kinds(&catalogue.models)),
         ("integrators", kinds(&catalogue.integrators)),
         ("shapes", kinds(&opruga::shapes::all())),
         ("colliders", kinds(&catalogue.colliders)),
     ];
-    let pairs = opruga::Registry::<2>::default().pairs();
+    let pairs = registries.plane.pairs();
     let told = |name| {
         let text = opruga::scenes::find(name).unwrap_or("");
         (name, opruga::scenes::title(text), opruga::scenes::credit(text))
@@ -179,8 +185,7 @@ pub(crate) fn list(as_json: bool) -> Result<u8, Failure> {
         object.insert("scenes".into(), scenes.into());
         let pair = |(model, integrator, fits): &(&str, &str, bool)| json!({"model": model, "integrator": integrator, "fits": fits});
         object.insert("pairs".into(), pairs.iter().map(pair).collect::<Vec<_>>().into());
-        print_data(&format!("{}\n", serde_json::Value::Object(object)))?;
-        return Ok(0);
+        return format!("{}\n", serde_json::Value::Object(object));
     }
     let mut text = String::new();
     for (name, kinds) in &sections {
@@ -209,15 +214,14 @@ pub(crate) fn list(as_json: bool) -> Result<u8, Failure> {
             let _ = writeln!(text, "  {:<widest$}   {credit}", "");
         }
     }
-    print_data(&text)?;
-    Ok(0)
+    text
 }
 
 /// Writes a commented scene to start from.
 pub(crate) fn new(name: &str, force: bool) -> Result<u8, Failure> {
     let stem = name.strip_suffix(".toml").unwrap_or(name);
     if stem.is_empty() || stem.ends_with(['/', '\\']) {
-        return Err(Failure::range("NAME", format!("`{name}`"), "the name of a file"));
+        return Err(Failure::range("NAME", format!("`{name}`"), CallRange::FileName {}));
     }
     let path = PathBuf::from(format!("{stem}.toml"));
     let title = path.file_stem().map_or_else(|| stem.to_string(), |s| s.to_string_lossy().into_owned());
@@ -229,8 +233,8 @@ pub(crate) fn new(name: &str, force: bool) -> Result<u8, Failure> {
 }
 
 /// Prints the reference of the scene format.
-pub(crate) fn reference(schema: bool) -> Result<u8, Failure> {
-    let catalogue = opruga::catalogue();
+pub(crate) fn reference(schema: bool, registries: &Registries) -> Result<u8, Failure> {
+    let catalogue = catalogue_of(registries);
     if schema {
         let schema = opruga::io::schema::json_schema(&catalogue);
         print_data(&format!("{}\n", serde_json::to_string_pretty(&schema).unwrap_or_default()))?;
@@ -241,28 +245,27 @@ pub(crate) fn reference(schema: bool) -> Result<u8, Failure> {
 }
 
 /// Runs a benchmark.
-pub(crate) fn bench(what: &Bench) -> Result<u8, Failure> {
+pub(crate) fn bench(what: &Bench, registries: &Registries) -> Result<u8, Failure> {
     match what {
-        Bench::Vertices(call) => bench_vertices(call),
-        Bench::Scene(call) => crate::bench::scene::bench(call),
-        Bench::Elements(call) => crate::bench::elements::bench(call),
-        Bench::Record(call) => crate::bench::record::bench(call),
-        Bench::Load(call) => crate::bench::load::bench(call),
+        Bench::Vertices(call) => bench_vertices(call, registries),
+        Bench::Scene(call) => crate::bench::scene::bench(call, registries),
+        Bench::Elements(call) => crate::bench::elements::bench(call, registries),
+        Bench::Record(call) => crate::bench::record::bench(call, registries),
+        Bench::Load(call) => crate::bench::load::bench(call, registries),
     }
 }
 
-fn bench_vertices(call: &BenchVertices) -> Result<u8, Failure> {
+fn bench_vertices(call: &BenchVertices, registries: &Registries) -> Result<u8, Failure> {
     if !(call.seconds > 0.0 && call.seconds <= 600.0) {
-        return Err(Failure::range("--seconds", call.seconds, "numbers above 0 up to 600"));
+        return Err(Failure::range("--seconds", call.seconds, CallRange::PositiveUpTo { most: 600.0 }));
     }
-    let integrators: Vec<&str> = opruga::catalogue().integrators.iter().map(|s| s.kind).collect();
+    let integrators: Vec<&str> = registries.plane.integrators().iter().map(|s| s.kind).collect();
     if !integrators.contains(&call.integrator.as_str()) {
-        let hint = match nearest(&call.integrator, integrators.iter().copied()) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => format!("the integrators are {}", integrators.join(", ")),
-        };
-        let message = format!("there is no integrator `{}`", visible(&call.integrator));
-        return Err(Failure::Call { message, hint: Some(hint) });
+        let name = visible(&call.integrator);
+        return Err(Failure::call(match nearest(&call.integrator, integrators.iter().copied()) {
+            Some(closest) => CallFault::NoIntegratorNear { name, closest },
+            None => CallFault::NoIntegrator { name, known: integrators.join(", ") },
+        }));
     }
     let chosen = call.only.as_deref().map(bench::row).transpose()?;
     if let Some(path) = &call.plot {
@@ -288,7 +291,8 @@ fn bench_vertices(call: &BenchVertices) -> Result<u8, Failure> {
         };
         let drawing: Option<&mut dyn FnMut(&mut World<2>)> = if call.draw { Some(&mut draw_frame) } else { None };
         rows.push(
-            bench::time(bodies, vertices, &call.integrator, &options, call.seconds, drawing).map_err(Failure::call)?,
+            bench::time((bodies, vertices), registries, &call.integrator, &options, call.seconds, drawing)
+                .map_err(Failure::call)?,
         );
     }
     if std::io::stderr().is_terminal() {
@@ -304,4 +308,49 @@ fn bench_vertices(call: &BenchVertices) -> Result<u8, Failure> {
         safe_write(path, true, |out| out.write_all(plot.as_bytes()))?;
     }
     Ok(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use opruga::core::error::BuildError;
+    use opruga::core::potential::{Ingredients, Model, Potential, Views};
+    use std::sync::Arc;
+
+    const SPEC: Spec = Spec {
+        kind: "bed_of_a_test",
+        summary: "a bed that only a test knows",
+        documentation: "",
+        dimensions: &[2],
+        fields: &[],
+        roles: &[],
+    };
+
+    struct Bed;
+    impl Model<2> for Bed {
+        fn spec(&self) -> &'static Spec {
+            &SPEC
+        }
+        fn views(&self) -> Views {
+            Views::default()
+        }
+        fn build(&self, _: &Ingredients<2>) -> Result<Box<dyn Potential<2>>, BuildError> {
+            Err(BuildError::new(SPEC.kind, "bed.none", "nobody builds it"))
+        }
+    }
+
+    #[test]
+    fn a_registered_model_is_listed_with_the_integrators_that_cannot_step_it() {
+        let mut plane = opruga::Registry::default();
+        plane.add_model(Box::new(Bed));
+        let registries = Registries { plane: Arc::new(plane), ..Registries::default() };
+        let line = |text: &str, part: &str| text.lines().find(|line| line.contains(part)).map(String::from);
+        let text = listed(false, &registries);
+        let row = line(&text, SPEC.summary).expect("a row");
+        assert!(row.contains(SPEC.kind) && row.contains("2D") && !row.contains("3D"), "{row}");
+        assert!(line(&text, "bed_of_a_test      not with").expect("its pairs").contains("newmark"), "{text}");
+        let json: serde_json::Value = serde_json::from_str(&listed(true, &registries)).expect("JSON");
+        assert_eq!(json["models"][0]["kind"], SPEC.kind);
+        assert!(!listed(false, &Registries::default()).contains(SPEC.kind));
+    }
 }

@@ -2,6 +2,7 @@
 
 use crate::arguments::Run;
 use crate::checkpoints::{self, Calling, Keeper, SavedRun};
+use crate::errors::{CallFault, CallRange};
 use crate::failure::{Failure, print_data};
 use crate::forecast::{Forecast, duration};
 use crate::interrupt;
@@ -13,12 +14,13 @@ use crate::source::{Source, Whole, overrides};
 use crate::uses;
 use opruga::blueprint::AnyBlueprint;
 use opruga::io::output_folder::{Existing, OutputFolder};
+use opruga::io::outputs_apart::Use;
 use opruga::io::safe_write::WriteError;
 use opruga::io::scene;
 use opruga::io::tables::WarningSummary;
 use opruga::math::words::{counted, number, rounded};
 use opruga::recordings::TapeHint;
-use opruga::{AnyWorld, Options, Simd};
+use opruga::{AnyWorld, Options, Registries, Simd};
 use std::collections::BTreeMap;
 use std::io::IsTerminal as _;
 use std::path::PathBuf;
@@ -27,15 +29,19 @@ use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 /// Runs a scene.
-pub(crate) fn run(call: &Run) -> Result<u8, Failure> {
+pub(crate) fn run(call: &Run, registries: &Registries) -> Result<u8, Failure> {
     if let Some(seconds) = call.seconds.filter(|s| !(0.0..=1e9).contains(s)) {
-        return Err(Failure::range("--seconds", seconds, "0 to 1e9"));
+        return Err(Failure::range("--seconds", seconds, CallRange::Between { least: 0.0, most: 1e9 }));
     }
     if let Some(fps) = call.pictures.fps.filter(|fps| !(*fps > 0.0 && *fps <= 240.0)) {
-        return Err(Failure::range("--fps", fps, "numbers above 0 up to 240"));
+        return Err(Failure::range("--fps", fps, CallRange::PositiveUpTo { most: 240.0 }));
     }
     if !(0.0..=1e9).contains(&call.checkpoint_every) {
-        return Err(Failure::range("--checkpoint-every", call.checkpoint_every, "0 to 1e9"));
+        return Err(Failure::range(
+            "--checkpoint-every",
+            call.checkpoint_every,
+            CallRange::Between { least: 0.0, most: 1e9 },
+        ));
     }
     let simd = simd_from_environment()?;
     let mut set = overrides(&call.set)?;
@@ -44,9 +50,9 @@ pub(crate) fn run(call: &Run) -> Result<u8, Failure> {
         set.push(("time.seconds".into(), seconds.to_string()));
     }
     let (source, resumed) = match &call.resume {
-        None => (Source::find(call.scene.as_deref().unwrap_or("ball"))?, None),
+        None => (Source::find(call.scene.as_deref().unwrap_or("ball"), registries)?, None),
         Some(path) => {
-            let (saved, source) = checkpoints::open(path)?;
+            let (saved, source) = checkpoints::open(path, registries)?;
             set.splice(0..0, saved.calling.overrides.clone());
             (source, Some(saved))
         }
@@ -124,7 +130,7 @@ fn outputs_apart(call: &Run, source: &Source, reading: &scene::Options, files: &
     // A run may go on in its own folder: its checkpoints follow each other there.
     let own = [checkpoints::NAME, checkpoints::PREVIOUS].map(|name| folder.join(name).canonicalize().ok());
     let own = checkpoint.canonicalize().is_ok_and(|path| own.contains(&Some(path)));
-    let mut uses = uses::of_file("the checkpoint of --resume", checkpoint);
+    let mut uses = uses::of_file(Use::Checkpoint {}, checkpoint);
     uses.folder(&folder, move |name| {
         uses::run_writes(name) && !(own && [checkpoints::NAME, checkpoints::PREVIOUS].contains(&name))
     });
@@ -146,10 +152,7 @@ pub(crate) fn simd_from_environment() -> Result<Option<Simd>, Failure> {
         Err(_) => Ok(None),
         Ok(name) => match Simd::named(&name) {
             Some(simd) => Ok(Some(simd)),
-            None => Err(Failure::call(format!(
-                "OPRUGA_SIMD={}: allowed are scalar, sse2, avx2, avx512",
-                opruga::io::problem::visible(&name)
-            ))),
+            None => Err(Failure::call(CallFault::NoInstructions { name: opruga::io::problem::visible(&name) })),
         },
     }
 }
@@ -321,15 +324,7 @@ fn unrecorded(error: WriteError) -> Failure {
 
 /// There is nothing to go on with: the checkpoint lies at the end of the run or behind it.
 fn at_the_end(saved: &SavedRun, seconds: f64) -> Failure {
-    let time = saved.time;
-    Failure::Call {
-        message: format!(
-            "the checkpoint is at t = {} s, and the run ends at {} s: nothing is left to do",
-            number(time),
-            number(seconds)
-        ),
-        hint: Some(format!("--seconds is the simulated time at which the run ends: give one above {}", number(time))),
-    }
+    Failure::call(CallFault::NothingLeft { time: saved.time, end: seconds })
 }
 
 fn progress_bar(frames: u64) -> indicatif::ProgressBar {

@@ -9,7 +9,7 @@ use opruga::io::problem::{Around, shown, visible};
 use opruga::io::refusals::{in_scene, of_command};
 use opruga::io::{Files, Notice, SceneError, scene};
 use opruga::math::words::number;
-use opruga::{AnyWorld, Options, WorldError};
+use opruga::{AnyWorld, Options, Registries, WorldError, catalogue_of};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -26,6 +26,8 @@ pub(crate) struct Source {
     pub(crate) bytes: Vec<u8>,
     /// Where the files are that it names.
     pub(crate) files: Files,
+    /// The models and integrators that it can name.
+    pub(crate) registries: Registries,
 }
 
 /// A scene without errors.
@@ -43,12 +45,13 @@ impl Source {
     }
 
     /// Finds a scene: a file, or one that comes with the program.
-    pub(crate) fn find(name: &str) -> Result<Source, Failure> {
+    pub(crate) fn find(name: &str, registries: &Registries) -> Result<Source, Failure> {
+        let registries = registries.clone();
         let path = Path::new(name);
         let built_in = opruga::scenes::find(name).filter(|_| !path.is_file());
         if let Some(text) = built_in {
             let (file, files) = (format!("scene {name} (built in)"), opruga::scenes::files());
-            return Ok(Source { name: name.into(), file, path: None, bytes: text.into(), files });
+            return Ok(Source { name: name.into(), file, path: None, bytes: text.into(), files, registries });
         }
         let file = path.display().to_string();
         let bytes = scene::bytes_of(path, &scene::Limits::default()).map_err(|error| {
@@ -67,13 +70,18 @@ impl Source {
             return Err(Failure::Scene(vec![SceneError { file, ..error }]));
         }
         let name = path.file_stem().map_or("scene".into(), |s| s.to_string_lossy().into_owned());
-        Ok(Source { name, file, path: Some(path.to_path_buf()), bytes, files: Files::beside(path) })
+        Ok(Source { name, file, path: Some(path.to_path_buf()), bytes, files: Files::beside(path), registries })
+    }
+
+    /// Reads as much of the scene as can be read.
+    pub(crate) fn survey(&self, options: &scene::Options) -> scene::Reading {
+        scene::survey(&self.bytes, &self.file, &catalogue_of(&self.registries), options)
     }
 
     /// Reads the scene. All that is wrong with it comes at once: what the reader finds, and what a world of the rest would
     /// refuse.
     pub(crate) fn read(&self, options: &scene::Options, world: &Options) -> Result<Whole, Failure> {
-        match scene::survey(&self.bytes, &self.file, &opruga::catalogue(), options) {
+        match self.survey(options) {
             scene::Reading { blueprint: Some(blueprint), errors, notices, files, .. } if errors.is_empty() => {
                 Ok(Whole { blueprint, notices, files })
             }
@@ -82,7 +90,7 @@ impl Source {
     }
 
     fn refused(&self, reading: scene::Reading, options: &scene::Options, world: &Options) -> Failure {
-        let refusals = reading.blueprint.as_ref().map_or_else(Vec::new, |rest| rest.problems(world));
+        let refusals = reading.blueprint.as_ref().map_or_else(Vec::new, |rest| rest.problems(world, &self.registries));
         // Statics refuses bodies that nothing holds: where that may be missing by another error, it would be a false one.
         let known = reading.knows_what_holds();
         let refusals = refusals.iter().filter(|refusal| known || !refusal.code().starts_with("static."));
@@ -105,12 +113,13 @@ impl Source {
         options: &scene::Options,
         world: &Options,
     ) -> Result<Box<dyn AnyWorld>, Failure> {
-        let built = preparation::watched(&world.break_off, || blueprint.build(world.clone())).map_err(|first| {
+        let build = || blueprint.build_with(world.clone(), &self.registries);
+        let built = preparation::watched(&world.break_off, build).map_err(|first| {
             if first == (WorldError::BrokenOff {}) {
                 return Failure::Interrupted;
             }
             // The scene is read again rather than kept for the case that its world is refused.
-            let reading = scene::survey(&self.bytes, &self.file, &opruga::catalogue(), options);
+            let reading = self.survey(options);
             match self.refused(reading, options, world) {
                 Failure::Scene(all) if !all.is_empty() => Failure::Scene(all),
                 _ => Failure::Scene(vec![self.place(&first, options)]),

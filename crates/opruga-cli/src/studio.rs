@@ -1,8 +1,10 @@
 //! The window: a program of its own beside this one, so that whoever needs no window builds none.
 
 use crate::arguments::Run;
+use crate::errors::CallFault;
 use crate::failure::Failure;
 use crate::interrupt;
+use opruga::Registries;
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
@@ -16,11 +18,11 @@ const PATIENCE: Duration = Duration::from_secs(60);
 const NO_WINDOW: i32 = 5;
 
 /// What `opruga` without a command does: it opens the window where there is a screen, and runs without one otherwise.
-pub(crate) fn first() -> Result<u8, Failure> {
+pub(crate) fn first(registries: &Registries) -> Result<u8, Failure> {
     let headless = |why: &str| {
         eprintln!("{why}: running the scene `ball` without a window (`opruga --help` tells what else there is)");
         let out = Some(crate::run::fresh_folder("ball"));
-        crate::watch::run(&Run { out, ..Run::default_scene() })
+        crate::watch::run(&Run { out, ..Run::default_scene() }, registries)
     };
     if !has_screen(|name| std::env::var_os(name)) {
         return headless("there is no screen here");
@@ -28,7 +30,7 @@ pub(crate) fn first() -> Result<u8, Failure> {
     match start(None) {
         Ok(code) if i32::from(code) == NO_WINDOW => headless("no window could be opened"),
         Ok(code) => Ok(code),
-        Err(Failure::Call { message, .. }) => headless(&message),
+        Err(Failure::Call(fault)) => headless(&fault.to_string()),
         Err(other) => Err(other),
     }
 }
@@ -36,19 +38,17 @@ pub(crate) fn first() -> Result<u8, Failure> {
 /// `opruga studio [SCENE]`.
 pub(crate) fn studio(scene: Option<&str>) -> Result<u8, Failure> {
     if !has_screen(|name| std::env::var_os(name)) {
-        let hint = format!("`opruga run {}` runs without a window and writes pictures", scene.unwrap_or("ball"));
-        return Err(Failure::Call { message: "there is no screen here to open a window on".into(), hint: Some(hint) });
+        return Err(Failure::call(CallFault::NoScreen { scene: scene.unwrap_or("ball").into() }));
     }
     start(scene)
 }
 
 /// `opruga view FILE`. What is no recording is told before a window opens.
-pub(crate) fn view(path: &Path) -> Result<u8, Failure> {
-    let _ = crate::recordings::open(path)?;
+pub(crate) fn view(path: &Path, registries: &Registries) -> Result<u8, Failure> {
+    let _ = crate::recordings::open(path, registries)?;
     let shown = path.display().to_string();
     if !has_screen(|name| std::env::var_os(name)) {
-        let hint = format!("`opruga replay {}` writes its pictures", crate::source::argument(&shown));
-        return Err(Failure::Call { message: "there is no screen here to open a window on".into(), hint: Some(hint) });
+        return Err(Failure::call(CallFault::NoScreenForRecording { file: crate::source::argument(&shown) }));
     }
     start(Some(&shown))
 }
@@ -70,16 +70,11 @@ fn start(scene: Option<&str>) -> Result<u8, Failure> {
         }
         None => {
             let beside = std::env::current_exe().ok().map(|own| beside(&own)).filter(|path| path.is_file());
-            let beside = beside.ok_or_else(|| Failure::Call {
-                message: "the program `opruga-studio` does not lie beside this one".into(),
-                hint: Some("cargo install --path crates/opruga-studio".into()),
-            })?;
-            Command::new(beside)
+            Command::new(beside.ok_or_else(|| Failure::call(CallFault::NoStudio {}))?)
         }
     };
     command.args(scene);
-    let failed =
-        |e: std::io::Error| Failure::Call { message: format!("the studio cannot be started: {e}"), hint: None };
+    let failed = |e: std::io::Error| Failure::call(CallFault::StudioNotStarted { reason: e.to_string() });
     // Before it is started: a signal that comes at once is not lost.
     let stop = interrupt::asked_to_stop();
     interrupt::leave_the_word(true);

@@ -4,7 +4,7 @@ mod findings;
 
 use crate::arguments::Sweep as Call;
 use crate::bench::processor_time;
-use crate::errors::CallError;
+use crate::errors::{CallError, CallRange};
 use crate::failure::{Failure, print_data};
 use crate::interrupt;
 use crate::run::{default_folder, simd_from_environment};
@@ -17,7 +17,7 @@ use opruga::io::safe_write::WriteError;
 use opruga::math::words::counted;
 use opruga::sweep::errors::SweepError;
 use opruga::sweep::{Metric, Question, Row, Status, Sweep, head, line, plots, read_rows};
-use opruga::{Simd, sweep::Point};
+use opruga::{Registries, Simd, sweep::Point};
 use std::fs::{File, OpenOptions};
 use std::io::{IsTerminal as _, Write as _};
 use std::path::{Path, PathBuf};
@@ -29,13 +29,13 @@ const QUESTION: &str = "question.json";
 const TABLE: &str = "results.csv";
 
 /// Runs a sweep, or the rest of one.
-pub(crate) fn sweep(call: &Call) -> Result<u8, Failure> {
+pub(crate) fn sweep(call: &Call, registries: &Registries) -> Result<u8, Failure> {
     let simd = simd_from_environment()?;
     let (question, path) = match &call.resume {
         Some(path) => (asked(path)?.ok_or_else(|| no_sweep(path))?, path.clone()),
-        None => question_of(call)?,
+        None => question_of(call, registries)?,
     };
-    let sweep = question.sweep()?;
+    let sweep = question.sweep(registries)?;
     let points = sweep.points()?;
     let folder = folder_of(&question, &path, call.force)?;
     let known = known_rows(&folder, &sweep, &points)?;
@@ -107,7 +107,12 @@ fn said_of(sweep: &Sweep) -> Said {
         files: sweep.files.clone(),
         ..opruga::io::scene::Options::default()
     };
-    match opruga::io::scene::read(sweep.text.as_bytes(), &sweep.file, &opruga::catalogue(), &options) {
+    match opruga::io::scene::read(
+        sweep.text.as_bytes(),
+        &sweep.file,
+        &opruga::catalogue_of(&sweep.registries),
+        &options,
+    ) {
         Ok((blueprint, _)) => {
             let scene = blueprint.scene();
             let time = scene.time();
@@ -125,16 +130,15 @@ fn no_sweep(path: &Path) -> Failure {
 }
 
 /// The question of a call, with all that the scene names, and the folder for its answer.
-fn question_of(call: &Call) -> Result<(Question, PathBuf), Failure> {
+fn question_of(call: &Call, registries: &Registries) -> Result<(Question, PathBuf), Failure> {
     if let Some(seconds) = call.seconds.filter(|s| !(0.0..=1e9).contains(s)) {
-        return Err(Failure::range("--seconds", seconds, "0 to 1e9"));
+        return Err(Failure::range("--seconds", seconds, CallRange::Between { least: 0.0, most: 1e9 }));
     }
-    let source = Source::find(call.scene.as_deref().unwrap_or_default())?;
+    let source = Source::find(call.scene.as_deref().unwrap_or_default(), registries)?;
     let scene = String::from_utf8(source.bytes.clone()).map_err(|_| {
         // The reader says where.
         let nothing = opruga::io::scene::Options::default();
-        let refused = opruga::io::scene::read(&source.bytes, &source.file, &opruga::catalogue(), &nothing);
-        Failure::Scene(refused.err().unwrap_or_default())
+        Failure::Scene(source.survey(&nothing).errors)
     })?;
     // They belong to the question: a sweep goes on with the files that it began with.
     let options = opruga::io::scene::Options {
@@ -142,7 +146,7 @@ fn question_of(call: &Call) -> Result<(Question, PathBuf), Failure> {
         files: source.files.clone().allow_outside(call.allow_outside),
         ..opruga::io::scene::Options::default()
     };
-    let reading = opruga::io::scene::survey(&source.bytes, &source.file, &opruga::catalogue(), &options);
+    let reading = source.survey(&options);
     if !reading.unread.is_empty() {
         return Err(Failure::Scene(reading.errors));
     }

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::source::Source;
 use opruga::io::Files;
-use opruga::io::outputs_apart::Uses;
+use opruga::io::outputs_apart::{Use, Uses};
 use std::path::Path;
 
 /// The scene and the files that it names, as inputs.
@@ -11,18 +11,18 @@ pub(crate) fn of_scene<'n>(source: &Source, places: &Files, names: impl Iterator
     let mut uses = Uses::default();
     // The scene of a checkpoint or of a recording is inside.
     if let Some(path) = &source.path {
-        uses.input(format!("the scene {}", path.display()), path);
+        uses.input(Use::Scene { path: path.display().to_string() }, path);
     }
     for name in names {
         if let Some(path) = places.path_of(name) {
-            uses.input(format!("`{name}`, which the scene names"), &path);
+            uses.input(Use::NamedByScene { name: name.clone() }, &path);
         }
     }
     uses
 }
 
 /// A file that the call itself names, as an input.
-pub(crate) fn of_file(what: &str, path: &Path) -> Uses {
+pub(crate) fn of_file(what: Use, path: &Path) -> Uses {
     let mut uses = Uses::default();
     uses.input(what, path);
     uses

@@ -1,9 +1,11 @@
 //! `opruga verify`: the engine against closed forms and published numbers.
 
 use crate::arguments::Verify;
+use crate::errors::{CallFault, CallRange};
 use crate::failure::{Failure, print_data};
 use crate::interrupt;
 use crate::run::simd_from_environment;
+use opruga::Registries;
 use opruga::core::spec::nearest;
 use opruga::io::output_folder::{Existing, OutputFolder};
 use opruga::io::problem::visible;
@@ -15,16 +17,16 @@ use std::fmt::Write as _;
 use std::io::IsTerminal;
 
 /// Runs the cases; 1 where one fails.
-pub(crate) fn verify(call: &Verify) -> Result<u8, Failure> {
+pub(crate) fn verify(call: &Verify, registries: &Registries) -> Result<u8, Failure> {
     let cases = chosen(&call.filter)?;
     if !(0.5..=2.0).contains(&call.stiffer) {
-        return Err(Failure::range("--stiffer", call.stiffer, "0.5 to 2"));
+        return Err(Failure::range("--stiffer", call.stiffer, CallRange::Between { least: 0.5, most: 2.0 }));
     }
     if call.list {
         print_data(&if call.json { list_as_json(&cases) } else { list(&cases) })?;
         return Ok(0);
     }
-    let lab = Lab { simd: simd_from_environment()?, stiffer: call.stiffer };
+    let lab = Lab { simd: simd_from_environment()?, stiffer: call.stiffer, registries: registries.clone() };
     let stop = interrupt::asked_to_stop();
     // Whether the report can be written is known before the work.
     let existing = if call.force { Existing::Replace } else { Existing::Refuse };
@@ -73,11 +75,12 @@ fn chosen(words: &[String]) -> Result<Vec<&'static Case>, Failure> {
         if !opruga_verify::cases().any(of_word) {
             let families = Family::ALL.map(Family::name);
             let known = opruga_verify::cases().map(|case| case.name).chain(families);
-            let near = nearest(word, known).map(|name| format!("did you mean `{name}`? "));
-            return Err(Failure::Call {
-                message: format!("no case is called `{}`; families are {}", visible(word), families.join(", ")),
-                hint: Some(format!("{}`opruga verify --list` shows all cases", near.unwrap_or_default())),
-            });
+            let closest = nearest(word, known);
+            let (word, families) = (visible(word), families.join(", "));
+            return Err(Failure::call(match closest {
+                Some(closest) => CallFault::NoCaseNear { word, families, closest },
+                None => CallFault::NoCase { word, families },
+            }));
         }
     }
     let wanted = |case: &&Case| {

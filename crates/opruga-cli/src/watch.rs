@@ -1,9 +1,11 @@
 //! `--watch`: doing again what was asked for whenever the scene or a file that it names changes, until Ctrl-C.
 
 use crate::arguments::{Check, Run};
+use crate::errors::CallFault;
 use crate::failure::Failure;
 use crate::source::Source;
 use crate::{interrupt, reports};
+use opruga::Registries;
 use opruga::io::problem::visible;
 use opruga::io::scene;
 use opruga::math::words::counted;
@@ -18,14 +20,14 @@ const SETTLED: u32 = 2;
 const GONE: u32 = 5;
 
 /// Runs a scene, and again whenever it changes if that is asked for.
-pub(crate) fn run(call: &Run) -> Result<u8, Failure> {
+pub(crate) fn run(call: &Run, registries: &Registries) -> Result<u8, Failure> {
     if !call.watch {
-        return crate::run::run(call);
+        return crate::run::run(call, registries);
     }
     let mut call = call.clone();
     let scene = call.scene.clone().unwrap_or_else(|| "ball".into());
-    again_and_again(&scene, call.allow_outside, call.json, || {
-        let outcome = crate::run::run(&call);
+    again_and_again(&scene, registries, call.allow_outside, call.json, || {
+        let outcome = crate::run::run(&call, registries);
         // What stands in the folder from now on is ours, and may be replaced. A refusal leaves it somebody else's.
         if matches!(outcome, Ok(_) | Err(Failure::Run(_) | Failure::Interrupted)) {
             call.force = true;
@@ -35,17 +37,18 @@ pub(crate) fn run(call: &Run) -> Result<u8, Failure> {
 }
 
 /// Checks a scene, and again whenever it changes if that is asked for.
-pub(crate) fn check(call: &Check) -> Result<u8, Failure> {
+pub(crate) fn check(call: &Check, registries: &Registries) -> Result<u8, Failure> {
     if !call.watch {
-        return reports::check(call);
+        return reports::check(call, registries);
     }
-    again_and_again(&call.scene, call.allow_outside, call.json, || reports::check(call))
+    again_and_again(&call.scene, registries, call.allow_outside, call.json, || reports::check(call, registries))
 }
 
 /// Works now and after every change of the scene or of a file that it names; work that the change overtakes is stopped.
 /// Errors are told, and the next change is waited for.
 fn again_and_again(
     scene: &str,
+    registries: &Registries,
     outside: bool,
     json: bool,
     mut work: impl FnMut() -> Result<u8, Failure>,
@@ -53,17 +56,14 @@ fn again_and_again(
     let path = Path::new(scene);
     if !path.is_file() {
         // A file that is missing is told as ever.
-        Source::find(scene)?;
-        return Err(Failure::Call {
-            message: format!("`{}` comes with the program and never changes: --watch needs a file", visible(scene)),
-            hint: Some("`opruga new NAME` writes one".into()),
-        });
+        Source::find(scene, registries)?;
+        return Err(Failure::call(CallFault::NeverChanges { scene: visible(scene) }));
     }
     interrupt::asked_to_stop();
     loop {
         // What changes while the files are looked up is a change.
         let stamp = Stamp::of(path);
-        let (files, mut stamps) = named_files(scene, outside);
+        let (files, mut stamps) = named_files(scene, registries, outside);
         stamps[0] = stamp;
         let (outcome, changed) = std::thread::scope(|scope| {
             let watcher = scope.spawn(|| wait_for_change(&files, &stamps, json));
@@ -98,12 +98,12 @@ fn again_and_again(
 }
 
 /// The scene file and the files that it names, whether they are there or not, with their states.
-fn named_files(scene: &str, outside: bool) -> (Vec<PathBuf>, Vec<Option<Stamp>>) {
+fn named_files(scene: &str, registries: &Registries, outside: bool) -> (Vec<PathBuf>, Vec<Option<Stamp>>) {
     let mut files = vec![PathBuf::from(scene)];
-    if let Ok(source) = Source::find(scene) {
+    if let Ok(source) = Source::find(scene, registries) {
         let places = source.files.clone().allow_outside(outside);
         let options = scene::Options { lenient: true, files: places.clone(), ..scene::Options::default() };
-        let reading = scene::survey(&source.bytes, &source.file, &opruga::catalogue(), &options);
+        let reading = source.survey(&options);
         files.extend(reading.files.keys().chain(&reading.unread).filter_map(|name| places.path_of(name)));
     }
     let stamps = files.iter().map(|file| Stamp::of(file)).collect();

@@ -2,14 +2,14 @@
 //!
 //! The dimension shows in two fields alone: a spin and a rotation are a number in 2D and a vector along the axis in 3D.
 
-use opruga_core::spec::{Allowed, Condition, Default, Field, Spec};
+use opruga_core::spec::{Allowed, Condition, Default, Field, Role, Spec};
 
 const NO: Default = Default::Boolean(false);
 const ZERO: Default = Default::Number(0.0);
 
 /// Writes the specification of one kind for one dimension: its own fields, then those that every collider has.
 macro_rules! collider {
-    ($(#[$note:meta])* $name:ident, $kind:literal, $dimension:literal, $turn:expr, $summary:literal, $documentation:expr; $($own:expr),+ $(,)?) => {
+    ($(#[$note:meta])* $name:ident, $kind:literal, $dimension:literal, $turn:expr, $roles:expr, $summary:literal, $documentation:expr; $($own:expr),+ $(,)?) => {
         $(#[$note])*
         pub const $name: Spec = Spec {
             kind: $kind,
@@ -25,19 +25,19 @@ macro_rules! collider {
                 Field::new("motion", Allowed::Path, "s, m", Default::Absent, "Displacement over time, added to the placement; at rest before and after."),
                 Field::new("spin", $turn, "rad/s", Default::Absent, "Angular velocity about the pivot, from t = 0 on; in 3D a vector along the axis."),
                 Field::new("pivot", Allowed::Vector, "m", Default::Absent, "Where the axis of the spin passes; without it the centre of the shape.").applies(&[Condition::Given("spin")]),
-            ], roles: &[], };
+            ], roles: $roles, };
     };
 }
 
 /// Writes a specification for 2D and for 3D.
 macro_rules! both {
-    ($plane:ident, $space:ident, $kind:literal, $summary:literal, $documentation:expr; $($own:expr),+ $(,)?) => {
-        collider! { #[doc = concat!("The parameters of `", $kind, "` in 2D.")] $plane, $kind, 2, Allowed::ANY, $summary, $documentation; $($own),+ }
-        collider! { #[doc = concat!("The parameters of `", $kind, "` in 3D.")] $space, $kind, 3, Allowed::Vector, $summary, $documentation; $($own),+ }
+    ($plane:ident, $space:ident, $kind:literal, $roles:expr, $summary:literal, $documentation:expr; $($own:expr),+ $(,)?) => {
+        collider! { #[doc = concat!("The parameters of `", $kind, "` in 2D.")] $plane, $kind, 2, Allowed::ANY, $roles, $summary, $documentation; $($own),+ }
+        collider! { #[doc = concat!("The parameters of `", $kind, "` in 3D.")] $space, $kind, 3, Allowed::Vector, $roles, $summary, $documentation; $($own),+ }
     };
 }
 
-both! { HALF_SPACE_2D, HALF_SPACE_3D, "half_space",
+both! { HALF_SPACE_2D, HALF_SPACE_3D, "half_space", &[Role::HalfSpace],
     "everything behind a line (2D) or plane (3D): floor, wall, incline",
     "Solid where (x − point)·normal < 0. The normal may have any length above zero.";
     Field::new("point", Allowed::Vector, "m", Default::Origin, "A point of the surface."),
@@ -72,20 +72,20 @@ const INSIDE_BOX: Field =
 
 collider! {
     /// The parameters of `box` in 2D.
-    BOX_2D, "box", 2, Allowed::ANY, "a box, solid or as a container", BOX_TEXT;
+    BOX_2D, "box", 2, Allowed::ANY, &[], "a box, solid or as a container", BOX_TEXT;
     MIN, MAX, CENTER, SIZE,
     Field::new("rotation", Allowed::ANY, "rad", Default::Absent, "Angle by which the box is turned about its centre, counterclockwise."),
     INSIDE_BOX,
 }
 collider! {
     /// The parameters of `box` in 3D.
-    BOX_3D, "box", 3, Allowed::Vector, "a box, solid or as a container", BOX_TEXT;
+    BOX_3D, "box", 3, Allowed::Vector, &[], "a box, solid or as a container", BOX_TEXT;
     MIN, MAX, CENTER, SIZE,
     Field::new("rotation", Allowed::Vector, "rad", Default::Absent, "Rotation vector (axis times angle) by which the box is turned about its centre."),
     INSIDE_BOX,
 }
 
-both! { BALL_2D, BALL_3D, "ball",
+both! { BALL_2D, BALL_3D, "ball", &[],
     "a disc (2D) or ball (3D), solid or as a container",
     "Solid where |x − center| < radius, or outside of it (`inside = true`). A node exactly at the centre leaves along +y.";
     Field::new("center", Allowed::Vector, "m", Default::Origin, "The centre."),
@@ -93,7 +93,7 @@ both! { BALL_2D, BALL_3D, "ball",
     Field::new("inside", Allowed::Boolean, "", NO, "Whether bodies are kept inside instead of outside."),
 }
 
-both! { CAPSULE_2D, CAPSULE_3D, "capsule",
+both! { CAPSULE_2D, CAPSULE_3D, "capsule", &[],
     "all points nearer to a segment than a radius",
     "Solid where the distance to the segment a b is below the radius. A node exactly on the segment leaves at a right angle to it.";
     Field::new("a", Allowed::Vector, "m", Default::Required, "One end of the segment."),
@@ -101,7 +101,7 @@ both! { CAPSULE_2D, CAPSULE_3D, "capsule",
     Field::new("radius", Allowed::POSITIVE, "m", Default::Required, "The radius."),
 }
 
-both! { CONVEX_2D, CONVEX_3D, "convex",
+both! { CONVEX_2D, CONVEX_3D, "convex", &[],
     "the convex hull of points",
     "Solid inside of the hull of the points; points within the hull do not matter. A node inside leaves through the nearest face.";
     Field::new("points", Allowed::Points, "m", Default::Required, "Points whose hull has an area (2D) or a volume (3D)."),
@@ -113,13 +113,13 @@ normal (in 2D left of the direction in which the points run, in 3D by the right-
 
 collider! {
     /// The parameters of `polyline` (2D).
-    POLYLINE, "polyline", 2, Allowed::ANY, "a thin curve of straight segments, open or closed", THIN;
+    POLYLINE, "polyline", 2, Allowed::ANY, &[], "a thin curve of straight segments, open or closed", THIN;
     Field::new("points", Allowed::Points, "m", Default::Required, "Two or more points, each another than the one before."),
     Field::new("closed", Allowed::Boolean, "", NO, "Whether the last point is joined to the first; needs three points."),
 }
 collider! {
     /// The parameters of `triangle_mesh` (3D).
-    TRIANGLE_MESH, "triangle_mesh", 3, Allowed::Vector, "a thin surface of triangles, open or closed", THIN;
+    TRIANGLE_MESH, "triangle_mesh", 3, Allowed::Vector, &[], "a thin surface of triangles, open or closed", THIN;
     Field::new("points", Allowed::Points, "m", Default::Required, "The corners of the triangles."),
     Field::new("triangles", Allowed::Integers, "", Default::Required, "Three numbers of points per triangle, counted from 0."),
 }

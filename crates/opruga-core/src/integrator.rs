@@ -60,6 +60,10 @@ pub trait Integrator<const D: usize>: Send + Sync + Debug {
     fn measures_its_damping(&self) -> bool {
         false
     }
+    /// Whether no other rule leaves less energy unexplained where bodies meet obstacles.
+    fn makes_least_of_contact(&self) -> bool {
+        false
+    }
     /// Whether its steps spread the work on one system over [`System::threads`].
     fn shares_threads(&self) -> bool {
         false

@@ -171,6 +171,8 @@ pub struct Properties {
     /// Whether nodes push only one another: forces have no sum and no moment about any point, and turn with the body. The conformance suite
     /// checks the sums. None where a model does not say: then the integrators measure it in every step.
     pub acts_between_nodes: Option<bool>,
+    /// Whether the world judges by its energy if a body rests in another balance than that of its own shape.
+    pub judges_balance: bool,
 }
 
 impl Properties {
@@ -186,6 +188,7 @@ impl Properties {
             begins_tiles: false,
             forces_in_prepare: false,
             acts_between_nodes: None,
+            judges_balance: false,
         }
     }
 }

@@ -46,6 +46,10 @@ pub enum Role {
     WorldDrag,
     /// A model whose readings have the units of the published program: pixels instead of metres.
     Published,
+    /// An obstacle that fills all of space on one side of a plane. Its vector `normal` points out of it.
+    HalfSpace,
+    /// A shape that takes cells, and values of nodes, from a mesh file.
+    CellsFromFile,
     /// An integrator whose steps end where forces balance.
     Statics,
     /// The integrator that a program offers where a person has named none, or one without a stable step. It is explicit.

@@ -25,6 +25,7 @@ pub const MESSAGES: &[&[&[Variant]]] = &[
         recording::RecordingError::VARIANTS,
         write_faults::Doing::VARIANTS,
         write_faults::WriteFault::VARIANTS,
+        write_faults::Use::VARIANTS,
         scene::CostError::VARIANTS,
     ],
 ];

@@ -5,6 +5,7 @@
 
 use crate::aside::is_aside;
 use crate::safe_write::WriteError;
+pub use crate::write_faults::Use;
 use crate::write_faults::WriteFault;
 use std::fs;
 use std::path::{Component, Path, PathBuf};
@@ -20,8 +21,8 @@ pub struct Uses {
 
 /// A file of a call.
 struct Used {
-    /// What it is to the call, such as `the scene`.
-    what: String,
+    /// What it is to the call.
+    what: Use,
     named: PathBuf,
     file: Found,
 }
@@ -47,13 +48,14 @@ struct Found {
 
 impl Uses {
     /// Adds a file that the call reads.
-    pub fn input(&mut self, what: impl Into<String>, path: &Path) {
-        self.inputs.push(Used { what: what.into(), named: path.to_path_buf(), file: Found::of(path) });
+    pub fn input(&mut self, what: Use, path: &Path) {
+        self.inputs.push(Used { what, named: path.to_path_buf(), file: Found::of(path) });
     }
 
     /// Adds a file that the call will write, by what the call names it.
-    pub fn output(&mut self, what: impl Into<String>, path: &Path) {
-        self.outputs.push(Used { what: what.into(), named: path.to_path_buf(), file: Found::of(path) });
+    pub fn output(&mut self, option: &'static str, path: &Path) {
+        let what = Use::Option { option };
+        self.outputs.push(Used { what, named: path.to_path_buf(), file: Found::of(path) });
     }
 
     /// Adds a folder that the call will write into, and which names its files may have.
@@ -78,12 +80,12 @@ impl Uses {
         for folder in &self.folders {
             for input in &self.inputs {
                 if let Some(path) = folder.goal(&input.file) {
-                    return Err(replaces(&path, "a file of the output", &input.what));
+                    return Err(replaces(&path, &Use::OfOutput {}, &input.what));
                 }
             }
             for output in &self.outputs {
                 if let Some(path) = folder.goal(&output.file) {
-                    return Err(twice(&path, &output.what, "a file of the folder of the output"));
+                    return Err(twice(&path, &output.what, &Use::OfFolder {}));
                 }
             }
         }
@@ -91,12 +93,12 @@ impl Uses {
     }
 }
 
-fn replaces(path: &Path, output: &str, input: &str) -> WriteError {
-    WriteError::of(path, WriteFault::ReplacesInput { output: output.into(), input: input.into() })
+fn replaces(path: &Path, output: &Use, input: &Use) -> WriteError {
+    WriteError::of(path, WriteFault::ReplacesInput { output: output.clone(), input: input.clone() })
 }
 
-fn twice(path: &Path, one: &str, other: &str) -> WriteError {
-    WriteError::of(path, WriteFault::OneFile { one: one.into(), other: other.into() })
+fn twice(path: &Path, one: &Use, other: &Use) -> WriteError {
+    WriteError::of(path, WriteFault::OneFile { one: one.clone(), other: other.clone() })
 }
 
 impl Folder {
@@ -217,14 +219,14 @@ mod tests {
         }
         for name in names {
             let found = code(|uses| {
-                uses.input("the scene", &scene);
+                uses.input(Use::Input {}, &scene);
                 uses.output("--record", &name);
             });
             assert_eq!(found, "write.input", "{}", name.display());
         }
         for other in ["a/S2.toml", "s.toml", "a/b/s.toml"] {
             let found = code(|uses| {
-                uses.input("the scene", &scene);
+                uses.input(Use::Input {}, &scene);
                 uses.output("--record", &at.join(other));
             });
             assert_eq!(found, "", "{other}");
@@ -232,7 +234,7 @@ mod tests {
         // In a folder, by the names that are written into it.
         let into = |path: &Path| {
             code(|uses| {
-                uses.input("a file of the scene", &at.join("a/s.toml"));
+                uses.input(Use::Input {}, &at.join("a/s.toml"));
                 uses.folder(path, |name| name.ends_with(".toml"));
             })
         };

@@ -47,8 +47,30 @@ messages! {
         Unwritable { problem: AnyMessage },
         "write.input" #[error("{output} would replace {input}, which is an input of this call")]
         #[hint("choose another name; --force replaces outputs only, never an input")]
-        ReplacesInput { output: String, input: String },
+        ReplacesInput { output: Use, input: Use },
         "write.twice" #[error("{one} and {other} are one file: only the last would be left")] #[hint("choose another name for one of them")]
-        OneFile { one: String, other: String },
+        OneFile { one: Use, other: Use },
+    }
+    /// What a file is to a call.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum Use {
+        "part.use" #[error("the input")]
+        Input {},
+        "part.use" #[error("the scene {path}")]
+        Scene { path: String },
+        "part.use" #[error("`{name}`, which the scene names")]
+        NamedByScene { name: String },
+        "part.use" #[error("`{name}`, which the input names")]
+        NamedByInput { name: String },
+        "part.use" #[error("the recording")]
+        Recording {},
+        "part.use" #[error("the checkpoint of --resume")]
+        Checkpoint {},
+        "part.use" #[error("{option}")]
+        Option { option: &'static str },
+        "part.use" #[error("a file of the output")]
+        OfOutput {},
+        "part.use" #[error("a file of the folder of the output")]
+        OfFolder {},
     }
 }

@@ -91,12 +91,14 @@ impl Studio {
         crate::theme::apply(context);
         context.add_plugin(crate::taps::Taps::default());
         let waker = context.clone();
+        let registries = session.registries().clone();
+        let properties = Properties::new(opruga::catalogue_of(&registries));
         let link = Link::start(session, move || waker.request_repaint())?;
         Ok(Studio {
             link,
             canvas: Canvas::default(),
-            properties: Properties::default(),
-            gallery: Gallery::default(),
+            properties,
+            gallery: Gallery::new(registries),
             keeping: Keeping::default(),
             hand: Default::default(),
             landing: Vec::new(),

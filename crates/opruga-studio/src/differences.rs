@@ -3,6 +3,7 @@
 use crate::document::read;
 use crate::document::{Document, kind_table, toml};
 use crate::said::Said;
+use opruga::Registries;
 use opruga::blueprint::AnyBlueprint;
 use opruga::core::spec::{Value, Values};
 use opruga::io::Files;
@@ -66,7 +67,12 @@ impl Twins {
 ///
 /// # Errors
 /// [`Said`] where a difference has no place in the scene, or all that is wrong with a shape.
-pub fn right_of(document: &Document, differences: &[Difference], files: &Files) -> Result<(Document, Twins), Said> {
+pub fn right_of(
+    document: &Document,
+    differences: &[Difference],
+    files: &Files,
+    registries: &Registries,
+) -> Result<(Document, Twins), Said> {
     let mut right = document.clone();
     for difference in differences {
         if !write(&mut right, difference) {
@@ -84,8 +90,9 @@ pub fn right_of(document: &Document, differences: &[Difference], files: &Files) 
     if reshaped.is_empty() {
         return Ok((right, twins));
     }
-    let rest =
-        |document: &Document| read(&document.without_nodes(), files).map(|(blueprint, _)| rest_positions(&blueprint));
+    let rest = |document: &Document| {
+        read(&document.without_nodes(), files, registries).map(|(blueprint, _)| rest_positions(&blueprint))
+    };
     let (here, there) = (rest(document)?, rest(&right)?);
     for (number, (name, left)) in here.iter().enumerate() {
         let Some((_, other)) = there.get(number).filter(|_| reshaped.contains(name.as_str())) else { continue };

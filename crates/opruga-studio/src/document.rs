@@ -5,11 +5,11 @@ mod overrides;
 mod taken_over;
 
 use crate::said::Said;
-use opruga::Warning;
 use opruga::blueprint::AnyBlueprint;
 use opruga::core::spec::{Value, Values};
 pub use opruga::io::scene::written::{add_table, command_table, kind_table, numbers, toml};
 use opruga::io::{Files, Notice, SceneError, scene};
+use opruga::{Registries, Warning, catalogue_of};
 use toml_edit::{Array, ArrayOfTables, DocumentMut, InlineTable, Item, Table, Value as Toml};
 
 /// A scene's text with its comments, and where it came from.
@@ -20,14 +20,19 @@ pub struct Document {
     text: DocumentMut,
 }
 
-/// Reads the text of a document; what is odd about it and its files is counted, but for what it asks for itself.
+/// Reads the text of a document, which names models and integrators of these registries; what is odd about it and its files is counted,
+/// but for what it asks for itself.
 ///
 /// # Errors
 /// Everything that is wrong with it.
-pub fn read(document: &Document, files: &Files) -> Result<(AnyBlueprint, Vec<Warning>), Vec<SceneError>> {
+pub fn read(
+    document: &Document,
+    files: &Files,
+    registries: &Registries,
+) -> Result<(AnyBlueprint, Vec<Warning>), Vec<SceneError>> {
     let reading = scene::Options { files: files.clone(), ..scene::Options::default() };
     let file = format!("{}.toml", document.name);
-    let read = scene::read(document.text().as_bytes(), &file, &opruga::catalogue(), &reading);
+    let read = scene::read(document.text().as_bytes(), &file, &catalogue_of(registries), &reading);
     // The text has changed since anybody has seen it.
     let (blueprint, notices) = read.map_err(|errors| without_lines(errors, &document.name, ""))?;
     // Time goes on behind the end that the scene states for a run: every command comes about here.
@@ -59,10 +64,16 @@ impl Document {
     ///
     /// # Errors
     /// Everything that is wrong with it.
-    pub fn unread(name: &str, text: &str, files: &Files, around: Option<&str>) -> Result<Document, Said> {
+    pub fn unread(
+        name: &str,
+        text: &str,
+        files: &Files,
+        registries: &Registries,
+        around: Option<&str>,
+    ) -> Result<Document, Said> {
         // The reader of scenes knows more of what can be wrong than the parser of documents.
         let reading = scene::Options { files: files.clone(), ..scene::Options::default() };
-        let read = scene::read(text.as_bytes(), &format!("{name}.toml"), &opruga::catalogue(), &reading);
+        let read = scene::read(text.as_bytes(), &format!("{name}.toml"), &catalogue_of(registries), &reading);
         read.map_err(|errors| match around {
             Some(file) => without_lines(errors, name, file),
             None => errors,

@@ -3,7 +3,7 @@
 use crate::said::Said;
 use crate::session::Request;
 use crate::shape_file::Shape;
-use opruga::io::{Files, scene};
+use opruga::io::{Files, scene, shapes};
 use std::path::Path;
 
 /// Endings of files that become bodies, with the fields of their shape.
@@ -47,18 +47,18 @@ pub(crate) fn request(
     if file.contains(['"', '\\']) {
         return Err(Said::NameOfFile(file.into()));
     }
-    let (text, space) = (around(file, fields, *space, &ending), *space);
+    let (text, space) = (around(file, fields, *space), *space);
     Ok(Request::Take(Shape { name, file: file.into(), text, space, files: files() }, [0.0; 3], 1.0))
 }
 
 /// A scene with one shape over a floor.
-fn around(file: &str, fields: &str, space: bool, ending: &str) -> String {
+fn around(file: &str, fields: &str, space: bool) -> String {
     let (dimension, gravity, up, normal) = if space {
         (3, "[0.0, -9.81, 0.0]", "[0.0, 1.2, 0.0]", "[0.0, 1.0, 0.0]")
     } else {
         (2, "[0.0, -9.81]", "[0.0, 1.2]", "[0.0, 1.0]")
     };
-    let kind = if ending == "svg" { "svg" } else { "surface" };
+    let kind = shapes::kind_of_file(file).unwrap_or_default();
     let models = if space {
         "{ kind = \"mass_spring\", modulus = 300.0, damping = 0.02 }, { kind = \"pressure\", nRT = 20.0, ambient = 40.0 }"
     } else {

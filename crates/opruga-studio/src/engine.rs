@@ -6,12 +6,13 @@ mod exploded;
 use crate::document::{FOR_EVER, command_table};
 use crate::exploded::Exploded;
 use crate::samples::Sample;
+use crate::setting::Setting;
 use crate::shown::{BodyShown, EnergyShown, Extent, ObstacleShown, Show, Shown};
 use opruga::blueprint::{Action, AnyBlueprint, CommandBlueprint, Selector};
 use opruga::core::spec::{Value, Values};
 use opruga::pictures::Scenery;
 use opruga::world::PathFault;
-use opruga::{AnyBody, AnyWorld, Options, Warning, WorldError};
+use opruga::{AnyBody, AnyWorld, Warning, WorldError};
 use toml_edit::Table;
 
 /// A command that was given: its number in the world, and how the scene file writes it.
@@ -136,8 +137,8 @@ struct Living {
 ///
 /// # Errors
 /// What the world refuses.
-pub fn build(blueprint: AnyBlueprint, odd: Vec<Warning>, options: &Options) -> Result<Box<dyn Engine>, WorldError> {
-    let world = blueprint.build(options.clone())?;
+pub fn build(blueprint: AnyBlueprint, odd: Vec<Warning>, setting: &Setting) -> Result<Box<dyn Engine>, WorldError> {
+    let world = blueprint.build_with(setting.options.clone(), &setting.registries)?;
     let (scenery, known) = (Scenery::new(&*world), world.scene().body_count());
     let size = exploded::size_of(&*world);
     Ok(Box::new(Living { world, scenery, known, odd, size }))

@@ -3,13 +3,14 @@
 
 use crate::said::Said;
 use opruga::io::{Files, scene};
+use opruga::{Registries, catalogue_of};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// The files that a scene names, by those names.
-pub fn named_files(name: &str, text: &str, files: &Files) -> BTreeMap<String, Arc<[u8]>> {
+pub fn named_files(name: &str, text: &str, files: &Files, registries: &Registries) -> BTreeMap<String, Arc<[u8]>> {
     let options = scene::Options { files: files.clone(), ..scene::Options::default() };
-    scene::survey(text.as_bytes(), &format!("{name}.toml"), &opruga::catalogue(), &options).files
+    scene::survey(text.as_bytes(), &format!("{name}.toml"), &catalogue_of(registries), &options).files
 }
 
 #[cfg(target_arch = "wasm32")]
@@ -68,8 +69,14 @@ mod window {
         ///
         /// # Errors
         /// What the system refuses: then nothing is left of it.
-        pub fn scene(&self, name: &str, text: &str, files: &Files) -> Result<Vec<PathBuf>, Said> {
-            let named = named_files(name, text, files);
+        pub fn scene(
+            &self,
+            name: &str,
+            text: &str,
+            files: &Files,
+            registries: &Registries,
+        ) -> Result<Vec<PathBuf>, Said> {
+            let named = named_files(name, text, files, registries);
             if named.is_empty() {
                 return self.file(name, "toml", text.as_bytes()).map(|path| vec![path]);
             }
@@ -115,8 +122,13 @@ mod window {
     ///
     /// # Errors
     /// What the system refuses.
-    pub fn scene_with_files(name: &str, text: &str, files: &Files) -> Result<Vec<String>, Said> {
-        let written = Folder::default().scene(name, text, files)?;
+    pub fn scene_with_files(
+        name: &str,
+        text: &str,
+        files: &Files,
+        registries: &Registries,
+    ) -> Result<Vec<String>, Said> {
+        let written = Folder::default().scene(name, text, files, registries)?;
         Ok(written.iter().map(|path| path.display().to_string()).collect())
     }
 }
@@ -132,9 +144,14 @@ mod page {
     }
 
     /// A scene and the files that it names, each as a download. A browser puts them all into one folder: there the scene names them.
-    pub(crate) fn scene_with_files(name: &str, text: &str, files: &Files) -> Result<Vec<String>, Said> {
+    pub(crate) fn scene_with_files(
+        name: &str,
+        text: &str,
+        files: &Files,
+        registries: &Registries,
+    ) -> Result<Vec<String>, Said> {
         let (mut text, mut written) = (text.to_string(), vec![format!("{name}.toml")]);
-        for (named, bytes) in named_files(name, &text, files) {
+        for (named, bytes) in named_files(name, &text, files, registries) {
             let last = named.rsplit('/').next().unwrap_or(&named).to_string();
             text = text.replace(&format!("\"{named}\""), &format!("\"{last}\""));
             crate::browser::download(&last, &bytes)?;

@@ -28,6 +28,7 @@ pub mod preferences;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod rescue;
 pub mod runner;
+pub mod setting;
 pub mod shape_file;
 pub mod share;
 mod taps;

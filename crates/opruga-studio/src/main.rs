@@ -1,13 +1,14 @@
 //! The program `opruga-studio [SCENE]`: the window of Opruga.
 
-use opruga::Options;
 use opruga::io::problem::visible;
+use opruga::{Options, Registries};
 use opruga_studio::app::{FIRST_SCENE, Studio};
 use opruga_studio::measure::{self, Measured};
 use opruga_studio::preferences::{Store, folders};
 use opruga_studio::rescue::{self, Rescue};
 use opruga_studio::said::Said;
 use opruga_studio::session::Request;
+use opruga_studio::setting::Setting;
 use opruga_studio::shown::Severity;
 use opruga_studio::{wanted, watch};
 use std::ffi::OsString;
@@ -51,9 +52,10 @@ fn main() -> ExitCode {
         eprintln!("error[studio.call]: {} scenes are named; allowed: at most one\n\n{USAGE}", arguments.len());
         return ExitCode::from(2);
     }
+    let setting = Setting { options: options(), registries: Registries::default() };
     let kept = std::env::var_os(watch::KEPT);
     if kept.is_none() && measured.is_none() {
-        return watch::run(&std::env::args_os().skip(1).collect::<Vec<_>>());
+        return watch::run(&std::env::args_os().skip(1).collect::<Vec<_>>(), &setting.registries);
     }
     if kept.is_some() {
         watch::end_with_the_watch();
@@ -61,8 +63,8 @@ fn main() -> ExitCode {
     let kept = kept.filter(|path| !path.is_empty()).map(PathBuf::from);
     let wanted = arguments.pop().unwrap_or_else(|| FIRST_SCENE.into());
     let opened = match kept.as_ref().filter(|kept| kept.exists()).map(|kept| rescue::read(kept)) {
-        Some(shared) => shared.and_then(|shared| rescue::resume(&shared, options())).map_err(|said| said.to_string()),
-        None => wanted::open(&wanted, options()),
+        Some(shared) => shared.and_then(|shared| rescue::resume(&shared, setting)).map_err(|said| said.to_string()),
+        None => wanted::open(&wanted, setting),
     };
     let lost = std::env::var(watch::SAVED).ok();
     let session = match opened {

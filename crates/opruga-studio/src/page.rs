@@ -8,6 +8,7 @@ use crate::preferences::Store;
 use crate::runner::Copied;
 use crate::said::Said;
 use crate::session::{self, Request, Session};
+use crate::setting::Setting;
 use crate::share;
 use crate::{browser, shown::Severity};
 use eframe::{Renderer, WebOptions, WebRunner};
@@ -297,11 +298,13 @@ pub fn hash_after(scene_or_text: &str, frames: u32) -> Result<String, String> {
     let text = opruga::scenes::find(scene_or_text).unwrap_or(scene_or_text);
     let document = Document::new("scene", text)?;
     let options = scene::Options { files: opruga::scenes::files(), ..scene::Options::default() };
-    let read = scene::read(document.text().as_bytes(), "scene.toml", &opruga::catalogue(), &options);
+    let setting = Setting::default();
+    let read =
+        scene::read(document.text().as_bytes(), "scene.toml", &opruga::catalogue_of(&setting.registries), &options);
     let together = |errors: Vec<_>| errors.iter().map(ToString::to_string).collect::<Vec<String>>().join("\n");
     let (blueprint, _) = read.map_err(together)?;
     let refused = |error: WorldError| error.to_string();
-    let mut engine = engine::build(blueprint, Vec::new(), &Options::default()).map_err(refused)?;
+    let mut engine = engine::build(blueprint, Vec::new(), &setting).map_err(refused)?;
     for _ in 0..frames {
         engine.frame().map_err(refused)?;
     }

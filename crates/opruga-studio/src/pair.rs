@@ -6,12 +6,13 @@ use crate::engine::{self, Common, Engine, Given};
 use crate::exploded::Exploded;
 use crate::said::Said;
 use crate::samples::Sample;
+use crate::setting::Setting;
 use crate::shown::{Beside, Show, Shown};
 use opruga::blueprint::AnyBlueprint;
 use opruga::core::spec::{Value, Values};
 use opruga::io::Files;
 use opruga::world::SnapshotFault;
-use opruga::{Options, Warning, WorldError};
+use opruga::{Warning, WorldError};
 use std::sync::Arc;
 
 /// Builds the engine of a scene; with differences, also the one on its right.
@@ -22,15 +23,15 @@ pub fn build(
     document: &Document,
     differences: Option<&[Difference]>,
     files: &Files,
-    options: &Options,
+    setting: &Setting,
 ) -> Result<Box<dyn Engine>, Said> {
     let one = |document: &Document| {
-        let (blueprint, odd) = read(document, files).map_err(Said::Scene)?;
-        engine::build(blueprint, odd, options).map_err(Said::World)
+        let (blueprint, odd) = read(document, files, &setting.registries).map_err(Said::Scene)?;
+        engine::build(blueprint, odd, setting).map_err(Said::World)
     };
     let left = one(document)?;
     let Some(differences) = differences else { return Ok(left) };
-    let (scene, twins) = right_of(document, differences, files)?;
+    let (scene, twins) = right_of(document, differences, files, &setting.registries)?;
     let right = one(&scene)?;
     let differences = differences.to_vec();
     Ok(Box::new(Pair { left, right, differences, twins, stopped: None, reasons: Vec::new(), behind: false }))

@@ -5,9 +5,9 @@ use crate::handing::named_files;
 use crate::runner::{Copied, Link};
 use crate::said::Said;
 use crate::session::Session;
+use crate::setting::Setting;
 use crate::share::{self, Shared};
 use crate::work;
-use opruga::Options;
 use opruga::io::{Files, safe_write::safe_write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -60,7 +60,7 @@ impl Rescue {
         self.kept = (copied.text.as_str().into(), edited);
         let known = self.files.take().filter(|(name, files, _)| *name == copied.name && *files == copied.files);
         let files = known.unwrap_or_else(|| {
-            let held = Files::held(named_files(&copied.name, &copied.text, &copied.files));
+            let held = Files::held(named_files(&copied.name, &copied.text, &copied.files, &copied.registries));
             (copied.name.clone(), copied.files.clone(), held)
         });
         let shared = Shared { name: copied.name, text: copied.text, files: files.2.clone() };
@@ -101,8 +101,8 @@ pub fn read(path: &Path) -> Result<Shared, Said> {
 ///
 /// # Errors
 /// Why it cannot be opened.
-pub fn resume(shared: &Shared, options: Options) -> Result<Session, Said> {
-    let mut session = Session::open(&shared.name, &shared.text, shared.files.clone(), options)?;
+pub fn resume(shared: &Shared, setting: impl Into<Setting>) -> Result<Session, Said> {
+    let mut session = Session::open(&shared.name, &shared.text, shared.files.clone(), setting)?;
     session.go_to_the_end();
     Ok(session)
 }

@@ -13,6 +13,7 @@ pub use threaded::Link;
 use crate::differences::Difference;
 use crate::session::{Request, Session};
 use crate::shown::Shown;
+use opruga::Registries;
 use opruga::io::Files;
 use std::sync::mpsc::Sender;
 use std::time::Duration;
@@ -27,6 +28,8 @@ pub struct Copied {
     pub text: String,
     /// Where the files are that it names.
     pub files: Files,
+    /// The models and integrators that it can name.
+    pub registries: Registries,
     /// In what the scene on the right differs, where there is one.
     pub differences: Option<Vec<Difference>>,
     /// Frames up to the last one of this course of things.
@@ -44,6 +47,7 @@ impl Copied {
             name: session.name().to_string(),
             text: session.saved(),
             files: session.files().clone(),
+            registries: session.registries().clone(),
             differences: session.differences().map(<[_]>::to_vec),
             frames: session.latest(),
             mark: session.mark(),

@@ -152,7 +152,7 @@ pub enum Offer {
     /// Go back a second and take half the step.
     HalveStep,
     /// Go back a second and take an integrator that has a stable step, for the body of this number or for the scene.
-    Steady(Option<usize>),
+    Steady(Option<usize>, &'static str),
     /// Take so many substeps and try again what was refused.
     Substeps(u32),
     /// Give a field of the shape of a body this value instead of the one that was refused, with as many substeps as that needs.

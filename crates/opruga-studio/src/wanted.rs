@@ -2,7 +2,7 @@
 
 use crate::dropping;
 use crate::session::{Request, Session};
-use opruga::Options;
+use crate::setting::Setting;
 use opruga::core::spec::all_near;
 use opruga::io::problem::visible;
 use opruga::io::recording::{MAGIC, Recording};
@@ -13,10 +13,10 @@ use std::path::Path;
 ///
 /// # Errors
 /// Everything that is wrong with it, as one text; where there is nothing of this name, what else could be meant.
-pub fn open(wanted: &str, options: Options) -> Result<Session, String> {
-    let path = Path::new(wanted);
+pub fn open(wanted: &str, setting: impl Into<Setting>) -> Result<Session, String> {
+    let (path, setting) = (Path::new(wanted), setting.into());
     if let Some(text) = opruga::scenes::find(wanted).filter(|_| !path.is_file()) {
-        return Session::open(wanted, text, opruga::scenes::files(), options).map_err(|said| said.to_string());
+        return Session::open(wanted, text, opruga::scenes::files(), setting).map_err(|said| said.to_string());
     }
     if !path.exists() {
         return Err(missing(wanted));
@@ -25,18 +25,18 @@ pub fn open(wanted: &str, options: Options) -> Result<Session, String> {
         let refused = |error: String| format!("{wanted}: {error}");
         let file = std::fs::File::open(path).map_err(|error| refused(error.to_string()))?;
         let recording = Recording::open(std::io::BufReader::new(file)).map_err(|error| refused(error.to_string()))?;
-        return Session::view(recording, options).map_err(refused);
+        return Session::view(recording, setting).map_err(refused);
     }
     if path.is_file() && shapes::kind_of_file(wanted).is_some() {
         let taken = dropping::take(path).map_err(|said| said.to_string())?;
         if let Request::Take(shape, ..) = taken {
-            return Session::around(&shape, &options).map_err(|said| said.to_string());
+            return Session::around(&shape, &setting).map_err(|said| said.to_string());
         }
     }
     let bytes = scene::bytes_of(path, &scene::Limits::default()).map_err(|error| format!("{wanted}: {error}"))?;
     let text = String::from_utf8(bytes).map_err(|_| format!("{wanted} is no text in UTF-8"))?;
     let name = path.file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy().into_owned());
-    Session::open(&name, &text, Files::beside(path), options).map_err(|said| said.to_string())
+    Session::open(&name, &text, Files::beside(path), setting).map_err(|said| said.to_string())
 }
 
 /// Whether a file begins as recordings do.
@@ -79,7 +79,7 @@ mod tests {
 
     #[test]
     fn a_name_that_is_nearly_that_of_a_scene_is_suggested_and_all_of_them_are_named_where_none_is_near() {
-        let refused = |wanted: &str| open(wanted, Options::default()).expect_err("there is none").to_string();
+        let refused = |wanted: &str| open(wanted, Setting::default()).expect_err("there is none").to_string();
         assert!(refused("presures").ends_with("did you mean `pressures`?"), "{}", refused("presures"));
         assert!(refused("nosuchthingatall").contains("thousand-balls"), "{}", refused("nosuchthingatall"));
     }
@@ -95,10 +95,10 @@ mod tests {
         };
         let svg =
             b"<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 10 10\"><path d=\"M0 0 H10 V10 H0 Z\"/></svg>";
-        let mut session = open(&put("square.svg", svg), Options::default()).expect("it opens");
+        let mut session = open(&put("square.svg", svg), Setting::default()).expect("it opens");
         assert_eq!(session.shown().bodies.len(), 1);
         assert_eq!(session.name(), "square");
-        let said = open(&put("star.svg", b"<svg"), Options::default()).expect_err("it is cut off");
+        let said = open(&put("star.svg", b"<svg"), Setting::default()).expect_err("it is cut off");
         assert!(said.starts_with("star.svg:1:1: error[svg.syntax]") && !said.contains("star.toml"), "{said}");
         std::fs::remove_dir_all(&folder).expect("the folder goes");
     }

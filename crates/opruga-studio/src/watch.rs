@@ -4,6 +4,7 @@
 
 use crate::handing::Folder;
 use crate::rescue;
+use opruga::Registries;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitCode, ExitStatus, Stdio};
@@ -46,7 +47,7 @@ enum Next {
 }
 
 /// Watches over windows on what the arguments name.
-pub fn run(arguments: &[OsString]) -> ExitCode {
+pub fn run(arguments: &[OsString], registries: &Registries) -> ExitCode {
     let Ok(kept) = Kept::new() else {
         // A window that nobody watches over is better than none.
         return window(arguments, None, None).map_or(ExitCode::from(NO_WINDOW), |status| code(status.code()));
@@ -70,7 +71,7 @@ pub fn run(arguments: &[OsString]) -> ExitCode {
         if END.load(Ordering::SeqCst) {
             eprintln!("the studio was asked to end");
             if rescue::mark_of(&kept.file()).exists() {
-                hint(saved_and_told(&kept.file()).as_deref());
+                hint(saved_and_told(&kept.file(), registries).as_deref());
             } else {
                 eprintln!("  = nothing was done that is not saved");
             }
@@ -86,7 +87,7 @@ pub fn run(arguments: &[OsString]) -> ExitCode {
         let why = signal(&status)
             .map_or_else(|| format!("exit code {}", status.code().unwrap_or(-1)), |number| format!("signal {number}"));
         eprintln!("error[studio.lost]: the window was lost ({why})");
-        saved = saved_and_told(&kept.file());
+        saved = saved_and_told(&kept.file(), registries);
         lost.retain(|at| at.elapsed() < WITHIN);
         lost.push(Instant::now());
         if next == Next::Ended || lost.len() >= MOST_LOST {
@@ -98,8 +99,8 @@ pub fn run(arguments: &[OsString]) -> ExitCode {
 }
 
 /// Saves what was kept, and says where.
-fn saved_and_told(kept: &Path) -> Option<String> {
-    let saved = save(kept);
+fn saved_and_told(kept: &Path, registries: &Registries) -> Option<String> {
+    let saved = save(kept, registries);
     match &saved {
         Some(path) => eprintln!("  = what was done is saved: {path}"),
         None => eprintln!("  = nothing was kept of it"),
@@ -171,12 +172,12 @@ fn wait(mut child: Child, end: &AtomicBool) -> std::io::Result<ExitStatus> {
 }
 
 /// Saves what was kept among the files of the studio, or where that is refused, leaves it beside; where it is.
-fn save(kept: &Path) -> Option<String> {
+fn save(kept: &Path, registries: &Registries) -> Option<String> {
     let shared = rescue::read(kept).ok()?;
     let beside = kept.parent().map(Folder::at);
     let written = Folder::default()
-        .scene(&shared.name, &shared.text, &shared.files)
-        .or_else(|_| beside.unwrap_or_default().scene(&shared.name, &shared.text, &shared.files));
+        .scene(&shared.name, &shared.text, &shared.files, registries)
+        .or_else(|_| beside.unwrap_or_default().scene(&shared.name, &shared.text, &shared.files, registries));
     written.ok()?.first().map(|path| path.display().to_string())
 }
 

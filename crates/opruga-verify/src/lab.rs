@@ -4,25 +4,27 @@ use opruga::blueprint::{AnyBlueprint, Blueprint};
 use opruga::core::spec::{Role, Value};
 use opruga::io::{Files, scene};
 use opruga::mesh::Mesh;
-use opruga::{Options, Simd, World};
+use opruga::{Options, Registries, Registry, Simd, World, catalogue_of};
 use std::sync::Arc;
 
 /// Why a case has no numbers.
 pub type Trouble = Box<dyn std::error::Error + Send + Sync>;
 
 /// Where scenes are run.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Lab {
     /// Vector instructions; none: the best that the processor has.
     pub simd: Option<Simd>,
     /// A factor on the shear modulus of every solid and on the stiffness of every spring and hinge: 1. Another factor shows
     /// which cases would notice an error of that size.
     pub stiffer: f64,
+    /// The models and integrators that scenes can name.
+    pub registries: Registries,
 }
 
 impl Default for Lab {
     fn default() -> Lab {
-        Lab { simd: None, stiffer: 1.0 }
+        Lab { simd: None, stiffer: 1.0, registries: Registries::default() }
     }
 }
 
@@ -94,27 +96,35 @@ pub(crate) fn moved_pins<const D: usize>(moves: impl IntoIterator<Item = (u32, [
 impl Lab {
     fn read(&self, scene: Scene) -> Result<AnyBlueprint, Trouble> {
         let options = scene::Options { files: Files::held(scene.files), ..scene::Options::default() };
-        match scene::read(scene.text.as_bytes(), "case.toml", &opruga::catalogue(), &options) {
+        match scene::read(scene.text.as_bytes(), "case.toml", &catalogue_of(&self.registries), &options) {
             Ok((blueprint, _)) => Ok(blueprint),
             Err(errors) => Err(errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n").into()),
         }
     }
 
-    fn build<const D: usize>(&self, mut blueprint: Blueprint<D>) -> Result<World<D>, Trouble> {
+    fn build<const D: usize>(
+        &self,
+        mut blueprint: Blueprint<D>,
+        registry: &Arc<Registry<D>>,
+    ) -> Result<World<D>, Trouble> {
         if self.stiffer != 1.0 {
             stiffen(&mut blueprint, self.stiffer)?;
         }
-        Ok(World::new(blueprint, Options { simd: self.simd, allow_unstable: true, ..Options::default() })?)
+        let options = Options { simd: self.simd, allow_unstable: true, ..Options::default() };
+        Ok(World::with_registry(blueprint, options, Arc::clone(registry))?)
     }
 
     /// A world in the plane.
     pub(crate) fn plane(&self, scene: Scene) -> Result<World<2>, Trouble> {
-        self.build(Blueprint::try_from(self.read(scene)?).map_err(|_| "the scene is in space")?)
+        self.build(Blueprint::try_from(self.read(scene)?).map_err(|_| "the scene is in space")?, &self.registries.plane)
     }
 
     /// A world in space.
     pub(crate) fn space(&self, scene: Scene) -> Result<World<3>, Trouble> {
-        self.build(Blueprint::try_from(self.read(scene)?).map_err(|_| "the scene is in the plane")?)
+        self.build(
+            Blueprint::try_from(self.read(scene)?).map_err(|_| "the scene is in the plane")?,
+            &self.registries.space,
+        )
     }
 }
 

@@ -21,14 +21,14 @@ pub fn run_all(cases: &[&'static Case], lab: &Lab, threads: usize, stop: &Atomic
     // What takes long begins first.
     let mut order: Vec<(usize, &'static Case)> = cases.iter().copied().enumerate().collect();
     order.sort_by_key(|(_, case)| case.quick);
-    let (order, next, lab) = (Arc::new(order), Arc::new(AtomicUsize::new(0)), *lab);
+    let (order, next, lab) = (Arc::new(order), Arc::new(AtomicUsize::new(0)), lab.clone());
     let (sender, receiver) = channel();
     if stop.load(Ordering::Relaxed) {
         return Vec::new();
     }
     let mut workers = Vec::new();
     for _ in 0..threads.clamp(1, cases.len().max(1)) {
-        let (order, next, sender) = (order.clone(), next.clone(), sender.clone());
+        let (order, next, lab, sender) = (order.clone(), next.clone(), lab.clone(), sender.clone());
         workers.push(thread::spawn(move || {
             while let Some((number, case)) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
                 if sender.send((*number, case.run(&lab))).is_err() {

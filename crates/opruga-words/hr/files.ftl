@@ -132,3 +132,81 @@ scene-unknown_field-NoFieldOfLaw = `{ $law }` nema polja `{ $field }`
 scene-unknown_field-NoFields = `{ $law }` nema polja `{ $field }`
     .allowed = nijedno: E i ν su sve
 checkpoint-version-OtherVersion = točka nastavka pripada drugoj inačici programa
+
+## CallRange
+
+part-call_range-Between = od { NUMBER($least) } do { NUMBER($most) }
+part-call_range-Positive = brojevi veći od 0
+part-call_range-PositiveUpTo = brojevi veći od 0 do { NUMBER($most) }
+part-call_range-FileName = ime datoteke
+part-call_range-OneOf = { $names }
+
+## CallFault
+
+call-Arguments = { $text }
+    .hint = --help kaže što se može zadati
+call-OutOfRange = { $option } je { $value }; dopušteno: { $allowed }
+call-NoInstructions = OPRUGA_SIMD={ $name }: dopušteni su scalar, sse2, avx2, avx512
+call-NoIntegratorNear = nema integratora `{ $name }`
+    .hint = misliš li `{ $closest }`?
+call-NoIntegrator = nema integratora `{ $name }`
+    .hint = integratori su { $known }
+call-NoModel = nema modela `{ $name }`
+call-NoObstacle = nema prepreke `{ $name }`
+call-UnknownEnding = { $path } se ne može zapisati: nastavak `.{ $ending }` nije poznat
+    .hint = poznati su { $known }
+call-NotUtf8 = { $path } nije ime datoteke u UTF-8
+call-NoSize = nedostaje --size
+    .hint = --size H: otprilike duljina bridova [m]
+call-NoScale = nedostaje --scale-to
+    .hint = --scale-to L: dulja stranica crteža [m]
+call-NoText = nedostaje --set text=…
+    .hint = --set text=…, na primjer --set text=opruga, kaže što je napisano slovima fonta
+call-HasCells = { $path } već ima ćelije
+    .hint = bez --size i --scale-to datoteka se pokazuje i zapisuje u drugom formatu
+call-NoShape = { $path }: datoteke s nastavkom `.{ $ending }` ne sadrže oblik
+    .hint = datoteke koje se mogu pročitati završavaju na .obj, .stl, .ply, .gltf, .glb, .svg, .png, .json, .geojson, .topojson, .ttf, .otf, { $meshes }
+call-SceneAsShape = { $path }: datoteke s nastavkom `.toml` ne sadrže oblik
+    .hint = prizor čitaju `opruga check` i `opruga run`
+call-NothingFills = u datoteci nema ničega što ispunjava tijelo
+call-FilmRate = nijedan film ne može imati { $rate } slika u sekundi: --fps { $fps }, slike modela po { $frame } s
+    .hint = moguće je od 0.0001 do 10000; --no-pictures radi bez filma
+call-RunTooLong = --gltf, --pc2 i --mdd drže cijelo računanje u memoriji, a to je više od { $bytes } bajtova
+    .hint = manji --fps, ili --from i --to
+call-NoFrame = nema slike od { NUMBER($from) } s do { NUMBER($to) } s: snimka ih ima od { NUMBER($first) } s do { NUMBER($last) } s, svakih { NUMBER($apart) } s
+call-NothingLeft = točka nastavka je u t = { NUMBER($time) } s, a računanje završava u { NUMBER($end) } s: ništa nije preostalo
+    .hint = --seconds je simulirano vrijeme u kojem računanje završava: zadaj više od { NUMBER($time) }
+call-NeverChanges = `{ $scene }` dolazi s programom i nikad se ne mijenja: --watch treba datoteku
+    .hint = `opruga new IME` je zapisuje
+call-NoScreen = ovdje nema zaslona na kojem bi se otvorio prozor
+    .hint = `opruga run { $scene }` računa bez prozora i zapisuje slike
+call-NoScreenForRecording = ovdje nema zaslona na kojem bi se otvorio prozor
+    .hint = `opruga replay { $file }` zapisuje njezine slike
+call-NoStudio = program `opruga-studio` ne leži pokraj ovoga
+    .hint = cargo install --path crates/opruga-studio
+call-StudioNotStarted = studio se ne može pokrenuti: „{ $reason }”
+call-NoBody = u prizoru nema tijela
+call-NoCaseNear = nijedan se slučaj ne zove `{ $word }`; porodice su { $families }
+    .hint = misliš li `{ $closest }`? `opruga verify --list` pokazuje sve slučajeve
+call-NoCase = nijedan se slučaj ne zove `{ $word }`; porodice su { $families }
+    .hint = `opruga verify --list` pokazuje sve slučajeve
+
+## Use
+
+part-use-Input = ulaz
+part-use-Scene = prizor { $path }
+part-use-NamedByScene = `{ $name }`, koju imenuje prizor
+part-use-NamedByInput = `{ $name }`, koju imenuje ulaz
+part-use-Recording = snimka
+part-use-Checkpoint = točka nastavka iz --resume
+part-use-Option = { $option }
+part-use-OfOutput = datoteka izlaza
+part-use-OfFolder = datoteka iz mape izlaza
+
+## QuestionDifference
+
+part-question-Scene = tekst prizora bio je drugi
+part-question-File = datoteka koju imenuje prizor bila je druga
+part-question-Set = --set { $before } umjesto { $now }
+part-question-Metric = --metric { $before } umjesto { $now }
+part-question-Points = tražene su druge točke

@@ -539,3 +539,17 @@ vtu-syntax-Base64 = podaci polja nisu base64
     .allowed = A–Z a–z 0–9 + / =
 vtu-syntax-Block = blok { $block } polja ne može se raspakirati
     .allowed = { $wanted } bajtova
+
+## LeftOut
+
+part-left_out-CellValues = `{ $name }`, što nemaju sve ćelije
+part-left_out-NodeValues = `{ $name }`, što nemaju svi čvorovi
+part-left_out-GappyValues = vrijednosti koje nemaju sve ćelije: { $count }
+part-left_out-GroupNames = imena skupina: { $count }
+part-left_out-NamesOfCellGroups = imena skupina ćelija ({ $count }): zamjenjuju ih brojevi po abecedi
+part-left_out-NamesOfCellValues = imena vrijednosti ćelija: { $count }
+part-left_out-Groups = skupine: { $count }
+part-left_out-GroupsOfNodes = skupine čvorova: { $count }
+part-left_out-ValuesOfCells = vrijednosti ćelija: { $count }
+part-left_out-ValuesOfNodes = vrijednosti čvorova: { $count }
+mesh-left_out-LeftOutOfFormat = izostavljeno, jer format za to nema mjesta: { $what }

@@ -2,17 +2,18 @@
 
 use opruga_core::error::StepError;
 use opruga_integrators::refusals::StepHint;
-use opruga_math::message::Message as _;
+use opruga_math::message::{Message as _, Variant};
 use opruga_models::fem::Refusal;
 use opruga_words::Translation;
 use opruga_world::WorldError;
+use std::collections::BTreeMap;
 use std::path::Path;
 
 #[path = "../../opruga-cli/src/errors.rs"]
 mod call_errors;
 
-#[test]
-fn every_message_has_a_croatian_text_with_its_fields() {
+/// The variants of all messages.
+fn variants() -> impl Iterator<Item = &'static Variant> {
     let io = opruga_io::messages::MESSAGES.iter().flat_map(|lists| lists.iter());
     let others = [
         opruga_models::MESSAGES,
@@ -21,12 +22,66 @@ fn every_message_has_a_croatian_text_with_its_fields() {
         opruga_world::warnings::MESSAGES,
         opruga::sweep::errors::MESSAGES,
         opruga::recordings::MESSAGES,
-        &[call_errors::CallError::VARIANTS],
+        &[call_errors::CallError::VARIANTS, call_errors::CallRange::VARIANTS, call_errors::CallFault::VARIANTS],
         &[opruga_video::VideoError::VARIANTS],
     ];
-    let variants = io.chain(others.into_iter().flatten()).flat_map(|list| list.iter());
-    let gaps = Translation::croatian().gaps(variants);
+    io.chain(others.into_iter().flatten()).flat_map(|list| list.iter())
+}
+
+#[test]
+fn every_message_has_a_croatian_text_with_its_fields() {
+    let gaps = Translation::croatian().gaps(variants());
     assert!(gaps.is_empty(), "{gaps:#?}");
+}
+
+/// `tests/texts.txt` holds the text of every variant of every code once in each language. `OPRUGA_TABLES=write` writes it anew: a change of
+/// a text is seen there.
+#[test]
+fn the_text_of_every_code_is_pinned_in_both_languages() {
+    let own = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let entries = croatian_entries(&own.join("hr"));
+    let mut texts = BTreeMap::new();
+    for variant in variants() {
+        let name = format!("{}-{}", variant.code.replace('.', "-"), variant.name);
+        let mut text = format!("{name}\n");
+        for (label, english) in ["en", "en allowed", "en hint"].iter().zip(variant.english) {
+            // The compiler breaks long ones where it likes.
+            let words: Vec<&str> = english.split_whitespace().collect();
+            if !words.is_empty() {
+                text += &format!("  {label}: {}\n", words.join(" "));
+            }
+        }
+        text += entries.get(&name).unwrap_or_else(|| panic!("{name} has no Croatian text"));
+        assert!(texts.insert(name.clone(), text).is_none(), "{name} is there twice");
+    }
+    assert!(texts.len() > 600, "{}", texts.len());
+    let (file, all) = (own.join("tests/texts.txt"), texts.into_values().collect::<Vec<_>>().join("\n"));
+    if std::env::var("OPRUGA_TABLES").is_ok_and(|what| what == "write") {
+        std::fs::write(file, all).expect("tests/texts.txt can be written");
+        return;
+    }
+    let pinned = std::fs::read_to_string(file).expect("tests/texts.txt").replace("\r\n", "\n");
+    let other = pinned.lines().zip(all.lines()).find(|(pinned, text)| pinned != text);
+    assert!(pinned == all, "texts have changed, first {other:?}: run this test with OPRUGA_TABLES=write");
+}
+
+/// The entries of the catalogues as they are written, by their names.
+fn croatian_entries(folder: &Path) -> BTreeMap<String, String> {
+    let mut entries: BTreeMap<String, String> = BTreeMap::new();
+    for file in std::fs::read_dir(folder).expect("the catalogues").flatten() {
+        let text = std::fs::read_to_string(file.path()).expect("a catalogue");
+        let mut last = String::new();
+        for line in text.lines().filter(|line| !line.is_empty() && !line.starts_with('#')) {
+            match line.split_once(" =").filter(|_| !line.starts_with([' ', '}'])) {
+                Some((name, text)) => {
+                    last = name.into();
+                    entries.insert(last.clone(), format!("  hr:{text}\n"));
+                }
+                None => *entries.entry(last.clone()).or_default() += &format!("  {line}\n"),
+            }
+        }
+    }
+    entries
 }
 
 #[test]

@@ -279,10 +279,11 @@ impl AnyBlueprint {
     }
 
     /// Everything that a world of the scene would refuse.
-    pub fn problems(&self, options: &Options) -> Vec<WorldError> {
+    pub fn problems(&self, options: &Options, registries: &Registries) -> Vec<WorldError> {
+        let Registries { plane, space } = registries;
         match self {
-            AnyBlueprint::Plane(blueprint) => World::problems(blueprint, options),
-            AnyBlueprint::Space(blueprint) => World::problems(blueprint, options),
+            AnyBlueprint::Plane(blueprint) => World::problems(blueprint, options, plane),
+            AnyBlueprint::Space(blueprint) => World::problems(blueprint, options, space),
         }
     }
 }

@@ -178,7 +178,7 @@ fn elastic<const D: usize>(system: &System<D>, time: f64) -> Option<([f64; WIDTH
     let mut forces = Columns::<D>::zeros(system.places());
     let view = View { v: still.slices(), threads: 1, ..system.view(Stage::Current, time) };
     let mut energies = [0.0; WIDTH];
-    let is_asked = |properties: Properties| properties.name == "fem" || properties.acts_between_nodes == Some(true);
+    let is_asked = |properties: Properties| properties.judges_balance || properties.acts_between_nodes == Some(true);
     for member in system.members.iter().filter(|member| is_asked(member.potential.properties())) {
         let mut scratch = Column::zeros(member.potential.properties().scratch_len);
         member.potential.prepare(system.simd, &view, &member.memory, &mut scratch).ok()?;

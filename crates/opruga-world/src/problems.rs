@@ -2,6 +2,7 @@
 
 use crate::blueprint::{Blueprint, BodyBlueprint, LoadBlueprint};
 use crate::error::WorldError;
+use crate::registry::Registry;
 use crate::world::{Options, World};
 use opruga_core::spec::Values;
 use std::sync::Arc;
@@ -12,10 +13,10 @@ const MOST_PROBLEMS: usize = 200;
 impl<const D: usize> World<D> {
     /// What building a world of this blueprint would refuse: the integrator, every obstacle, and every kind of body with
     /// its models, loads and stable step, each by itself. Copies of a body are one kind. Empty where nothing is refused.
-    pub fn problems(blueprint: &Blueprint<D>, options: &Options) -> Vec<WorldError> {
+    pub fn problems(blueprint: &Blueprint<D>, options: &Options, registry: &Arc<Registry<D>>) -> Vec<WorldError> {
         let options = Options { threads: 1, ..options.clone() };
         let part = |bodies, colliders, loads| blueprint.part(bodies, colliders, loads);
-        let refused = |part| World::new(part, options.clone()).err();
+        let refused = |part| World::with_registry(part, options.clone(), Arc::clone(registry)).err();
         if let Some(error) = refused(part(Vec::new(), Vec::new(), Vec::new())) {
             // Without surroundings and an integrator no part can be built.
             return vec![error];

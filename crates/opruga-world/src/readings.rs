@@ -228,7 +228,7 @@ impl<const D: usize> World<D> {
             ErrorHint::Implicit
         } else if self.energy.loss_contact + self.energy.loss_friction <= 0.0 {
             ErrorHint::Explicit
-        } else if every(&|island| island.integrator.name() == "verlet") {
+        } else if every(&|island| island.integrator.makes_least_of_contact()) {
             ErrorHint::Contact
         } else {
             ErrorHint::ContactOfOthers

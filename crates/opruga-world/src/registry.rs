@@ -6,9 +6,10 @@ use opruga_core::spec::{Role, Spec, Values};
 use std::sync::Arc;
 
 /// Models and integrators by name. A user's crate adds its own.
+#[derive(Clone)]
 pub struct Registry<const D: usize> {
-    models: Vec<Box<dyn Model<D>>>,
-    integrators: Vec<Box<dyn IntegratorKind<D>>>,
+    models: Vec<Arc<dyn Model<D>>>,
+    integrators: Vec<Arc<dyn IntegratorKind<D>>>,
 }
 
 /// The models and integrators of the plane and those of space: what a program hands on where a scene may have either dimension.
@@ -29,7 +30,8 @@ impl Default for Registries {
 
 impl<const D: usize> Default for Registry<D> {
     fn default() -> Self {
-        Registry { models: opruga_models::all(), integrators: opruga_integrators::all() }
+        let models = opruga_models::all().into_iter().map(Arc::from).collect();
+        Registry { models, integrators: opruga_integrators::all().into_iter().map(Arc::from).collect() }
     }
 }
 
@@ -46,11 +48,11 @@ impl<const D: usize> core::fmt::Debug for Registry<D> {
 impl<const D: usize> Registry<D> {
     /// Adds a model; it takes precedence over one of the same name.
     pub fn add_model(&mut self, model: Box<dyn Model<D>>) {
-        self.models.insert(0, model);
+        self.models.insert(0, model.into());
     }
     /// Adds an integrator; it takes precedence over one of the same name.
     pub fn add_integrator(&mut self, integrator: Box<dyn IntegratorKind<D>>) {
-        self.integrators.insert(0, integrator);
+        self.integrators.insert(0, integrator.into());
     }
     /// The model of a name.
     pub fn model(&self, kind: &str) -> Option<&dyn Model<D>> {

@@ -6,6 +6,7 @@
 
 use super::{Machine, best};
 use crate::arguments::BenchElements;
+use crate::errors::{CallFault, CallRange};
 use crate::failure::{Failure, print_data};
 use opruga::core::potential::{Definiteness, Ingredients, Potential};
 use opruga::core::spec::{Allowed, Spec, Value, Values};
@@ -13,7 +14,7 @@ use opruga::core::state::{Columns, Layout, Parameter, View};
 use opruga::core::tile::{TILE, Tile};
 use opruga::math::{Column, WIDTH};
 use opruga::mesh::Mesh;
-use opruga::{Registry, Simd};
+use opruga::{Registries, Registry, Simd};
 use opruga_solve::BlockMatrix;
 use serde_json::json;
 
@@ -53,14 +54,13 @@ fn materials(spec: &Spec) -> &'static [&'static str] {
 }
 
 /// Measures and prints.
-pub(crate) fn bench(call: &BenchElements) -> Result<u8, Failure> {
-    let registry = Registry::<3>::default();
-    let model = registry.model("fem").ok_or_else(|| Failure::call("there are no finite elements"))?;
+pub(crate) fn bench(call: &BenchElements, registries: &Registries) -> Result<u8, Failure> {
+    let model = registries.space.model("fem").ok_or_else(|| Failure::call(CallFault::NoModel { name: "fem" }))?;
     let names = materials(model.spec());
     if let Some(name) = call.material.as_deref().filter(|name| !names.contains(name)) {
-        return Err(Failure::range("--material", format!("`{name}`"), &names.join(", ")));
+        return Err(Failure::range("--material", format!("`{name}`"), CallRange::OneOf { names: names.join(", ") }));
     }
-    let refused = |error: opruga::mesh::MeshError| Failure::call(error.to_string());
+    let refused = |error: opruga::mesh::MeshError| Failure::call(error);
     let grid = |cells: u32| Mesh::<3>::grid([0.0; 3], [1.0; 3], [cells; 3]);
     let boxes = grid(call.cells).map_err(refused)?;
     let tetrahedra = boxes.clone().into_simplices().map_err(refused)?;
@@ -76,11 +76,14 @@ pub(crate) fn bench(call: &BenchElements) -> Result<u8, Failure> {
                 continue;
             }
             let values = vec![("material", Value::Text(material.into())), modulus()];
-            rows.push(Subject { model: "fem", element, elements: mesh.cells.len(), material, mesh, values }.measure()?);
+            rows.push(
+                Subject { model: "fem", element, elements: mesh.cells.len(), material, mesh, values }
+                    .measure(&registries.space)?,
+            );
         }
     }
     if call.material.is_none() {
-        survey(&boxes, &tetrahedra, &mut rows)?;
+        survey(registries, &boxes, &tetrahedra, &mut rows)?;
     }
     let machine = Machine::measure(Simd::best());
     if call.json {
@@ -110,8 +113,9 @@ fn modulus() -> (&'static str, Value) {
 const RING: u32 = 4096;
 
 /// The other methods, each with the landed model beside which it stands.
-fn survey(boxes: &Mesh<3>, tetrahedra: &Mesh<3>, rows: &mut Vec<Row>) -> Result<(), Failure> {
-    let refused = |error: opruga::mesh::MeshError| Failure::call(error.to_string());
+fn survey(registries: &Registries, boxes: &Mesh<3>, tetrahedra: &Mesh<3>, rows: &mut Vec<Row>) -> Result<(), Failure> {
+    let Registries { plane, space } = registries;
+    let refused = |error: opruga::mesh::MeshError| Failure::call(error);
     let of = |rows: &[Row], element: &str, material: &str| {
         rows.iter().find(|row| row.element == element && row.material == material).map_or(f64::NAN, Row::best)
     };
@@ -120,17 +124,18 @@ fn survey(boxes: &Mesh<3>, tetrahedra: &Mesh<3>, rows: &mut Vec<Row>) -> Result<
     let (model, element, material) = ("finite_volume", "tetrahedron", "linear");
     let elements = tetrahedra.cells.len();
     let subject = Subject { model, element, elements, material, mesh: tetrahedra, values };
-    rows.push(subject.measure()?.beside(tetrahedron));
+    rows.push(subject.measure(space)?.beside(tetrahedron));
 
     let (model, element, material) = ("finite_difference", "hexahedron", "St. Venant-Kirchhoff");
     let hexahedron = of(rows, "hexahedron", "neo_hookean");
     let subject =
         Subject { model, element, elements: boxes.cells.len(), material, mesh: boxes, values: vec![modulus()] };
-    rows.push(subject.measure()?.beside(hexahedron));
+    rows.push(subject.measure(space)?.beside(hexahedron));
 
     let ring = Mesh::<2>::ring(0.5, RING, [0.0; 2], 0.0).map_err(refused)?;
     let ring = |model, material, values| {
-        Subject { model, element: "vertex of a ring", elements: RING as usize, material, mesh: &ring, values }.measure()
+        Subject { model, element: "vertex of a ring", elements: RING as usize, material, mesh: &ring, values }
+            .measure(plane)
     };
     let springs = ring("mass_spring", "springs", vec![("stiffness", Value::Number(1e5))])?;
     let spring = springs.best();
@@ -143,7 +148,8 @@ fn survey(boxes: &Mesh<3>, tetrahedra: &Mesh<3>, rows: &mut Vec<Row>) -> Result<
     let clusters = |material, region: Option<f64>| {
         let mut values = vec![("stiffness", Value::Number(1e3)), ("fit_share", Value::Number(0.5))];
         values.extend(region.map(|side| ("region", Value::Number(side))));
-        Subject { model: "shape_matching", element: "node", elements: nodes, material, mesh: boxes, values }.measure()
+        Subject { model: "shape_matching", element: "node", elements: nodes, material, mesh: boxes, values }
+            .measure(space)
     };
     rows.push(clusters("one cluster", None)?);
     rows.push(clusters("overlapping clusters", Some(side))?);
@@ -152,7 +158,7 @@ fn survey(boxes: &Mesh<3>, tetrahedra: &Mesh<3>, rows: &mut Vec<Row>) -> Result<
     let ball = Mesh::<3>::icosphere(0.5, 3).map_err(refused)?;
     let (model, element, material) = ("boundary_element", "vertex of a sphere", "isotropic");
     let elements = ball.positions.len();
-    rows.push(Subject { model, element, elements, material, mesh: &ball, values: vec![modulus()] }.measure()?);
+    rows.push(Subject { model, element, elements, material, mesh: &ball, values: vec![modulus()] }.measure(space)?);
     Ok(())
 }
 
@@ -168,12 +174,11 @@ impl Row {
 
 impl<const D: usize> Subject<'_, D> {
     /// Builds the model and takes its times.
-    fn measure(self) -> Result<Row, Failure> {
-        let registry = Registry::<D>::default();
-        let model = registry.model(self.model).ok_or_else(|| Failure::call(format!("there is no {}", self.model)))?;
+    fn measure(self, registry: &Registry<D>) -> Result<Row, Failure> {
+        let model = registry.model(self.model).ok_or_else(|| Failure::call(CallFault::NoModel { name: self.model }))?;
         let mut values = Values::defaults(model.spec(), D);
         for (name, value) in &self.values {
-            values.set(model.spec(), name, value.clone(), D).map_err(|e| Failure::call(e.to_string()))?;
+            values.set(model.spec(), name, value.clone(), D).map_err(Failure::call)?;
         }
         let potential = model.build(&Ingredients {
             mesh: self.mesh,
@@ -186,7 +191,7 @@ impl<const D: usize> Subject<'_, D> {
             step: 1e-3,
             break_off: &Default::default(),
         });
-        let potential = potential.map_err(|e| Failure::call(e.to_string()))?;
+        let potential = potential.map_err(|error| Failure::call(error.about))?;
         let (forces, [hessian, clamped_hessian]) = times(&*potential, self.mesh, self.elements)?;
         let Subject { model, element, elements, material, .. } = self;
         Ok(Row { model, element, elements, material, forces, hessian, clamped_hessian, ratio: None })
@@ -237,7 +242,7 @@ fn times<const D: usize>(solid: &dyn Potential<D>, mesh: &Mesh<D>, elements: usi
         forces.push((simd.name(), per_element(seconds)));
     }
     if let Some(error) = refused {
-        return Err(Failure::call(error.to_string()));
+        return Err(Failure::call(error));
     }
     let view = &views[turn];
     let mut matrix = BlockMatrix::<D>::default();

@@ -7,19 +7,19 @@ use crate::errors::CallError;
 use crate::failure::{Failure, print_data};
 use opruga::io::{Files, SceneError, scene};
 use opruga::mesh::Mesh;
-use opruga::{Options, Simd};
+use opruga::{Options, Registries, Simd, catalogue_of};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Reads a surface several times, each as a scene does it, and prints how long that takes.
-pub(crate) fn bench(call: &BenchLoad) -> Result<u8, Failure> {
+pub(crate) fn bench(call: &BenchLoad, registries: &Registries) -> Result<u8, Failure> {
     match &call.file {
-        Some(file) => of_file(call, file),
+        Some(file) => of_file(call, file, registries),
         None => {
             let path = std::env::temp_dir().join(format!("opruga-bench-{}.stl", std::process::id()));
             let written = opruga::io::safe_write::safe_write(&path, true, |out| out.write_all(&torus(call.triangles)));
-            let outcome = written.map_err(Failure::Write).and_then(|_| of_file(call, &path));
+            let outcome = written.map_err(Failure::Write).and_then(|_| of_file(call, &path, registries));
             let _ = std::fs::remove_file(&path);
             outcome
         }
@@ -41,7 +41,7 @@ fn torus(triangles: u32) -> Vec<u8> {
     bytes
 }
 
-fn of_file(call: &BenchLoad, path: &Path) -> Result<u8, Failure> {
+fn of_file(call: &BenchLoad, path: &Path, registries: &Registries) -> Result<u8, Failure> {
     let shown = path.display().to_string();
     let unreadable = |e: std::io::Error| {
         let error = SceneError::of(CallError::FileUnreadable { reason: e.to_string() });
@@ -68,14 +68,14 @@ fn of_file(call: &BenchLoad, path: &Path) -> Result<u8, Failure> {
         found[0] = bytes.len();
         drop(bytes);
         let (start, before) = (Instant::now(), processor_time());
-        let (blueprint, _) = scene::read(text.as_bytes(), &shown, &opruga::catalogue(), &options)?;
+        let (blueprint, _) = scene::read(text.as_bytes(), &shown, &catalogue_of(registries), &options)?;
         wall.push(start.elapsed().as_secs_f64());
         processor.push(processor_time() - before);
         if let Some(body) = blueprint.scene().body(0) {
             (found[1], found[2]) = (body.facets().len() / 3, body.nodes());
         }
         let before = processor_time();
-        let made = blueprint.build(world.clone()).map_err(|error| Failure::Scene(vec![SceneError::from(&error)]))?;
+        let made = blueprint.build_with(world.clone(), registries).map_err(|error| vec![SceneError::from(&error)])?;
         built.push(processor_time() - before);
         drop(made);
     }

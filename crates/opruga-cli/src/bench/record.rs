@@ -8,7 +8,7 @@ use crate::opened::{Opened, open};
 use crate::recordings;
 use opruga::math::words::counted;
 use opruga::recordings::TapeError;
-use opruga::{AnyWorld, WorldError};
+use opruga::{AnyWorld, Registries, WorldError};
 use serde_json::json;
 use std::path::Path;
 use std::time::Instant;
@@ -17,8 +17,8 @@ use std::time::Instant;
 type Times = [f64; 2];
 
 /// Runs a scene again and again, with and without a recording, and prints what that adds.
-pub(crate) fn bench(call: &BenchRecord) -> Result<u8, Failure> {
-    let opened = open(&call.scene, &call.set, call.allow_outside, call.json)?;
+pub(crate) fn bench(call: &BenchRecord, registries: &Registries) -> Result<u8, Failure> {
+    let opened = open(&call.scene, registries, &call.set, call.allow_outside, call.json)?;
     let name = format!("opruga-bench-{}.rec", std::process::id());
     let path = call.folder.clone().unwrap_or_else(std::env::temp_dir).join(name);
     let outcome = of_scene(call, &opened, &path);

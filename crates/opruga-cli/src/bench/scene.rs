@@ -12,15 +12,14 @@ use serde_json::json;
 use std::sync::Arc;
 
 /// Runs a scene without writing anything and prints how long its frames take.
-pub(crate) fn bench(call: &BenchScene) -> Result<u8, Failure> {
+pub(crate) fn bench(call: &BenchScene, library: &Registries) -> Result<u8, Failure> {
     let Opened { source, reading, options, blueprint, .. } =
-        open(&call.scene, &call.set, call.allow_outside, call.json)?;
+        open(&call.scene, library, &call.set, call.allow_outside, call.json)?;
     // What is wrong with it is told as `run` tells it. Explicit integrators call models tile by tile: the clock would be most of what it
     // measures.
     let implicit = is_implicit(&*source.build(blueprint.clone(), &reading, &options)?);
     let spent = Arc::new(Spent::default());
-    let library = Registries::default();
-    let models = if implicit { registries(&library, &spent) } else { library };
+    let models = if implicit { registries(library, &spent) } else { library.clone() };
     let failed = |error: WorldError| source.run_error(&error, 0.0);
     let mut world = blueprint.build_with(options, &models).map_err(failed)?;
     let nodes: usize = world.bodies().into_iter().map(|body| world.node_count(body)).sum();

@@ -37,10 +37,10 @@ fn count<T>(to: &AtomicU64, work: impl FnOnce() -> T) -> T {
     out
 }
 
-/// The models of the library, timed.
+/// The models of registries, timed; everything else as it is.
 pub(crate) fn registries(library: &Registries, spent: &Arc<Spent>) -> Registries {
     fn timed<const D: usize>(library: &Arc<Registry<D>>, spent: &Arc<Spent>) -> Arc<Registry<D>> {
-        let mut out = Registry::default();
+        let mut out = Registry::clone(library);
         for spec in library.models() {
             out.add_model(Box::new(TimedModel { library: Arc::clone(library), spec, spent: Arc::clone(spent) }));
         }

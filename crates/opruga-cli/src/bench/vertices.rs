@@ -1,12 +1,15 @@
 //! `opruga bench vertices`: figure 4 of the thesis, the speed against the number of vertices.
 
 use super::{best, processor_time};
+use crate::errors::{CallFault, CallRange};
 use crate::failure::Failure;
 use opruga::blueprint::{Blueprint, BodyBlueprint, ColliderBlueprint, Mass, Time};
-use opruga::core::spec::{Value, Values};
+use opruga::core::spec::{Role, Value, Values};
 use opruga::io::problem::visible;
 use opruga::math::calibration::inverse_roots;
-use opruga::{Options, Simd, World, mesh};
+use opruga::math::message::AnyMessage;
+use opruga::{Options, Registries, Registry, Simd, World, mesh};
+use std::sync::Arc;
 use std::time::Instant;
 
 /// One row of the benchmark.
@@ -54,7 +57,7 @@ pub(crate) fn row(only: &str) -> Result<(usize, usize), Failure> {
             _ => format!("{bodies}x{vertices}"),
         };
         let names: Vec<String> = ROWS.iter().map(name).collect();
-        Failure::range("--only", visible(only), &names.join(", "))
+        Failure::range("--only", visible(only), CallRange::OneOf { names: names.join(", ") })
     })
 }
 
@@ -68,16 +71,19 @@ fn values(spec: &'static opruga::core::spec::Spec, fields: &[(&str, Value)]) -> 
 
 /// Rings as in the baseline: masses of 1 kg, edges of 0.1 m, k = 1600 N/m, c = 40 N·s/m, a gas that pulls every edge
 /// with 160 N at rest, a floor below. They start 60 m above it and are in flight while they are timed.
-pub(crate) fn rings(bodies: usize, vertices: usize, integrator: &str) -> Result<Blueprint<2>, String> {
-    let registry = opruga::Registry::<2>::default();
-    let spec =
-        |found: Option<&'static opruga::core::spec::Spec>| found.ok_or("the registry lacks a part of the benchmark");
-    let springs = spec(registry.model("mass_spring").map(|m| m.spec()))?;
-    let gas = spec(registry.model("pressure").map(|m| m.spec()))?;
-    let rule = spec(registry.integrator(integrator).map(|i| i.spec()))?;
-    let floor = spec(opruga::collide::all(2).into_iter().find(|s| s.kind == "half_space"))?;
+pub(crate) fn rings(
+    (bodies, vertices): (usize, usize),
+    registry: &Registry<2>,
+    integrator: &str,
+) -> Result<Blueprint<2>, AnyMessage> {
+    let model = |name| registry.model(name).map(|m| m.spec()).ok_or(CallFault::NoModel { name });
+    let (springs, gas) = (model("mass_spring")?, model("pressure")?);
+    let known = || CallFault::NoIntegrator { name: visible(integrator), known: String::new() };
+    let rule = registry.integrator(integrator).map(|i| i.spec()).ok_or_else(known)?;
+    let floor = opruga::collide::all(2).into_iter().find(|spec| spec.has_role(Role::HalfSpace));
+    let floor = floor.ok_or(CallFault::NoObstacle { name: "half_space" })?;
     let radius = vertices as f64 * 0.1 / (2.0 * std::f64::consts::PI);
-    let ring = mesh::Mesh::ring(radius, vertices as u32, [0.0, 0.0], 0.0).map_err(|e| e.to_string())?;
+    let ring = mesh::Mesh::ring(radius, vertices as u32, [0.0, 0.0], 0.0).map_err(AnyMessage::from)?;
     let models = vec![
         values(springs, &[("stiffness", Value::Number(1600.0)), ("damping", Value::Number(40.0))]),
         values(gas, &[("nRT", Value::Number(160.0 / radius * std::f64::consts::PI * radius * radius))]),
@@ -103,30 +109,31 @@ pub(crate) fn rings(bodies: usize, vertices: usize, integrator: &str) -> Result<
 
 /// Times one row; `draw` is called once a frame.
 pub(crate) fn time(
-    bodies: usize,
-    vertices: usize,
+    (bodies, vertices): (usize, usize),
+    registries: &Registries,
     integrator: &str,
     options: &Options,
     seconds: f64,
     mut draw: Option<&mut dyn FnMut(&mut World<2>)>,
-) -> Result<Row, String> {
-    let blueprint = rings(bodies, vertices, integrator)?;
-    let mut world = World::new(blueprint, options.clone()).map_err(|e| e.to_string())?;
+) -> Result<Row, AnyMessage> {
+    let blueprint = rings((bodies, vertices), &registries.plane, integrator)?;
+    let mut world =
+        World::with_registry(blueprint, options.clone(), Arc::clone(&registries.plane)).map_err(AnyMessage::from)?;
     let total = bodies * vertices;
     // 200 frames of 16 ms keep the rings in flight; then they start again.
     const FLIGHT: usize = 199;
     let start = world.snapshot();
-    let fly = |world: &mut World<2>, frames: usize| -> Result<f64, String> {
+    let fly = |world: &mut World<2>, frames: usize| -> Result<f64, AnyMessage> {
         let mut elapsed = 0.0;
         let mut left = frames;
         while left > 0 {
-            world.restore(&start).map_err(|e| e.to_string())?;
+            world.restore(&start).map_err(AnyMessage::from)?;
             // The first frame meets memory that nobody has touched.
-            world.frame().map_err(|e| e.to_string())?;
+            world.frame().map_err(AnyMessage::from)?;
             let some = left.min(FLIGHT);
             let (wall, processor) = (Instant::now(), processor_time());
             for _ in 0..some {
-                world.frame().map_err(|e| e.to_string())?;
+                world.frame().map_err(AnyMessage::from)?;
             }
             elapsed += if options.threads == 1 { processor_time() - processor } else { wall.elapsed().as_secs_f64() };
             left -= some;

@@ -60,6 +60,9 @@ impl<const D: usize> Integrator<D> for Verlet {
     fn name(&self) -> &'static str {
         SPEC.kind
     }
+    fn makes_least_of_contact(&self) -> bool {
+        true
+    }
     fn work_columns(&self) -> usize {
         1
     }

@@ -31,7 +31,7 @@ pub use assemble::Mending;
 pub(crate) use errors::{MeshFileError, NumberHint};
 pub(crate) use found::{Found, Kind};
 pub(crate) use scanner::cut_line;
-pub use write::{WRITTEN, Written, endings, write};
+pub use write::{LeftOut, NotInFormat, WRITTEN, Written, endings, write};
 
 use crate::problem::{SceneError, visible};
 use found::Numbers;
@@ -52,6 +52,8 @@ pub(crate) const MESSAGES: &[&[opruga_math::message::Variant]] = &[
     errors::MeshFileError::VARIANTS,
     errors::MeshFileNotice::VARIANTS,
     errors::EndingError::VARIANTS,
+    write::LeftOut::VARIANTS,
+    write::NotInFormat::VARIANTS,
     write::MeshWriteError::VARIANTS,
     format_errors::GmshError::VARIANTS,
     format_errors::MeditError::VARIANTS,

@@ -17,7 +17,40 @@ pub struct Written {
     /// Endings, without the dot, and contents.
     pub files: Vec<(&'static str, Vec<u8>)>,
     /// What the format has no place for.
-    pub left_out: Vec<String>,
+    pub left_out: Vec<LeftOut>,
+}
+
+opruga_math::messages! {
+    /// What a format of meshes has no place for.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum LeftOut {
+        "part.left_out" #[error("`{name}`, which not all cells have")]
+        CellValues { name: String },
+        "part.left_out" #[error("`{name}`, which not all nodes have")]
+        NodeValues { name: String },
+        "part.left_out" #[error("{}", counted(*count as u64, "value that not all cells have", "values that not all cells have"))]
+        GappyValues { count: usize },
+        "part.left_out" #[error("groups: {}", counted(*count as u64, "name", "names"))]
+        GroupNames { count: usize },
+        "part.left_out" #[error("names of {}: numbers in the order of the alphabet stand for them", counted(*count as u64, "group of cells", "groups of cells"))]
+        NamesOfCellGroups { count: usize },
+        "part.left_out" #[error("names of {}", counted(*count as u64, "value of cells", "values of cells"))]
+        NamesOfCellValues { count: usize },
+        "part.left_out" #[error("{}", counted(*count as u64, "group", "groups"))]
+        Groups { count: usize },
+        "part.left_out" #[error("{}", counted(*count as u64, "group of nodes", "groups of nodes"))]
+        GroupsOfNodes { count: usize },
+        "part.left_out" #[error("{}", counted(*count as u64, "value of cells", "values of cells"))]
+        ValuesOfCells { count: usize },
+        "part.left_out" #[error("{}", counted(*count as u64, "value of nodes", "values of nodes"))]
+        ValuesOfNodes { count: usize },
+    }
+    /// That something is left out.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum NotInFormat {
+        "mesh.left_out" #[error("left out, since the format has no place for it: {what}")]
+        LeftOutOfFormat { what: LeftOut },
+    }
 }
 
 opruga_math::messages! {
@@ -50,9 +83,9 @@ pub fn write<const D: usize>(mesh: &Mesh<D>, ending: &str) -> Result<Written, Sc
         "vtk" => {
             let mut written = named_values("vtk", vtk(mesh).into_bytes(), mesh);
             let gaps = mesh.cell_values.iter().filter(|(_, values)| !is_whole(values));
-            written.left_out.extend(gaps.map(|(name, _)| format!("`{}`, which not all cells have", visible(name))));
+            written.left_out.extend(gaps.map(|(name, _)| LeftOut::CellValues { name: visible(name) }));
             let gaps = mesh.node_values.iter().filter(|(_, field)| !is_whole(&field.values));
-            written.left_out.extend(gaps.map(|(name, _)| format!("`{}`, which not all nodes have", visible(name))));
+            written.left_out.extend(gaps.map(|(name, _)| LeftOut::NodeValues { name: visible(name) }));
             Ok(written)
         }
         "vtu" => Ok(named_values("vtu", vtu_file(mesh), mesh)),
@@ -101,8 +134,7 @@ fn listed(nodes: &[u32], shift: u32) -> String {
 fn named_values<const D: usize>(ending: &'static str, bytes: Vec<u8>, mesh: &Mesh<D>) -> Written {
     let mut left_out = Vec::new();
     if !mesh.groups.is_empty() || !mesh.cell_groups.is_empty() {
-        let names: Vec<&String> = mesh.groups.keys().chain(mesh.cell_groups.keys()).collect();
-        left_out.push(format!("groups: {}", counted(names.len() as u64, "name", "names")));
+        left_out.push(LeftOut::GroupNames { count: mesh.groups.len() + mesh.cell_groups.len() });
     }
     Written { files: vec![(ending, bytes)], left_out }
 }
@@ -314,31 +346,28 @@ fn linear<const D: usize>(mesh: &Mesh<D>, format: &'static str) -> Result<(), Sc
 }
 
 /// One number per cell: the place of its group, from 1; 0 without one. Cells of several groups have that of the first by name.
-fn references<const D: usize>(mesh: &Mesh<D>, left_out: &mut Vec<String>) -> Vec<usize> {
+fn references<const D: usize>(mesh: &Mesh<D>, left_out: &mut Vec<LeftOut>) -> Vec<usize> {
     let mut out = vec![0; mesh.cells.len()];
     for (k, cells) in mesh.cell_groups.values().enumerate().rev() {
         cells.iter().for_each(|cell| out[*cell as usize] = k + 1);
     }
     if !mesh.cell_groups.is_empty() {
-        left_out.push(format!(
-            "names of {}: numbers in the order of the alphabet stand for them",
-            counted(mesh.cell_groups.len() as u64, "group of cells", "groups of cells")
-        ));
+        left_out.push(LeftOut::NamesOfCellGroups { count: mesh.cell_groups.len() });
     }
     if !mesh.groups.is_empty() {
-        left_out.push(counted(mesh.groups.len() as u64, "group of nodes", "groups of nodes"));
+        left_out.push(LeftOut::GroupsOfNodes { count: mesh.groups.len() });
     }
     if !mesh.cell_values.is_empty() {
-        left_out.push(counted(mesh.cell_values.len() as u64, "value of cells", "values of cells"));
+        left_out.push(LeftOut::ValuesOfCells { count: mesh.cell_values.len() });
     }
     left_out.extend(of_nodes(mesh));
     out
 }
 
 /// What is said of values of nodes by formats that have no place for them.
-fn of_nodes<const D: usize>(mesh: &Mesh<D>) -> Option<String> {
-    let count = mesh.node_values.len() as u64;
-    (count > 0).then(|| counted(count, "value of nodes", "values of nodes"))
+fn of_nodes<const D: usize>(mesh: &Mesh<D>) -> Option<LeftOut> {
+    let count = mesh.node_values.len();
+    (count > 0).then_some(LeftOut::ValuesOfNodes { count })
 }
 
 fn medit<const D: usize>(mesh: &Mesh<D>) -> Result<Written, SceneError> {
@@ -404,7 +433,7 @@ fn tetgen<const D: usize>(mesh: &Mesh<D>) -> Result<Written, SceneError> {
     }
     let mut left_out = Vec::new();
     if !mesh.cell_groups.is_empty() || !mesh.groups.is_empty() {
-        left_out.push(counted((mesh.cell_groups.len() + mesh.groups.len()) as u64, "group", "groups"));
+        left_out.push(LeftOut::Groups { count: mesh.cell_groups.len() + mesh.groups.len() });
     }
     let mut nodes = format!("{} {D} 0 0\n", mesh.nodes());
     for (node, x) in mesh.positions.iter().enumerate() {
@@ -414,12 +443,10 @@ fn tetgen<const D: usize>(mesh: &Mesh<D>) -> Result<Written, SceneError> {
     // Attributes have no names, and no gaps.
     let values: Vec<&Vec<f64>> = mesh.cell_values.values().filter(|values| is_whole(values)).collect();
     if !mesh.cell_values.is_empty() {
-        left_out
-            .push(format!("names of {}", counted(mesh.cell_values.len() as u64, "value of cells", "values of cells")));
+        left_out.push(LeftOut::NamesOfCellValues { count: mesh.cell_values.len() });
     }
     if values.len() < mesh.cell_values.len() {
-        let missing = (mesh.cell_values.len() - values.len()) as u64;
-        left_out.push(counted(missing, "value that not all cells have", "values that not all cells have"));
+        left_out.push(LeftOut::GappyValues { count: mesh.cell_values.len() - values.len() });
     }
     left_out.extend(of_nodes(mesh));
     let mut elements = format!("{} {} {}\n", mesh.cells.len(), D + 1, values.len());

@@ -288,7 +288,7 @@ fn within_limits<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, D>
         };
         // At most one node for every point of a grid of half the spacing.
         let filling = draft.shape.as_ref().and_then(|shape| shape.text("filling"));
-        let of_mesh = draft.shape.as_ref().is_some_and(|shape| shape.kind() == "mesh");
+        let of_mesh = draft.shape.as_ref().is_some_and(|shape| shape.spec().has_role(Role::CellsFromFile));
         let filled = matches!(filling, Some("triangles" | "tetrahedra")) || (D == 3 && filling == Some("lattice"));
         let simplices = draft.values.flag("simplices") || filled || of_mesh;
         let quadratic = draft.values.integer("order").map_or(simplices && draft.owns_cells(), |order| order == 2);
@@ -382,7 +382,7 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
     let mut mesh = of_wanted_cells(reader, draft, mesh)?;
     // Nothing but the start needs them, so the body does not carry them on.
     let values = std::mem::take(&mut mesh.node_values);
-    let node_velocities = match draft.velocities.of_nodes(&values, shape.kind(), &draft.rotation) {
+    let node_velocities = match draft.velocities.of_nodes(&values, shape.spec(), &draft.rotation) {
         Ok(velocities) => velocities,
         Err(error) => {
             let [velocity, of_nodes] = Velocities::<D>::OF_NODES;

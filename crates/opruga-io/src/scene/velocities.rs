@@ -5,7 +5,7 @@ use super::place_of;
 use super::reader::{Reader, join};
 use crate::document::{Data, Node};
 use crate::problem::{SceneError, visible};
-use opruga_core::spec::{Allowed, Value};
+use opruga_core::spec::{Allowed, Role, Spec, Value};
 use opruga_mesh::{Mesh, NodeValues};
 use opruga_world::{schema, shapes};
 use std::collections::BTreeMap;
@@ -72,7 +72,7 @@ impl<const D: usize> Velocities<D> {
     pub(super) fn of_nodes(
         &self,
         all: &BTreeMap<String, NodeValues>,
-        kind: &str,
+        shape: &Spec,
         rotation: &[f64],
     ) -> Result<Arc<[[f64; D]]>, SceneError> {
         let Some(name) = &self.of_nodes else { return Ok(Arc::from([])) };
@@ -81,9 +81,9 @@ impl<const D: usize> Velocities<D> {
         let Some(field) = all.get(name) else {
             let known: Vec<String> =
                 all.iter().filter(|(_, f)| fits(f)).map(|(known, _)| format!("`{}`", visible(known))).collect();
-            let error = SceneError::of(match kind {
-                "mesh" => BodyError::NoNodeVectors { name: shown() },
-                kind => BodyError::NotAMeshFile { name: shown(), kind: kind.into() },
+            let error = SceneError::of(match shape.has_role(Role::CellsFromFile) {
+                true => BodyError::NoNodeVectors { name: shown() },
+                false => BodyError::NotAMeshFile { name: shown(), kind: shape.kind.into() },
             });
             return Err(match known.is_empty() {
                 true => error.allows(SceneAllowed::ThereAreNone {}),

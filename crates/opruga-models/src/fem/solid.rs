@@ -103,6 +103,7 @@ impl<const D: usize> Potential<D> for Solid<D> {
             scratch_len: self.cells_len() + self.volumes.as_ref().map_or(0, NodalVolumes::scratch_len),
             shares_threads: self.shares.len() > 1,
             forces_in_prepare: true,
+            judges_balance: true,
             ..Properties::new(SPEC.kind, Views { energy: true, hessian: true, symmetric: true, damping: self.damped })
         }
     }

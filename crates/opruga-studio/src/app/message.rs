@@ -2,7 +2,7 @@
 
 use super::Studio;
 use crate::said::Step;
-use crate::session::{Request, steady};
+use crate::session::Request;
 use crate::shown::{Offer, Severity, Shown};
 use crate::words::Part;
 use egui::{
@@ -188,8 +188,7 @@ impl Studio {
                             if let Some(offer) = &offer {
                                 let name = match offer {
                                     Offer::HalveStep => words.halve_step().to_string(),
-                                    Offer::Steady(_) => {
-                                        let kind = steady().map_or("", |spec| spec.kind);
+                                    Offer::Steady(_, kind) => {
                                         words.take_steady().replace("{}", &words.kind(Part::Integrator, kind))
                                     }
                                     Offer::Substeps(n) => words.use_substeps().replace("{}", &n.to_string()),
@@ -206,7 +205,7 @@ impl Studio {
                                 }
                             }
                             // What made it fail may have been the last change.
-                            if matches!(offer, Some(Offer::HalveStep | Offer::Steady(_)))
+                            if matches!(offer, Some(Offer::HalveStep | Offer::Steady(..)))
                                 && let Some(step) = &shown.undo
                                 && ui.button(format!("{} ({})", words.undo(), words.done(step))).clicked()
                             {

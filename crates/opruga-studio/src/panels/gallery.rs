@@ -4,6 +4,7 @@ use super::thumbnails::{self, Pixels, SIZE};
 use crate::words::Language;
 use crate::work;
 use egui::{Color32, ColorImage, RichText, ScrollArea, Sense, TextureHandle, TextureOptions, Ui, Vec2};
+use opruga::Registries;
 use std::collections::BTreeMap;
 use std::sync::mpsc::{Receiver, TryRecvError};
 
@@ -12,6 +13,8 @@ use std::sync::mpsc::{Receiver, TryRecvError};
 pub struct Gallery {
     /// Whether it is open.
     pub open: bool,
+    /// The models and integrators of their scenes.
+    registries: Registries,
     /// Where pictures are kept from one start to the next.
     #[cfg(not(target_arch = "wasm32"))]
     pub cache: Option<std::path::PathBuf>,
@@ -29,6 +32,11 @@ impl core::fmt::Debug for Gallery {
 }
 
 impl Gallery {
+    /// Pictures of scenes with these models and integrators.
+    pub fn new(registries: Registries) -> Gallery {
+        Gallery { registries, ..Gallery::default() }
+    }
+
     /// Draws its pictures anew: what they were drawn on is gone.
     #[cfg(target_arch = "wasm32")]
     pub fn forget_textures(&mut self) {
@@ -131,11 +139,13 @@ impl Gallery {
         }
         if let Some(name) = self.seen.iter().find(|name| !self.pictures.contains_key(*name)).copied() {
             #[cfg(not(target_arch = "wasm32"))]
-            let picture = thumbnails::kept_or_drawn(name, self.cache.clone());
-            #[cfg(target_arch = "wasm32")]
-            let picture = thumbnails::draw(name);
-            let context = ui.ctx().clone();
+            let cache = self.cache.clone();
+            let (context, registries) = (ui.ctx().clone(), self.registries.clone());
             let coming = work::spawn(async move {
+                #[cfg(not(target_arch = "wasm32"))]
+                let picture = thumbnails::kept_or_drawn(name, &registries, cache);
+                #[cfg(target_arch = "wasm32")]
+                let picture = thumbnails::draw(name, &registries);
                 let picture = picture.await;
                 context.request_repaint();
                 picture

@@ -10,9 +10,9 @@ use crate::pair;
 use crate::runner::{Copied, Link};
 use crate::said::Said;
 use crate::session::Request;
+use crate::setting::Setting;
 use crate::shown::{Severity, Show};
 use crate::work::{self, breathe};
-use opruga::Options;
 use opruga::draw::{GifWriter, Image, Mp4Writer, Picture, Style, View, draw};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -180,12 +180,13 @@ async fn write(what: What, copied: &Copied, show: Show, progress: &Progress) -> 
         let bytes = made(what, copied, show, progress).await?;
         return Ok(Said::Written(vec![handing::file(&copied.name, ending, &bytes)?]));
     }
-    let mut written = handing::scene_with_files(&copied.name, &copied.text, &copied.files)?;
+    let mut written = handing::scene_with_files(&copied.name, &copied.text, &copied.files, &copied.registries)?;
     // Side by side there are two scenes.
     if let Some(differences) = &copied.differences {
-        let right = right_of(&Document::new(&copied.name, &copied.text)?, differences, &copied.files)?.0;
+        let right =
+            right_of(&Document::new(&copied.name, &copied.text)?, differences, &copied.files, &copied.registries)?.0;
         let name = format!("{}-right", copied.name);
-        written.extend(handing::scene_with_files(&name, &right.text(), &copied.files)?);
+        written.extend(handing::scene_with_files(&name, &right.text(), &copied.files, &copied.registries)?);
     }
     Ok(Said::Written(written))
 }
@@ -210,7 +211,8 @@ async fn made(what: What, copied: &Copied, show: Show, progress: &Progress) -> R
 /// The engine of the scene, from its start.
 fn again(copied: &Copied) -> Result<Box<dyn engine::Engine>, Said> {
     let document = Document::new(&copied.name, &copied.text)?;
-    pair::build(&document, copied.differences.as_deref(), &copied.files, &Options::default())
+    let setting = Setting { registries: copied.registries.clone(), ..Setting::default() };
+    pair::build(&document, copied.differences.as_deref(), &copied.files, &setting)
 }
 
 async fn table(copied: &Copied, progress: &Progress) -> Result<Vec<u8>, Said> {

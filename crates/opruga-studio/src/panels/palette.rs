@@ -90,7 +90,8 @@ mod tests {
             for (sample, words) in samples.iter().flat_map(|sample| languages.map(|words| (sample, words))) {
                 let text = opruga::scenes::find(scene).expect("a scene");
                 let files = opruga::scenes::files();
-                let mut session = crate::session::Session::open(scene, text, files, Default::default()).expect("opens");
+                let mut session = crate::session::Session::open(scene, text, files, crate::setting::Setting::default())
+                    .expect("opens");
                 session.handle(Request::Step);
                 session.handle(Request::Edit(Edit::Drop(table(sample, words).expect("a table"), [2.0, 3.0, 0.5])));
                 session.handle(Request::Step);
@@ -135,7 +136,8 @@ mod tests {
         for (scene, samples) in [("ball", &PLANE[..]), ("balloons", &SPACE[..])] {
             let text = opruga::scenes::find(scene).expect("a scene");
             let mut session =
-                crate::session::Session::open(scene, text, opruga::scenes::files(), Default::default()).expect("opens");
+                crate::session::Session::open(scene, text, opruga::scenes::files(), crate::setting::Setting::default())
+                    .expect("opens");
             for sample in samples {
                 session.handle(Request::Edit(Edit::Drop(
                     table(sample, Language::English).expect("a table"),

@@ -7,14 +7,17 @@ use crate::shown::{BodyShown, Shown};
 use crate::words::{Language, Part};
 use egui::{Button, CollapsingHeader, Color32, ComboBox, Pos2, RichText, ScrollArea, Sense, Slider, Stroke, Ui, Vec2};
 use opruga::core::spec::{Allowed, Spec, Value, Values};
+use opruga::io::Catalogue;
 use opruga::world::schema::MOST_SUBSTEPS;
 
 /// The largest gravity of the arrow [m/s²].
 const MOST_GRAVITY: f64 = 20.0;
 
 /// The panel and what the hand holds in it.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Properties {
+    /// What it offers.
+    catalogue: Catalogue,
     hand: Hand,
     /// A field of a shape that waits until the hand lets go.
     pending: Option<(String, &'static str, Value)>,
@@ -32,14 +35,19 @@ struct Kinds {
 }
 
 impl Kinds {
-    fn of(dimension: usize) -> Kinds {
-        let there = |list: Vec<&'static Spec>| list.into_iter().filter(|s| s.dimensions.contains(&dimension)).collect();
-        let catalogue = opruga::catalogue();
-        Kinds { models: there(catalogue.models), integrators: there(catalogue.integrators), dimension }
+    fn of(catalogue: &Catalogue, dimension: usize) -> Kinds {
+        let there =
+            |list: &[&'static Spec]| list.iter().copied().filter(|s| s.dimensions.contains(&dimension)).collect();
+        Kinds { models: there(&catalogue.models), integrators: there(&catalogue.integrators), dimension }
     }
 }
 
 impl Properties {
+    /// A panel that offers what a catalogue lists.
+    pub fn new(catalogue: Catalogue) -> Properties {
+        Properties { catalogue, hand: Hand::default(), pending: None, hash: false, substeps: None }
+    }
+
     /// Shows the panel.
     pub fn show(
         &mut self,
@@ -52,7 +60,7 @@ impl Properties {
         if shown.dimension == 0 {
             return;
         }
-        let kinds = Kinds::of(usize::from(shown.dimension));
+        let kinds = Kinds::of(&self.catalogue, usize::from(shown.dimension));
         ui.spacing_mut().slider_width = 168.0;
         ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
             let body = selected.as_ref().and_then(|name| shown.bodies.iter().find(|body| body.name == *name));

@@ -5,7 +5,7 @@ use crate::work;
 use opruga::draw::{View, draw_scene};
 use opruga::io::scene;
 use opruga::pictures::Scenery;
-use opruga::{AnyWorld, Options};
+use opruga::{AnyWorld, Options, Registries, catalogue_of};
 
 /// The size of a picture in pixels.
 pub(super) const SIZE: [u32; 2] = [256, 160];
@@ -16,11 +16,11 @@ const WORK: u64 = 96_000_000;
 pub(super) type Pixels = Vec<u8>;
 
 /// A picture of a scene a little after its start; of a large one at its start.
-pub(super) async fn draw(name: &str) -> Option<Pixels> {
+pub(super) async fn draw(name: &str, registries: &Registries) -> Option<Pixels> {
     let options = scene::Options { files: opruga::scenes::files(), ..scene::Options::default() };
     let text = opruga::scenes::find(name)?;
-    let (blueprint, _) = scene::read(text.as_bytes(), name, &opruga::catalogue(), &options).ok()?;
-    picture(blueprint.build(Options::default()).ok()?).await
+    let (blueprint, _) = scene::read(text.as_bytes(), name, &catalogue_of(registries), &options).ok()?;
+    picture(blueprint.build_with(Options::default(), registries).ok()?).await
 }
 
 async fn picture(mut world: Box<dyn AnyWorld>) -> Option<Pixels> {
@@ -51,6 +51,7 @@ mod kept {
     use flate2::Compression;
     use flate2::read::DeflateDecoder;
     use flate2::write::DeflateEncoder;
+    use opruga::Registries;
     use opruga::io::safe_write::safe_write;
     use std::hash::{DefaultHasher, Hash, Hasher};
     use std::io::{Read as _, Write as _};
@@ -61,22 +62,26 @@ mod kept {
 
     /// The picture of a scene: that which is kept in a folder, or one that is drawn now and kept there. Where it cannot be kept it is
     /// drawn anew another time.
-    pub(crate) async fn kept_or_drawn(name: &'static str, folder: Option<PathBuf>) -> Option<Pixels> {
-        let Some(folder) = folder else { return draw(name).await };
-        let path = folder.join(format!("{name}-{:016x}.rgba", mark(name)?));
+    pub(crate) async fn kept_or_drawn(
+        name: &'static str,
+        registries: &Registries,
+        folder: Option<PathBuf>,
+    ) -> Option<Pixels> {
+        let Some(folder) = folder else { return draw(name, registries).await };
+        let path = folder.join(format!("{name}-{:016x}.rgba", mark(name, registries)?));
         if let Some(pixels) = read(&path) {
             return Some(pixels);
         }
-        let pixels = draw(name).await?;
+        let pixels = draw(name, registries).await?;
         let _ = keep(&folder, name, &path, &pixels);
         Some(pixels)
     }
 
     /// A mark of all that a picture is drawn from: the scene, its files, and the program, by the file that it was started from.
-    pub(super) fn mark(name: &str) -> Option<u64> {
+    pub(super) fn mark(name: &str, registries: &Registries) -> Option<u64> {
         let text = opruga::scenes::find(name)?;
         let mut hasher = DefaultHasher::new();
-        (SIZE, text, named_files(name, text, &opruga::scenes::files())).hash(&mut hasher);
+        (SIZE, text, named_files(name, text, &opruga::scenes::files(), registries)).hash(&mut hasher);
         let own = std::env::current_exe().and_then(std::fs::metadata).ok();
         (env!("CARGO_PKG_VERSION"), own.map(|own| (own.len(), own.modified().ok()))).hash(&mut hasher);
         Some(hasher.finish())
@@ -115,7 +120,9 @@ mod kept {
         #[test]
         fn a_picture_is_drawn_once_and_taken_from_the_folder_from_then_on() {
             let folder = std::env::temp_dir().join(format!("opruga-thumbnails-{}", std::process::id()));
-            let drawn = || finish(kept_or_drawn("two-chambers", Some(folder.clone()))).expect("a picture");
+            let drawn = || {
+                finish(kept_or_drawn("two-chambers", &Registries::default(), Some(folder.clone()))).expect("a picture")
+            };
             let files = || -> Vec<PathBuf> {
                 std::fs::read_dir(&folder).into_iter().flatten().flatten().map(|file| file.path()).collect()
             };
@@ -140,7 +147,8 @@ mod kept {
 
         #[test]
         fn scenes_have_marks_of_their_own() {
-            let marks: Vec<u64> = opruga::scenes::names().filter_map(mark).collect();
+            let registries = Registries::default();
+            let marks: Vec<u64> = opruga::scenes::names().filter_map(|name| mark(name, &registries)).collect();
             let different: std::collections::BTreeSet<u64> = marks.iter().copied().collect();
             assert_eq!(
                 (marks.len(), different.len()),

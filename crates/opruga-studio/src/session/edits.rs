@@ -385,7 +385,7 @@ impl Session {
                 table.insert("name", new.into());
             }
             self.document.push_command(add_table(now, &table));
-            let added = match read(&self.document, &self.files) {
+            let added = match read(&self.document, &self.files, &self.setting.registries) {
                 Ok((scene, odd)) => self.engine.add_from(scene, odd).map_err(Said::World),
                 Err(errors) => Err(Said::Scene(errors)),
             };

@@ -121,7 +121,7 @@ impl Session {
 
     /// The box around a body as its table sets it down; none where that cannot be read.
     fn box_of(&self, table: &InlineTable) -> Option<Ends> {
-        let (blueprint, _) = read(&self.document.alone(table), &self.files).ok()?;
+        let (blueprint, _) = read(&self.document.alone(table), &self.files, &self.setting.registries).ok()?;
         let body = blueprint.scene().bodies().last()?;
         let translation = body.translation();
         Some(around(body.rest_positions().into_iter().map(|point| [0, 1, 2].map(|d| point[d] + translation[d]))))

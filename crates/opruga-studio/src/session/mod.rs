@@ -23,7 +23,6 @@ mod titles;
 mod travel;
 
 pub use edits::{Edit, Placed};
-pub use offers::steady;
 pub use patience::by_the_clock;
 pub use pointer::Grip;
 
@@ -35,12 +34,13 @@ use crate::pacing::Pacing;
 use crate::pair;
 use crate::said::Said;
 use crate::samples::Samples;
+use crate::setting::Setting;
 use crate::shape_file::Shape;
 use crate::shown::{Message, Offer, Severity, Show};
 use crate::words::Language;
+use opruga::WorldError;
 use opruga::core::spec::{Value, Values};
 use opruga::io::Files;
-use opruga::{Options, WorldError};
 use patience::Patience;
 use pointer::Held;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -143,7 +143,7 @@ impl Request {
 pub struct Session {
     document: Document,
     files: Files,
-    options: Options,
+    setting: Setting,
     engine: Box<dyn Engine>,
     /// In what the scene on the right differs, where there is one.
     differences: Option<Vec<Difference>>,
@@ -210,18 +210,19 @@ fn mark(text: &str) -> u64 {
 }
 
 impl Session {
-    /// Opens a scene.
+    /// Opens a scene: by [`opruga::Options`] alone, with the models and integrators of the library.
     ///
     /// # Errors
     /// Everything that is wrong with it.
-    pub fn open(name: &str, text: &str, files: Files, options: Options) -> Result<Session, Said> {
-        let document = Document::unread(name, text, &files, None)?;
-        Session::begin(document, files, options)
+    pub fn open(name: &str, text: &str, files: Files, setting: impl Into<Setting>) -> Result<Session, Said> {
+        let setting = setting.into();
+        let document = Document::unread(name, text, &files, &setting.registries, None)?;
+        Session::begin(document, files, setting)
     }
 
     /// A session of a text that was read.
-    fn begin(document: Document, files: Files, options: Options) -> Result<Session, Said> {
-        let engine = pair::build(&document, None, &files, &options)?;
+    fn begin(document: Document, files: Files, setting: Setting) -> Result<Session, Said> {
+        let engine = pair::build(&document, None, &files, &setting)?;
         let mut session = Session {
             ends: ends::Ends::of(engine.warnings()),
             clean: mark(&document.text()),
@@ -229,7 +230,7 @@ impl Session {
             start: document.clone(),
             document,
             files,
-            options,
+            setting,
             engine,
             differences: None,
             renamed: Vec::new(),

@@ -4,14 +4,14 @@ use super::{Edit, Request, Session};
 use crate::document::{Document, read};
 use crate::said::Said;
 use crate::shown::{Offer, Severity, Shown};
-use opruga::WorldError;
 use opruga::core::spec::{Role, Spec, Value, Values};
 use opruga::io::Files;
 use opruga::world::schema::MOST_SUBSTEPS;
+use opruga::{Registries, WorldError, catalogue_of};
 
 /// The integrator that is offered instead of one without a stable step: it costs as little.
-pub fn steady() -> Option<&'static Spec> {
-    opruga::catalogue().integrators.into_iter().find(|spec| spec.has_role(Role::OfferedExplicit))
+fn steady(registries: &Registries) -> Option<&'static Spec> {
+    catalogue_of(registries).integrators.into_iter().find(|spec| spec.has_role(Role::OfferedExplicit))
 }
 
 /// What a frame may take before a person is told of it [s].
@@ -34,10 +34,10 @@ impl Session {
                 self.playing = true;
                 Ok(())
             }
-            Offer::Steady(body) => {
+            Offer::Steady(body, _) => {
                 self.go_back_a_second()?;
                 let dimension = self.dimension();
-                if let Some(spec) = steady() {
+                if let Some(spec) = steady(&self.setting.registries) {
                     let values = Values::defaults(spec, dimension);
                     let take = |session: &mut Session, values: &Values| match body {
                         Some(body) => session.change(*body, None, Some(values.clone())),
@@ -107,7 +107,10 @@ impl Session {
         let shown = self.engine.shown(&self.show);
         let more = 2 * u64::from(shown.substeps) <= u64::from(MOST_SUBSTEPS);
         // Where no step is stable, half of it is not either.
-        without_a_stable_step(&shown, body).map(Offer::Steady).or(more.then_some(Offer::HalveStep))
+        let steady = steady(&self.setting.registries);
+        let another =
+            without_a_stable_step(&shown, body).zip(steady).map(|(body, spec)| Offer::Steady(body, spec.kind));
+        another.or(more.then_some(Offer::HalveStep))
     }
 
     pub(super) fn refuse(&mut self, error: &WorldError, request: Option<Request>) {
@@ -149,7 +152,7 @@ impl Session {
     fn nodes_with(&self, request: Option<&Request>) -> usize {
         let now = self.nodes_now();
         let of = |document: &Document, files: &Files| -> Vec<usize> {
-            match read(document, files) {
+            match read(document, files, &self.setting.registries) {
                 Ok((blueprint, _)) => blueprint.scene().bodies().map(|body| body.nodes()).collect(),
                 Err(_) => Vec::new(),
             }

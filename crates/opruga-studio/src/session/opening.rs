@@ -5,18 +5,19 @@ use super::{Edit, Session};
 use crate::document::Document;
 use crate::handing::named_files;
 use crate::said::{Said, Step};
+use crate::setting::Setting;
 use crate::shape_file::Shape;
 use crate::shown::Severity;
+use opruga::WorldError;
 use opruga::core::spec::Value;
 use opruga::io::Files;
-use opruga::{Options, WorldError};
 use std::path::Path;
 use std::sync::Arc;
 
 impl Session {
     /// Another scene. The one before can be come back to where something was done in it.
     pub(super) fn open_another(&mut self, name: &str, text: &str, files: Files) -> Result<(), Said> {
-        let next = Session::open(name, text, files, self.options.clone())?;
+        let next = Session::open(name, text, files, self.setting.clone())?;
         self.go_over_to(next, true);
         Ok(())
     }
@@ -51,7 +52,7 @@ impl Session {
     pub(super) fn take_shape(&mut self, shape: &Shape, middle: [f64; 3], size: f64) -> Result<(), Said> {
         let fits = (self.dimension() == 3) == shape.space;
         let files: Vec<(String, Arc<[u8]>)> = match fits {
-            true => named_files(&shape.name, &shape.text, &shape.files).into_iter().collect(),
+            true => named_files(&shape.name, &shape.text, &shape.files, &self.setting.registries).into_iter().collect(),
             false => Vec::new(),
         };
         // Where it cannot be read, or is of several files, the scene around it tells or shows so.
@@ -90,13 +91,14 @@ impl Session {
     ///
     /// # Errors
     /// What is wrong with the file.
-    pub fn around(shape: &Shape, options: &Options) -> Result<Session, Said> {
-        let document = Document::unread(&shape.name, &shape.text, &shape.files, Some(&shape.file))?;
-        match Session::begin(document.clone(), shape.files.clone(), options.clone()) {
+    pub fn around(shape: &Shape, setting: &Setting) -> Result<Session, Said> {
+        let document =
+            Document::unread(&shape.name, &shape.text, &shape.files, &setting.registries, Some(&shape.file))?;
+        match Session::begin(document.clone(), shape.files.clone(), setting.clone()) {
             Err(Said::World(WorldError::UnstableStep { substeps, .. })) => {
                 let mut finer = document;
                 finer.set("time.substeps", &Value::Integer(i64::from(with_a_margin(substeps))));
-                Session::begin(finer, shape.files.clone(), options.clone())
+                Session::begin(finer, shape.files.clone(), setting.clone())
             }
             outcome => outcome,
         }
@@ -104,7 +106,7 @@ impl Session {
 
     /// Opens the scene around a shape.
     fn open_around(&mut self, shape: &Shape) -> Result<(), Said> {
-        let next = Session::around(shape, &self.options)?;
+        let next = Session::around(shape, &self.setting)?;
         self.go_over_to(next, true);
         Ok(())
     }

@@ -43,7 +43,7 @@ impl Patience {
 impl Session {
     /// What ends a frame that takes long.
     pub fn break_off(&self) -> Arc<BreakOff> {
-        Arc::clone(&self.options.break_off)
+        Arc::clone(&self.setting.options.break_off)
     }
 
     /// Ends frames that take longer than this [s] at the last good one, and asks the person whether they shall be waited for. The options
@@ -54,13 +54,13 @@ impl Session {
 
     /// A frame begins.
     pub(super) fn look_at_the_clock(&self) {
-        self.options.break_off.end_after(self.patience.now);
+        self.setting.options.break_off.end_after(self.patience.now);
     }
 
     /// A frame was broken off on the way to what was asked for. Who asked for that has asked for something else; where it took too long,
     /// time stands and the person is asked.
     pub(super) fn broken_off(&mut self, wanted: Request) {
-        if self.options.break_off.is_asked() || self.patience.now.is_infinite() {
+        if self.setting.options.break_off.is_asked() || self.patience.now.is_infinite() {
             return;
         }
         (self.playing, self.goal) = (false, None);

@@ -2,6 +2,7 @@
 
 use super::{Session, mark};
 use crate::differences::Difference;
+use opruga::Registries;
 use opruga::io::Files;
 
 impl Session {
@@ -36,6 +37,11 @@ impl Session {
     /// Where the files are that the scene names.
     pub fn files(&self) -> &Files {
         &self.files
+    }
+
+    /// The models and integrators that the scene can name.
+    pub fn registries(&self) -> &Registries {
+        &self.setting.registries
     }
 
     /// The hash of the state.

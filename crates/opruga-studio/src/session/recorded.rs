@@ -3,10 +3,11 @@
 use super::{KEYFRAME_BYTES, Session};
 use crate::document::Document;
 use crate::said::Said;
+use crate::setting::Setting;
 use crate::shown::{Offer, Severity};
+use opruga::WorldError;
 use opruga::io::Files;
 use opruga::io::recording::{Ending, Recording};
-use opruga::{Options, WorldError};
 use std::io::{Read, Seek};
 
 /// A recording that is viewed: frames whose states are there are not computed.
@@ -24,7 +25,7 @@ impl Session {
     ///
     /// # Errors
     /// Why there is nothing to see, as one text: a run that a program has led, a scene that this version does not read, damage.
-    pub fn view<R: Read + Seek>(mut recording: Recording<R>, options: Options) -> Result<Session, String> {
+    pub fn view<R: Read + Seek>(mut recording: Recording<R>, setting: impl Into<Setting>) -> Result<Session, String> {
         let header = recording.header().clone();
         if recording.inputs().next().is_some() {
             return Err(
@@ -38,8 +39,9 @@ impl Session {
         for (path, value) in &header.overrides {
             document.take_override(path, value)?;
         }
-        let options = Options { allow_unstable: options.allow_unstable || header.allow_unstable, ..options };
-        let opened = Session::open(&header.name, &document.text(), files, options);
+        let mut setting = setting.into();
+        setting.options.allow_unstable |= header.allow_unstable;
+        let opened = Session::open(&header.name, &document.text(), files, setting);
         let mut session = opened.map_err(|said| said.to_string())?;
         let damaged = |error: opruga::io::recording::RecordingError| error.to_string();
         let frames = recording.frames();

@@ -279,8 +279,8 @@ fn another_integrator_that_is_offered_after_a_divergence_comes_with_the_substeps
         session.tick(Duration::from_millis(17), Duration::from_millis(12), &|| Duration::ZERO);
     }
     let message = session.shown().message.expect("it diverges");
-    assert_eq!(message.offer, Some(Offer::Steady(None)), "{message:?}");
-    ask(&mut session, Request::Accept(Offer::Steady(None)));
+    assert_eq!(message.offer, Some(Offer::Steady(None, "symplectic_euler")), "{message:?}");
+    ask(&mut session, Request::Accept(Offer::Steady(None, "symplectic_euler")));
     let shown = session.shown();
     assert!(shown.playing && shown.substeps > 2, "{}", shown.substeps);
     assert_eq!(shown.integrator.as_ref().map(|values| values.kind()), Some("symplectic_euler"));

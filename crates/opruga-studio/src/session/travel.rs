@@ -133,7 +133,7 @@ impl Session {
 
     /// Builds the world of a document, and the one on its right.
     pub(super) fn build(&self, document: &Document) -> Result<Box<dyn Engine>, Said> {
-        pair::build(document, self.differences.as_deref(), &self.files, &self.options)
+        pair::build(document, self.differences.as_deref(), &self.files, &self.setting)
     }
 
     /// Shows the scene twice, the second time with differences, or once (none). Both go from the start to the present

@@ -92,8 +92,12 @@ fn the_right_side_is_the_scene_with_the_differences_and_the_distance_is_that_bet
     }
     assert_eq!(session.hash(), alone);
     pass(&mut session, 30);
-    let text =
-        right_of(&Document::new("ball", &session.text()).expect("a text"), &differences, &opruga::scenes::files());
+    let text = right_of(
+        &Document::new("ball", &session.text()).expect("a text"),
+        &differences,
+        &opruga::scenes::files(),
+        &opruga::Registries::default(),
+    );
     let text = text.expect("a scene").0.text();
     let mut right = Session::open("right", &text, opruga::scenes::files(), Options::default()).expect("it opens");
     pass(&mut right, 42);
@@ -258,7 +262,8 @@ fn a_pull_on_either_side_takes_the_nodes_that_lie_at_the_same_place_at_rest_and_
         // The scene that is saved of the right side comes to its state.
         let differences = session.differences().expect("two scenes").to_vec();
         let document = Document::new("ball", &session.saved()).expect("a text");
-        let (right, _) = right_of(&document, &differences, &opruga::scenes::files()).expect("a scene");
+        let (right, _) = right_of(&document, &differences, &opruga::scenes::files(), &opruga::Registries::default())
+            .expect("a scene");
         let mut alone =
             Session::open("right", &right.text(), opruga::scenes::files(), Options::default()).expect("it opens");
         while alone.frames() < session.frames() {

@@ -70,7 +70,9 @@ fn a_saved_scene_that_names_files_lies_beside_them_and_runs_to_the_same_bits() {
     pull(&mut session);
     let folder = Folder::at(&room.0);
     for expected in ["heart/heart.toml", "heart-2/heart.toml"] {
-        let written = folder.scene(session.name(), &session.saved(), session.files()).expect("it is written");
+        let written = folder
+            .scene(session.name(), &session.saved(), session.files(), session.registries())
+            .expect("it is written");
         assert_eq!(written[0], room.0.join(expected).with_file_name("heart.toml"));
         assert!(written.len() > 1 && written.iter().all(|path| path.is_file()), "{written:?}");
         assert_eq!(run(&written[0]), session.hash());
@@ -78,7 +80,7 @@ fn a_saved_scene_that_names_files_lies_beside_them_and_runs_to_the_same_bits() {
     // A scene without files is a file by itself, and replaces none.
     let ball = open("ball");
     for expected in ["ball.toml", "ball-2.toml"] {
-        let written = folder.scene("ball", &ball.saved(), ball.files()).expect("it is written");
+        let written = folder.scene("ball", &ball.saved(), ball.files(), ball.registries()).expect("it is written");
         assert_eq!(written, [room.0.join(expected)]);
     }
 }
@@ -88,7 +90,8 @@ fn a_folder_that_cannot_be_written_is_told_and_nothing_is_left() {
     let room = Room::new("refused");
     std::fs::write(room.0.join("out"), "a file where a folder should be").expect("written");
     let session = open("heart");
-    let refused = Folder::at(room.0.join("out")).scene("heart", &session.saved(), session.files());
+    let refused =
+        Folder::at(room.0.join("out")).scene("heart", &session.saved(), session.files(), session.registries());
     assert!(refused.is_err_and(|said| said.to_string().contains("cannot be made")));
     assert_eq!(std::fs::read_dir(&room.0).expect("a folder").count(), 1);
 }
@@ -98,7 +101,7 @@ fn row_93_what_was_done_in_a_window_that_is_lost_goes_on_in_the_next_to_the_same
     for scene in ["ball", "heart"] {
         let mut session = open(scene);
         pull(&mut session);
-        let held = Files::held(named_files(session.name(), &session.saved(), session.files()));
+        let held = Files::held(named_files(session.name(), &session.saved(), session.files(), session.registries()));
         let shared = Shared { name: session.name().into(), text: session.saved(), files: held };
         let room = Room::new(scene);
         let path = room.0.join("kept");

@@ -5,6 +5,7 @@ mod croatian;
 mod kept_scenes;
 mod pages;
 mod recorded_runs;
+mod registered;
 mod screen;
 mod sessions;
 mod windows;

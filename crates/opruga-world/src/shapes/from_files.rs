@@ -1,7 +1,7 @@
 //! Shapes that are read from files: drawings, maps, texts, pictures, surfaces, meshes.
 
 use super::CENTER;
-use opruga_core::spec::{Allowed, Bound, Condition, Default, Field, Spec};
+use opruga_core::spec::{Allowed, Bound, Condition, Default, Field, Role, Spec};
 
 const SPACING: Field = Field::new(
     "spacing",
@@ -239,7 +239,7 @@ static MESH: Spec = Spec {
             "What becomes of nodes that no cell names: an error, or left out, and counted.",
         ),
     ],
-    roles: &[],
+    roles: &[Role::CellsFromFile],
 };
 
 /// All of them.

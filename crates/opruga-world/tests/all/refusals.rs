@@ -97,7 +97,7 @@ fn every_part_that_is_refused_is_found_once() {
         kind: LoadKind::Pressure(1.0),
         curve: Vec::new(),
     });
-    let found: Vec<String> = World::problems(&blueprint, &Options::default())
+    let found: Vec<String> = World::problems(&blueprint, &Options::default(), &Arc::default())
         .iter()
         .map(|problem| match problem {
             WorldError::Build { place, source } => format!("{place}: {}: {}", source.kind, source.code()),
@@ -118,11 +118,11 @@ fn every_part_that_is_refused_is_found_once() {
     );
     // What a world accepts has no problems, and the other way round.
     let first = World::new(blueprint.clone(), Options::default()).expect_err("refused");
-    assert!(World::problems(&blueprint, &Options::default()).contains(&first));
+    assert!(World::problems(&blueprint, &Options::default(), &Arc::default()).contains(&first));
     blueprint.bodies.truncate(1);
     blueprint.colliders.truncate(1);
     blueprint.loads.clear();
-    assert_eq!(World::problems(&blueprint, &Options::default()), []);
+    assert_eq!(World::problems(&blueprint, &Options::default(), &Arc::default()), []);
     assert!(World::new(blueprint, Options::default()).is_ok());
 }
 

@@ -73,7 +73,7 @@ messages! {
         ChangedRow { content: String },
         "write.exists" #[error("the folder holds a sweep with another question: {difference}")]
         #[hint("--force begins anew, --out takes another folder")]
-        OtherQuestion { difference: String },
+        OtherQuestion { difference: QuestionDifference },
         "write.failed" #[error("a row of the table cannot be written: {reason}")]
         #[hint("the rows before it are kept; the same call goes on with the sweep")]
         RowNotWritten { reason: String },
@@ -101,5 +101,27 @@ terms! {
 
 /// All messages of sweeps, for tests of translations.
 #[doc(hidden)]
-pub const MESSAGES: &[&[opruga_math::message::Variant]] =
-    &[RangeFault::VARIANTS, RowFault::VARIANTS, SweepError::VARIANTS, SweepAllowed::VARIANTS];
+pub const MESSAGES: &[&[opruga_math::message::Variant]] = &[
+    RangeFault::VARIANTS,
+    RowFault::VARIANTS,
+    SweepError::VARIANTS,
+    SweepAllowed::VARIANTS,
+    QuestionDifference::VARIANTS,
+];
+
+messages! {
+    /// In what an earlier question of a sweep was another one.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum QuestionDifference {
+        "part.question" #[error("the text of the scene was another")]
+        Scene {},
+        "part.question" #[error("a file that the scene names was another")]
+        File {},
+        "part.question" #[error("--set {before} instead of {now}")]
+        Set { before: String, now: String },
+        "part.question" #[error("--metric {before} instead of {now}")]
+        Metric { before: String, now: String },
+        "part.question" #[error("other points were asked for")]
+        Points {},
+    }
+}

@@ -1,7 +1,7 @@
 //! What a sweep measures of every run.
 
 use super::errors::{SweepAllowed, SweepError};
-use opruga_core::spec::nearest;
+use opruga_core::spec::{Role, nearest};
 use opruga_io::SceneError;
 use opruga_io::problem::visible;
 use opruga_world::blueprint::Recorded;
@@ -164,7 +164,7 @@ fn upwards(scene: &dyn AnyScene) -> Option<[f64; 3]> {
     };
     let gravity = scene.gravity();
     unit(core::array::from_fn(|d| gravity.get(d).map_or(0.0, |g| -g))).or_else(|| {
-        let floor = scene.colliders().iter().find(|c| c.values.kind() == "half_space")?;
+        let floor = scene.colliders().iter().find(|c| c.values.spec().has_role(Role::HalfSpace))?;
         unit(floor.values.vector("normal"))
     })
 }

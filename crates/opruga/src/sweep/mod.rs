@@ -16,6 +16,7 @@
 //!         metrics: vec![Metric::parse("bounce_height.ball")?],
 //!         allow_unstable: false,
 //!         lenient: false,
+//!         registries: opruga::Registries::default(),
 //!     };
 //!     let points = sweep.points().map_err(|errors| errors[0].to_string())?;
 //!     for (number, point) in points.iter().enumerate() {
@@ -50,14 +51,14 @@ use metrics::Meter;
 use opruga_io::{Files, SceneError, scene};
 use opruga_math::message::Message;
 use opruga_world::blueprint::AnyBlueprint;
-use opruga_world::{AnyScene, AnyWorld};
+use opruga_world::{AnyScene, AnyWorld, Registries};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Processor time after which a speed is known well enough [s].
 const TIMED: f64 = 0.1;
 
 /// The question that a sweep asks; the same question has the same answer, times on the clock apart.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Sweep {
     /// The name of the scene.
     pub name: String,
@@ -79,6 +80,8 @@ pub struct Sweep {
     pub allow_unstable: bool,
     /// Unknown fields are overlooked.
     pub lenient: bool,
+    /// The models and integrators that the scene can name.
+    pub registries: Registries,
 }
 
 impl Sweep {
@@ -130,7 +133,8 @@ impl Sweep {
             files: self.files.clone(),
             ..scene::Options::default()
         };
-        scene::read(self.text.as_bytes(), &self.file, &crate::catalogue(), &options).map(|(blueprint, _)| blueprint)
+        scene::read(self.text.as_bytes(), &self.file, &crate::catalogue_of(&self.registries), &options)
+            .map(|(blueprint, _)| blueprint)
     }
 
     /// Runs one point on the calling thread and measures it; none where `stop` was set meanwhile.
@@ -204,7 +208,7 @@ struct Run<'a> {
 impl Run<'_> {
     fn measure(&self, blueprint: &AnyBlueprint) -> Result<Vec<Option<f64>>, Failed> {
         let frames = blueprint.scene().time().frames();
-        let mut world = blueprint.clone().build(self.options.clone())?;
+        let mut world = blueprint.clone().build_with(self.options.clone(), &self.sweep.registries)?;
         let mut meter = Meter::new(&self.sweep.metrics, world.scene(), frames);
         if meter.looks_within() {
             world.keep_looks(1);
@@ -241,7 +245,7 @@ impl Run<'_> {
         let (mut fastest, mut spent) = (f64::INFINITY, 0.0);
         // A clock that stands still is read a few times only.
         for _ in 0..50 {
-            let mut world = blueprint.clone().build(self.options.clone())?;
+            let mut world = blueprint.clone().build_with(self.options.clone(), &self.sweep.registries)?;
             let start = (self.clock)();
             while world.frames() < frames {
                 self.frame(&mut *world)?;

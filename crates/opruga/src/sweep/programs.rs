@@ -2,10 +2,12 @@
 
 use super::{Axis, Design, Metric, Row, Sweep};
 use opruga_io::{Files, SceneError};
+use opruga_world::Registries;
 use std::sync::atomic::AtomicBool;
 
 impl Sweep {
-    /// A sweep over every combination of the values of `axes` (`"body.ball.mass=1,2"`), in a scene that names no files.
+    /// A sweep over every combination of the values of `axes` (`"body.ball.mass=1,2"`), in a scene that names no files and knows the models and integrators of this
+    /// library: [`Sweep::registries`] can be replaced.
     ///
     /// # Errors
     /// [`SceneError`] of an axis that varies nothing or cannot be read, or of a metric that does not exist.
@@ -21,6 +23,7 @@ impl Sweep {
             metrics: metrics.iter().map(|metric| Metric::parse(metric)).collect::<Result<_, _>>()?,
             allow_unstable: false,
             lenient: false,
+            registries: Registries::default(),
         };
         for argument in axes {
             match Axis::parse(argument)? {

@@ -1,9 +1,10 @@
 //! What was asked of a sweep, as it lies in the sweep's folder, so that it can go on.
 
-use super::errors::SweepError;
+use super::errors::{QuestionDifference, SweepError};
 use super::{Axis, Design, Metric, Sweep};
 use opruga_io::problem::visible;
 use opruga_io::{Files, SceneError, overrides};
+use opruga_world::Registries;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -66,11 +67,11 @@ impl Question {
         serde_json::to_string_pretty(self).unwrap_or_default()
     }
 
-    /// The sweep that is asked for.
+    /// The sweep that is asked for, with the models and integrators that its scene can name.
     ///
     /// # Errors
     /// All that is wrong with the parameters, the metrics and the files.
-    pub fn sweep(&self) -> Result<Sweep, Vec<SceneError>> {
+    pub fn sweep(&self, registries: &Registries) -> Result<Sweep, Vec<SceneError>> {
         let (mut errors, mut axes, mut fixed) = (Vec::new(), Vec::new(), Vec::new());
         for set in &self.set {
             match Axis::parse(set) {
@@ -105,6 +106,7 @@ impl Question {
             metrics,
             allow_unstable: self.allow_unstable,
             lenient: self.lenient,
+            registries: registries.clone(),
         })
     }
 
@@ -113,21 +115,20 @@ impl Question {
         *self == Question { file: self.file.clone(), ..other.clone() }
     }
 
-    /// In what an earlier question was another one, in words.
-    pub fn difference(&self, before: &Question) -> String {
-        let lists = |new: &[String], old: &[String]| format!("{} instead of {}", old.join(" "), new.join(" "));
-        let said = if self.scene != before.scene {
-            "the text of the scene was another".to_string()
+    /// In what an earlier question was another one.
+    pub fn difference(&self, before: &Question) -> QuestionDifference {
+        let listed = |list: &[String]| visible(&list.join(" "));
+        if self.scene != before.scene {
+            QuestionDifference::Scene {}
         } else if self.files != before.files {
-            "a file that the scene names was another".to_string()
+            QuestionDifference::File {}
         } else if self.set != before.set {
-            format!("--set {}", lists(&self.set, &before.set))
+            QuestionDifference::Set { before: listed(&before.set), now: listed(&self.set) }
         } else if self.metrics != before.metrics {
-            format!("--metric {}", lists(&self.metrics, &before.metrics))
+            QuestionDifference::Metric { before: listed(&before.metrics), now: listed(&self.metrics) }
         } else {
-            "other points were asked for".to_string()
-        };
-        visible(&said)
+            QuestionDifference::Points {}
+        }
     }
 }
 

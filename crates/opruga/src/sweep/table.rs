@@ -195,6 +195,7 @@ mod tests {
             ],
             allow_unstable: false,
             lenient: false,
+            registries: opruga_world::Registries::default(),
         }
     }
 

@@ -89,7 +89,7 @@ fn question() -> Question {
 
 /// A question and its table, a zero between them.
 fn sweep_folder() -> Vec<u8> {
-    let sweep = question().sweep().expect("a sweep");
+    let sweep = question().sweep(&opruga::Registries::default()).expect("a sweep");
     let points = sweep.points().expect("two points");
     let mut text = head(&sweep);
     for (number, point) in points.iter().enumerate() {

@@ -3,7 +3,8 @@
 use opruga::extend::*;
 use opruga::io::{reference, scene, schema};
 use opruga::pictures::Scenery;
-use opruga::{Options, Registries, Registry, catalogue, catalogue_of};
+use opruga::sweep::{Status, Sweep};
+use opruga::{Options, Registries, Registry, WorldError, catalogue, catalogue_of};
 use std::sync::Arc;
 
 const K: Field = Field::new("tightness", Allowed::POSITIVE, "N/m", Default::Required, "Stiffness k of every node.");
@@ -26,6 +27,9 @@ impl<const D: usize> Model<D> for BedModel {
         Views::default()
     }
     fn build(&self, of: &Ingredients<D>) -> Result<Box<dyn Potential<D>>, BuildError> {
+        if of.mesh.nodes() > 100 {
+            return Err(BuildError::new(SPEC.kind, "bed.too_large", "the bed is too small for the body"));
+        }
         Ok(Box::new(Bed(of.values[0].number("tightness").unwrap_or(0.0), of.mesh.positions.clone())))
     }
 }
@@ -98,7 +102,36 @@ fn a_registered_model_is_offered_where_a_scene_misspells_it() {
     assert!(said.iter().any(|said| said.contains("scene.unknown_kind") && said.contains("bed_of_a_test")), "{said:?}");
     let range = refused(&text(2, SPEC.kind).replace("1000", "-1000"), &known);
     assert_eq!(range.iter().map(|error| error.code).collect::<Vec<_>>(), ["scene.range"]);
+    let field = refused(&text(2, SPEC.kind).replace("tightness", "tihgtness"), &known);
+    let said: Vec<String> = field.iter().map(ToString::to_string).collect();
+    assert!(said.iter().any(|said| said.contains("scene.unknown_field") && said.contains(K.name)), "{said:?}");
     assert!(!refused(&text(2, SPEC.kind), &catalogue()).is_empty());
+}
+
+/// Also beside other errors, which let the world be built part by part.
+#[test]
+fn what_a_registered_model_refuses_is_among_the_problems_of_the_scene() {
+    let (registries, known) = (registries(), catalogue_of(&registries()));
+    let large = text(2, SPEC.kind).replace("vertices = 12", "vertices = 101");
+    let read =
+        |text: &str| scene::read(text.as_bytes(), "a.toml", &known, &scene::Options::default()).expect("a scene").0;
+    let codes = |text: &str| -> Vec<&'static str> {
+        read(text).problems(&Options::default(), &registries).iter().map(WorldError::code).collect()
+    };
+    assert_eq!((codes(&large), codes(&text(2, SPEC.kind))), (vec!["bed.too_large"], Vec::new()));
+    let refused = read(&large).build_with(Options::default(), &registries).err();
+    assert_eq!(refused.map(|error| error.code()), Some("bed.too_large"));
+}
+
+#[test]
+fn a_sweep_runs_a_scene_with_a_registered_model() {
+    let mut sweep =
+        Sweep::new("bed", &text(2, SPEC.kind), &["body.b.models.bed_of_a_test.tightness=500,1000"], &["energy_drift"])
+            .expect("a sweep");
+    assert!(sweep.points().is_err(), "the library does not have it");
+    sweep.registries = registries();
+    let rows = sweep.run().expect("rows");
+    assert_eq!(rows.iter().map(|row| &row.status).collect::<Vec<_>>(), [&Status::Done, &Status::Done]);
 }
 
 /// Half a swing about the balance m g/k below: after it the node is 2 m g/k = 0.02 m lower.

@@ -16,6 +16,7 @@ fn sweep(text: &str, axes: &[&str], metrics: &[&str]) -> Sweep {
         metrics: metrics.iter().map(|m| Metric::parse(m).expect("a metric")).collect(),
         allow_unstable: false,
         lenient: false,
+        registries: opruga::Registries::default(),
     }
 }
 

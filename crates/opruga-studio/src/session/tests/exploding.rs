@@ -49,7 +49,10 @@ fn a_body_that_explodes_stops_time_while_it_can_still_be_seen_also_side_by_side(
         let shown = session.shown();
         let message = shown.message.expect("it is told");
         assert_eq!(message.text, "`ball` exploded: explicit euler is unstable at this step");
-        assert_eq!((message.severity, message.offer), (Severity::Refused, Some(Offer::Steady(None))));
+        assert_eq!(
+            (message.severity, message.offer),
+            (Severity::Refused, Some(Offer::Steady(None, "symplectic_euler")))
+        );
         assert!(!shown.playing);
         let size = extent(&mut session);
         assert!(size > 100.0 && size < 1e6, "{size} m");

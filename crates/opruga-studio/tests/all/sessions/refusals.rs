@@ -173,9 +173,12 @@ fn where_no_step_is_stable_another_integrator_is_offered_and_not_half_the_step()
             session.tick(Duration::from_millis(17), Duration::from_millis(12), &|| Duration::ZERO);
         }
         refusal(&mut session);
-        assert_eq!(session.shown().message.and_then(|message| message.offer), Some(Offer::Steady(own)));
+        assert_eq!(
+            session.shown().message.and_then(|message| message.offer),
+            Some(Offer::Steady(own, "symplectic_euler"))
+        );
         let substeps = session.shown().substeps;
-        session.handle(Request::Accept(Offer::Steady(own)));
+        session.handle(Request::Accept(Offer::Steady(own, "symplectic_euler")));
         no_refusal(&mut session);
         let shown = session.shown();
         let kind =

@@ -160,7 +160,7 @@ fn everything_that_is_wrong_is_said_at_once() {
          models = [{{ kind = \"mass_spring\", modulus = 1 }}, {{ kind = \"pressure\", nRT = 1 }}, {{ kind = \"bending\", stiffness = 1 }}]\n",
         head(1.0 / 60.0, 16, 0.0, "symplectic_euler")
     );
-    let problems = World::problems(&plane(&chain), &Options::default());
+    let problems = World::problems(&plane(&chain), &Options::default(), &Default::default());
     let codes: Vec<&str> = problems.iter().map(opruga::WorldError::code).collect();
     assert_eq!(codes, ["model.no_area", "model.open_surface", "model.no_hinges"], "{problems:?}");
 }
