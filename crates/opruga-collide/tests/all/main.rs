@@ -5,6 +5,7 @@ mod common;
 mod facets;
 mod friction;
 mod impact;
+mod overlap;
 mod same_bits;
 mod seams;
 mod shapes;
