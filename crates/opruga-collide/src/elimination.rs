@@ -2,7 +2,8 @@
 
 use opruga_math::{Pack, WIDTH, Work};
 
-/// Lines that take a block of columns away in one pass: each number of the block is loaded once for all of them.
+/// Lines that take a block of columns away in one pass: each number of the block is loaded once for all of them. A pack has two registers of AVX2: four
+/// lines, the block and a factor fit into its sixteen. Results do not depend on it (`solutions_satisfy_their_equations_at_every_size` covers what is left over).
 const LINES: usize = 4;
 
 /// to += factor from, for whole packs.
