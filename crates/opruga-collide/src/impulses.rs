@@ -341,11 +341,12 @@ fn solve<const D: usize>(problem: Problem<'_, D>) -> usize {
 }
 
 /// Displacements that take overlapping pairs apart by at most `most` [m], without bringing others into overlap: the same sweeps, on positions.
+/// `wanted` is what every row is to gain [m], and `masses` what its points weigh where each moves by itself [kg].
 pub(crate) fn part<const D: usize>(
     rows: &[Row<D>],
     spread: &Spread,
     inverse_mass: &[[f64; D]],
-    wanted: &[f64],
+    (wanted, masses): (&[f64], &[f64]),
     multipliers: &mut Vec<f64>,
     moved: &mut [[f64; D]],
     most: f64,
@@ -357,11 +358,11 @@ pub(crate) fn part<const D: usize>(
         for (k, row) in rows.iter().enumerate() {
             let now = dot(&row.mean(spread, moved), &row.normal);
             let old = multipliers[k];
-            let new = (old + (wanted[k] - now) * row.mass[0]).larger(0.0);
+            let new = (old + (wanted[k] - now) * masses[k]).larger(0.0);
             if new != old {
                 multipliers[k] = new;
                 row.give(spread, &scaled(&row.normal, new - old), inverse_mass, moved);
-                largest = ((new - old) / row.mass[0]).abs().larger(largest);
+                largest = ((new - old) / masses[k]).abs().larger(largest);
             }
         }
         if largest <= TOLERANCE * most {

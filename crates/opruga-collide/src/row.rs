@@ -63,6 +63,16 @@ impl<const D: usize> Row<D> {
         }
     }
 
+    /// What its points weigh along the normal where each moves by itself [kg]; 0 where nothing moves.
+    pub(crate) fn mass_apart(&self, spread: &Spread, inverse_mass: &[[f64; D]]) -> f64 {
+        if !self.coupled || self.mass[0] == 0.0 {
+            return self.mass[0];
+        }
+        let mut apart = *self;
+        apart.weigh(spread, inverse_mass);
+        apart.mass[0]
+    }
+
     /// Works out what it weighs.
     pub(crate) fn weigh(&mut self, spread: &Spread, inverse_mass: &[[f64; D]]) {
         let (points, weights) = self.on(spread);

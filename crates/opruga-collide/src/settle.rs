@@ -113,6 +113,7 @@ impl<const D: usize> Touching<D> {
         for ends in self.turns.starts().windows(2) {
             let rows = &self.rows[ends[0] as usize..ends[1] as usize];
             self.wanted.clear();
+            self.masses.clear();
             let mut overlap = false;
             for row in rows {
                 let u = subtract(&row.mean(&self.spread, &self.v), &row.carry);
@@ -120,11 +121,14 @@ impl<const D: usize> Touching<D> {
                 // Sweeps that end early leave less than this.
                 overlap |= end < -OVERLAP * self.thickest[0];
                 self.wanted.push(if row.of_obstacle { -end } else { (-end).smaller(most) });
+                // Displacements move every point by itself, also of bodies that answer impulses as a whole.
+                self.masses.push(row.mass_apart(&self.spread, &self.inverse_mass));
             }
             if !overlap {
                 continue;
             }
-            part(rows, &self.spread, &self.inverse_mass, &self.wanted, &mut self.multipliers, &mut self.moved, most);
+            let wanted = (&self.wanted[..], &self.masses[..]);
+            part(rows, &self.spread, &self.inverse_mass, wanted, &mut self.multipliers, &mut self.moved, most);
             for (row, _) in rows.iter().zip(&self.multipliers).filter(|(_, multiplier)| **multiplier > 0.0) {
                 acting(&self.spread, row).for_each(|(p, _)| self.touched[p as usize] = true);
             }

@@ -87,6 +87,7 @@ pub struct Touching<const D: usize> {
     /// The largest distance that surfaces keep in contact [m]: of bodies, and with obstacles.
     pub(crate) thickest: [f64; 2],
     pub(crate) wanted: Vec<f64>,
+    pub(crate) masses: Vec<f64>,
     pub(crate) multipliers: Vec<f64>,
     pub(crate) touched: Vec<bool>,
     /// Where a point stands among those that changed.

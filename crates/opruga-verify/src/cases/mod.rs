@@ -11,6 +11,7 @@ mod boundary_bodies;
 mod boundary_shell;
 mod contact;
 mod finite_differences;
+mod fits;
 mod heat;
 mod integrators;
 mod ledgers;
@@ -59,6 +60,7 @@ pub fn cases() -> impl Iterator<Item = &'static Case> {
         matching::STATICS,
         boundary::STATICS,
         pressed::CASES,
+        fits::CASES,
         finite_differences::MATERIALS,
         materials::CASES,
         volumes::MATERIALS,
