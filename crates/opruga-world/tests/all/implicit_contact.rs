@@ -291,7 +291,9 @@ fn light_and_stiff_bodies_that_begin_too_near_part_by_no_more_than_they_lack() {
                     let blueprint = &scene.bodies[body];
                     for (node, x) in blueprint.mesh.positions.iter().enumerate() {
                         let now = world.position(body, node as u32);
-                        let way = (0..2).map(|d| (now[d] - x[d] - blueprint.translation[d]).abs()).fold(0.0, f64::max);
+                        let way = (0..2)
+                            .map(|d| (now[d] - x[d] - blueprint.translation[d]).abs())
+                            .fold(0.0, |most: f64, c| c.larger(most));
                         assert!(way <= lack, "{rule}, {mass} kg: node {node} of body {body} went {way} m");
                     }
                 }
