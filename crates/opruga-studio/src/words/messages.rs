@@ -72,6 +72,7 @@ impl Language {
     }
 
     /// What a message says.
+    #[expect(clippy::too_many_lines, reason = "a table: one arm for every message")]
     pub fn said(self, said: &Said) -> String {
         match said {
             Said::Because(text) => match self {
