@@ -2,7 +2,7 @@
 
 use crate::arguments::Run;
 use crate::checkpoints::{self, Calling, Keeper, SavedRun};
-use crate::errors::{CallFault, CallRange};
+use crate::errors::{CallFault, CallRange, CheckFault, Crossing};
 use crate::failure::{Failure, print_data};
 use crate::forecast::{Forecast, duration};
 use crate::interrupt;
@@ -370,12 +370,15 @@ fn crossed(world: &dyn AnyWorld) -> Option<Failure> {
     let found = world.crossed_surfaces();
     let first = found.first()?;
     let name = |body: usize| world.scene().body(body).map_or("", |body| body.name()).to_owned();
-    let [a, b] = first.bodies;
-    let how = match first.facets {
-        Some([f, g]) if a == b => format!("facets {f} and {g} of body `{}` cross", name(a)),
-        Some([f, g]) => format!("facet {f} of body `{}` and facet {g} of body `{}` cross", name(a), name(b)),
-        None => format!("of bodies `{}` and `{}`, one lies in the other", name(a), name(b)),
+    let itself = first.bodies[0] == first.bodies[1];
+    let [body, other] = first.bodies.map(name);
+    let crossing = match first.facets {
+        Some([first, second]) if itself => Crossing::Within { first, second, body },
+        Some([first, second]) => Crossing::Between { first, body, second, other },
+        None => Crossing::Inside { body, other },
     };
-    let more = if found.len() > 1 { format!("; {} pairs of bodies in all", found.len()) } else { String::new() };
-    Some(Failure::Check { code: "contact.crossed", message: format!("at t = {} s {how}{more}", number(world.time())) })
+    Some(Failure::Check(match (world.time(), found.len()) {
+        (time, 1) => CheckFault::Crossed { time, crossing },
+        (time, pairs) => CheckFault::CrossedByPairs { time, crossing, pairs },
+    }))
 }

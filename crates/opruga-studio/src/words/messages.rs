@@ -83,6 +83,7 @@ impl Language {
                 errors.iter().map(|error| error.text(self.translation())).collect::<Vec<_>>().join("\n")
             }
             Said::World(error) => self.in_full(error),
+            Said::Recording(error) => self.in_full(error),
             Said::Exploded(Exploded { body, integrator, unstable: true }) => {
                 let integrator = self.kind(Part::Integrator, integrator);
                 either!(
