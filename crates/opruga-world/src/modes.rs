@@ -84,7 +84,7 @@ impl<const D: usize> World<D> {
         system.evaluate(Stage::Current, 0.0, 0.0, &mut force).map_err(|cause| refuse(Refusal::State { cause }))?;
         let mut motions = SmallMotions::about(system, count).map_err(refuse)?;
         let (mut modes, known) = motions.rigid();
-        motions.leave_out_held_axes();
+        motions.leave_out_pinned_axes();
         let wanted = count.saturating_sub(modes.len());
         let found = motions.elastic(wanted, &known).map_err(refuse)?;
         modes.truncate(count);
@@ -96,15 +96,15 @@ impl<const D: usize> World<D> {
 /// Small motions of a body about its present state: M q″ + K q = 0.
 struct SmallMotions<const D: usize> {
     system: System<D>,
-    /// K [N/m], where held axes have neither a row nor a column.
+    /// K [N/m], where pinned axes have neither a row nor a column.
     stiffness: BlockMatrix<D>,
     /// The lumped mass of every axis of every node [kg].
     mass: Vec<f64>,
     /// Whether a pin holds an axis.
-    held: Vec<bool>,
-    /// Nodes none of whose axes are held.
+    pinned: Vec<bool>,
+    /// Nodes none of whose axes are pinned.
     free: Vec<bool>,
-    /// What takes held axes out, of every node.
+    /// What takes pinned axes out, of every node.
     projectors: Vec<[[f64; D]; D]>,
     /// The largest ratio of a diagonal element of K to its mass [1/s²].
     fastest: f64,
@@ -119,38 +119,38 @@ impl<const D: usize> SmallMotions<D> {
             system.hessian(Stage::Current, 0.0, Definiteness::Exact, matrix);
         });
         let mass: Vec<f64> = (0..system.nodes).flat_map(|node| [system.mass.at(node); D]).collect();
-        let mut held = vec![false; mass.len()];
-        system.held_axes(&mut |place, d| held[place * D + d] = true);
-        if held.iter().all(|held| *held) {
+        let mut pinned = vec![false; mass.len()];
+        system.held_axes(&mut |place, d| pinned[place * D + d] = true);
+        if pinned.iter().all(|pinned| *pinned) {
             return Err(Refusal::AllHeld {});
         }
-        if let Some(light) = (0..mass.len()).find(|k| !(mass[*k] > 0.0 || held[*k])) {
+        if let Some(light) = (0..mass.len()).find(|k| !(mass[*k] > 0.0 || pinned[*k])) {
             return Err(Refusal::NoMassOfNode { node: light / D });
         }
-        let axes = held.iter().filter(|held| !**held).count();
+        let axes = pinned.iter().filter(|pinned| !**pinned).count();
         let bytes = memory(count, axes);
         if bytes > MOST_BYTES {
             let (bytes, most) = (format!("{bytes:.0}"), format!("{MOST_BYTES:.0}"));
             return Err(Refusal::ModesMemory { count: count.min(axes), axes, bytes, most });
         }
-        // Held axes: no row and no column.
-        let free: Vec<bool> = (0..system.nodes).map(|node| !held[node * D..(node + 1) * D].contains(&true)).collect();
+        // Pinned axes: no row and no column.
+        let free: Vec<bool> = (0..system.nodes).map(|node| !pinned[node * D..(node + 1) * D].contains(&true)).collect();
         let projectors: Vec<[[f64; D]; D]> = (0..system.nodes)
             .map(|node| {
-                let kept = |d: usize| if held[node * D + d] { 0.0 } else { 1.0 };
+                let kept = |d: usize| if pinned[node * D + d] { 0.0 } else { 1.0 };
                 core::array::from_fn(|i| core::array::from_fn(|j| if i == j { kept(i) } else { 0.0 }))
             })
             .collect();
         stiffness.constrain(&free, &projectors);
         let mut fastest: f64 = 0.0;
         for (k, m) in mass.iter().enumerate() {
-            let ratio = if held[k] { 0.0 } else { stiffness.diagonal_block(k / D)[k % D][k % D].abs() / m };
-            let dense = if held[k] || !stiffness.has_dense() { 0.0 } else { stiffness.diagonal_size(k / D) / m };
+            let ratio = if pinned[k] { 0.0 } else { stiffness.diagonal_block(k / D)[k % D][k % D].abs() / m };
+            let dense = if pinned[k] || !stiffness.has_dense() { 0.0 } else { stiffness.diagonal_size(k / D) / m };
             let ratio = if dense > ratio { dense } else { ratio };
             fastest = if ratio > fastest { ratio } else { fastest };
         }
         let fastest = if fastest > 0.0 { fastest } else { 1.0 };
-        Ok(SmallMotions { system, stiffness, mass, held, free, projectors, fastest })
+        Ok(SmallMotions { system, stiffness, mass, pinned, free, projectors, fastest })
     }
 
     /// Rigid motions that strain nothing, which need no search, and their shapes axis by axis.
@@ -177,10 +177,10 @@ impl<const D: usize> SmallMotions<D> {
         (rigid, known)
     }
 
-    /// From here on held axes have no mass.
-    fn leave_out_held_axes(&mut self) {
-        for (m, held) in self.mass.iter_mut().zip(&self.held) {
-            *m = if *held { 0.0 } else { *m };
+    /// From here on pinned axes have no mass.
+    fn leave_out_pinned_axes(&mut self) {
+        for (m, pinned) in self.mass.iter_mut().zip(&self.pinned) {
+            *m = if *pinned { 0.0 } else { *m };
         }
     }
 
