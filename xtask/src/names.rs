@@ -9,10 +9,10 @@ use std::collections::BTreeMap;
 
 /// How many names may still have each word. Whoever renames one lowers the number; no number may rise.
 const ALLOWED: &[(&str, usize)] = &[
-    ("held", 123),
+    ("held", 120),
     ("near", 62),
     ("odd", 22),
-    ("place", 366),
+    ("place", 363),
     ("places", 132),
     ("room", 44),
     ("said", 51),
@@ -20,7 +20,7 @@ const ALLOWED: &[(&str, usize)] = &[
     ("says", 2),
     ("tell", 10),
     ("tells", 1),
-    ("told", 46),
+    ("told", 45),
     ("way", 48),
     ("ways", 10),
     ("worn", 1),

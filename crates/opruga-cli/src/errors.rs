@@ -123,3 +123,30 @@ opruga::math::messages! {
         NoCase { word: String, families: String },
     }
 }
+
+opruga::math::messages! {
+    /// What the output of a command meets.
+    #[derive(Clone, Debug, PartialEq)]
+    pub(crate) enum OutputError {
+        "write.failed" #[error("stdout cannot be written: {reason}")]
+        Stdout { reason: String },
+    }
+    /// How two surfaces cross.
+    #[derive(Clone, Debug, PartialEq)]
+    pub(crate) enum Crossing {
+        "part.crossing" #[error("facets {first} and {second} of body `{body}` cross")]
+        Within { first: u32, second: u32, body: String },
+        "part.crossing" #[error("facet {first} of body `{body}` and facet {second} of body `{other}` cross")]
+        Between { first: u32, body: String, second: u32, other: String },
+        "part.crossing" #[error("of bodies `{body}` and `{other}`, one lies in the other")]
+        Inside { body: String, other: String },
+    }
+    /// What a check of a run finds.
+    #[derive(Clone, Debug, PartialEq)]
+    pub(crate) enum CheckFault {
+        "contact.crossed" #[error("at t = {} s {crossing}", number(*time))]
+        Crossed { time: f64, crossing: Crossing },
+        "contact.crossed" #[error("at t = {} s {crossing}; {pairs} pairs of bodies in all", number(*time))]
+        CrossedByPairs { time: f64, crossing: Crossing, pairs: usize },
+    }
+}

@@ -1,10 +1,11 @@
 //! Why a command failed, for people and for programs, and the exit code.
 
-use crate::errors::{CallFault, CallRange};
+use crate::errors::{CallFault, CallRange, CheckFault, OutputError};
 use crate::language::translation;
+use opruga::draw::DrawError;
 use opruga::io::problem::{Label, SceneError, count_of, in_words, shown};
 use opruga::io::safe_write::WriteError;
-use opruga::math::message::AnyMessage;
+use opruga::math::message::{AnyMessage, Message};
 use serde_json::{Value, json};
 
 /// Why a command failed.
@@ -17,17 +18,23 @@ pub(crate) enum Failure {
     /// A file cannot be written.
     Write(WriteError),
     /// A picture cannot be drawn or encoded.
-    Draw(String),
+    Draw(DrawError),
     /// stdout cannot be written.
-    Output(String),
-    /// A check of the run failed: its code, and what it found.
-    Check { code: &'static str, message: String },
+    Output(OutputError),
+    /// A check of the run found a fault.
+    Check(CheckFault),
     /// The call makes no sense.
     Call(AnyMessage),
     /// Ctrl-C or a signal to end; the files are closed.
     Interrupted,
     /// Whoever reads our output has gone.
     ClosedPipe,
+}
+
+impl From<DrawError> for Failure {
+    fn from(error: DrawError) -> Self {
+        Failure::Draw(error)
+    }
 }
 
 impl From<WriteError> for Failure {
@@ -70,7 +77,7 @@ impl Failure {
             Failure::Scene(errors) => errors.first().map_or(2, |e| e.exit_code() as u8),
             Failure::Run(error) if error.code.starts_with("run.") => 3,
             Failure::Run(error) => error.exit_code() as u8,
-            Failure::Check { .. } => 1,
+            Failure::Check(_) => 1,
             Failure::Call(_) => 2,
             Failure::Write(_) | Failure::Draw(_) | Failure::Output(_) => 4,
             Failure::Interrupted => 130,
@@ -79,10 +86,11 @@ impl Failure {
     }
 
     fn to_json(&self) -> Value {
-        let plain = |code: &str, message: String, hint: Option<&str>| {
+        let plain = |code: &str, message: String, hint: Option<String>| {
             json!({"code": code, "message": message, "file": null, "line": null, "column": null,
                    "path": null, "value": null, "allowed": null, "hint": hint})
         };
+        let of = |about: &dyn Message| plain(about.code(), about.to_string(), about.hint());
         match self {
             Failure::Scene(errors) => {
                 let errors = shown(errors.clone());
@@ -95,10 +103,10 @@ impl Failure {
             }
             Failure::Run(error) => error.to_json(),
             Failure::Write(error) => error.to_json(),
-            Failure::Draw(message) => plain("draw.failed", message.clone(), None),
-            Failure::Output(message) => plain("write.failed", message.clone(), None),
-            Failure::Check { code, message } => plain(code, message.clone(), None),
-            Failure::Call(fault) => plain("call", fault.to_string(), fault.hint().as_deref()),
+            Failure::Draw(error) => of(error),
+            Failure::Output(error) => of(error),
+            Failure::Check(fault) => of(fault),
+            Failure::Call(fault) => plain("call", fault.to_string(), fault.hint()),
             Failure::Interrupted => plain("interrupted", "interrupted; the files are closed".into(), None),
             Failure::ClosedPipe => Value::Null,
         }
@@ -121,9 +129,9 @@ impl Failure {
             }
             Failure::Run(error) => writeln!(err, "{}", error.text(translation())),
             Failure::Write(error) => writeln!(err, "{}", error.text(translation())),
-            Failure::Draw(message) => writeln!(err, "error[draw.failed]: {message}"),
-            Failure::Output(message) => writeln!(err, "error[write.failed]: {message}"),
-            Failure::Check { code, message } => writeln!(err, "error[{code}]: {message}"),
+            Failure::Draw(error) => writeln!(err, "{}", with_code(error)),
+            Failure::Output(error) => writeln!(err, "{}", with_code(error)),
+            Failure::Check(fault) => writeln!(err, "{}", with_code(fault)),
             Failure::Call(fault) => {
                 let own = translation();
                 let _ = writeln!(err, "{}: {}", in_words(own, &Label::Error), in_words(own, &**fault));
@@ -136,6 +144,12 @@ impl Failure {
     }
 }
 
+/// `error[code]: text`, in the language of the call.
+fn with_code(about: &dyn Message) -> String {
+    let own = translation();
+    format!("{}[{}]: {}", in_words(own, &Label::Error), about.code(), in_words(own, about))
+}
+
 /// Prints data on stdout; a reader that has gone is no error.
 pub(crate) fn print_data(text: &str) -> Result<(), Failure> {
     use std::io::Write as _;
@@ -143,6 +157,6 @@ pub(crate) fn print_data(text: &str) -> Result<(), Failure> {
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Ok(()) => Ok(()),
         Err(e) if e.kind() == std::io::ErrorKind::BrokenPipe => Err(Failure::ClosedPipe),
-        Err(e) => Err(Failure::Output(format!("stdout cannot be written: {e}"))),
+        Err(e) => Err(Failure::Output(OutputError::Stdout { reason: e.to_string() })),
     }
 }

@@ -276,7 +276,7 @@ fn finish<const D: usize>(
         }
     }
     if let Some(path) = picture_of(call, out.as_ref()) {
-        written.push((path, drawn(&mesh, &call.input).map_err(|e| Failure::Draw(e.to_string()))?));
+        written.push((path, drawn(&mesh, &call.input)?));
     }
     // All of them or none.
     written.iter().try_for_each(|(path, _)| try_write(path, call.force))?;

@@ -175,7 +175,7 @@ fn draw_shapes(
     modes: &[Mode<3>],
     rounding: f64,
 ) -> Result<Option<Vec<u8>>, Failure> {
-    let failed = |e: draw::DrawError| Failure::Draw(e.to_string());
+    let failed = Failure::Draw;
     let scenery = Scenery::new(world);
     let start: Vec<[f64; 3]> = world.positions(body).iter().collect();
     let mut extent: f64 = 0.0;
@@ -224,7 +224,7 @@ fn draw_shapes(
     pictures.iter().for_each(|picture| fitting.add(picture));
     let view = match fitting.finish() {
         Ok(view) => view,
-        Err(draw::DrawError::Empty(_)) => return Ok(None),
+        Err(draw::DrawError::Empty { .. }) => return Ok(None),
         Err(error) => return Err(failed(error)),
     };
     let panels: Vec<&draw::Picture> = pictures.iter().collect();

@@ -137,8 +137,8 @@ impl Outputs<'_> {
         recorder: &Recorder,
         files: &mut Vec<String>,
     ) -> Result<(), Failure> {
-        let draw_failed = |e: draw::DrawError| Failure::Draw(e.to_string());
-        let plots = crate::plots::of_run(&recorder.seen, &recorder.columns, &self.source.name).map_err(draw_failed)?;
+        let plots =
+            crate::plots::of_run(&recorder.seen, &recorder.columns, &self.source.name).map_err(Failure::Draw)?;
         self.folder.write("plots.svg", false, |out| out.write_all(plots.as_bytes()))?;
         files.push("plots.svg".into());
         let moments = &recorder.moments;
@@ -151,18 +151,18 @@ impl Outputs<'_> {
         let (strip, whole) = (fitting.clone().finish(), fitting.everything().finish());
         let (view, film) = match strip.and_then(|strip| whole.map(|whole| (strip, whole))) {
             Ok(views) => views,
-            Err(nothing @ draw::DrawError::Empty(_)) => {
+            Err(nothing @ draw::DrawError::Empty { .. }) => {
                 eprintln!("note: no strip and no video: {nothing}");
                 return Ok(());
             }
-            Err(error) => return Err(draw_failed(error)),
+            Err(error) => return Err(error.into()),
         };
         let count = scenery.panels().unwrap_or_else(|| draw::best_count(&view, dimension, moments.len()));
         let pictures: Vec<draw::Picture> =
             draw::spread(moments, count).into_iter().map(|m| scenery.picture(m)).collect();
         let panels: Vec<&draw::Picture> = pictures.iter().collect();
-        let strip = draw::strip(&panels, &view, &draw::StripStyle::default()).map_err(draw_failed)?;
-        let png = strip.to_png().map_err(draw_failed)?;
+        let strip = draw::strip(&panels, &view, &draw::StripStyle::default()).map_err(Failure::Draw)?;
+        let png = strip.to_png().map_err(Failure::Draw)?;
         self.folder.write("strip.png", false, |out| out.write_all(&png))?;
         files.push("strip.png".into());
         if self.stop.load(Ordering::Relaxed) {
@@ -183,9 +183,8 @@ impl Outputs<'_> {
         view: &draw::View,
         dimension: u8,
     ) -> Result<String, Failure> {
-        let draw_failed = |e: draw::DrawError| Failure::Draw(e.to_string());
         let style = draw::Style::film(view, dimension, if recorder.gif { 640 } else { 960 });
-        let draw_moment = |moment: &Moment| draw::draw(&scenery.picture(moment), view, &style).map_err(draw_failed);
+        let draw_moment = |moment: &Moment| draw::draw(&scenery.picture(moment), view, &style).map_err(Failure::Draw);
         let rate = film_rate(recorder.every, recorder.frame);
         let every = |take: &mut dyn FnMut(&draw::Image) -> Result<(), draw::DrawError>| -> Result<(), Failure> {
             for (number, moment) in recorder.moments.iter().enumerate() {
@@ -193,7 +192,7 @@ impl Outputs<'_> {
                 if number > 0 && self.stop.load(Ordering::Relaxed) {
                     break;
                 }
-                take(&draw_moment(moment)?).map_err(draw_failed)?;
+                take(&draw_moment(moment)?).map_err(Failure::Draw)?;
             }
             Ok(())
         };
@@ -201,14 +200,14 @@ impl Outputs<'_> {
         let name = if recorder.gif {
             let samples: Vec<draw::Image> =
                 draw::spread(&recorder.moments, 6).into_iter().map(draw_moment).collect::<Result<_, _>>()?;
-            let mut writer = draw::GifWriter::new(&mut bytes, rate, &samples).map_err(draw_failed)?;
+            let mut writer = draw::GifWriter::new(&mut bytes, rate, &samples).map_err(Failure::Draw)?;
             every(&mut |image| writer.push(image))?;
             "video.gif"
         } else {
             let mut writer =
-                draw::Mp4Writer::new(&mut bytes, [style.width, style.height], rate).map_err(draw_failed)?;
+                draw::Mp4Writer::new(&mut bytes, [style.width, style.height], rate).map_err(Failure::Draw)?;
             every(&mut |image| writer.push(image))?;
-            writer.finish().map_err(draw_failed)?;
+            writer.finish().map_err(Failure::Draw)?;
             "video.mp4"
         };
         self.folder.write(name, false, |out| out.write_all(&bytes))?;

@@ -304,7 +304,7 @@ fn bench_vertices(call: &BenchVertices, registries: &Registries) -> Result<u8, F
         print_data(&bench::table(&rows))?;
     }
     if let Some(path) = &call.plot {
-        let plot = crate::plots::of_bench(&rows).map_err(|e| Failure::Draw(e.to_string()))?;
+        let plot = crate::plots::of_bench(&rows)?;
         safe_write(path, true, |out| out.write_all(plot.as_bytes()))?;
     }
     Ok(0)

@@ -2,7 +2,7 @@
 
 use crate::arguments::Run;
 use crate::checkpoints::{self, Calling, Keeper, SavedRun};
-use crate::errors::{CallFault, CallRange};
+use crate::errors::{CallFault, CallRange, CheckFault, Crossing};
 use crate::failure::{Failure, print_data};
 use crate::forecast::{Forecast, duration};
 use crate::interrupt;
@@ -228,16 +228,12 @@ impl Job<'_> {
         let early = world.warnings();
         if !call.json {
             early.iter().for_each(outputs::tell);
-        }
-        if !call.json {
             whole_frames(frames, frame, seconds).iter().for_each(|said| eprintln!("{said}"));
             recorder.thinned().iter().for_each(|thinned| eprintln!("warning[{}]: {}", thinned.code, thinned.message));
         }
-        let bar = progress_bar(frames);
-        let mut forecast = Forecast::default();
-        let start = Instant::now();
         let first = world.frames();
-        let (mut failure, mut told_at, mut looked_at) = (None, 0.0, false);
+        let mut progress = Progress::new(frames, first, call.json);
+        let (mut failure, mut looked_at) = (None, false);
         // Looking at the world is not counted as the time of its steps.
         let mut looking = recorder.record(&mut *world);
         keeper.begin(&recorder.table)?;
@@ -259,37 +255,15 @@ impl Job<'_> {
             failure = failure.or(untaped);
             looking += recorder.record(&mut *world);
             if let Some(problem) = keeper.on_the_way(&*world, &recorder.table) {
-                bar.suspend(|| eprintln!("warning: no checkpoint at t = {} s: {problem}", number(world.time())));
+                progress.line(&format!("warning: no checkpoint at t = {} s: {problem}", number(world.time())));
             }
-            bar.set_position(world.frames());
-            let wall = start.elapsed().as_secs_f64();
-            if wall > 0.0 {
-                let ratio = (world.frames() - first) as f64 * frame / wall;
-                bar.set_message(format!("t = {:.2} s, {} × real time", world.time(), rounded(ratio, 2)));
-                let (done, left) = (world.frames() - first, frames - world.frames());
-                if !call.json
-                    && let Some(said) = forecast.of(&*world, done, left, wall)
-                {
-                    bar.suspend(|| eprintln!("{said}"));
-                    told_at = wall;
-                }
-                if bar.is_hidden() && !call.json && wall - told_at >= TALK_EVERY {
-                    told_at = wall;
-                    eprintln!(
-                        "{}/{frames} frames, t = {:.2} s, {} × real time, {} left",
-                        world.frames(),
-                        world.time(),
-                        rounded(ratio, 2),
-                        duration(wall * left as f64 / done.max(1) as f64)
-                    );
-                }
-            }
+            progress.after_frame(&*world, frame);
         }
         recorder.finish(&mut *world);
         let taped = tape.and_then(|tape| tape.finish(&mut *world).err()).map(unrecorded);
         failure = failure.or(taped);
-        let wall = (start.elapsed() - looking).as_secs_f64();
-        bar.finish_and_clear();
+        let wall = (progress.start.elapsed() - looking).as_secs_f64();
+        progress.bar.finish_and_clear();
         let outputs = Outputs {
             folder: &folder,
             source,
@@ -314,6 +288,60 @@ impl Job<'_> {
             outputs.talk(&*world, &early);
         }
         Ok(0)
+    }
+}
+
+/// What the terminal shows of a run that goes on.
+struct Progress {
+    bar: indicatif::ProgressBar,
+    forecast: Forecast,
+    start: Instant,
+    /// The frames at the start of this part of the run, and at its end.
+    first: u64,
+    frames: u64,
+    quiet: bool,
+    /// When the last line was written, after the start [s].
+    last_line: f64,
+}
+
+impl Progress {
+    fn new(frames: u64, first: u64, quiet: bool) -> Progress {
+        let (bar, forecast, start) = (progress_bar(frames), Forecast::default(), Instant::now());
+        Progress { bar, forecast, start, first, frames, quiet, last_line: 0.0 }
+    }
+
+    /// Writes a line above the bar.
+    fn line(&self, text: &str) {
+        self.bar.suspend(|| eprintln!("{text}"));
+    }
+
+    /// Shows how far the run is: on the bar, and where there is none in a line now and then.
+    fn after_frame(&mut self, world: &dyn AnyWorld, frame: f64) {
+        self.bar.set_position(world.frames());
+        let wall = self.start.elapsed().as_secs_f64();
+        if wall <= 0.0 {
+            return;
+        }
+        let (done, left) = (world.frames() - self.first, self.frames - world.frames());
+        let ratio = rounded(done as f64 * frame / wall, 2);
+        self.bar.set_message(format!("t = {:.2} s, {ratio} × real time", world.time()));
+        if self.quiet {
+            return;
+        }
+        if let Some(forecast) = self.forecast.of(world, done, left, wall) {
+            self.line(&forecast);
+            self.last_line = wall;
+        }
+        if self.bar.is_hidden() && wall - self.last_line >= TALK_EVERY {
+            self.last_line = wall;
+            eprintln!(
+                "{}/{} frames, t = {:.2} s, {ratio} × real time, {} left",
+                world.frames(),
+                self.frames,
+                world.time(),
+                duration(wall * left as f64 / done.max(1) as f64)
+            );
+        }
     }
 }
 
@@ -342,12 +370,15 @@ fn crossed(world: &dyn AnyWorld) -> Option<Failure> {
     let found = world.crossed_surfaces();
     let first = found.first()?;
     let name = |body: usize| world.scene().body(body).map_or("", |body| body.name()).to_owned();
-    let [a, b] = first.bodies;
-    let how = match first.facets {
-        Some([f, g]) if a == b => format!("facets {f} and {g} of body `{}` cross", name(a)),
-        Some([f, g]) => format!("facet {f} of body `{}` and facet {g} of body `{}` cross", name(a), name(b)),
-        None => format!("of bodies `{}` and `{}`, one lies in the other", name(a), name(b)),
+    let itself = first.bodies[0] == first.bodies[1];
+    let [body, other] = first.bodies.map(name);
+    let crossing = match first.facets {
+        Some([first, second]) if itself => Crossing::Within { first, second, body },
+        Some([first, second]) => Crossing::Between { first, body, second, other },
+        None => Crossing::Inside { body, other },
     };
-    let more = if found.len() > 1 { format!("; {} pairs of bodies in all", found.len()) } else { String::new() };
-    Some(Failure::Check { code: "contact.crossed", message: format!("at t = {} s {how}{more}", number(world.time())) })
+    Some(Failure::Check(match (world.time(), found.len()) {
+        (time, 1) => CheckFault::Crossed { time, crossing },
+        (time, pairs) => CheckFault::CrossedByPairs { time, crossing, pairs },
+    }))
 }

@@ -56,8 +56,8 @@ pub(crate) fn sweep(call: &Call, registries: &Registries) -> Result<u8, Failure>
                 files.push(name);
             }
         }
-        Err(nothing @ opruga::draw::DrawError::Empty(_)) => eprintln!("note: no plots: {nothing}"),
-        Err(error) => return Err(Failure::Draw(error.to_string())),
+        Err(nothing @ opruga::draw::DrawError::Empty { .. }) => eprintln!("note: no plots: {nothing}"),
+        Err(error) => return Err(error.into()),
     }
     files.push("summary.json".into());
     let found = Found { sweep: &sweep, rows: &rows, length_unit: &length_unit };

@@ -1,6 +1,6 @@
 //! Films as MP4, and as GIF: one palette for all frames, and of every frame only what has changed.
 
-use crate::error::DrawError;
+use crate::error::{DrawError, Nothing};
 use crate::image::Image;
 use crate::palette::Palette;
 use std::io::Write;
@@ -58,17 +58,17 @@ impl<W: Write> GifWriter<W> {
     /// # Errors
     /// [`DrawError`] if there is no sample, an image is larger than a GIF may be, or `out` cannot be written.
     pub fn new(out: W, frames_per_second: f64, samples: &[Image]) -> Result<GifWriter<W>, DrawError> {
-        let first = samples.first().ok_or(DrawError::Empty("a GIF needs sample frames for its palette"))?;
+        let first = samples.first().ok_or(DrawError::Empty { nothing: Nothing::Sample })?;
         let size = [first.width(), first.height()];
         let (Ok(width), Ok(height)) = (u16::try_from(size[0]), u16::try_from(size[1])) else {
             return Err(DrawError::Size { width: size[0], height: size[1] });
         };
         if !(frames_per_second > 0.0 && frames_per_second.is_finite()) {
-            return Err(DrawError::Rate(frames_per_second));
+            return Err(DrawError::Rate { rate: frames_per_second });
         }
         let palette = Palette::of(samples);
-        let mut encoder = gif::Encoder::new(out, width, height, palette.colours()).map_err(failed)?;
-        encoder.set_repeat(gif::Repeat::Infinite).map_err(failed)?;
+        let mut encoder = gif::Encoder::new(out, width, height, palette.colours()).map_err(DrawError::from)?;
+        encoder.set_repeat(gif::Repeat::Infinite).map_err(DrawError::from)?;
         // Viewers play frames of less than two hundredths slowly.
         let delay = (100.0 / frames_per_second).clamp(2.0, 6000.0);
         Ok(GifWriter { encoder, size, palette, last: None, delay, frames: 0 })
@@ -106,14 +106,10 @@ impl<W: Write> GifWriter<W> {
             buffer: part.into(),
             ..gif::Frame::default()
         };
-        self.encoder.write_frame(&frame).map_err(failed)?;
+        self.encoder.write_frame(&frame).map_err(DrawError::from)?;
         self.last = Some(pixels);
         Ok(())
     }
-}
-
-fn failed(error: gif::EncodingError) -> DrawError {
-    DrawError::from(error)
 }
 
 /// Left, top, right and bottom of what differs; one pixel if nothing does.

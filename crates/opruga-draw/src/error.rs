@@ -1,65 +1,98 @@
 //! What can go wrong while a picture is drawn or written.
 
-/// Why a picture, a plot or a video could not be made.
-#[derive(Debug, thiserror::Error)]
-pub enum DrawError {
-    /// The image has no area, or is larger than 16384 pixels on a side.
-    #[error("an image of {width} by {height} pixels cannot be drawn; each side must be between 1 and 16384")]
-    Size {
-        /// The width asked for, in pixels.
-        width: u32,
-        /// The height asked for, in pixels.
-        height: u32,
-    },
-    /// There is nothing to draw.
-    #[error("there is nothing to draw: {0}")]
-    Empty(&'static str),
-    /// A facet, a cell, a segment or a pin names a node which the body does not have.
-    #[error("body {body} has {nodes} nodes, but its {part} name node {node}")]
-    Node {
-        /// The body, by its place in the picture.
-        body: usize,
-        /// The number of nodes of the body.
-        nodes: usize,
-        /// The list which holds the wrong number.
-        part: &'static str,
-        /// The node which does not exist.
-        node: u32,
-    },
-    /// The list of scalars of a body has another length than the list of positions.
-    #[error("body {body} has {nodes} nodes, but {scalars} scalars; there must be none, or one a node")]
-    Scalars {
-        /// The body, by its place in the picture.
-        body: usize,
-        /// The number of nodes of the body.
-        nodes: usize,
-        /// The number of scalars of the body.
-        scalars: usize,
-    },
-    /// A picture says that it is neither flat nor solid.
-    #[error("a picture has {0} dimensions; it must have 2 or 3")]
-    Dimension(u8),
-    /// A frame of a video has another size than the video.
-    #[error("a frame of {found:?} pixels was pushed to a video of {expected:?} pixels")]
-    FrameSize {
-        /// The width and the height of the video.
-        expected: [u32; 2],
-        /// The width and the height of the frame.
-        found: [u32; 2],
-    },
-    /// The rate of a video is not a finite number above zero.
-    #[error("a video cannot have {0} frames per second")]
-    Rate(f64),
-    /// The film could not be made.
-    #[error(transparent)]
-    Video(#[from] opruga_video::VideoError),
-    /// The bytes could not be written.
-    #[error("the bytes could not be written: {0}")]
-    Write(#[from] std::io::Error),
-    /// The PNG encoder failed.
-    #[error("the PNG encoder failed: {0}")]
-    Png(#[from] png::EncodingError),
-    /// The GIF encoder failed.
-    #[error("the GIF encoder failed: {0}")]
-    Gif(#[from] gif::EncodingError),
+use opruga_math::message::Variant;
+use opruga_video::VideoError;
+
+opruga_math::terms! {
+    /// What a picture or a plot has nothing of.
+    pub enum Nothing = "part.nothing_to_draw" {
+        Picture = "a film strip needs a picture",
+        FinitePlace = "no body has a node at a finite place",
+        Cell = "a map needs a panel, a column and a row",
+        Panel = "a plot needs a panel",
+        Sample = "a GIF needs sample frames for its palette",
+        NumberOfCase = "the case has no numbers",
+        Parameter = "no parameter",
+        NumberOfSweep = "no point of the sweep has a number to plot",
+    }
+}
+
+opruga_math::terms! {
+    /// A list of a picture whose items name nodes.
+    pub enum PictureList = "part.picture_list" {
+        Areas = "areas",
+        LinesAtRest = "lines at rest",
+        Facets = "facets",
+        Cells = "cells",
+        Segments = "segments",
+        PinnedNodes = "pinned nodes",
+    }
+}
+
+opruga_math::messages! {
+    /// Why a picture, a plot or a video could not be made.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum DrawError {
+        /// The image has no area, or is larger than 16384 pixels on a side.
+        "draw.failed"
+        #[error("an image of {width} by {height} pixels cannot be drawn; each side must be between 1 and 16384")]
+        Size { width: u32, height: u32 },
+        /// There is nothing to draw.
+        "draw.failed"
+        #[error("there is nothing to draw: {nothing}")]
+        Empty { nothing: Nothing },
+        /// A facet, a cell, a segment or a pin names a node which the body does not have; the body by its index in the picture.
+        "draw.failed"
+        #[error("body {body} has {nodes} nodes, but its {list} name node {node}")]
+        Node { body: usize, nodes: usize, list: PictureList, node: u32 },
+        /// The list of scalars of a body has another length than the list of positions; the body by its index in the picture.
+        "draw.failed"
+        #[error("body {body} has {nodes} nodes, but {scalars} scalars; there must be none, or one a node")]
+        Scalars { body: usize, nodes: usize, scalars: usize },
+        /// A picture says that it is neither flat nor solid.
+        "draw.failed"
+        #[error("a picture has {dimensions} dimensions; it must have 2 or 3")]
+        Dimension { dimensions: u8 },
+        /// A frame of a video has another size than the video [pixels].
+        "draw.failed"
+        #[error("a frame of {found:?} pixels was pushed to a video of {expected:?} pixels")]
+        FrameSize { expected: [u32; 2], found: [u32; 2] },
+        /// The rate of a video is not a finite number above zero.
+        "draw.failed"
+        #[error("a video cannot have {rate} frames per second")]
+        Rate { rate: f64 },
+        /// The film could not be made.
+        "draw.failed"
+        #[error("{cause}")]
+        Video { cause: VideoError },
+        /// The encoder of PNG failed, or what it writes to; the reason of the system.
+        "draw.failed"
+        #[error("the PNG encoder failed: {reason}")]
+        Png { reason: String },
+        /// The encoder of GIF failed, or what it writes to; the reason of the system.
+        "draw.failed"
+        #[error("the GIF encoder failed: {reason}")]
+        Gif { reason: String },
+    }
+}
+
+/// All messages of this crate, for catalogues.
+pub const MESSAGES: &[&[Variant]] = &[Nothing::VARIANTS, PictureList::VARIANTS, DrawError::VARIANTS];
+
+impl From<VideoError> for DrawError {
+    fn from(cause: VideoError) -> DrawError {
+        DrawError::Video { cause }
+    }
+}
+
+impl From<png::EncodingError> for DrawError {
+    fn from(error: png::EncodingError) -> DrawError {
+        DrawError::Png { reason: error.to_string() }
+    }
+}
+
+impl From<gif::EncodingError> for DrawError {
+    fn from(error: gif::EncodingError) -> DrawError {
+        DrawError::Gif { reason: error.to_string() }
+    }
 }

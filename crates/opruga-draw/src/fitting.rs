@@ -1,6 +1,6 @@
 //! Finds the view of a run, one picture after the other.
 
-use crate::error::DrawError;
+use crate::error::{DrawError, Nothing};
 use crate::flat::BORDER;
 use crate::picture::{ArrowKind, ColliderPicture, Picture, Sight};
 use crate::solid::{cast, directions_of_view};
@@ -206,7 +206,7 @@ impl Fitting {
     /// The view which shows everything that was seen, or the region that the pictures ask for.
     pub fn finish(mut self) -> Result<View, DrawError> {
         if self.bounds.is_empty() {
-            return Err(DrawError::Empty("no body has a node at a finite place"));
+            return Err(DrawError::Empty { nothing: Nothing::FinitePlace });
         }
         let diagonal = self.bounds.diagonal().max(1e-9);
         for (point, normal) in &self.planes {

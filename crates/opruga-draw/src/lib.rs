@@ -27,7 +27,7 @@ mod view;
 pub use animation::{GifWriter, Mp4Writer};
 pub use canvas::FONT;
 pub use colour::{BODIES, ColourMap, OKABE_ITO};
-pub use error::DrawError;
+pub use error::{DrawError, MESSAGES, Nothing, PictureList};
 pub use eye::{Eye, Lens, scene as draw_scene};
 pub use fitting::Fitting;
 pub use image::Image;

@@ -1,7 +1,7 @@
 //! The plain description of one moment, which is all that a renderer needs to know.
 
 use crate::colour::ColourMap;
-use crate::error::DrawError;
+use crate::error::{DrawError, PictureList};
 
 /// Everything that is seen at one moment.
 #[derive(Clone, Debug, PartialEq)]
@@ -255,7 +255,7 @@ impl Picture {
     /// Refuses a picture whose lists do not fit together.
     pub fn check(&self) -> Result<(), DrawError> {
         if self.dimension != 2 && self.dimension != 3 {
-            return Err(DrawError::Dimension(self.dimension));
+            return Err(DrawError::Dimension { dimensions: self.dimension });
         }
         self.bodies.iter().enumerate().try_for_each(|(index, body)| body.check(index))
     }
@@ -278,22 +278,22 @@ impl BodyPicture {
             let beyond = area.triangles.iter().flatten().find(|point| **point as usize >= points);
             if last != points || !area.ends.is_sorted() || beyond.is_some() {
                 let node = beyond.copied().unwrap_or(last as u32);
-                return Err(DrawError::Node { body, nodes: points, part: "areas", node });
+                return Err(DrawError::Node { body, nodes: points, list: PictureList::Areas, node });
             }
         }
         let points = self.rest.positions.len();
         if let Some(&node) = self.rest.segments.iter().flatten().find(|node| **node as usize >= points) {
-            return Err(DrawError::Node { body, nodes: points, part: "lines at rest", node });
+            return Err(DrawError::Node { body, nodes: points, list: PictureList::LinesAtRest, node });
         }
-        let parts: [(&'static str, Option<u32>); 4] = [
-            ("facets", wrong(facets)),
-            ("cells", wrong(Box::new(self.cells.iter().flatten().copied()))),
-            ("segments", wrong(Box::new(self.segments.iter().flatten().copied()))),
-            ("pinned nodes", wrong(Box::new(self.pinned.iter().copied()))),
+        let lists: [(PictureList, Option<u32>); 4] = [
+            (PictureList::Facets, wrong(facets)),
+            (PictureList::Cells, wrong(Box::new(self.cells.iter().flatten().copied()))),
+            (PictureList::Segments, wrong(Box::new(self.segments.iter().flatten().copied()))),
+            (PictureList::PinnedNodes, wrong(Box::new(self.pinned.iter().copied()))),
         ];
-        for (part, node) in parts {
+        for (list, node) in lists {
             if let Some(node) = node {
-                return Err(DrawError::Node { body, nodes, part, node });
+                return Err(DrawError::Node { body, nodes, list, node });
             }
         }
         Ok(())

@@ -2,7 +2,7 @@
 
 use crate::canvas::{Anchor, Canvas, text_width};
 use crate::colour::INK;
-use crate::error::DrawError;
+use crate::error::{DrawError, Nothing};
 use crate::image::Image;
 use crate::layout::{Layout, time_texts};
 use crate::picture::Picture;
@@ -149,7 +149,7 @@ pub fn captioned_strip(
     view: &View,
     style: &StripStyle,
 ) -> Result<Image, DrawError> {
-    let first = pictures.first().ok_or(DrawError::Empty("a film strip needs a picture"))?;
+    let first = pictures.first().ok_or(DrawError::Empty { nothing: Nothing::Picture })?;
     let unit = (style.width as f32 / 1400.0).clamp(0.6, 6.0);
     let margin = (16.0 * unit).round();
     let head = if first.title.is_empty() { margin } else { 44.0 * unit };

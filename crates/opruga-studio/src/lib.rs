@@ -33,6 +33,7 @@ pub mod shape_file;
 pub mod share;
 mod taps;
 pub mod theme;
+pub mod view_errors;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod wanted;
 #[cfg(not(target_arch = "wasm32"))]

@@ -1,6 +1,7 @@
 //! What is said to the person, as data: the interface puts it into words of its language ([`crate::words`]).
 
 use crate::exploded::Exploded;
+use crate::view_errors::ViewError;
 use crate::words::Language;
 use opruga::io::SceneError;
 use opruga::{Warning, WorldError};
@@ -57,6 +58,8 @@ pub enum Said {
     Scene(Vec<SceneError>),
     /// What a world refuses.
     World(WorldError),
+    /// Why a recorded run cannot be viewed.
+    Recording(ViewError),
     /// A body has grown beyond every measure, and time stands.
     Exploded(Exploded),
     /// This was undone, and the scene is at this time \[s\].
@@ -144,6 +147,12 @@ impl From<String> for Said {
 impl From<Vec<SceneError>> for Said {
     fn from(errors: Vec<SceneError>) -> Said {
         Said::Scene(errors)
+    }
+}
+
+impl From<ViewError> for Said {
+    fn from(error: ViewError) -> Said {
+        Said::Recording(error)
     }
 }
 

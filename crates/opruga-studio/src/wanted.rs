@@ -25,7 +25,7 @@ pub fn open(wanted: &str, setting: impl Into<Setting>) -> Result<Session, String
         let refused = |error: String| format!("{wanted}: {error}");
         let file = std::fs::File::open(path).map_err(|error| refused(error.to_string()))?;
         let recording = Recording::open(std::io::BufReader::new(file)).map_err(|error| refused(error.to_string()))?;
-        return Session::view(recording, setting).map_err(refused);
+        return Session::view(recording, setting).map_err(|said| refused(said.to_string()));
     }
     if path.is_file() && shapes::kind_of_file(wanted).is_some() {
         let taken = dropping::take(path).map_err(|said| said.to_string())?;

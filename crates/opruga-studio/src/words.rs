@@ -1,6 +1,5 @@
 //! Every word of the interface, in every language, in one place.
 
-mod croatian;
 mod messages;
 mod named;
 mod scene_titles;

@@ -1,7 +1,7 @@
 //! Plots of errors.
 
 use crate::case::{Check, Over, Row};
-use opruga::draw::{Axis, Chart, DrawError, Level, Line, Marker, Panel};
+use opruga::draw::{Axis, Chart, DrawError, Level, Line, Marker, Nothing, Panel};
 
 /// What an error of zero is drawn as, on an axis that has no zero.
 const NOTHING: f64 = 1e-17;
@@ -13,7 +13,7 @@ const NOTHING: f64 = 1e-17;
 /// [`DrawError`] for a row without numbers.
 pub fn plot(row: &Row) -> Result<String, DrawError> {
     if row.points.is_empty() {
-        return Err(DrawError::Empty("the case has no numbers"));
+        return Err(DrawError::Empty { nothing: Nothing::NumberOfCase });
     }
     match row.case.over {
         Over::Parameter(_) => over_parameter(row),
@@ -87,7 +87,7 @@ fn told_apart(names: &[&str]) -> Vec<String> {
 
 fn over_parameter(row: &Row) -> Result<String, DrawError> {
     let case = row.case;
-    let Over::Parameter(what) = case.over else { return Err(DrawError::Empty("no parameter")) };
+    let Over::Parameter(what) = case.over else { return Err(DrawError::Empty { nothing: Nothing::Parameter }) };
     let of = |value: fn(&crate::case::Point) -> f64| row.points.iter().map(|p| [p.level, value(p)]).collect::<Vec<_>>();
     let values = Panel {
         height: 220.0,

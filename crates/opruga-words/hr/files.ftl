@@ -210,3 +210,51 @@ part-question-File = datoteka koju imenuje prizor bila je druga
 part-question-Set = --set { $before } umjesto { $now }
 part-question-Metric = --metric { $before } umjesto { $now }
 part-question-Points = tražene su druge točke
+
+## Pictures and plots
+
+draw-failed-Size = slika od { $width } puta { $height } piksela ne može se nacrtati; svaka strana mora imati od 1 do 16384
+draw-failed-Empty = nema se što nacrtati: { $nothing }
+draw-failed-Node = tijelo { $body } ima { $nodes } čvorova, a { $list } imenuju čvor { $node }
+draw-failed-Scalars = tijelo { $body } ima { $nodes } čvorova, a { $scalars } vrijednosti; može biti nijedna ili po jedna za svaki čvor
+draw-failed-Dimension = slika ima dimenzija: { $dimensions }; mora ih imati 2 ili 3
+draw-failed-FrameSize = sličica od { $found } piksela došla je u film od { $expected } piksela
+draw-failed-Rate = film ne može imati { $rate } sličica u sekundi
+draw-failed-Video = { $cause }
+draw-failed-Png = zapis u PNG nije uspio: { $reason }
+draw-failed-Gif = zapis u GIF nije uspio: { $reason }
+part-nothing_to_draw-Picture = filmskoj vrpci treba slika
+part-nothing_to_draw-FinitePlace = nijedno tijelo nema čvor na konačnom mjestu
+part-nothing_to_draw-Cell = karti trebaju polje, stupac i redak
+part-nothing_to_draw-Panel = dijagramu treba polje
+part-nothing_to_draw-Sample = GIF-u trebaju uzorci sličica za paletu
+part-nothing_to_draw-NumberOfCase = slučaj nema brojeva
+part-nothing_to_draw-Parameter = nema parametra
+part-nothing_to_draw-NumberOfSweep = nijedna točka niza nema broj za dijagram
+part-picture_list-Areas = njegove površine
+part-picture_list-LinesAtRest = njegove crte u mirovanju
+part-picture_list-Facets = njegove strane
+part-picture_list-Cells = njegove ćelije
+part-picture_list-Segments = njegove dužine
+part-picture_list-PinnedNodes = njegovi pričvršćeni čvorovi
+
+## What a command meets
+
+write-failed-Stdout = stdout se ne može pisati: { $reason }
+part-crossing-Within = strane { $first } i { $second } tijela `{ $body }` sijeku se
+part-crossing-Between = strana { $first } tijela `{ $body }` i strana { $second } tijela `{ $other }` sijeku se
+part-crossing-Inside = od tijela `{ $body }` i `{ $other }` jedno leži u drugome
+contact-crossed-Crossed = u t = { $time } s { $crossing }
+contact-crossed-CrossedByPairs = u t = { $time } s { $crossing }; parova tijela ukupno: { $pairs }
+
+## Recorded runs in the window
+
+recording-led-Led = ovaj je tijek vodio program, što tekst prizora ne može reći
+    .hint = `opruga replay` ga prikazuje
+recording-scene-SceneNotUtf8 = prizor u snimci nije tekst u UTF-8
+recording-override-NoValue = `{ $path }` je zadano kao `{ $value }`, što nije vrijednost
+recording-override-NoPath = `{ $path }` u prizoru ne vodi ničemu
+recording-no_frame-Empty = snimka nema sličica
+recording-other_program-OtherProgram = prizor iz snimke ne vodi njezinu prvom stanju: snimio ju je drugi program
+recording-damaged-DamagedBehind = iza sličice { $frame }: { $cause }
+recording-damaged-State = { $cause }

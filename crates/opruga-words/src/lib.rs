@@ -1,4 +1,5 @@
-//! Errors and warnings in other languages: translations in Fluent syntax, read by code, variant and fields of a message.
+//! Errors, warnings and names of kinds in other languages: translations in Fluent syntax, read by code, variant and fields of a message,
+//! and by the path of what is named.
 //!
 //! An entry is called after the code and the variant, with `-` for the point: `msh-version-Unknown`. Its attributes `.allowed` and
 //! `.hint` are the texts of these names. A field is a variable; where it is a message itself, its own entry is taken. A selector
@@ -17,9 +18,20 @@ use fluent_syntax::unicode::unescape_unicode_to_string;
 use opruga_math::message::{Field, Message};
 use opruga_math::words::rounded;
 use std::collections::HashMap;
-use std::sync::LazyLock;
+use std::sync::{LazyLock, RwLock};
 
-static CROATIAN: LazyLock<Translation> = LazyLock::new(|| Translation::new(&CROATIAN_FILES).0);
+mod names;
+pub use names::Named;
+
+static CROATIAN: LazyLock<Translation> = LazyLock::new(|| {
+    let translation = Translation::new(&CROATIAN_FILES).0;
+    // A test looks for problems.
+    let _ = translation.add_names(CROATIAN_NAMES);
+    translation
+});
+
+/// The Croatian names of kinds and parameters.
+const CROATIAN_NAMES: &str = include_str!("../hr/kinds.ftl");
 
 /// The Croatian texts, by what writes them.
 const CROATIAN_FILES: [&str; 11] = [
@@ -40,6 +52,7 @@ const CROATIAN_FILES: [&str; 11] = [
 #[derive(Debug, Default)]
 pub struct Translation {
     entries: HashMap<&'static str, Known<&'static str>>,
+    names: RwLock<names::Names>,
 }
 
 impl Translation {

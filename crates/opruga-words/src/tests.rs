@@ -86,3 +86,23 @@ fn what_is_wrong_with_a_translation_is_found() {
 fn the_croatian_files_can_be_read() {
     assert_eq!(Translation::new(&CROATIAN_FILES).1, [""; 0]);
 }
+
+#[test]
+fn names_are_found_by_their_path_and_those_of_a_program_beside_them() {
+    assert_eq!(names::Names::default().add(CROATIAN_NAMES), [""; 0]);
+    let translation = Translation::default();
+    let own =
+        "model-bed = krevet\n    .about = krevet od opruga\nmodel-bed-size = širina\nmodel-every-size = veličina\n";
+    assert_eq!(translation.add_names(own), Ok(()));
+    let name = |path: &[&str]| translation.named(path).map(|known| (known.name, known.about));
+    assert_eq!(name(&["model", "bed"]), Some(("krevet", "krevet od opruga")));
+    assert_eq!(name(&["model", "sofa"]), None);
+    let parameter = |kind| translation.named_parameter("model", kind, "size").map(|known| known.name);
+    assert_eq!((parameter("bed"), parameter("sofa")), (Some("širina"), Some("veličina")));
+    assert_eq!(translation.any_parameter("size").map(|known| known.name), Some("širina"), "the first line");
+    // What is wrong is left out, what is right beside it is there.
+    let problems = translation.add_names("model-bed = ležaj\nmodel-sofa = { $x }\nmodel-chair = stolac\n").unwrap_err();
+    assert_eq!(problems, ["`model-bed` is named already", "`model-sofa` is not one plain line"]);
+    assert_eq!(name(&["model", "chair"]), Some(("stolac", "")));
+    assert_eq!(translation.paths(), ["model-bed", "model-bed-size", "model-chair", "model-every-size"]);
+}

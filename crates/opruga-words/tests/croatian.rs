@@ -11,6 +11,8 @@ use std::path::Path;
 
 #[path = "../../opruga-cli/src/errors.rs"]
 mod call_errors;
+#[path = "../../opruga-studio/src/view_errors.rs"]
+mod view_errors;
 
 /// The variants of all messages.
 fn variants() -> impl Iterator<Item = &'static Variant> {
@@ -23,6 +25,9 @@ fn variants() -> impl Iterator<Item = &'static Variant> {
         opruga::sweep::errors::MESSAGES,
         opruga::recordings::MESSAGES,
         &[call_errors::CallError::VARIANTS, call_errors::CallRange::VARIANTS, call_errors::CallFault::VARIANTS],
+        &[call_errors::OutputError::VARIANTS, call_errors::Crossing::VARIANTS, call_errors::CheckFault::VARIANTS],
+        opruga::draw::MESSAGES,
+        &[view_errors::ViewError::VARIANTS],
         &[opruga_video::VideoError::VARIANTS],
     ];
     io.chain(others.into_iter().flatten()).flat_map(|list| list.iter())
@@ -108,6 +113,7 @@ fn every_enum_of_messages_is_listed() {
         "opruga",
         "opruga-collide",
         "opruga-core",
+        "opruga-draw",
         "opruga-integrators",
         "opruga-io",
         "opruga-mesh",

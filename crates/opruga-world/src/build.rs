@@ -1,4 +1,4 @@
-//! From a blueprint to systems: which bodies lie side by side, masses, columns, models, pins and loads.
+//! From a blueprint to systems: masses, columns, models, pins and loads.
 
 use crate::blueprint::{Blueprint, BodyBlueprint, LoadKind, Mass};
 use crate::carried::{BodyHistory, BodyState};
@@ -11,7 +11,6 @@ use crate::path_faults::PathFault;
 use crate::plausible;
 use crate::refusals::Refusal;
 use crate::registry::Registry;
-use crate::slots::{Origin, Slots};
 use crate::unfold;
 use opruga_collide::Colliders;
 use opruga_core::break_off::BreakOff;
@@ -25,11 +24,6 @@ use opruga_math::{Simd, WIDTH};
 use opruga_mesh::signed_volume;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-
-/// Bodies with more nodes than this fill the vector lanes by themselves.
-const LARGEST_IN_BATCH: usize = 1024;
-/// Fewer alike bodies than this are cheaper one by one.
-const SMALLEST_BATCH: usize = 3;
 
 /// The state of a body at the start.
 pub(crate) fn initial_state<const D: usize>(body: &BodyBlueprint<D>) -> BodyState<D> {
@@ -76,75 +70,6 @@ pub(crate) fn initial_state<const D: usize>(body: &BodyBlueprint<D>) -> BodyStat
     BodyState { x, v, memory: Vec::new(), history: BodyHistory::default() }
 }
 
-/// Which bodies may lie side by side: the same rest shape and integrator, and models that differ in numbers only.
-pub(crate) fn alike<const D: usize>(a: &BodyBlueprint<D>, b: &BodyBlueprint<D>) -> bool {
-    Arc::ptr_eq(&a.mesh, &b.mesh)
-        && a.integrator == b.integrator
-        && a.thickness == b.thickness
-        && core::mem::discriminant(&a.mass) == core::mem::discriminant(&b.mass)
-        && densities(a) == densities(b)
-        && a.models.len() == b.models.len()
-        && a.models.iter().zip(&b.models).all(|(a, b)| alike_values(a, b))
-}
-
-fn alike_values(a: &Values, b: &Values) -> bool {
-    let count = |v: &Values| v.iter().count();
-    a.kind() == b.kind()
-        && count(a) == count(b)
-        && a.iter()
-            .zip(b.iter())
-            .all(|((n, x), (m, y))| n == m && (matches!((x, y), (Value::Number(_), Value::Number(_))) || x == y))
-}
-
-/// Groups of bodies that are stepped together, in the order of their first body.
-///
-/// A body keeps its seat among its kind when others are taken away: so only the group that loses or wins a body changes.
-pub(crate) fn group<const D: usize>(
-    bodies: &[BodyBlueprint<D>],
-    slots: &Slots,
-    batches: impl Fn(&BodyBlueprint<D>) -> bool,
-) -> Vec<Vec<usize>> {
-    let mut kinds: Vec<(usize, Vec<usize>)> = Vec::new();
-    let mut kind_of: Vec<Option<usize>> = vec![None; bodies.len()];
-    let mut by_mesh: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-    for (number, body) in bodies.iter().enumerate().filter(|(number, _)| slots.origin[*number].is_taken()) {
-        let candidates = by_mesh.entry(Arc::as_ptr(&body.mesh) as usize).or_default();
-        let kind = match candidates.iter().copied().find(|k| alike(&bodies[kinds[*k].0], body)) {
-            Some(kind) => kind,
-            None => {
-                candidates.push(kinds.len());
-                kinds.push((number, Vec::new()));
-                kinds.len() - 1
-            }
-        };
-        kinds[kind].1.push(number);
-        kind_of[number] = Some(kind);
-    }
-    // Empty seats beside bodies of a kind.
-    for (number, origin) in slots.origin.iter().enumerate() {
-        if let Origin::Free(Some(like)) = origin
-            && let Some(kind) = kind_of.get(*like).copied().flatten()
-        {
-            let members = &mut kinds[kind].1;
-            members.insert(members.partition_point(|other| *other < number), number);
-        }
-    }
-    let mut groups = Vec::new();
-    for (first, members) in kinds {
-        let small = bodies[first].mesh.positions.len() <= LARGEST_IN_BATCH;
-        for seats in members.chunks(WIDTH) {
-            let there: Vec<usize> = seats.iter().copied().filter(|b| slots.alive[*b]).collect();
-            if small && there.len() >= SMALLEST_BATCH && batches(&bodies[first]) {
-                groups.push(there);
-            } else {
-                groups.extend(there.into_iter().map(|b| vec![b]));
-            }
-        }
-    }
-    groups.sort_by_key(|g| g[0]);
-    groups
-}
-
 /// What building an island needs.
 pub(crate) struct Builder<'a, const D: usize> {
     pub(crate) blueprint: &'a Blueprint<D>,
@@ -156,6 +81,20 @@ pub(crate) struct Builder<'a, const D: usize> {
     pub(crate) break_off: &'a BreakOff,
 }
 
+/// Bodies that come to lie side by side, with their states.
+struct Seats<'a, const D: usize> {
+    layout: Layout,
+    bodies: Vec<&'a BodyBlueprint<D>>,
+    states: &'a [&'a BodyState<D>],
+}
+
+impl<const D: usize> Seats<'_, D> {
+    /// The body in a lane; lanes without a body repeat the first one.
+    fn of_lane(&self, lane: usize) -> usize {
+        if lane < self.bodies.len() { lane } else { 0 }
+    }
+}
+
 impl<const D: usize> Builder<'_, D> {
     /// Builds the island of some bodies with their states.
     pub(crate) fn island(
@@ -165,81 +104,19 @@ impl<const D: usize> Builder<'_, D> {
         time: f64,
     ) -> Result<Island<D>, WorldError> {
         let layout = if bodies.len() > 1 { Layout::Batch } else { Layout::Single };
-        let blueprints: Vec<&BodyBlueprint<D>> = bodies.iter().map(|b| &self.blueprint.bodies[*b]).collect();
-        let first = blueprints[0];
-        let nodes = first.mesh.positions.len();
-        let places = layout.places(nodes);
+        let own = bodies.iter().map(|b| &self.blueprint.bodies[*b]).collect();
+        let seats = Seats { layout, bodies: own, states };
+        let first = seats.bodies[0];
         let range = plausible::range(&first.mesh);
-        for (body, state) in blueprints.iter().zip(states) {
-            let time = &self.blueprint.time;
-            plausible::check_range(&state.x, range)
-                .and_then(|()| plausible::check_speed(&state.v, range, time.frame / f64::from(time.substeps)))
-                .map_err(|source| WorldError::Build { place: Place::body(&body.name), source })?;
-        }
-        let (mut x, mut v) = (Columns::zeros(places), Columns::zeros(places));
-        let masses: Vec<Vec<f64>> = blueprints.iter().map(|b| node_masses(b)).collect();
-        for (body, masses) in blueprints.iter().zip(&masses) {
-            plausible::check_masses(body, masses)
-                .map_err(|source| WorldError::Build { place: Place::body(&body.name), source })?;
-        }
-        // Unused lanes repeat the first body.
-        let lane = |l: usize| if l < bodies.len() { l } else { 0 };
-        for node in 0..nodes {
-            for l in 0..layout.stride() {
-                x.set(layout.place(node, l), states[lane(l)].x[node]);
-                v.set(layout.place(node, l), states[lane(l)].v[node]);
-            }
-        }
-        for place in nodes * layout.stride()..places {
-            x.set(place, states[0].x[nodes - 1]);
-        }
-        let mass = Parameter::from_items(layout, nodes, |node, l| masses[lane(l)][node]);
-        let mut system = System::new(self.simd, layout, nodes, bodies.len(), x, v, mass.clone());
-        system.time = time;
-        system.gravity = self.blueprint.surroundings.gravity;
-        system.stabilisers = Stabilisers {
-            largest_force: self.blueprint.surroundings.largest_force,
-            largest_velocity: self.blueprint.surroundings.largest_velocity,
-        };
+        let masses = self.plausible_masses(&seats, range)?;
+        let mut system = self.bare_system(&seats, &masses, time);
         for (number, values) in first.models.iter().enumerate() {
-            let refuse = |source: BuildError| match source.code() {
-                BuildError::BROKEN_OFF => WorldError::BrokenOff {},
-                _ => WorldError::Build { place: Place::body(&first.name), source },
-            };
-            let Some(model) = self.registry.model(values.kind()) else {
-                return Err(refuse(BuildError::of(values.kind(), Refusal::NoModelHere {})));
-            };
-            let all: Vec<&Values> = (0..layout.stride()).map(|l| &blueprints[lane(l)].models[number]).collect();
-            let potential = model
-                .build(&Ingredients {
-                    mesh: &first.mesh,
-                    layout,
-                    values: &all,
-                    mass: &mass,
-                    densities: densities(first),
-                    thickness: first.thickness,
-                    gravity: self.blueprint.surroundings.gravity,
-                    step: self.blueprint.time.frame / f64::from(self.blueprint.time.substeps),
-                    break_off: self.break_off,
-                })
-                .map_err(refuse)?;
-            system.add(potential);
-            if let Some(member) = system.members.last_mut() {
-                for l in 0..layout.stride() {
-                    if let Some(kept) = states[lane(l)].memory.get(number)
-                        && kept.len() * WIDTH == member.memory.len()
-                    {
-                        for (k, value) in kept.iter().enumerate() {
-                            member.memory[k * WIDTH + l] = *value;
-                        }
-                    }
-                }
-            }
+            self.add_model(&mut system, &seats, number, values)?;
         }
         if self.blueprint.surroundings.drag > 0.0 {
-            self.add_drag(&mut system, first, layout, &mass)?;
+            self.add_drag(&mut system, first, layout)?;
         }
-        for (l, body) in blueprints.iter().enumerate() {
+        for (l, body) in seats.bodies.iter().enumerate() {
             self.add_pins(&mut system, body, l, layout);
             self.add_loads(&mut system, bodies[l], body, l, layout)?;
         }
@@ -250,28 +127,131 @@ impl<const D: usize> Builder<'_, D> {
             None => Arc::clone(self.integrator),
         };
         let refuse = |source| WorldError::Build { place: Place::body(&first.name), source };
-        for body in &blueprints {
-            contact_laws::check(self.blueprint, body, &*integrator).map_err(refuse)?;
-        }
-        self.check_cells(first).map_err(refuse)?;
-        // Loads know their derivatives; a model may lack them.
-        for member in &system.members[..first.models.len()] {
-            if !member.potential.properties().views.include(integrator.needs()) {
-                return Err(refuse(no_view(&*member.potential, integrator.name())));
-            }
-        }
-        if system.inertia.is_some() {
-            self.check_mass_matrix(first, &*integrator).map_err(refuse)?;
-        }
+        self.check_choices(&seats, &system, &*integrator).map_err(refuse)?;
         system.equip(&*integrator);
         if self.blueprint.surroundings.unfold {
-            system.history.add(&unfold::channels(), places);
+            system.history.add(&unfold::channels(), system.places());
         }
         for (l, state) in states.iter().enumerate() {
             state.history.restore(&mut system, l);
         }
         integrator.check(&system, !self.blueprint.colliders.is_empty()).map_err(refuse)?;
         Ok(Island::new(system, integrator, bodies.to_vec(), range))
+    }
+
+    /// The masses of the nodes of every body [kg], all of which and whose states are within what can be computed.
+    fn plausible_masses(&self, seats: &Seats<'_, D>, range: f64) -> Result<Vec<Vec<f64>>, WorldError> {
+        let refused = |body: &BodyBlueprint<D>, source| WorldError::Build { place: Place::body(&body.name), source };
+        for (body, state) in seats.bodies.iter().zip(seats.states) {
+            plausible::check_range(&state.x, range)
+                .and_then(|()| plausible::check_speed(&state.v, range, self.substep()))
+                .map_err(|source| refused(body, source))?;
+        }
+        let masses: Vec<Vec<f64>> = seats.bodies.iter().map(|body| node_masses(body)).collect();
+        for (body, masses) in seats.bodies.iter().zip(&masses) {
+            plausible::check_masses(body, masses).map_err(|source| refused(body, source))?;
+        }
+        Ok(masses)
+    }
+
+    /// A substep [s].
+    fn substep(&self) -> f64 {
+        self.blueprint.time.frame / f64::from(self.blueprint.time.substeps)
+    }
+
+    /// The bodies with their masses and states, before any force acts on them.
+    fn bare_system(&self, seats: &Seats<'_, D>, masses: &[Vec<f64>], time: f64) -> System<D> {
+        let Seats { layout, bodies, states } = seats;
+        let nodes = bodies[0].mesh.positions.len();
+        let places = layout.places(nodes);
+        let (mut x, mut v) = (Columns::zeros(places), Columns::zeros(places));
+        for node in 0..nodes {
+            for l in 0..layout.stride() {
+                x.set(layout.place(node, l), states[seats.of_lane(l)].x[node]);
+                v.set(layout.place(node, l), states[seats.of_lane(l)].v[node]);
+            }
+        }
+        for place in nodes * layout.stride()..places {
+            x.set(place, states[0].x[nodes - 1]);
+        }
+        let mass = Parameter::from_items(*layout, nodes, |node, l| masses[seats.of_lane(l)][node]);
+        let mut system = System::new(self.simd, *layout, nodes, bodies.len(), x, v, mass);
+        system.time = time;
+        system.gravity = self.blueprint.surroundings.gravity;
+        system.stabilisers = Stabilisers {
+            largest_force: self.blueprint.surroundings.largest_force,
+            largest_velocity: self.blueprint.surroundings.largest_velocity,
+        };
+        system
+    }
+
+    /// Adds a model of the first body with its values for all bodies, and what it remembers of them.
+    fn add_model(
+        &self,
+        system: &mut System<D>,
+        seats: &Seats<'_, D>,
+        number: usize,
+        values: &Values,
+    ) -> Result<(), WorldError> {
+        let (layout, first) = (seats.layout, seats.bodies[0]);
+        let refuse = |source: BuildError| match source.code() {
+            BuildError::BROKEN_OFF => WorldError::BrokenOff {},
+            _ => WorldError::Build { place: Place::body(&first.name), source },
+        };
+        let Some(model) = self.registry.model(values.kind()) else {
+            return Err(refuse(BuildError::of(values.kind(), Refusal::NoModelHere {})));
+        };
+        let all: Vec<&Values> = (0..layout.stride()).map(|l| &seats.bodies[seats.of_lane(l)].models[number]).collect();
+        let potential = model
+            .build(&Ingredients {
+                mesh: &first.mesh,
+                layout,
+                values: &all,
+                mass: &system.mass,
+                densities: densities(first),
+                thickness: first.thickness,
+                gravity: self.blueprint.surroundings.gravity,
+                step: self.substep(),
+                break_off: self.break_off,
+            })
+            .map_err(refuse)?;
+        system.add(potential);
+        if let Some(member) = system.members.last_mut() {
+            for l in 0..layout.stride() {
+                if let Some(kept) = seats.states[seats.of_lane(l)].memory.get(number)
+                    && kept.len() * WIDTH == member.memory.len()
+                {
+                    for (k, value) in kept.iter().enumerate() {
+                        member.memory[k * WIDTH + l] = *value;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses laws of contact, models and an integrator that do not go together.
+    fn check_choices(
+        &self,
+        seats: &Seats<'_, D>,
+        system: &System<D>,
+        integrator: &dyn Integrator<D>,
+    ) -> Result<(), BuildError> {
+        let first = seats.bodies[0];
+        for body in &seats.bodies {
+            contact_laws::check(self.blueprint, body, integrator)?;
+        }
+        self.check_cells(first)?;
+        // Loads know their derivatives; a model may lack them.
+        for member in &system.members[..first.models.len()] {
+            if !member.potential.properties().views.include(integrator.needs()) {
+                return Err(no_view(&*member.potential, integrator.name()));
+            }
+        }
+        if system.inertia.is_some() {
+            self.check_mass_matrix(first, integrator)?;
+        }
+        Ok(())
     }
 
     /// Refuses cells that two models own, and cells that no model owns though models name groups.
@@ -328,13 +308,7 @@ impl<const D: usize> Builder<'_, D> {
         Ok(())
     }
 
-    fn add_drag(
-        &self,
-        system: &mut System<D>,
-        body: &BodyBlueprint<D>,
-        layout: Layout,
-        mass: &Parameter,
-    ) -> Result<(), WorldError> {
+    fn add_drag(&self, system: &mut System<D>, body: &BodyBlueprint<D>, layout: Layout) -> Result<(), WorldError> {
         let refuse = |source| WorldError::Build { place: Place::Section { path: "world" }, source };
         let Some(model) = self.registry.model_with(Role::WorldDrag) else { return Ok(()) };
         let mut values = Values::defaults(model.spec(), D);
@@ -347,11 +321,11 @@ impl<const D: usize> Builder<'_, D> {
             mesh: &*body.mesh,
             layout,
             values: &all,
-            mass,
+            mass: &system.mass,
             densities: densities(body),
             thickness: body.thickness,
             gravity: self.blueprint.surroundings.gravity,
-            step: self.blueprint.time.frame / f64::from(self.blueprint.time.substeps),
+            step: self.substep(),
             break_off: self.break_off,
         };
         system.add(model.build(&ingredients).map_err(refuse)?);

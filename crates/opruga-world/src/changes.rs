@@ -12,7 +12,7 @@ use crate::rebuild::Touched;
 use crate::schema::{CONTACT, MOST_SUBSTEPS};
 use crate::slots::Origin;
 use crate::world::World;
-use opruga_core::spec::{Allowed, Value, Values, nearest};
+use opruga_core::spec::{Allowed, Spec, Value, Values, nearest};
 use opruga_math::message::AnyMessage;
 use std::collections::BTreeMap;
 
@@ -36,6 +36,32 @@ pub(crate) enum Before<const D: usize> {
     Time(Time),
     Collider(usize, Values),
     Contact(Values),
+}
+
+/// What a change of the scene leaves to do: the part of the scene as it was, and the bodies whose islands must follow.
+pub(crate) type Changed<const D: usize> = Result<(Before<D>, Touched), WorldError>;
+
+/// A parameter that is set: its path, the last name in it, and its value from now on.
+struct Setting<'a> {
+    path: &'a str,
+    field: &'a str,
+    value: Value,
+}
+
+impl Setting<'_> {
+    /// Why it cannot be set.
+    fn refuse(&self, about: impl Into<AnyMessage>) -> WorldError {
+        WorldError::path(self.path, about)
+    }
+    /// Writes the value into those of a kind.
+    fn write<const D: usize>(&self, values: &mut Values, spec: &Spec) -> Result<(), WorldError> {
+        values.set_instead(spec, self.field, self.value.clone(), D).map_err(|fault| self.refuse(fault))
+    }
+    /// The value, if it is in a range.
+    fn accepted<const D: usize>(&self, range: Allowed) -> Result<Value, WorldError> {
+        let refused = |(value, allowed)| self.refuse(PathFault::Is { value, allowed });
+        range.accept(self.value.clone(), D).map_err(refused)
+    }
 }
 
 impl<const D: usize> World<D> {
@@ -73,147 +99,157 @@ impl<const D: usize> World<D> {
     }
 
     /// Changes the scene alone; returns what it was, and the bodies whose islands must follow.
-    pub(crate) fn change(&mut self, path: &str, value: Value) -> Result<(Before<D>, Touched), WorldError> {
-        let refuse = |about: AnyMessage| WorldError::path(path, about);
+    pub(crate) fn change(&mut self, path: &str, value: Value) -> Changed<D> {
         let parts: Vec<&str> = path.split('.').collect();
+        let setting = |field| Setting { path, field, value };
         match parts.as_slice() {
-            ["body", name, "models", kind, field] => {
-                let bodies = self.named_or_refused(name).map_err(|fault| refuse(fault.into()))?;
-                let mut changed = Vec::new();
-                for body in bodies {
-                    let mut models = self.blueprint.bodies[body].models.clone();
-                    let number = kind
-                        .parse()
-                        .ok()
-                        .filter(|n| *n < models.len())
-                        .or(models.iter().position(|m| m.kind() == *kind));
-                    let spec = number.and_then(|n| self.registry.model(models[n].kind())).map(|m| m.spec());
-                    let (Some(spec), Some(number)) = (spec, number) else {
-                        let kinds: Vec<&str> = models.iter().map(Values::kind).collect();
-                        let (body, kind, known) = (name.to_string(), kind.to_string(), kinds.join(", "));
-                        return Err(refuse(PathFault::NoModel { body, kind, known }.into()));
-                    };
-                    models[number].set_instead(spec, field, value.clone(), D).map_err(|e| refuse(e.into()))?;
-                    changed.push((body, models));
-                }
-                for (body, models) in &mut changed {
-                    std::mem::swap(models, &mut self.blueprint.bodies[*body].models);
-                }
-                let touched = changed.iter().map(|(body, _)| *body).collect();
-                Ok((Before::Models(changed), Touched::Bodies(touched)))
+            ["body", name, "models", kind, field] => self.change_models(name, kind, setting(field)),
+            ["body", name, "integrator", field] => self.change_own_integrators(name, setting(field)),
+            ["integrator", field] => self.change_integrator(setting(field)),
+            ["collider", number, field] => self.change_collider(number, setting(field)),
+            ["contact", field] => self.change_contact(setting(field)),
+            ["world", field] => self.change_surroundings(setting(field)),
+            ["time", "substeps"] => self.change_substeps(setting("substeps")),
+            _ => Err(WorldError::path(path, PathFault::NotAParameter {})),
+        }
+    }
+
+    /// Changes a model of one body or of all copies of one.
+    fn change_models(&mut self, name: &str, kind: &str, setting: Setting<'_>) -> Changed<D> {
+        let mut changed = Vec::new();
+        for body in self.named_or_refused(name).map_err(|fault| setting.refuse(fault))? {
+            let mut models = self.blueprint.bodies[body].models.clone();
+            let number =
+                kind.parse().ok().filter(|n| *n < models.len()).or(models.iter().position(|m| m.kind() == kind));
+            let spec = number.and_then(|n| self.registry.model(models[n].kind())).map(|m| m.spec());
+            let (Some(spec), Some(number)) = (spec, number) else {
+                let kinds: Vec<&str> = models.iter().map(Values::kind).collect();
+                let (body, kind, known) = (name.to_string(), kind.to_string(), kinds.join(", "));
+                return Err(setting.refuse(PathFault::NoModel { body, kind, known }));
+            };
+            setting.write::<D>(&mut models[number], spec)?;
+            changed.push((body, models));
+        }
+        for (body, models) in &mut changed {
+            std::mem::swap(models, &mut self.blueprint.bodies[*body].models);
+        }
+        let touched = changed.iter().map(|(body, _)| *body).collect();
+        Ok((Before::Models(changed), Touched::Bodies(touched)))
+    }
+
+    /// Changes the integrator of one body or of all copies of one.
+    fn change_own_integrators(&mut self, name: &str, setting: Setting<'_>) -> Changed<D> {
+        let mut changed = Vec::new();
+        for body in self.named_or_refused(name).map_err(|fault| setting.refuse(fault))? {
+            let Some(mut values) = self.blueprint.bodies[body].integrator.clone() else {
+                let (body, field) = (name.to_string(), setting.field.to_string());
+                return Err(setting.refuse(PathFault::FollowsScene { body, field }));
+            };
+            let spec = self.registry.integrator(values.kind()).map(|i| i.spec());
+            let spec = spec.ok_or_else(|| setting.refuse(PathFault::NoSuchIntegrator {}))?;
+            setting.write::<D>(&mut values, spec)?;
+            changed.push((body, Some(values)));
+        }
+        for (body, values) in &mut changed {
+            std::mem::swap(values, &mut self.blueprint.bodies[*body].integrator);
+        }
+        let touched = changed.iter().map(|(body, _)| *body).collect();
+        Ok((Before::OwnIntegrators(changed), Touched::Bodies(touched)))
+    }
+
+    /// Changes the integrator of the scene, which all bodies without their own follow.
+    fn change_integrator(&mut self, setting: Setting<'_>) -> Changed<D> {
+        let spec = self.registry.integrator(self.blueprint.integrator.kind()).map(|i| i.spec());
+        let spec = spec.ok_or_else(|| setting.refuse(PathFault::NoSuchIntegrator {}))?;
+        let before = self.blueprint.integrator.clone();
+        setting.write::<D>(&mut self.blueprint.integrator, spec)?;
+        let follow = |b: &usize| self.blueprint.bodies[*b].integrator.is_none();
+        let touched = self.bodies().filter(follow).collect();
+        Ok((Before::Integrator(before), Touched::Bodies(touched)))
+    }
+
+    /// Changes an obstacle.
+    fn change_collider(&mut self, number: &str, setting: Setting<'_>) -> Changed<D> {
+        let count = self.blueprint.colliders.len();
+        let found = number.parse::<usize>().ok().filter(|n| *n < count);
+        let number = found.ok_or_else(|| {
+            let collider = number.to_string();
+            setting.refuse(match count {
+                0 => PathFault::NoColliders { collider },
+                n => PathFault::NoCollider { collider, last: n - 1 },
+            })
+        })?;
+        let before = self.blueprint.colliders[number].values.clone();
+        let spec = opruga_collide::all(D).into_iter().find(|s| s.kind == before.kind());
+        let spec = spec.ok_or_else(|| setting.refuse(PathFault::NoColliderKind {}))?;
+        setting.write::<D>(&mut self.blueprint.colliders[number].values, spec)?;
+        match build_colliders(&self.blueprint) {
+            Ok(colliders) => self.colliders = colliders,
+            Err(error) => {
+                self.blueprint.colliders[number].values = before;
+                return Err(error);
             }
-            ["body", name, "integrator", field] => {
-                let bodies = self.named_or_refused(name).map_err(|fault| refuse(fault.into()))?;
-                let mut changed = Vec::new();
-                for body in bodies {
-                    let Some(mut values) = self.blueprint.bodies[body].integrator.clone() else {
-                        let (body, field) = (name.to_string(), field.to_string());
-                        return Err(refuse(PathFault::FollowsScene { body, field }.into()));
-                    };
-                    let spec = self.registry.integrator(values.kind()).map(|i| i.spec());
-                    let spec = spec.ok_or_else(|| refuse(PathFault::NoSuchIntegrator {}.into()))?;
-                    values.set_instead(spec, field, value.clone(), D).map_err(|e| refuse(e.into()))?;
-                    changed.push((body, Some(values)));
-                }
-                for (body, values) in &mut changed {
-                    std::mem::swap(values, &mut self.blueprint.bodies[*body].integrator);
-                }
-                let touched = changed.iter().map(|(body, _)| *body).collect();
-                Ok((Before::OwnIntegrators(changed), Touched::Bodies(touched)))
-            }
-            ["integrator", field] => {
-                let spec = self.registry.integrator(self.blueprint.integrator.kind()).map(|i| i.spec());
-                let spec = spec.ok_or_else(|| refuse(PathFault::NoSuchIntegrator {}.into()))?;
-                let before = self.blueprint.integrator.clone();
-                self.blueprint.integrator.set_instead(spec, field, value, D).map_err(|e| refuse(e.into()))?;
-                let follow = |b: &usize| self.blueprint.bodies[*b].integrator.is_none();
-                let touched = self.bodies().filter(follow).collect();
-                Ok((Before::Integrator(before), Touched::Bodies(touched)))
-            }
-            ["collider", number, field] => {
-                let count = self.blueprint.colliders.len();
-                let found = number.parse::<usize>().ok().filter(|n| *n < count);
-                let number = found.ok_or_else(|| {
-                    let collider = number.to_string();
-                    refuse(match count {
-                        0 => PathFault::NoColliders { collider }.into(),
-                        n => PathFault::NoCollider { collider, last: n - 1 }.into(),
-                    })
-                })?;
-                let before = self.blueprint.colliders[number].values.clone();
-                let spec = opruga_collide::all(D).into_iter().find(|s| s.kind == before.kind());
-                let spec = spec.ok_or_else(|| refuse(PathFault::NoColliderKind {}.into()))?;
-                self.blueprint.colliders[number]
-                    .values
-                    .set_instead(spec, field, value, D)
-                    .map_err(|e| refuse(e.into()))?;
-                match build_colliders(&self.blueprint) {
-                    Ok(colliders) => self.colliders = colliders,
-                    Err(error) => {
-                        self.blueprint.colliders[number].values = before;
-                        return Err(error);
-                    }
-                }
-                Ok((Before::Collider(number, before), Touched::Bodies(Vec::new())))
-            }
-            ["contact", field] => {
-                let contact = self.blueprint.contact.as_mut().ok_or_else(|| refuse(PathFault::NoContact {}.into()))?;
-                let before = contact.values.clone();
-                contact.values.set_instead(CONTACT.spec, field, value, D).map_err(|e| refuse(e.into()))?;
-                // Made anew with the laws that hold from now on.
-                self.clusters = None;
-                Ok((Before::Contact(before), Touched::Bodies(Vec::new())))
-            }
-            ["world", field] => {
-                let before = self.blueprint.surroundings;
-                let accept = |range: Allowed| {
-                    let is = |(value, allowed)| refuse(PathFault::Is { value, allowed }.into());
-                    range.accept(value.clone(), D).map_err(is)
-                };
-                let number = |value: Value| match value {
-                    Value::Number(x) => Some(x),
-                    Value::Integer(x) => Some(x as f64),
-                    _ => None,
-                };
-                let now = &mut self.blueprint.surroundings;
-                match *field {
-                    "gravity" => match accept(Allowed::Vector)? {
-                        Value::Numbers(g) if g.len() == D => now.gravity = core::array::from_fn(|d| g[d]),
-                        other => {
-                            let (value, allowed) = (other.to_string(), Allowed::Vector.describe(D));
-                            return Err(refuse(PathFault::Is { value, allowed }.into()));
-                        }
-                    },
-                    "drag" => now.drag = number(accept(Allowed::NOT_NEGATIVE)?).unwrap_or(0.0),
-                    "largest_force" => now.largest_force = number(accept(Allowed::POSITIVE)?),
-                    "largest_velocity" => now.largest_velocity = number(accept(Allowed::POSITIVE)?),
-                    "largest_distance" => {
-                        now.largest_distance = number(accept(Allowed::POSITIVE)?);
-                        return Ok((Before::Surroundings(before), Touched::Bodies(Vec::new())));
-                    }
-                    "unfold" => now.unfold = matches!(accept(Allowed::Boolean)?, Value::Boolean(true)),
-                    other => {
-                        let known =
-                            ["gravity", "drag", "largest_force", "largest_velocity", "largest_distance", "unfold"];
-                        let (near, known) = (nearest(other, known.into_iter()), known.join(", "));
-                        let fault = PathFault::NoFieldOfWorld { field: other.into(), known, nearest: near };
-                        return Err(refuse(fault.into()));
-                    }
-                }
-                Ok((Before::Surroundings(before), Touched::All))
-            }
-            ["time", "substeps"] => match value {
-                Value::Integer(n) if (1..=i64::from(MOST_SUBSTEPS)).contains(&n) => {
-                    let before = self.blueprint.time;
-                    self.blueprint.time.substeps = n as u32;
-                    Ok((Before::Time(before), Touched::Bodies(Vec::new())))
-                }
+        }
+        Ok((Before::Collider(number, before), Touched::Bodies(Vec::new())))
+    }
+
+    /// Changes how bodies meet.
+    fn change_contact(&mut self, setting: Setting<'_>) -> Changed<D> {
+        let contact = self.blueprint.contact.as_mut().ok_or_else(|| setting.refuse(PathFault::NoContact {}))?;
+        let before = contact.values.clone();
+        setting.write::<D>(&mut contact.values, CONTACT.spec)?;
+        // Made anew with the laws that hold from now on.
+        self.clusters = None;
+        Ok((Before::Contact(before), Touched::Bodies(Vec::new())))
+    }
+
+    /// Changes gravity, drag, what limits motion, or whether degenerate bodies unfold.
+    fn change_surroundings(&mut self, setting: Setting<'_>) -> Changed<D> {
+        let before = self.blueprint.surroundings;
+        let number = |value: Value| match value {
+            Value::Number(x) => Some(x),
+            Value::Integer(x) => Some(x as f64),
+            _ => None,
+        };
+        let now = &mut self.blueprint.surroundings;
+        let mut touched = Touched::All;
+        match setting.field {
+            "gravity" => match setting.accepted::<D>(Allowed::Vector)? {
+                Value::Numbers(g) if g.len() == D => now.gravity = core::array::from_fn(|d| g[d]),
                 other => {
-                    let allowed = Allowed::Integer { least: 1, greatest: i64::from(MOST_SUBSTEPS) }.describe(D);
-                    Err(refuse(PathFault::Is { value: other.to_string(), allowed }.into()))
+                    let (value, allowed) = (other.to_string(), Allowed::Vector.describe(D));
+                    return Err(setting.refuse(PathFault::Is { value, allowed }));
                 }
             },
-            _ => Err(refuse(PathFault::NotAParameter {}.into())),
+            "drag" => now.drag = number(setting.accepted::<D>(Allowed::NOT_NEGATIVE)?).unwrap_or(0.0),
+            "largest_force" => now.largest_force = number(setting.accepted::<D>(Allowed::POSITIVE)?),
+            "largest_velocity" => now.largest_velocity = number(setting.accepted::<D>(Allowed::POSITIVE)?),
+            "largest_distance" => {
+                now.largest_distance = number(setting.accepted::<D>(Allowed::POSITIVE)?);
+                touched = Touched::Bodies(Vec::new());
+            }
+            "unfold" => now.unfold = matches!(setting.accepted::<D>(Allowed::Boolean)?, Value::Boolean(true)),
+            other => {
+                let known = ["gravity", "drag", "largest_force", "largest_velocity", "largest_distance", "unfold"];
+                let (nearest, known) = (nearest(other, known.into_iter()), known.join(", "));
+                return Err(setting.refuse(PathFault::NoFieldOfWorld { field: other.into(), known, nearest }));
+            }
+        }
+        Ok((Before::Surroundings(before), touched))
+    }
+
+    /// Changes the number of substeps of a frame.
+    fn change_substeps(&mut self, setting: Setting<'_>) -> Changed<D> {
+        match setting.value {
+            Value::Integer(n) if (1..=i64::from(MOST_SUBSTEPS)).contains(&n) => {
+                let before = self.blueprint.time;
+                self.blueprint.time.substeps = n as u32;
+                Ok((Before::Time(before), Touched::Bodies(Vec::new())))
+            }
+            ref other => {
+                let allowed = Allowed::Integer { least: 1, greatest: i64::from(MOST_SUBSTEPS) }.describe(D);
+                Err(setting.refuse(PathFault::Is { value: other.to_string(), allowed }))
+            }
         }
     }
 

@@ -82,54 +82,89 @@ impl<const D: usize> World<D> {
         }
         let mut force = Columns::zeros(system.places());
         system.evaluate(Stage::Current, 0.0, 0.0, &mut force).map_err(|cause| refuse(Refusal::State { cause }))?;
+        let mut motions = SmallMotions::about(system, count).map_err(refuse)?;
+        let (mut modes, known) = motions.rigid();
+        motions.leave_out_pinned_axes();
+        let wanted = count.saturating_sub(modes.len());
+        let found = motions.elastic(wanted, &known).map_err(refuse)?;
+        modes.truncate(count);
+        modes.extend(found);
+        Ok(modes)
+    }
+}
+
+/// Small motions of a body about its present state: M q″ + K q = 0.
+struct SmallMotions<const D: usize> {
+    system: System<D>,
+    /// K [N/m], where pinned axes have neither a row nor a column.
+    stiffness: BlockMatrix<D>,
+    /// The lumped mass of every axis of every node [kg].
+    mass: Vec<f64>,
+    /// Whether a pin holds an axis.
+    pinned: Vec<bool>,
+    /// Nodes none of whose axes are pinned.
+    free: Vec<bool>,
+    /// What takes pinned axes out, of every node.
+    projectors: Vec<[[f64; D]; D]>,
+    /// The largest ratio of a diagonal element of K to its mass [1/s²].
+    fastest: f64,
+}
+
+impl<const D: usize> SmallMotions<D> {
+    /// Of a system whose forces are those of its present state; refuses what has no frequencies, and a search for `count`
+    /// modes that takes too much memory.
+    fn about(system: System<D>, count: usize) -> Result<Self, Refusal> {
         let mut stiffness = BlockMatrix::<D>::default();
         stiffness.assemble(system.nodes, 0, |matrix| {
             system.hessian(Stage::Current, 0.0, Definiteness::Exact, matrix);
         });
-        let mut mass: Vec<f64> = (0..system.nodes).flat_map(|node| [system.mass.at(node); D]).collect();
-        let mut held = vec![false; mass.len()];
-        system.held_axes(&mut |place, d| held[place * D + d] = true);
-        if held.iter().all(|held| *held) {
-            return Err(refuse(Refusal::AllHeld {}));
+        let mass: Vec<f64> = (0..system.nodes).flat_map(|node| [system.mass.at(node); D]).collect();
+        let mut pinned = vec![false; mass.len()];
+        system.held_axes(&mut |place, d| pinned[place * D + d] = true);
+        if pinned.iter().all(|pinned| *pinned) {
+            return Err(Refusal::AllHeld {});
         }
-        if let Some(light) = (0..mass.len()).find(|k| !(mass[*k] > 0.0 || held[*k])) {
-            return Err(refuse(Refusal::NoMassOfNode { node: light / D }));
+        if let Some(light) = (0..mass.len()).find(|k| !(mass[*k] > 0.0 || pinned[*k])) {
+            return Err(Refusal::NoMassOfNode { node: light / D });
         }
-        let axes = held.iter().filter(|held| !**held).count();
+        let axes = pinned.iter().filter(|pinned| !**pinned).count();
         let bytes = memory(count, axes);
         if bytes > MOST_BYTES {
             let (bytes, most) = (format!("{bytes:.0}"), format!("{MOST_BYTES:.0}"));
-            return Err(refuse(Refusal::ModesMemory { count: count.min(axes), axes, bytes, most }));
+            return Err(Refusal::ModesMemory { count: count.min(axes), axes, bytes, most });
         }
-        // Held axes: no row and no column.
-        let free: Vec<bool> = (0..system.nodes).map(|node| !held[node * D..(node + 1) * D].contains(&true)).collect();
+        // Pinned axes: no row and no column.
+        let free: Vec<bool> = (0..system.nodes).map(|node| !pinned[node * D..(node + 1) * D].contains(&true)).collect();
         let projectors: Vec<[[f64; D]; D]> = (0..system.nodes)
             .map(|node| {
-                let kept = |d: usize| if held[node * D + d] { 0.0 } else { 1.0 };
+                let kept = |d: usize| if pinned[node * D + d] { 0.0 } else { 1.0 };
                 core::array::from_fn(|i| core::array::from_fn(|j| if i == j { kept(i) } else { 0.0 }))
             })
             .collect();
         stiffness.constrain(&free, &projectors);
         let mut fastest: f64 = 0.0;
         for (k, m) in mass.iter().enumerate() {
-            let ratio = if held[k] { 0.0 } else { stiffness.diagonal_block(k / D)[k % D][k % D].abs() / m };
-            let dense = if held[k] || !stiffness.has_dense() { 0.0 } else { stiffness.diagonal_size(k / D) / m };
+            let ratio = if pinned[k] { 0.0 } else { stiffness.diagonal_block(k / D)[k % D][k % D].abs() / m };
+            let dense = if pinned[k] || !stiffness.has_dense() { 0.0 } else { stiffness.diagonal_size(k / D) / m };
             let ratio = if dense > ratio { dense } else { ratio };
             fastest = if ratio > fastest { ratio } else { fastest };
         }
         let fastest = if fastest > 0.0 { fastest } else { 1.0 };
+        Ok(SmallMotions { system, stiffness, mass, pinned, free, projectors, fastest })
+    }
 
-        // Rigid motions that strain nothing need no search.
+    /// Rigid motions that strain nothing, which need no search, and their shapes axis by axis.
+    fn rigid(&self) -> (Vec<Mode<D>>, Vec<Vec<f64>>) {
         let mut rigid: Vec<Mode<D>> = Vec::new();
         let mut known: Vec<Vec<f64>> = Vec::new();
-        for motion in unheld_motions(&system) {
-            let mut shape = shape_of(&system, &motion);
-            if !orthonormalise(&mut shape, &|x, y| weigh(&system, &mass, x, y), &known) {
+        for motion in unheld_motions(&self.system) {
+            let mut shape = shape_of(&self.system, &motion);
+            if !orthonormalise(&mut shape, &|x, y| weigh(&self.system, &self.mass, x, y), &known) {
                 continue;
             }
             let mut strained = vec![0.0; shape.len()];
-            stiffness.multiply(&shape, &mut strained);
-            if dot(&shape, &strained).abs() <= FREE * fastest {
+            self.stiffness.multiply(&shape, &mut strained);
+            if dot(&shape, &strained).abs() <= FREE * self.fastest {
                 rigid.push(Mode {
                     square: 0.0,
                     shape: vectors(&shape),
@@ -139,13 +174,39 @@ impl<const D: usize> World<D> {
                 known.push(shape);
             }
         }
-        for (m, held) in mass.iter_mut().zip(&held) {
-            *m = if *held { 0.0 } else { *m };
-        }
+        (rigid, known)
+    }
 
-        let without_frequencies = || refuse(Refusal::Indefinite {});
-        // (K + s M) must be positive definite; that of a state that is about to buckle needs a larger s.
-        let mut shift = 1e-6 * fastest;
+    /// From here on pinned axes have no mass.
+    fn leave_out_pinned_axes(&mut self) {
+        for (m, pinned) in self.mass.iter_mut().zip(&self.pinned) {
+            *m = if *pinned { 0.0 } else { *m };
+        }
+    }
+
+    /// The lowest modes that are orthogonal to those that are known.
+    fn elastic(&self, wanted: usize, known: &[Vec<f64>]) -> Result<Vec<Mode<D>>, Refusal> {
+        let (shift, factor) = self.factor()?;
+        let by_mass = |x: &[f64], y: &mut [f64]| weigh(&self.system, &self.mass, x, y);
+        let by_stiffness = |x: &[f64], y: &mut [f64]| self.stiffness.multiply(x, y);
+        let pencil = Pencil {
+            mass: &self.mass,
+            shift,
+            known,
+            weigh: &by_mass,
+            solve: &|x| factor.solve(x),
+            stiffness: &by_stiffness,
+        };
+        let found = lowest_modes(wanted, &pencil).map_err(|_| Refusal::Indefinite {})?;
+        let mode = |square, shape: &[f64], residual| Mode { square, shape: vectors(shape), residual, rigid: None };
+        Ok(found.into_iter().map(|found| mode(found.square, &found.shape, found.residual)).collect())
+    }
+
+    /// A factor of K + s M with its s [1/s²]. The matrix must be positive definite; that of a state that is about to buckle
+    /// needs a larger s.
+    fn factor(&self) -> Result<(f64, Cholesky), Refusal> {
+        let system = &self.system;
+        let mut shift = 1e-6 * self.fastest;
         let mut factor = Cholesky::default();
         loop {
             let mut shifted = BlockMatrix::<D>::default();
@@ -158,35 +219,15 @@ impl<const D: usize> World<D> {
                     matrix.add_diagonal(node, shift * system.mass.at(node));
                 }
             });
-            shifted.constrain(&free, &projectors);
+            shifted.constrain(&self.free, &self.projectors);
             if factor.update(&shifted).is_ok() {
-                break;
+                return Ok((shift, factor));
             }
             shift *= 10.0;
-            if shift > 1e3 * fastest {
-                return Err(without_frequencies());
+            if shift > 1e3 * self.fastest {
+                return Err(Refusal::Indefinite {});
             }
         }
-        let wanted = count.saturating_sub(rigid.len());
-        let by_mass = |x: &[f64], y: &mut [f64]| weigh(&system, &mass, x, y);
-        let by_stiffness = |x: &[f64], y: &mut [f64]| stiffness.multiply(x, y);
-        let pencil = Pencil {
-            mass: &mass,
-            shift,
-            known: &known,
-            weigh: &by_mass,
-            solve: &|x| factor.solve(x),
-            stiffness: &by_stiffness,
-        };
-        let found = lowest_modes(wanted, &pencil).map_err(|_| without_frequencies())?;
-        rigid.truncate(count);
-        rigid.extend(found.into_iter().map(|mode| Mode {
-            square: mode.square,
-            shape: vectors(&mode.shape),
-            residual: mode.residual,
-            rigid: None,
-        }));
-        Ok(rigid)
     }
 }
 

@@ -1,9 +1,9 @@
 //! Bodies come and go.
 
 use crate::blueprint::{Action, BodyBlueprint};
-use crate::build::alike;
 use crate::changes::{Before, Source};
 use crate::error::WorldError;
+use crate::grouping::alike;
 use crate::inputs::Input;
 use crate::path_faults::PathFault;
 use crate::rebuild::Touched;
@@ -47,7 +47,7 @@ impl<const D: usize> World<D> {
                 };
                 // Rather beside bodies like it, where a batch keeps a seat.
                 let beside = |(_, like): &(usize, Option<usize>)| {
-                    like.is_some_and(|other| crate::build::alike(&self.blueprint.bodies[other], body))
+                    like.is_some_and(|other| alike(&self.blueprint.bodies[other], body))
                 };
                 let found = origins().filter_map(free).find(beside).or_else(|| origins().find_map(free));
                 found.map_or(end, |(place, _)| place)

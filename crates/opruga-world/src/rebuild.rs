@@ -1,9 +1,10 @@
 //! Islands are built anew where the scene changed; all others stay as they are.
 
 use crate::blueprint::{Blueprint, BodyBlueprint};
-use crate::build::{Builder, build_integrator, group};
+use crate::build::{Builder, build_integrator};
 use crate::carried::{BodyHistory, BodyState};
 use crate::error::{Place, WorldError};
+use crate::grouping::group;
 use crate::island::Island;
 use crate::world::World;
 use opruga_math::WIDTH;

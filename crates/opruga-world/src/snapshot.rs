@@ -11,7 +11,6 @@ use crate::rebuild::Touched;
 use crate::running::{Progress, Running};
 use crate::slots::{ACTED, Origin};
 use crate::world::World;
-use opruga_core::system::SolverWork;
 use opruga_math::WIDTH;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -77,25 +76,7 @@ impl<const D: usize> World<D> {
             out.command(&running.command);
             write_progress(&mut out, &running.progress);
         }
-        let f = &self.flows;
-        let works = [f.user, f.gas, f.damping, f.friction, f.contact, f.correction, f.numerical];
-        for x in works.into_iter().chain([f.start, f.changed, f.largest]) {
-            out.number(x);
-        }
-        let limited = [f.limited_forces, f.limited_velocities, f.limited_pulls];
-        for n in limited.into_iter().chain([f.lost_bodies, f.open_frames, f.damped_frames]) {
-            out.count(n);
-        }
-        let s = &f.solver;
-        let counts =
-            [s.steps, s.iterations, s.linear_iterations, s.accepted, s.halved, s.deepest, s.cut_off, s.disturbed];
-        for n in counts.into_iter().chain([s.odd_rests, s.estimated, s.conditioned]) {
-            out.count(n);
-        }
-        out.number(s.residual);
-        out.number(s.left);
-        out.number(s.error_estimate);
-        out.number(s.conditioning);
+        self.flows.write(&mut out);
         self.contact_memory.write(&mut out);
     }
 
@@ -161,8 +142,22 @@ impl<const D: usize> World<D> {
         commands: &[Running<D>],
         other_future: bool,
     ) -> Result<Rest<D>, WorldError> {
-        let refuse = |fault: SnapshotFault| Err(WorldError::snapshot(fault));
         let mut rest = Rest { next: reader.count()?, ..Rest::default() };
+        self.read_bodies(reader, version, &mut rest)?;
+        self.read_commands(reader, commands, other_future, &mut rest)?;
+        rest.flows = Flows::read(reader)?;
+        if version == VERSION {
+            rest.contact = ContactMemory::read(reader)?;
+        }
+        if !reader.0.is_empty() {
+            return Err(WorldError::snapshot(SnapshotFault::GoesOn {}));
+        }
+        Ok(rest)
+    }
+
+    /// Which bodies are alive, their states, and how many laws of force they had.
+    fn read_bodies(&self, reader: &mut Reader<'_>, version: u64, rest: &mut Rest<D>) -> Result<(), WorldError> {
+        let refuse = |fault: SnapshotFault| Err(WorldError::snapshot(fault));
         if reader.count()? != self.blueprint.bodies.len() as u64 {
             return refuse(SnapshotFault::BodyCount {});
         }
@@ -208,6 +203,18 @@ impl<const D: usize> World<D> {
                 rest.laws.insert(number, laws);
             }
         }
+        Ok(())
+    }
+
+    /// How far the commands of the scene had come, and the commands of the program, all of which hold nodes that there are.
+    fn read_commands(
+        &self,
+        reader: &mut Reader<'_>,
+        commands: &[Running<D>],
+        other_future: bool,
+        rest: &mut Rest<D>,
+    ) -> Result<(), WorldError> {
+        let refuse = |fault: SnapshotFault| Err(WorldError::snapshot(fault));
         let count = reader.length()?;
         if !other_future && count != commands.len() {
             return refuse(SnapshotFault::CommandCount {});
@@ -237,79 +244,7 @@ impl<const D: usize> World<D> {
                 return refuse(SnapshotFault::CommandHolds {});
             }
         }
-        let mut numbers = [0.0; 10];
-        for x in &mut numbers {
-            *x = reader.number()?;
-        }
-        let mut counts = [0; 6];
-        for n in &mut counts {
-            *n = reader.count()?;
-        }
-        let mut solver = [0; 11];
-        for n in &mut solver {
-            *n = reader.count()?;
-        }
-        let [mut residual, mut left, mut error_estimate, mut conditioning] = [0.0; 4];
-        for number in [&mut residual, &mut left, &mut error_estimate, &mut conditioning] {
-            *number = reader.number()?;
-        }
-        if version == VERSION {
-            rest.contact = ContactMemory::read(reader)?;
-        }
-        if !reader.0.is_empty() {
-            return refuse(SnapshotFault::GoesOn {});
-        }
-        let [user, gas, damping, friction, contact, correction, numerical, start, changed, largest] = numbers;
-        let [limited_forces, limited_velocities, limited_pulls, lost_bodies, open_frames, damped_frames] = counts;
-        let [
-            steps,
-            iterations,
-            linear_iterations,
-            accepted,
-            halved,
-            deepest,
-            cut_off,
-            disturbed,
-            odd_rests,
-            estimated,
-            conditioned,
-        ] = solver;
-        rest.flows = Flows {
-            user,
-            gas,
-            damping,
-            friction,
-            contact,
-            correction,
-            numerical,
-            start,
-            changed,
-            largest,
-            limited_forces,
-            limited_velocities,
-            limited_pulls,
-            lost_bodies,
-            open_frames,
-            damped_frames,
-            solver: SolverWork {
-                steps,
-                iterations,
-                linear_iterations,
-                residual,
-                accepted,
-                halved,
-                deepest,
-                cut_off,
-                left,
-                disturbed,
-                odd_rests,
-                estimated,
-                error_estimate,
-                conditioned,
-                conditioning,
-            },
-        };
-        Ok(rest)
+        Ok(())
     }
 
     /// Commands with how far they had come, as far as that is known; behind those of the scene those of the program.

@@ -19,97 +19,22 @@ impl<const D: usize> World<D> {
     /// [`WorldError`] names body, node and substep; the world is at its last good frame.
     pub fn frame(&mut self) -> Result<(), WorldError> {
         self.begin_what_is_due()?;
-        let plan = FramePlan {
-            colliders: self.colliders.as_ref(),
-            start: self.time(),
-            substeps: self.blueprint.time.substeps,
-            h: self.h(),
-            look_every: self.looks.every,
-            watched: self.blueprint.contact.is_some(),
-            unfold: self.blueprint.surroundings.unfold.then_some(&self.blueprint.bodies[..]),
-        };
         (self.looks.flows, self.looks.fresh) = (self.flows, false);
-        let (built, colliders) = (self.islands_built, self.colliders.clone());
-        let made_for = MadeFor { built, islands: self.islands.len(), colliders };
-        if self.clusters.as_ref().is_none_or(|clusters| !clusters.scene.is_for(&made_for)) {
-            let scene = SceneContact::of(&self.blueprint, &self.islands, made_for);
-            self.clusters = scene.map(|scene| Box::new(Clusters::of(scene)));
-        }
+        self.find_clusters();
         self.refuse_what_meets()?;
-        let islands = &mut self.islands;
-        let workspaces = &mut self.workspaces;
-        // One small body has nothing to share: waking threads for it would cost more than its frame.
-        let alone = |island: &[Island<D>]| matches!(island, [one] if !one.is_shared_by(self.options.threads, 1));
-        let mut touched = Ok(());
-        match self.pool.as_ref().filter(|_| !alone(islands)) {
-            pool if self.clusters.is_some() => {
-                if let Some(clusters) = &mut self.clusters {
-                    let reported = self.contacts.is_some();
-                    let scene = (&self.blueprint, &self.contact_memory, reported);
-                    let mut go = |pooled| together::frame(clusters, scene, islands, &plan, workspaces, pooled);
-                    touched = match pool {
-                        None => go(false),
-                        Some(pool) => pool.install(|| go(true)),
-                    };
-                }
-            }
-            None => islands.iter_mut().for_each(|island| island.frame(&plan, &mut lock(&workspaces[0]))),
-            Some(pool) => pool.install(|| {
-                // Large bodies one after the other, each on all threads; then the others, one a thread. A body that waits for
-                // its threads must not be handed another one, whose workspace would be its own.
-                let (number, count) = (pool.current_num_threads(), islands.len());
-                for island in islands.iter_mut().filter(|island| island.is_shared_by(number, count)) {
-                    island.system.threads = number;
-                    threads::together(number, || island.frame(&plan, &mut lock(&workspaces[0])));
-                    island.system.threads = 1;
-                }
-                islands.par_iter_mut().filter(|island| !island.is_shared_by(number, count)).for_each(|island| {
-                    let thread = rayon::current_thread_index().unwrap_or(0);
-                    island.frame(&plan, &mut lock(&workspaces[thread]));
-                });
-            }),
-        }
-        if let Err((trouble, time)) = touched {
-            for island in &mut self.islands {
-                island.restore();
-                island.refresh();
-                island.work = Default::default();
-            }
+        if let Err((trouble, time)) = self.step_islands() {
+            self.restore_islands(|_| true);
             return Err(self.trouble(trouble, time));
         }
         if let Some(first) = self.islands.iter().position(|i| i.outcome.is_err()) {
-            // All islands go back to the same frame.
-            for island in &mut self.islands {
-                if island.outcome.is_ok() {
-                    island.restore();
-                    island.refresh();
-                }
-                island.work = Default::default();
-            }
-            let body = |local: usize| self.blueprint.bodies[self.islands[first].bodies[local]].name.clone();
-            return Err(match &self.islands[first].outcome {
-                Err(StepError::Diverged { body: local, node, time, range }) => {
-                    let (body, last) = (body(*local), self.time());
-                    WorldError::Diverged { body, node: *node, time: *time, last, range: *range }
-                }
-                Err(StepError::BrokenOff {}) => WorldError::BrokenOff {},
-                Err(cause @ StepError::NotConverged { .. }) => {
-                    WorldError::NotConverged { body: body(0), cause: Box::new(cause.clone()) }
-                }
-                Err(cause) => WorldError::Step { body: body(0), cause: Box::new(cause.clone()) },
-                // It is one that has failed.
-                Ok(()) => WorldError::Overflow { last: self.time() },
-            });
+            // All islands go back to the same frame; those that failed are there.
+            self.restore_islands(|island| island.outcome.is_ok());
+            return Err(self.failure_of(first));
         }
         self.frames += 1;
         self.looks.fresh = true;
         self.take_contacts();
-        for island in &mut self.islands {
-            let work = std::mem::take(&mut island.work);
-            self.flows.add(&island.system, island.numerical_loss(&work), &work);
-        }
-        self.flows.limited_pulls = self.limited_pulls.load(Ordering::Relaxed);
-        self.refresh_ledger();
+        self.sum_flows();
         if !(self.energy.is_finite() && self.momentum.is_finite()) {
             return Err(self.take_back_frame());
         }
@@ -127,6 +52,102 @@ impl<const D: usize> World<D> {
         self.warn_of_turned_cells();
         self.warn_of_mixed_contact();
         self.take_away_what_is_far()
+    }
+
+    /// Makes contact between bodies anew where islands or obstacles are not those for which it was made.
+    fn find_clusters(&mut self) {
+        let (built, colliders) = (self.islands_built, self.colliders.clone());
+        let made_for = MadeFor { built, islands: self.islands.len(), colliders };
+        if self.clusters.as_ref().is_none_or(|clusters| !clusters.scene.is_for(&made_for)) {
+            let scene = SceneContact::of(&self.blueprint, &self.islands, made_for);
+            self.clusters = scene.map(|scene| Box::new(Clusters::of(scene)));
+        }
+    }
+
+    /// Steps all islands through the frame, on the threads that there are. Every island keeps its own outcome; an error is
+    /// that of bodies that touch, with its time.
+    fn step_islands(&mut self) -> Result<(), (Trouble, f64)> {
+        let plan = FramePlan {
+            colliders: self.colliders.as_ref(),
+            start: self.time(),
+            substeps: self.blueprint.time.substeps,
+            h: self.h(),
+            look_every: self.looks.every,
+            watched: self.blueprint.contact.is_some(),
+            unfold: self.blueprint.surroundings.unfold.then_some(&self.blueprint.bodies[..]),
+        };
+        let islands = &mut self.islands;
+        let workspaces = &mut self.workspaces;
+        // One small body has nothing to share: waking threads for it would cost more than its frame.
+        let alone = |island: &[Island<D>]| matches!(island, [one] if !one.is_shared_by(self.options.threads, 1));
+        let pool = self.pool.as_ref().filter(|_| !alone(islands));
+        if let Some(clusters) = &mut self.clusters {
+            let reported = self.contacts.is_some();
+            let scene = (&self.blueprint, &self.contact_memory, reported);
+            let mut go = |pooled| together::frame(clusters, scene, islands, &plan, workspaces, pooled);
+            return match pool {
+                None => go(false),
+                Some(pool) => pool.install(|| go(true)),
+            };
+        }
+        match pool {
+            None => islands.iter_mut().for_each(|island| island.frame(&plan, &mut lock(&workspaces[0]))),
+            Some(pool) => pool.install(|| {
+                // Large bodies one after the other, each on all threads; then the others, one a thread. A body that waits for
+                // its threads must not be handed another one, whose workspace would be its own.
+                let (number, count) = (pool.current_num_threads(), islands.len());
+                for island in islands.iter_mut().filter(|island| island.is_shared_by(number, count)) {
+                    island.system.threads = number;
+                    threads::together(number, || island.frame(&plan, &mut lock(&workspaces[0])));
+                    island.system.threads = 1;
+                }
+                islands.par_iter_mut().filter(|island| !island.is_shared_by(number, count)).for_each(|island| {
+                    let thread = rayon::current_thread_index().unwrap_or(0);
+                    island.frame(&plan, &mut lock(&workspaces[thread]));
+                });
+            }),
+        }
+        Ok(())
+    }
+
+    /// Takes islands back to the last good frame, and forgets what all of them did since then.
+    fn restore_islands(&mut self, is_ahead: impl Fn(&Island<D>) -> bool) {
+        for island in &mut self.islands {
+            if is_ahead(island) {
+                island.restore();
+                island.refresh();
+            }
+            island.work = Default::default();
+        }
+    }
+
+    /// Why an island could not go through a frame.
+    fn failure_of(&self, island: usize) -> WorldError {
+        let island = &self.islands[island];
+        let body = |local: usize| self.blueprint.bodies[island.bodies[local]].name.clone();
+        match &island.outcome {
+            Err(StepError::Diverged { body: local, node, time, range }) => {
+                let (body, last) = (body(*local), self.time());
+                WorldError::Diverged { body, node: *node, time: *time, last, range: *range }
+            }
+            Err(StepError::BrokenOff {}) => WorldError::BrokenOff {},
+            Err(cause @ StepError::NotConverged { .. }) => {
+                WorldError::NotConverged { body: body(0), cause: Box::new(cause.clone()) }
+            }
+            Err(cause) => WorldError::Step { body: body(0), cause: Box::new(cause.clone()) },
+            // It is one that has failed.
+            Ok(()) => WorldError::Overflow { last: self.time() },
+        }
+    }
+
+    /// Adds to the ledger what the islands did in the frame.
+    fn sum_flows(&mut self) {
+        for island in &mut self.islands {
+            let work = std::mem::take(&mut island.work);
+            self.flows.add(&island.system, island.numerical_loss(&work), &work);
+        }
+        self.flows.limited_pulls = self.limited_pulls.load(Ordering::Relaxed);
+        self.refresh_ledger();
     }
 
     /// Refuses surfaces that cross, which a barrier would keep so.
@@ -161,10 +182,7 @@ impl<const D: usize> World<D> {
 
     /// Goes back to the last good frame, from one whose states are sound and whose sums are not.
     fn take_back_frame(&mut self) -> WorldError {
-        for island in &mut self.islands {
-            island.restore();
-            island.refresh();
-        }
+        self.restore_islands(|_| true);
         self.frames -= 1;
         (self.flows, self.looks.fresh) = (self.looks.flows, false);
         self.refresh_ledger();

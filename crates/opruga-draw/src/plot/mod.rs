@@ -4,7 +4,7 @@ mod heat;
 mod scale;
 mod svg;
 
-use crate::error::DrawError;
+use crate::error::{DrawError, Nothing};
 
 /// A plot: panels above each other, over one axis.
 #[derive(Clone, Debug, PartialEq)]
@@ -164,7 +164,7 @@ impl HeatMap {
     /// [`DrawError::Empty`] without panels, columns or rows.
     pub fn to_svg(&self) -> Result<String, DrawError> {
         if self.panels.is_empty() || self.x.is_empty() || self.y.is_empty() {
-            return Err(DrawError::Empty("a map needs a panel, a column and a row"));
+            return Err(DrawError::Empty { nothing: Nothing::Cell });
         }
         Ok(heat::write(self))
     }
@@ -174,7 +174,7 @@ impl Chart {
     /// The plot as the text of an SVG file.
     pub fn to_svg(&self) -> Result<String, DrawError> {
         if self.panels.is_empty() {
-            return Err(DrawError::Empty("a plot needs a panel"));
+            return Err(DrawError::Empty { nothing: Nothing::Panel });
         }
         Ok(svg::write(self))
     }

@@ -141,9 +141,34 @@ fn named_values<const D: usize>(ending: &'static str, bytes: Vec<u8>, mesh: &Mes
 
 /// Gmsh 4.1 as text. Cells of the same groups are an entity; every group of nodes is an entity of points.
 fn gmsh<const D: usize>(mesh: &Mesh<D>) -> String {
+    let point_groups = own_groups_of_nodes(mesh);
+    let mut sets: Vec<Vec<usize>> = vec![Vec::new(); mesh.cells.len()];
+    for (k, cells) in mesh.cell_groups.values().enumerate() {
+        cells.iter().for_each(|cell| sets[*cell as usize].push(k + 1));
+    }
+    let mut entities: BTreeMap<&[usize], usize> = BTreeMap::new();
+    for set in &sets {
+        let next = entities.len() + 1;
+        entities.entry(set).or_insert(next);
+    }
+    let entity_of_cell: Vec<usize> = sets.iter().map(|set| entities[&set[..]]).collect();
+
     let mut out = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n".to_string();
-    let cell_names: Vec<&String> = mesh.cell_groups.keys().collect();
-    // Groups of nodes that are just those of a group of cells come back with it.
+    gmsh_names(&mut out, mesh, &point_groups);
+    gmsh_entities::<D>(&mut out, point_groups.len(), &entities);
+    // Nodes in one block.
+    let n = mesh.nodes();
+    let _ = writeln!(out, "$Nodes\n1 {n} 1 {n}\n{D} 1 0 {n}");
+    out.extend((1..=n).map(|node| format!("{node}\n")));
+    out.extend(mesh.positions.iter().map(|x| three(x) + "\n"));
+    out.push_str("$EndNodes\n");
+    gmsh_elements(&mut out, mesh, &point_groups, &entity_of_cell);
+    gmsh_values(&mut out, mesh);
+    out
+}
+
+/// Names of the groups of nodes that are not just those of a group of cells: these come back with it.
+fn own_groups_of_nodes<const D: usize>(mesh: &Mesh<D>) -> Vec<&String> {
     let all: Vec<&[u32]> = mesh.cells.iter().map(|(_, _, nodes)| nodes).collect();
     let of_cells = |name: &String| {
         let mut nodes: Vec<u32> = Vec::new();
@@ -152,52 +177,45 @@ fn gmsh<const D: usize>(mesh: &Mesh<D>) -> String {
         nodes.dedup();
         nodes
     };
-    let node_names: Vec<&String> =
-        mesh.groups.iter().filter(|(name, nodes)| of_cells(name) != **nodes).map(|(name, _)| name).collect();
-    if !cell_names.is_empty() || !node_names.is_empty() {
-        let _ = writeln!(out, "$PhysicalNames\n{}", cell_names.len() + node_names.len());
-        for (k, name) in node_names.iter().enumerate() {
-            let _ = writeln!(out, "0 {} \"{}\"", k + 1, word(name));
-        }
-        for (k, name) in cell_names.iter().enumerate() {
-            let _ = writeln!(out, "{D} {} \"{}\"", k + 1, word(name));
-        }
-        out.push_str("$EndPhysicalNames\n");
-    }
+    mesh.groups.iter().filter(|(name, nodes)| of_cells(name) != **nodes).map(|(name, _)| name).collect()
+}
 
-    // Entities: cells by the groups that they are in.
-    let mut sets: Vec<Vec<usize>> = vec![Vec::new(); mesh.cells.len()];
-    for (k, cells) in mesh.cell_groups.values().enumerate() {
-        cells.iter().for_each(|cell| sets[*cell as usize].push(k + 1));
+/// The names of groups.
+fn gmsh_names<const D: usize>(out: &mut String, mesh: &Mesh<D>, point_groups: &[&String]) {
+    let count = mesh.cell_groups.len() + point_groups.len();
+    if count == 0 {
+        return;
     }
-    let mut entities: BTreeMap<&Vec<usize>, usize> = BTreeMap::new();
-    for set in &sets {
-        let next = entities.len() + 1;
-        entities.entry(set).or_insert(next);
+    let _ = writeln!(out, "$PhysicalNames\n{count}");
+    for (k, name) in point_groups.iter().enumerate() {
+        let _ = writeln!(out, "0 {} \"{}\"", k + 1, word(name));
     }
+    for (k, name) in mesh.cell_groups.keys().enumerate() {
+        let _ = writeln!(out, "{D} {} \"{}\"", k + 1, word(name));
+    }
+    out.push_str("$EndPhysicalNames\n");
+}
+
+/// Entities: points, and cells by the groups that they are in.
+fn gmsh_entities<const D: usize>(out: &mut String, points: usize, entities: &BTreeMap<&[usize], usize>) {
     let mut counts = [0; 4];
-    counts[0] = node_names.len();
+    counts[0] = points;
     counts[D] = entities.len();
     let _ = writeln!(out, "$Entities\n{} {} {} {}", counts[0], counts[1], counts[2], counts[3]);
-    for k in 1..=node_names.len() {
+    for k in 1..=points {
         let _ = writeln!(out, "{k} 0 0 0 1 {k}");
     }
-    let mut by_number: Vec<(usize, &Vec<usize>)> = entities.iter().map(|(set, number)| (*number, *set)).collect();
+    let mut by_number: Vec<(usize, &[usize])> = entities.iter().map(|(set, number)| (*number, *set)).collect();
     by_number.sort_unstable();
     for (number, set) in by_number {
         let groups: String = set.iter().map(|group| format!(" {group}")).collect();
         let _ = writeln!(out, "{number} 0 0 0 0 0 0 {}{groups} 0", set.len());
     }
     out.push_str("$EndEntities\n");
+}
 
-    // Nodes in one block.
-    let n = mesh.nodes();
-    let _ = writeln!(out, "$Nodes\n1 {n} 1 {n}\n{D} 1 0 {n}");
-    out.extend((1..=n).map(|node| format!("{node}\n")));
-    out.extend(mesh.positions.iter().map(|x| three(x) + "\n"));
-    out.push_str("$EndNodes\n");
-
-    // Cells in blocks of one kind and one entity, in their order; then points.
+/// Cells in blocks of one kind and one entity, in their order; then points.
+fn gmsh_elements<const D: usize>(out: &mut String, mesh: &Mesh<D>, point_groups: &[&String], entity_of_cell: &[usize]) {
     let mut blocks: Vec<(usize, i32, Vec<String>)> = Vec::new();
     for (cell, (element, _, nodes)) in mesh.cells.iter().enumerate() {
         let kind = match kind(element) {
@@ -211,20 +229,20 @@ fn gmsh<const D: usize>(mesh: &Mesh<D>) -> String {
         let mut own = nodes.to_vec();
         super::gmsh::reorder(self::kind(element), &mut own);
         let row = format!("{} {}", cell + 1, listed(&own, 1));
-        let entity = entities[&sets[cell]];
+        let entity = entity_of_cell[cell];
         match blocks.last_mut() {
             Some((e, k, rows)) if *e == entity && *k == kind => rows.push(row),
             _ => blocks.push((entity, kind, vec![row])),
         }
     }
-    let points: usize = node_names.iter().map(|name| mesh.groups[*name].len()).sum();
+    let points: usize = point_groups.iter().map(|name| mesh.groups[*name].len()).sum();
     let total = mesh.cells.len() + points;
-    let _ = writeln!(out, "$Elements\n{} {total} 1 {total}", blocks.len() + node_names.len());
+    let _ = writeln!(out, "$Elements\n{} {total} 1 {total}", blocks.len() + point_groups.len());
     for (entity, kind, rows) in blocks {
         let _ = writeln!(out, "{D} {entity} {kind} {}\n{}", rows.len(), rows.join("\n"));
     }
     let mut number = mesh.cells.len();
-    for (k, name) in node_names.iter().enumerate() {
+    for (k, name) in point_groups.iter().enumerate() {
         let nodes = &mesh.groups[*name];
         let _ = writeln!(out, "0 {} 15 {}", k + 1, nodes.len());
         for node in nodes {
@@ -233,6 +251,10 @@ fn gmsh<const D: usize>(mesh: &Mesh<D>) -> String {
         }
     }
     out.push_str("$EndElements\n");
+}
+
+/// Values of cells and of nodes, without those that are no numbers.
+fn gmsh_values<const D: usize>(out: &mut String, mesh: &Mesh<D>) {
     for (name, values) in &mesh.cell_values {
         let given: Vec<(usize, &f64)> = values.iter().enumerate().filter(|(_, x)| x.is_finite()).collect();
         let _ = writeln!(out, "$ElementData\n1\n\"{}\"\n1\n0\n3\n0\n1\n{}", word(name), given.len());
@@ -251,7 +273,6 @@ fn gmsh<const D: usize>(mesh: &Mesh<D>) -> String {
         }
         out.push_str("$EndNodeData\n");
     }
-    out
 }
 
 /// Whether all cells have a value.

@@ -13,6 +13,7 @@ use super::triangles::{Places, Triangles};
 use crate::meshes::NumberHint;
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
+use opruga_math::message::AnyMessage;
 use std::collections::BTreeMap;
 
 /// A polygon as it stands in the file, before all vertices are known.
@@ -27,152 +28,228 @@ struct Face {
 /// # Errors
 /// `obj.syntax`, `mesh.index`, `mesh.degenerate_face` with the line.
 pub(super) fn read(source: &Source<'_>) -> Result<Triangles, SceneError> {
-    let mut found = Triangles::default();
-    let (mut faces, mut corners, mut names): (Vec<Face>, Vec<i64>, Vec<String>) = Default::default();
-    // The number of each name of a group.
-    let mut numbers: BTreeMap<String, usize> = BTreeMap::new();
-    let mut group = None;
-    let (mut strokes, mut weighed) = (0usize, 0usize);
-    // How many `vt` and `vn` there are, and the largest that a face names with its place.
-    let mut extras = [0i64; 2];
-    let mut largest = [(0i64, 0usize, 0usize); 2];
+    let mut statements = Statements::default();
     let mut start = 0;
     while start < source.text.len() {
-        let (here, mut goes_on) = (start, true);
-        while goes_on && start < source.text.len() {
-            let piece = source.text[start..].split_inclusive('\n').next().unwrap_or("");
-            start += piece.len();
+        let line = Line::at(source, start);
+        start += line.text.len();
+        let mut words = line.words();
+        let Some(word) = words.next() else { continue };
+        match word {
+            "v" => statements.vertex(&line, word, words)?,
+            "f" => statements.face(&line, words)?,
+            "o" | "g" => statements.group(words.collect::<Vec<_>>().join(" ")),
+            "l" | "p" => statements.strokes += 1,
+            "vt" => statements.extras[0] += 1,
+            "vn" => statements.extras[1] += 1,
+            "vp" | "s" | "usemtl" | "mtllib" | "usemap" | "maplib" => {}
+            _ => return Err(line.refuse(word, ObjError::Statement { word: visible(word) })),
+        }
+    }
+    statements.check_extras(source)?;
+    statements.count_left_out();
+    statements.triangles(source)
+}
+
+/// A line with those in which its statement goes on.
+struct Line<'a> {
+    source: &'a Source<'a>,
+    start: usize,
+    text: &'a str,
+}
+
+impl<'a> Line<'a> {
+    fn at(source: &'a Source<'a>, start: usize) -> Line<'a> {
+        let (mut end, mut goes_on) = (start, true);
+        while goes_on && end < source.text.len() {
+            let piece = source.text[end..].split_inclusive('\n').next().unwrap_or("");
+            end += piece.len();
             goes_on = statement(piece).1;
         }
-        let line = &source.text[here..start];
-        let mut words = line.split_inclusive('\n').flat_map(|piece| statement(piece).0.split_ascii_whitespace());
-        let Some(word) = words.next() else { continue };
-        let refuse = |part: &str, error: SceneError| {
-            let from = here + (part.as_ptr() as usize - line.as_ptr() as usize);
-            source.mark(error.value(visible(part)), from, from + part.len())
-        };
-        match word {
-            "v" => {
-                let mut position = [0.0; 3];
-                for x in &mut position {
-                    let Some(part) = words.next() else {
-                        let error = refuse(word, SceneError::of(ObjError::FewCoordinates {}));
-                        return Err(error.value(visible(statement(line).0.trim())));
-                    };
-                    *x = number(part).map_err(|e| refuse(part, e))?;
-                }
-                // A weight or a colour may follow.
-                let more: Vec<&str> = words.collect();
-                if more.len() > 4 {
-                    return Err(refuse(more[4], SceneError::of(ObjError::ManyNumbers {})));
-                }
-                if more.len() == 2 {
-                    let error = refuse(more[1], SceneError::of(ObjError::FiveNumbers {}));
-                    return Err(error.value(visible(statement(line).0.trim())));
-                }
-                let mut numbers = Vec::with_capacity(more.len());
-                for part in more {
-                    numbers.push(number(part).map_err(|e| refuse(part, e))?);
-                }
-                // Three more numbers are a colour.
-                weighed += usize::from(numbers.len() % 3 == 1 && numbers[0] != 1.0);
-                found.positions.push(position);
-            }
-            "f" => {
-                let from = corners.len();
-                for part in words {
-                    let index = part.split('/').next().unwrap_or("");
-                    let corner = || refuse(part, SceneError::of(ObjError::Corner {}));
-                    let index: i64 = index.parse().map_err(|_| corner())?;
-                    let count = found.positions.len() as i64;
-                    if index == 0 || index < -count {
-                        let zero = index == 0;
-                        let error = if zero { ObjError::Zero { count } } else { ObjError::BeforeFirst { count } };
-                        return Err(refuse(part, SceneError::of(error)));
-                    }
-                    corners.push(if index < 0 { count + index } else { index - 1 });
-                    for (k, text) in part.split('/').skip(1).enumerate() {
-                        if text.is_empty() && k < 2 {
-                            continue;
-                        }
-                        let index = text.parse::<i64>().ok().filter(|index| k < 2 && *index != 0);
-                        let Some(index) = index else { return Err(corner()) };
-                        // Those before the first cannot come any more.
-                        let wanted = if index < -extras[k] { i64::MAX } else { index };
-                        if wanted > largest[k].0 {
-                            let from = here + (part.as_ptr() as usize - line.as_ptr() as usize);
-                            largest[k] = (wanted, from, from + part.len());
-                        }
-                    }
-                }
-                faces.push(Face { line: here as u32, corners: (from, corners.len()), group });
-            }
-            "o" | "g" => {
-                let name = words.collect::<Vec<_>>().join(" ");
-                group = (!name.is_empty()).then(|| {
-                    *numbers.entry(name).or_insert_with_key(|name| {
-                        names.push(name.clone());
-                        names.len() - 1
-                    })
-                });
-            }
-            "l" | "p" => strokes += 1,
-            "vt" => extras[0] += 1,
-            "vn" => extras[1] += 1,
-            "vp" | "s" | "usemtl" | "mtllib" | "usemap" | "maplib" => {}
-            _ => {
-                return Err(refuse(word, SceneError::of(ObjError::Statement { word: visible(word) })));
-            }
+        Line { source, start, text: &source.text[start..end] }
+    }
+
+    fn words(&self) -> impl Iterator<Item = &'a str> + use<'a> {
+        self.text.split_inclusive('\n').flat_map(|piece| statement(piece).0.split_ascii_whitespace())
+    }
+
+    /// Where a part of it stands in the file.
+    fn range(&self, part: &str) -> (usize, usize) {
+        let from = self.start + (part.as_ptr() as usize - self.text.as_ptr() as usize);
+        (from, from + part.len())
+    }
+
+    /// An error at a part of it, which is the value.
+    fn refuse(&self, part: &str, error: impl Into<AnyMessage>) -> SceneError {
+        self.mark(part, SceneError::of(error))
+    }
+
+    fn mark(&self, part: &str, error: SceneError) -> SceneError {
+        let (from, to) = self.range(part);
+        self.source.mark(error.value(visible(part)), from, to)
+    }
+
+    /// The same with the whole statement as the value.
+    fn refuse_whole(&self, part: &str, error: ObjError) -> SceneError {
+        self.refuse(part, error).value(visible(statement(self.text).0.trim()))
+    }
+
+    fn number(&self, part: &str) -> Result<f64, SceneError> {
+        number(part).map_err(|error| self.mark(part, error))
+    }
+}
+
+/// What the statements of a file give.
+#[derive(Default)]
+struct Statements {
+    found: Triangles,
+    faces: Vec<Face>,
+    /// Vertices of all faces.
+    corners: Vec<i64>,
+    /// Groups of vertices, with the number of each name, and the present one.
+    names: Vec<String>,
+    numbers: BTreeMap<String, usize>,
+    group: Option<usize>,
+    /// How many lines and points there are, and vertices with weights.
+    strokes: usize,
+    weighed: usize,
+    /// How many `vt` and `vn` there are, and the largest that a face names with its range in the file.
+    extras: [i64; 2],
+    largest: [(i64, usize, usize); 2],
+}
+
+impl Statements {
+    /// `v x y z [w]` or `v x y z r g b`.
+    fn vertex<'a>(
+        &mut self,
+        line: &Line<'a>,
+        word: &str,
+        mut words: impl Iterator<Item = &'a str>,
+    ) -> Result<(), SceneError> {
+        let mut position = [0.0; 3];
+        for x in &mut position {
+            let Some(part) = words.next() else { return Err(line.refuse_whole(word, ObjError::FewCoordinates {})) };
+            *x = line.number(part)?;
         }
-    }
-    if strokes > 0 {
-        found.notices.push(SceneError::of(SurfaceNotice::Strokes { count: strokes }));
-    }
-    if weighed > 0 {
-        found.notices.push(SceneError::of(ObjNotice::Weights { count: weighed }));
-    }
-    for (k, name) in ["vt", "vn"].into_iter().enumerate() {
-        let (index, from, to) = largest[k];
-        if index > extras[k] {
-            let error = match extras[k] {
-                0 => ObjError::NoExtras { what: name },
-                count => ObjError::NoExtra { what: name, count },
-            };
-            return Err(source.mark(SceneError::of(error), from, to).value(visible(&source.text[from..to])));
+        // A weight or a colour may follow.
+        let more: Vec<&str> = words.collect();
+        if more.len() > 4 {
+            return Err(line.refuse(more[4], ObjError::ManyNumbers {}));
         }
-    }
-    let mut lines = Vec::with_capacity(faces.len());
-    let mut groups: Vec<Vec<u32>> = vec![Vec::new(); names.len()];
-    let count = found.positions.len();
-    for face in faces {
-        let at = face.line as usize;
-        let end = source.text[at..].find(['\n', '\r', '#']).map_or(source.text.len(), |k| at + k);
-        let own = &corners[face.corners.0..face.corners.1];
-        if let Some(far) = own.iter().find(|c| **c >= count as i64) {
-            let error = SceneError::of(ObjError::NoVertexOfFile { vertex: far + 1, count });
-            return Err(source.mark(error, at, end));
+        if more.len() == 2 {
+            return Err(line.refuse_whole(more[1], ObjError::FiveNumbers {}));
         }
-        let own: Vec<u32> = own.iter().map(|c| *c as u32).collect();
-        match found.polygon(&own) {
-            Ok(n) => lines.extend(std::iter::repeat_n(face.line, n)),
-            Err(problem) => {
-                let value = visible(source.text[at..end].trim());
-                return Err(source.mark(SceneError::of(problem), at, end).value(value));
+        let numbers = more.into_iter().map(|part| line.number(part)).collect::<Result<Vec<_>, _>>()?;
+        // Three more numbers are a colour.
+        self.weighed += usize::from(numbers.len() % 3 == 1 && numbers[0] != 1.0);
+        self.found.positions.push(position);
+        Ok(())
+    }
+
+    /// `f` with corners `v`, `v/vt`, `v//vn` or `v/vt/vn`.
+    fn face<'a>(&mut self, line: &Line<'a>, words: impl Iterator<Item = &'a str>) -> Result<(), SceneError> {
+        let from = self.corners.len();
+        for part in words {
+            let index = part.split('/').next().unwrap_or("");
+            let corner = || line.refuse(part, ObjError::Corner {});
+            let index: i64 = index.parse().map_err(|_| corner())?;
+            let count = self.found.positions.len() as i64;
+            if index == 0 || index < -count {
+                let zero = index == 0;
+                let error = if zero { ObjError::Zero { count } } else { ObjError::BeforeFirst { count } };
+                return Err(line.refuse(part, error));
+            }
+            self.corners.push(if index < 0 { count + index } else { index - 1 });
+            for (k, text) in part.split('/').skip(1).enumerate() {
+                if text.is_empty() && k < 2 {
+                    continue;
+                }
+                let index = text.parse::<i64>().ok().filter(|index| k < 2 && *index != 0);
+                let Some(index) = index else { return Err(corner()) };
+                // Those before the first cannot come any more.
+                let wanted = if index < -self.extras[k] { i64::MAX } else { index };
+                if wanted > self.largest[k].0 {
+                    let (from, to) = line.range(part);
+                    self.largest[k] = (wanted, from, to);
+                }
             }
         }
-        if let Some(group) = face.group {
-            groups[group].extend(own);
+        let corners = (from, self.corners.len());
+        self.faces.push(Face { line: line.start as u32, corners, group: self.group });
+        Ok(())
+    }
+
+    /// `o NAME` or `g NAME`: faces from here on are in this group.
+    fn group(&mut self, name: String) {
+        self.group = (!name.is_empty()).then(|| {
+            *self.numbers.entry(name).or_insert_with_key(|name| {
+                self.names.push(name.clone());
+                self.names.len() - 1
+            })
+        });
+    }
+
+    /// Counts what carries nothing for a body.
+    fn count_left_out(&mut self) {
+        if self.strokes > 0 {
+            self.found.notices.push(SceneError::of(SurfaceNotice::Strokes { count: self.strokes }));
+        }
+        if self.weighed > 0 {
+            self.found.notices.push(SceneError::of(ObjNotice::Weights { count: self.weighed }));
         }
     }
-    for (name, mut nodes) in names.into_iter().zip(groups) {
-        nodes.sort_unstable();
-        nodes.dedup();
-        if !nodes.is_empty() {
-            found.groups.insert(name, nodes);
+
+    /// Refuses faces that name a `vt` or `vn` that is not there.
+    fn check_extras(&self, source: &Source<'_>) -> Result<(), SceneError> {
+        for (k, name) in ["vt", "vn"].into_iter().enumerate() {
+            let (index, from, to) = self.largest[k];
+            if index > self.extras[k] {
+                let error = match self.extras[k] {
+                    0 => ObjError::NoExtras { what: name },
+                    count => ObjError::NoExtra { what: name, count },
+                };
+                return Err(source.mark(SceneError::of(error), from, to).value(visible(&source.text[from..to])));
+            }
         }
+        Ok(())
     }
-    found.places = Places::Lines(lines);
-    Ok(found)
+
+    /// The faces as triangles, and the vertices of the groups.
+    fn triangles(self, source: &Source<'_>) -> Result<Triangles, SceneError> {
+        let Statements { mut found, faces, corners, names, .. } = self;
+        let mut lines = Vec::with_capacity(faces.len());
+        let mut groups: Vec<Vec<u32>> = vec![Vec::new(); names.len()];
+        let count = found.positions.len();
+        for face in faces {
+            let at = face.line as usize;
+            let end = source.text[at..].find(['\n', '\r', '#']).map_or(source.text.len(), |k| at + k);
+            let own = &corners[face.corners.0..face.corners.1];
+            if let Some(far) = own.iter().find(|c| **c >= count as i64) {
+                let error = SceneError::of(ObjError::NoVertexOfFile { vertex: far + 1, count });
+                return Err(source.mark(error, at, end));
+            }
+            let own: Vec<u32> = own.iter().map(|c| *c as u32).collect();
+            match found.polygon(&own) {
+                Ok(n) => lines.extend(std::iter::repeat_n(face.line, n)),
+                Err(problem) => {
+                    let value = visible(source.text[at..end].trim());
+                    return Err(source.mark(SceneError::of(problem), at, end).value(value));
+                }
+            }
+            if let Some(group) = face.group {
+                groups[group].extend(own);
+            }
+        }
+        for (name, mut nodes) in names.into_iter().zip(groups) {
+            nodes.sort_unstable();
+            nodes.dedup();
+            if !nodes.is_empty() {
+                found.groups.insert(name, nodes);
+            }
+        }
+        found.places = Places::Lines(lines);
+        Ok(found)
+    }
 }
 
 /// A line without its comment, and whether a `\` says that its statement goes on in the next one.

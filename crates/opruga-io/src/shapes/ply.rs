@@ -76,118 +76,116 @@ enum Format {
 /// allocated; `mesh.index`, `mesh.degenerate_face`, with the number of the element and, in binary files, the byte.
 pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Triangles, SceneError> {
     let (format, elements, body) = header(file, bytes)?;
-    let named = |error: PlyError| SceneError { file: file.into(), ..SceneError::of(error) };
     let mut values = Reader { file, bytes, at: body, begun: body, format };
     let mut found = Triangles::default();
     let mut starts: Vec<u64> = Vec::new();
     let (mut seen_vertices, mut seen_faces) = (false, false);
     for element in &elements {
-        let least: usize = element
-            .properties
-            .iter()
-            .map(|p| if format == Format::Text { 2 } else { p.count.unwrap_or(p.kind).size() })
-            .sum();
-        let (needed, left) = (u128::from(element.count) * least as u128, (bytes.len() + 1).saturating_sub(values.at));
-        if needed > left as u128 {
-            let (element_name, most) = (visible(&element.name), left / least.max(1));
-            let (count, element, rest) = (element.count, element_name, left);
-            return Err(named(PlyError::Promised { count, element, rest, most }));
-        }
-        let place = |name: &str| element.properties.iter().position(|p| p.name == name && p.count.is_none());
+        values.check_count(element)?;
         match element.name.as_str() {
             "vertex" => {
                 seen_vertices = true;
-                let (Some(x), Some(y), Some(z)) = (place("x"), place("y"), place("z")) else {
-                    return Err(named(PlyError::NoCoordinates {}));
-                };
-                found.single |= [x, y, z].into_iter().any(|k| element.properties[k].kind == Kind::F32);
-                for _ in 0..element.count {
-                    let mut row = [0.0; 3];
-                    values.begin();
-                    for (k, property) in element.properties.iter().enumerate() {
-                        let list = values.property(property)?;
-                        for (axis, wanted) in [x, y, z].into_iter().enumerate() {
-                            if wanted == k {
-                                row[axis] = list.first().copied().unwrap_or(0.0);
-                            }
-                        }
-                    }
-                    if let Some(bad) = row.iter().find(|x| !x.is_finite()) {
-                        let (vertex, value) = (found.positions.len(), bad.to_string());
-                        return Err(values.error(SurfaceError::NotFiniteVertex { vertex, value }));
-                    }
-                    found.positions.push(row);
-                }
+                read_vertices(&mut values, element, &mut found)?;
             }
             "face" => {
                 seen_faces = true;
-                let list = element
-                    .properties
-                    .iter()
-                    .position(|p| p.count.is_some() && (p.name == "vertex_indices" || p.name == "vertex_index"));
-                let Some(wanted) = list else {
-                    return Err(named(PlyError::NoIndices {}));
-                };
-                for face in 0..element.count {
-                    values.begin();
-                    let start = values.begun as u64;
-                    for (k, property) in element.properties.iter().enumerate() {
-                        let row = values.property(property)?;
-                        if k != wanted {
-                            continue;
-                        }
-                        let count = found.positions.len();
-                        let mut corners = Vec::with_capacity(row.len());
-                        for index in row {
-                            if !(index >= 0.0 && index < count as f64) {
-                                let most = count.saturating_sub(1);
-                                return Err(values.error(PlyError::NoVertexOfFace { face, vertex: index, most }));
-                            }
-                            corners.push(index as u32);
-                        }
-                        match found.polygon(&corners) {
-                            Ok(triangles) => starts.extend(std::iter::repeat_n(start, triangles)),
-                            Err(problem) => {
-                                let corners = visible(&format!("{corners:?}"));
-                                return Err(values.error(SurfaceError::Face { problem, face, corners }));
-                            }
-                        }
-                    }
-                }
+                read_faces(&mut values, element, &mut found, &mut starts)?;
             }
-            name => {
-                // Without properties they take no room: however many there are, nothing stands there.
-                for _ in 0..if element.properties.is_empty() { 0 } else { element.count } {
-                    values.begin();
-                    for property in &element.properties {
-                        values.property(property)?;
-                    }
-                }
-                if element.count > 0 {
-                    let notice = PlyNotice::Element { count: element.count, element: visible(name) };
-                    found.notices.push(SceneError::of(notice));
-                }
-            }
+            _ => found.notices.extend(pass_over(&mut values, element)?),
         }
     }
     if !seen_vertices || !seen_faces {
-        return Err(named(PlyError::NoElement { element: if seen_vertices { "face" } else { "vertex" } }));
+        return Err(values.of_file(PlyError::NoElement { element: if seen_vertices { "face" } else { "vertex" } }));
     }
-    let rest = bytes.get(values.at..).unwrap_or(&[]);
-    if format != Format::Text && !rest.is_empty() || !rest.trim_ascii().is_empty() {
-        values.begin();
-        return Err(values.error(PlyError::Behind { count: rest.len() }));
-    }
-    // Of an index that is cut off, what is left looks whole.
-    if format == Format::Text && bytes.last().is_some_and(|b| !b.is_ascii_whitespace()) {
-        let from = bytes.iter().rposition(u8::is_ascii_whitespace).map_or(0, |at| at + 1);
-        return Err(values.placed(cut_line("ply.syntax", &bytes[from..])));
-    }
+    values.check_end()?;
     found.places = match format {
         Format::Text => Places::Lines(starts.into_iter().map(|start| start as u32).collect()),
         Format::Little | Format::Big => Places::Starts(starts),
     };
     Ok(found)
+}
+
+/// Reads the positions of vertices.
+fn read_vertices(values: &mut Reader<'_>, element: &Element, found: &mut Triangles) -> Result<(), SceneError> {
+    let number = |name: &str| element.properties.iter().position(|p| p.name == name && p.count.is_none());
+    let (Some(x), Some(y), Some(z)) = (number("x"), number("y"), number("z")) else {
+        return Err(values.of_file(PlyError::NoCoordinates {}));
+    };
+    found.single |= [x, y, z].into_iter().any(|k| element.properties[k].kind == Kind::F32);
+    for _ in 0..element.count {
+        let mut row = [0.0; 3];
+        values.begin();
+        for (k, property) in element.properties.iter().enumerate() {
+            let list = values.property(property)?;
+            for (axis, wanted) in [x, y, z].into_iter().enumerate() {
+                if wanted == k {
+                    row[axis] = list.first().copied().unwrap_or(0.0);
+                }
+            }
+        }
+        if let Some(bad) = row.iter().find(|x| !x.is_finite()) {
+            let (vertex, value) = (found.positions.len(), bad.to_string());
+            return Err(values.error(SurfaceError::NotFiniteVertex { vertex, value }));
+        }
+        found.positions.push(row);
+    }
+    Ok(())
+}
+
+/// Reads faces as triangles, each with the start of its face in the file.
+fn read_faces(
+    values: &mut Reader<'_>,
+    element: &Element,
+    found: &mut Triangles,
+    starts: &mut Vec<u64>,
+) -> Result<(), SceneError> {
+    let list = element
+        .properties
+        .iter()
+        .position(|p| p.count.is_some() && (p.name == "vertex_indices" || p.name == "vertex_index"));
+    let Some(wanted) = list else {
+        return Err(values.of_file(PlyError::NoIndices {}));
+    };
+    for face in 0..element.count {
+        values.begin();
+        let start = values.begun as u64;
+        for (k, property) in element.properties.iter().enumerate() {
+            let row = values.property(property)?;
+            if k != wanted {
+                continue;
+            }
+            let count = found.positions.len();
+            let mut corners = Vec::with_capacity(row.len());
+            for index in row {
+                if !(index >= 0.0 && index < count as f64) {
+                    let most = count.saturating_sub(1);
+                    return Err(values.error(PlyError::NoVertexOfFace { face, vertex: index, most }));
+                }
+                corners.push(index as u32);
+            }
+            match found.polygon(&corners) {
+                Ok(triangles) => starts.extend(std::iter::repeat_n(start, triangles)),
+                Err(problem) => {
+                    let corners = visible(&format!("{corners:?}"));
+                    return Err(values.error(SurfaceError::Face { problem, face, corners }));
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Passes over elements that are neither vertices nor faces; returns a notice that counts them.
+fn pass_over(values: &mut Reader<'_>, element: &Element) -> Result<Option<SceneError>, SceneError> {
+    // Without properties they take no room: however many there are, nothing stands there.
+    for _ in 0..if element.properties.is_empty() { 0 } else { element.count } {
+        values.begin();
+        for property in &element.properties {
+            values.property(property)?;
+        }
+    }
+    let notice = PlyNotice::Element { count: element.count, element: visible(&element.name) };
+    Ok((element.count > 0).then(|| SceneError::of(notice)))
 }
 
 /// Format, elements, and where they begin.
@@ -271,6 +269,38 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
+    /// An error of the file as a whole.
+    fn of_file(&self, error: PlyError) -> SceneError {
+        SceneError { file: self.file.into(), ..SceneError::of(error) }
+    }
+
+    /// Refuses more elements than the rest of the file can hold.
+    fn check_count(&self, element: &Element) -> Result<(), SceneError> {
+        let size = |p: &Property| if self.format == Format::Text { 2 } else { p.count.unwrap_or(p.kind).size() };
+        let least: usize = element.properties.iter().map(size).sum();
+        let (count, rest) = (element.count, (self.bytes.len() + 1).saturating_sub(self.at));
+        if u128::from(count) * least as u128 > rest as u128 {
+            let (element, most) = (visible(&element.name), rest / least.max(1));
+            return Err(self.of_file(PlyError::Promised { count, element, rest, most }));
+        }
+        Ok(())
+    }
+
+    /// Refuses what stands behind the last element, and a text that is cut off.
+    fn check_end(&mut self) -> Result<(), SceneError> {
+        let rest = self.bytes.get(self.at..).unwrap_or(&[]);
+        if self.format != Format::Text && !rest.is_empty() || !rest.trim_ascii().is_empty() {
+            self.begin();
+            return Err(self.error(PlyError::Behind { count: rest.len() }));
+        }
+        // Of an index that is cut off, what is left looks whole.
+        if self.format == Format::Text && self.bytes.last().is_some_and(|b| !b.is_ascii_whitespace()) {
+            let from = self.bytes.iter().rposition(u8::is_ascii_whitespace).map_or(0, |at| at + 1);
+            return Err(self.placed(cut_line("ply.syntax", &self.bytes[from..])));
+        }
+        Ok(())
+    }
+
     /// An error where the reader is: a line of a text, a byte of a binary file.
     fn error(&self, error: impl Into<AnyMessage>) -> SceneError {
         self.placed(SceneError::of(error))

@@ -11,6 +11,7 @@ fn said(text: &str) -> String {
 const LATE: &str = "[[command]]\ndo = \"add\"\nat = 2\nbody = { name = \"late\", shape = { kind = \"ring\", radius = 1, vertices = 4 }, mass = 1 }\n";
 
 /// A scene and what is said about it.
+#[expect(clippy::too_many_lines, reason = "a table: one row for every text")]
 fn cases() -> Vec<(String, &'static str)> {
     let model = |fields: &str| format!("{HEAD}{}", BALL.replace("stiffness = 10", fields));
     let with = |more: &str| format!("{HEAD}{BALL}{more}");

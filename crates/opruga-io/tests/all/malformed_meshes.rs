@@ -30,6 +30,7 @@ fn element_data(first: &str, second: &str) -> String {
 
 /// What a file says twice, in parts of numbers, or in numbers that its types cannot hold.
 #[test]
+#[expect(clippy::too_many_lines, reason = "a table: one row for every contradiction")]
 fn files_that_contradict_themselves_are_refused_with_their_line_and_value() {
     let offsets = VTK.replace(
         "CELLS 2 10\n4 0 1 2 3\n4 1 2 3 4\n",

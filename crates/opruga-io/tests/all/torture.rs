@@ -115,6 +115,7 @@ fn files_that_are_none() {
 
 /// Rows 5 to 11, 16, and those of section 3 that are about parameters: what is added to a good scene, and its errors.
 #[test]
+#[expect(clippy::too_many_lines, reason = "a table: one row for every error")]
 fn one_error_each() {
     let body = |more: &str| {
         format!("{HEAD}[[body]]\nname = \"b\"\nshape = {{ kind = \"ring\", radius = 1, vertices = 8 }}\n{more}\n")

@@ -4,7 +4,7 @@ use super::Studio;
 use crate::said::Step;
 use crate::session::Request;
 use crate::shown::{Offer, Severity, Shown};
-use crate::words::Part;
+use crate::words::{Language, Part};
 use egui::{
     Align, Align2, Color32, CornerRadius, FontId, Frame, Key, Modifiers, Pos2, Rect, RichText, Stroke, Ui, Vec2,
 };
@@ -95,6 +95,33 @@ impl Heard {
     }
 }
 
+/// The message that is shown.
+struct Spoken {
+    speaker: Speaker,
+    /// That of the session.
+    number: Option<u64>,
+    text: String,
+    refused: bool,
+    offer: Option<Offer>,
+}
+
+impl Language {
+    /// The button of what would help.
+    fn offer(self, offer: &Offer) -> String {
+        match offer {
+            Offer::HalveStep => self.halve_step().to_string(),
+            Offer::Steady(_, kind) => self.take_steady().replace("{}", &self.kind(Part::Integrator, kind)),
+            Offer::Substeps(n) => self.use_substeps().replace("{}", &n.to_string()),
+            Offer::Coarser(_, field, value) => {
+                let field = self.done(&Step::Shape(field));
+                self.take_coarser().replace("{}", &format!("{field} {value}"))
+            }
+            Offer::GoOn => self.go_on().to_string(),
+            Offer::Wait(seconds) => self.wait_longer().replace("{}", &seconds.to_string()),
+        }
+    }
+}
+
 impl Studio {
     /// The last message, over the scene where it hides least of the bodies, with what would help.
     pub(super) fn message(&mut self, ui: &Ui, rect: egui::Rect, shown: &Shown, asks: &mut Vec<Request>) {
@@ -132,10 +159,29 @@ impl Studio {
             Some(seconds) => format!("{text}. {}", words.frame_would_take().replace("{}", &format_value(seconds))),
             None => text,
         };
-        let refused = severity == Severity::Refused;
+        let number = message.map(|message| message.number);
+        let spoken = Spoken { speaker, number, text, refused: severity == Severity::Refused, offer };
+        let free = self.free_for_messages(rect, shown);
+        let heard = format!("{speaker:?} {:?}: {}", now[speaker as usize], spoken.text);
         let time = ui.input(|i| i.time);
-        let told = format!("{speaker:?} {:?}: {text}", now[speaker as usize]);
-        // Between the tools and what stands at the lower border.
+        if self.told.0 != heard {
+            // Bodies move: where it was put when it came, there it stays.
+            let place = self.least_hiding(&spoken.text, ui, free, rect.width(), shown);
+            self.told = (heard, time, place);
+        }
+        let long = TOLD_FOR + TO_READ * spoken.text.chars().count().saturating_sub(60) as f64;
+        // A menu that is open is what Escape closes first.
+        let escape =
+            !egui::Popup::is_any_open(ui.ctx()) && ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape));
+        if escape || !spoken.refused && spoken.offer.is_none() && time - self.told.1 > long {
+            self.forget(speaker, number);
+            return;
+        }
+        self.show_message(ui, &spoken, free, shown.undo.as_ref(), asks);
+    }
+
+    /// Where messages may be: between the tools and what stands at the lower border.
+    fn free_for_messages(&self, rect: Rect, shown: &Shown) -> Rect {
         let high = self.canvas.tools.map_or(rect.top(), |tools| tools.bottom()) + 8.0;
         let low = rect.bottom()
             - match &shown.beside {
@@ -144,30 +190,25 @@ impl Studio {
                 // One above the other, the lower one has nothing there.
                 Some(_) => 8.0,
             };
-        let free = Rect::from_min_max(Pos2::new(rect.left() + 8.0, high), Pos2::new(rect.right() - 8.0, low.max(high)));
-        if self.told.0 != told {
-            // Bodies move: where it was put when it came, there it stays.
-            let covered = self.canvas.covered(shown);
-            let widest = (rect.width() - 120.0).clamp(120.0, 620.0);
-            // On more lines, where that hides less.
-            let places = WIDTHS.map(|share| {
-                let room = (share * widest).max(120.0);
-                let galley = ui.painter().layout(text.clone(), FontId::proportional(13.0), edge(false), room);
-                let size = galley.size() + Vec2::new(16.0, 48.0);
-                let (hidden, place) = place(free, size, &covered);
-                (hidden, Place { room, ..place })
-            });
-            let best = places.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default();
-            self.told = (told, time, best.1);
-        }
-        let long = TOLD_FOR + TO_READ * text.chars().count().saturating_sub(60) as f64;
-        // A menu that is open is what Escape closes first.
-        let escape =
-            !egui::Popup::is_any_open(ui.ctx()) && ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape));
-        if escape || !refused && offer.is_none() && time - self.told.1 > long {
-            self.forget(speaker, message.map(|message| message.number));
-            return;
-        }
+        Rect::from_min_max(Pos2::new(rect.left() + 8.0, high), Pos2::new(rect.right() - 8.0, low.max(high)))
+    }
+
+    /// Where a text hides least of the bodies; on more lines, where that hides less.
+    fn least_hiding(&self, text: &str, ui: &Ui, free: Rect, width: f32, shown: &Shown) -> Place {
+        let covered = self.canvas.covered(shown);
+        let widest = (width - 120.0).clamp(120.0, 620.0);
+        let places = WIDTHS.map(|share| {
+            let room = (share * widest).max(120.0);
+            let galley = ui.painter().layout(text.to_string(), FontId::proportional(13.0), edge(false), room);
+            let size = galley.size() + Vec2::new(16.0, 48.0);
+            let (hidden, place) = place(free, size, &covered);
+            (hidden, Place { room, ..place })
+        });
+        places.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default().1
+    }
+
+    /// The message with its buttons.
+    fn show_message(&mut self, ui: &Ui, spoken: &Spoken, free: Rect, undo: Option<&Step>, asks: &mut Vec<Request>) {
         let place = self.told.2;
         egui::Area::new(egui::Id::unique("message"))
             .pivot(place.pivot)
@@ -175,49 +216,41 @@ impl Studio {
             .order(egui::Order::Middle)
             .show(ui.ctx(), |ui| {
                 Frame::popup(ui.style())
-                    .stroke(Stroke::new(1.5, edge(refused)))
+                    .stroke(Stroke::new(1.5, edge(spoken.refused)))
                     .corner_radius(CornerRadius::same(6))
                     .show(ui, |ui| {
                         ui.set_max_width(place.room);
-                        let lines: Vec<&str> = text.lines().collect();
+                        let lines: Vec<&str> = spoken.text.lines().collect();
                         let short = lines.iter().take(8).copied().collect::<Vec<_>>().join("\n");
                         let monospaced = lines.len() > 1;
                         let text = RichText::new(if monospaced { short } else { unbroken(&short) });
                         ui.label(if monospaced { text.monospace().size(11.5) } else { text });
-                        ui.horizontal(|ui| {
-                            if let Some(offer) = &offer {
-                                let name = match offer {
-                                    Offer::HalveStep => words.halve_step().to_string(),
-                                    Offer::Steady(_, kind) => {
-                                        words.take_steady().replace("{}", &words.kind(Part::Integrator, kind))
-                                    }
-                                    Offer::Substeps(n) => words.use_substeps().replace("{}", &n.to_string()),
-                                    Offer::Coarser(_, field, value) => {
-                                        let field = words.done(&Step::Shape(field));
-                                        words.take_coarser().replace("{}", &format!("{field} {value}"))
-                                    }
-                                    Offer::GoOn => words.go_on().to_string(),
-                                    Offer::Wait(seconds) => words.wait_longer().replace("{}", &seconds.to_string()),
-                                };
-                                if ui.button(name).clicked() {
-                                    asks.push(Request::Accept(offer.clone()));
-                                    self.closed = message.map_or(self.closed, |m| m.number);
-                                }
-                            }
-                            // What made it fail may have been the last change.
-                            if matches!(offer, Some(Offer::HalveStep | Offer::Steady(..)))
-                                && let Some(step) = &shown.undo
-                                && ui.button(format!("{} ({})", words.undo(), words.done(step))).clicked()
-                            {
-                                asks.push(Request::Undo);
-                                self.closed = message.map_or(self.closed, |m| m.number);
-                            }
-                            if ui.button(words.close()).on_hover_text("Esc").clicked() {
-                                self.forget(speaker, message.map(|message| message.number));
-                            }
-                        });
+                        ui.horizontal(|ui| self.message_buttons(ui, spoken, undo, asks));
                     });
             });
+    }
+
+    /// What would help, what takes the last change back, and what closes the message.
+    fn message_buttons(&mut self, ui: &mut Ui, spoken: &Spoken, undo: Option<&Step>, asks: &mut Vec<Request>) {
+        let words = self.language;
+        let closed = spoken.number.unwrap_or(self.closed);
+        if let Some(offer) = &spoken.offer
+            && ui.button(words.offer(offer)).clicked()
+        {
+            asks.push(Request::Accept(offer.clone()));
+            self.closed = closed;
+        }
+        // What made it fail may have been the last change.
+        if matches!(spoken.offer, Some(Offer::HalveStep | Offer::Steady(..)))
+            && let Some(step) = undo
+            && ui.button(format!("{} ({})", words.undo(), words.done(step))).clicked()
+        {
+            asks.push(Request::Undo);
+            self.closed = closed;
+        }
+        if ui.button(words.close()).on_hover_text("Esc").clicked() {
+            self.forget(spoken.speaker, spoken.number);
+        }
     }
 
     /// What this one said is read, or has been there for long enough.

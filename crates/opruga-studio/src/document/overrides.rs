@@ -1,18 +1,23 @@
 //! Overrides of a call (`--set PATH=VALUE`) written into the text: the scene that is seen is the one that was run.
 
 use super::Document;
+use crate::view_errors::ViewError;
 use toml_edit::{Item, Table, TableLike, Value as Toml};
 
 impl Document {
     /// Writes the value of an override where its path leads, as the reader of scenes understands both.
     ///
     /// # Errors
-    /// A sentence where the path leads nowhere, or the value is none.
-    pub fn take_override(&mut self, path: &str, value: &str) -> Result<(), String> {
+    /// The path leads nowhere, or the value is none.
+    pub fn take_override(&mut self, path: &str, value: &str) -> Result<(), ViewError> {
         let parts: Vec<&str> = path.split('.').collect();
         let word = || value.starts_with(char::is_alphabetic).then(|| Toml::from(value));
-        let number = value.parse::<Toml>().ok().or_else(word).ok_or_else(|| format!("`{value}` is no value"))?;
-        let lost = || format!("`{path}` leads to nothing in the scene");
+        let number = value
+            .parse::<Toml>()
+            .ok()
+            .or_else(word)
+            .ok_or_else(|| ViewError::NoValue { path: path.into(), value: value.into() })?;
+        let lost = || ViewError::NoPath { path: path.into() };
         put(self.text.as_table_mut(), &parts, number).ok_or_else(lost)
     }
 }

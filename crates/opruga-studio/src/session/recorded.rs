@@ -5,6 +5,7 @@ use crate::document::Document;
 use crate::said::Said;
 use crate::setting::Setting;
 use crate::shown::{Offer, Severity};
+use crate::view_errors::ViewError;
 use opruga::WorldError;
 use opruga::io::Files;
 use opruga::io::recording::{Ending, Recording};
@@ -24,15 +25,13 @@ impl Session {
     /// between are computed.
     ///
     /// # Errors
-    /// Why there is nothing to see, as one text: a run that a program has led, a scene that this version does not read, damage.
-    pub fn view<R: Read + Seek>(mut recording: Recording<R>, setting: impl Into<Setting>) -> Result<Session, String> {
+    /// Why there is nothing to see: a run that a program has led, a scene that this version does not read, damage.
+    pub fn view<R: Read + Seek>(mut recording: Recording<R>, setting: impl Into<Setting>) -> Result<Session, Said> {
         let header = recording.header().clone();
         if recording.inputs().next().is_some() {
-            return Err(
-                "a program has led this run, which the text of a scene cannot say: `opruga replay` shows it".into()
-            );
+            return Err(ViewError::Led {}.into());
         }
-        let text = core::str::from_utf8(&header.scene).map_err(|_| "the scene inside is no text in UTF-8")?;
+        let text = core::str::from_utf8(&header.scene).map_err(|_| ViewError::SceneNotUtf8 {})?;
         let held = header.assets.iter().map(|asset| (asset.name.clone(), asset.bytes.as_slice().into()));
         let files = Files::held(held);
         let mut document = Document::new(&header.name, text)?;
@@ -41,12 +40,11 @@ impl Session {
         }
         let mut setting = setting.into();
         setting.options.allow_unstable |= header.allow_unstable;
-        let opened = Session::open(&header.name, &document.text(), files, setting);
-        let mut session = opened.map_err(|said| said.to_string())?;
-        let damaged = |error: opruga::io::recording::RecordingError| error.to_string();
+        let mut session = Session::open(&header.name, &document.text(), files, setting)?;
+        let damaged = |cause| ViewError::State { cause };
         let frames = recording.frames();
         let kept: Vec<u64> = frames.clone().filter(|frame| recording.kept(*frame) == Ok(*frame)).collect();
-        let Some(first) = kept.first() else { return Err("the recording holds no frame".into()) };
+        let Some(first) = kept.first() else { return Err(ViewError::Empty {}.into()) };
         let size = recording.read(*first).map_err(damaged)?.len();
         let apart = (kept.len() * size).div_ceil(KEYFRAME_BYTES).max(1);
         for frame in kept.into_iter().step_by(apart) {
@@ -54,9 +52,9 @@ impl Session {
             if frame == 0 {
                 // Where all begins, the scene inside and the states must agree: else they are of other programs.
                 let hash = session.hash();
-                session.engine.rewind(&state).map_err(|error| error.to_string())?;
+                session.engine.rewind(&state)?;
                 if session.hash() != hash {
-                    return Err("its scene does not lead to its first state: another program has recorded it".into());
+                    return Err(ViewError::OtherProgram {}.into());
                 }
                 continue;
             }
@@ -64,8 +62,8 @@ impl Session {
         }
         session.latest = frames.end.saturating_sub(1);
         session.recording = Some(Viewed { until: session.latest, left: false });
-        if let Ending::Damaged(error) = recording.ending() {
-            return Err(format!("behind frame {}: {error}", session.latest));
+        if let Ending::Damaged(cause) = recording.ending() {
+            return Err(ViewError::DamagedBehind { frame: session.latest, cause: cause.clone() }.into());
         }
         session.seek(frames.start);
         Ok(session)

@@ -72,6 +72,7 @@ impl Language {
     }
 
     /// What a message says.
+    #[expect(clippy::too_many_lines, reason = "a table: one arm for every message")]
     pub fn said(self, said: &Said) -> String {
         match said {
             Said::Because(text) => match self {
@@ -82,6 +83,7 @@ impl Language {
                 errors.iter().map(|error| error.text(self.translation())).collect::<Vec<_>>().join("\n")
             }
             Said::World(error) => self.in_full(error),
+            Said::Recording(error) => self.in_full(error),
             Said::Exploded(Exploded { body, integrator, unstable: true }) => {
                 let integrator = self.kind(Part::Integrator, integrator);
                 either!(

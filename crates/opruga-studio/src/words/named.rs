@@ -1,10 +1,11 @@
 //! How integrators, models, shapes, obstacles and their parameters are called, and what is said of them. In English that is what
-//! they say of themselves; in Croatian what stands in [`croatian`]. A kind of which nothing stands there, because a program has
-//! added it, is called as in the scene file, and its English sentence is marked as such.
+//! they say of themselves; in other languages what stands in the translation, to which a program adds the names of its own kinds
+//! (`Translation::add_names`). A kind without a name there is called as in the scene file, and its English sentence is marked as such.
 
-use super::{Language, croatian, scene_titles};
+use super::{Language, scene_titles};
 use opruga::Warning;
 use opruga::core::spec::{Allowed, Condition, Default as Unset, Field, Spec};
+use opruga::words::Named;
 
 /// What a kind is a kind of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,46 +34,35 @@ impl Part {
     }
 }
 
-/// The name and the sentence of a kind.
-fn kind(part: Part, kind: &str) -> Option<(&'static str, &'static str)> {
-    let place = format!("{}.{kind}", part.word());
-    croatian::KINDS.iter().find(|(at, ..)| *at == place).map(|(_, name, about)| (*name, *about))
-}
-
-/// The name and the sentence of a field: its own, or those of all fields of this name.
-fn field(part: Part, kind: &str, field: &str) -> Option<(&'static str, &'static str)> {
-    let find = |kind: &str| {
-        let place = format!("{}.{kind}.{field}", part.word());
-        croatian::FIELDS.iter().find(|(at, ..)| *at == place)
-    };
-    find(kind).or_else(|| find("*")).map(|(_, name, about)| (*name, *about))
-}
-
 /// A word of the scene file as it is read aloud.
 fn plain(word: &str) -> String {
     word.replace('_', " ")
 }
 
 impl Language {
+    /// What a path names, in a language that has names of its own.
+    fn named(self, path: &[&str]) -> Option<Named> {
+        self.translation().and_then(|known| known.named(path))
+    }
+
+    /// What a parameter of a kind is called, likewise.
+    fn parameter(self, part: Part, of: &str, word: &str) -> Option<Named> {
+        self.translation().and_then(|known| known.named_parameter(part.word(), of, word))
+    }
+
     /// The name of a kind.
     pub fn kind(self, part: Part, word: &str) -> String {
-        let known = if self == Language::Croatian { kind(part, word) } else { None };
-        known.map_or_else(|| plain(word), |(name, _)| name.into())
+        self.named(&[part.word(), word]).map_or_else(|| plain(word), |known| known.name.into())
     }
 
     /// One line about a kind.
     pub fn summary(self, part: Part, spec: &Spec) -> String {
-        match (self, kind(part, spec.kind)) {
-            (Language::English, _) => spec.summary.into(),
-            (Language::Croatian, Some((_, about))) => about.into(),
-            (Language::Croatian, None) => self.english(spec.summary),
-        }
+        self.named(&[part.word(), spec.kind]).map_or_else(|| self.english(spec.summary), |known| known.about.into())
     }
 
     /// The name of a field of a kind.
     pub fn field(self, part: Part, of: &str, word: &str) -> String {
-        let known = if self == Language::Croatian { field(part, of, word) } else { None };
-        known.map_or_else(|| plain(word), |(name, _)| name.into())
+        self.parameter(part, of, word).map_or_else(|| plain(word), |known| known.name.into())
     }
 
     /// The name of a field of which the last word of its path alone is known.
@@ -90,17 +80,14 @@ impl Language {
         if !of_world.is_empty() {
             return of_world.to_lowercase();
         }
-        let known = croatian::FIELDS.iter().find(|(at, ..)| at.rsplit('.').next() == Some(word));
-        known.map_or_else(|| plain(word), |(_, name, _)| (*name).into())
+        let known = self.translation().and_then(|known| known.any_parameter(word));
+        known.map_or_else(|| plain(word), |known| known.name.into())
     }
 
     /// The sentence of a field, what it may be, and what it is where nobody says.
     pub fn sentence(self, part: Part, of: &str, about: &Field, dimension: usize) -> String {
-        let sentence = match (self, field(part, of, about.name)) {
-            (Language::English, _) => about.documentation.to_string(),
-            (Language::Croatian, Some((_, sentence))) => sentence.into(),
-            (Language::Croatian, None) => self.english(about.documentation),
-        };
+        let known = self.parameter(part, of, about.name);
+        let sentence = known.map_or_else(|| self.english(about.documentation), |known| known.about.into());
         let allowed = self.allowed(&about.range, dimension);
         let default = match about.default {
             Unset::Number(x) => x.to_string(),
@@ -137,14 +124,12 @@ impl Language {
 
     /// The name of a word that a field may take.
     pub fn choice(self, word: &str) -> String {
-        let known = croatian::CHOICES.iter().find(|(known, _)| self == Language::Croatian && *known == word);
-        known.map_or_else(|| plain(word), |(_, name)| (*name).into())
+        self.named(&["choice", word]).map_or_else(|| plain(word), |known| known.name.into())
     }
 
     /// The name of what a model tells of a body.
     pub fn reading(self, word: &str) -> String {
-        let known = croatian::READINGS.iter().find(|(known, _)| self == Language::Croatian && *known == word);
-        known.map_or_else(|| plain(word), |(_, name)| (*name).into())
+        self.named(&["reading", word]).map_or_else(|| plain(word), |known| known.name.into())
     }
 
     /// The title of a scene that comes with the program.
@@ -205,19 +190,20 @@ mod tests {
 
     #[test]
     fn every_registered_kind_parameter_and_choice_has_a_croatian_name_and_sentence() {
+        let language = Language::Croatian;
         let mut missing = BTreeSet::new();
         for (part, spec) in all() {
-            let place = format!("{}.{}", part.word(), spec.kind);
-            if kind(part, spec.kind).is_none_or(|(name, about)| name.is_empty() || about.is_empty()) {
-                missing.insert(place.clone());
+            let path = format!("{}-{}", part.word(), spec.kind);
+            if language.named(&[part.word(), spec.kind]).is_none_or(|known| known.about.is_empty()) {
+                missing.insert(path.clone());
             }
             for about in spec.fields {
-                if field(part, spec.kind, about.name).is_none_or(|(name, about)| name.is_empty() || about.len() < 5) {
-                    missing.insert(format!("{place}.{}", about.name));
+                if language.parameter(part, spec.kind, about.name).is_none_or(|known| known.about.len() < 5) {
+                    missing.insert(format!("{path}-{}", about.name));
                 }
                 let Allowed::Choice(words) = about.range else { continue };
-                let unknown = words.iter().filter(|word| !croatian::CHOICES.iter().any(|(known, _)| known == *word));
-                missing.extend(unknown.map(|word| format!("{place}.{} = {word}", about.name)));
+                let unknown = words.iter().filter(|word| language.named(&["choice", word]).is_none());
+                missing.extend(unknown.map(|word| format!("choice-{word} of {path}-{}", about.name)));
             }
         }
         let titled = |name: &&str| scene_titles::SCENE_TITLES.iter().any(|(known, _)| known == name);
@@ -226,23 +212,21 @@ mod tests {
     }
 
     #[test]
-    fn no_line_stands_in_the_table_twice_or_names_what_there_is_not() {
+    fn no_name_is_one_of_what_there_is_not() {
         let there: BTreeSet<String> = all()
             .into_iter()
             .flat_map(|(part, spec)| {
-                let kind = format!("{}.{}", part.word(), spec.kind);
-                let fields = spec
-                    .fields
-                    .iter()
-                    .flat_map(|about| [spec.kind, "*"].map(|kind| format!("{}.{kind}.{}", part.word(), about.name)));
+                let kind = format!("{}-{}", part.word(), spec.kind);
+                let fields = spec.fields.iter().flat_map(|about| {
+                    [spec.kind, "every"].map(|kind| format!("{}-{kind}-{}", part.word(), about.name))
+                });
                 fields.chain([kind]).collect::<Vec<_>>()
             })
             .collect();
-        let lines: Vec<&str> = croatian::KINDS.iter().chain(croatian::FIELDS).map(|(at, ..)| *at).collect();
-        for at in &lines {
-            assert!(there.contains(*at), "{at} names nothing");
-        }
-        assert_eq!(lines.iter().collect::<BTreeSet<_>>().len(), lines.len(), "a line stands there twice");
+        let paths = Language::Croatian.translation().expect("it has names").paths();
+        let of_kinds = paths.into_iter().filter(|path| !path.starts_with("choice-") && !path.starts_with("reading-"));
+        let stale: Vec<&str> = of_kinds.filter(|path| !there.contains(*path)).collect();
+        assert!(stale.is_empty(), "they name nothing: {stale:?}");
     }
 
     #[test]

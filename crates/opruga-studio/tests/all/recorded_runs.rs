@@ -10,6 +10,8 @@ use opruga::{Options, World, catalogue};
 use opruga_studio::said::Said;
 use opruga_studio::session::{Grip, Request, Session};
 use opruga_studio::shown::Offer;
+use opruga_studio::view_errors::ViewError;
+use opruga_studio::words::Language;
 use std::io::Cursor;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Duration;
@@ -53,8 +55,8 @@ fn record(every: u64, led: bool) -> (Vec<u8>, Vec<u64>) {
     (bytes, hashes)
 }
 
-fn view(bytes: &[u8]) -> Result<Session, String> {
-    Session::view(Recording::open(Cursor::new(bytes)).map_err(|error| error.to_string())?, Options::default())
+fn view(bytes: &[u8]) -> Result<Session, Said> {
+    Session::view(Recording::open(Cursor::new(bytes)).expect("its head is whole"), Options::default())
 }
 
 fn arrive(session: &mut Session) {
@@ -142,11 +144,18 @@ fn a_recording_goes_on_by_hand() {
 #[test]
 fn what_cannot_be_viewed_says_why() {
     let (led, _) = record(1, true);
-    assert!(view(&led).expect_err("a program has led it").contains("a program has led this run"));
+    let refused = |bytes: &[u8]| view(bytes).expect_err("it is refused");
+    assert_eq!(refused(&led), Said::Recording(ViewError::Led {}));
+    let croatian = Language::Croatian.said(&refused(&led));
+    assert_eq!(
+        croatian,
+        "ovaj je tijek vodio program, što tekst prizora ne može reći; savjet: `opruga replay` ga prikazuje"
+    );
     let (bytes, _) = record(1, false);
-    assert!(view(&bytes[..100]).is_err());
+    assert!(Recording::open(Cursor::new(&bytes[..100])).is_err());
     let mut other = bytes.clone();
     let place = other.windows(9).position(|bytes| bytes == b"nRT = 55.").expect("it is in the scene");
     other[place + 6] = b'6';
-    assert!(view(&other).is_err(), "a scene that was changed inside");
+    let changed = Recording::open(Cursor::new(&other[..])).map(|_| refused(&other));
+    assert!(changed.is_err() || changed == Ok(Said::Recording(ViewError::OtherProgram {})), "{changed:?}");
 }

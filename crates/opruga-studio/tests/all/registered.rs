@@ -4,6 +4,7 @@ use super::screen::window::{SIZE, Window};
 use egui_kittest::kittest::Queryable;
 use opruga::extend::*;
 use opruga::io::Files;
+use opruga::words::Translation;
 use opruga::{Options, Registries, Registry};
 use opruga_studio::session::{Request, Session};
 use opruga_studio::setting::Setting;
@@ -95,6 +96,17 @@ fn a_registered_model_has_its_own_words_in_both_languages() {
     assert_eq!(Language::Croatian.summary(Part::Model, &SPEC), format!("{} (na engleskom)", SPEC.summary));
     let sentence = Language::English.sentence(Part::Model, SPEC.kind, &K, 2);
     assert!(sentence.starts_with(K.documentation) && sentence.contains("a number > 0"), "{sentence}");
+    // Its program brings the names of the other language.
+    let names = "model-bed_of_a_test = ležaj\n    .about = ležaj koji zna samo test\n\
+                 model-bed_of_a_test-tightness = napetost\n    .about = Krutost k svakog čvora.\n";
+    assert_eq!(Translation::croatian().add_names(names), Ok(()));
+    let language = Language::Croatian;
+    assert_eq!(language.kind(Part::Model, SPEC.kind), "ležaj");
+    assert_eq!(language.summary(Part::Model, &SPEC), "ležaj koji zna samo test");
+    assert_eq!(language.field(Part::Model, SPEC.kind, K.name), "napetost");
+    let sentence = language.sentence(Part::Model, SPEC.kind, &K, 2);
+    assert!(sentence.starts_with("Krutost k svakog čvora.\nbroj > 0"), "{sentence}");
+    assert_eq!(Language::English.kind(Part::Model, SPEC.kind), "bed of a test");
 }
 
 #[test]

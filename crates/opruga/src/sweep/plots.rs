@@ -2,7 +2,7 @@
 
 use super::table::Status;
 use super::{Axis, Design, Row, Sweep, number};
-use opruga_draw::{Chart, DrawError, HeatMap, HeatPanel, Line, Marker, Panel, format_value};
+use opruga_draw::{Chart, DrawError, HeatMap, HeatPanel, Line, Marker, Nothing, Panel, format_value};
 
 /// The names and texts (SVG) of all plots.
 ///
@@ -83,7 +83,7 @@ impl Plots<'_> {
             panels.push(Panel { y, lines: vec![line], ..Panel::default() });
         }
         if panels.is_empty() {
-            return Err(DrawError::Empty("no point of the sweep has a number to plot"));
+            return Err(DrawError::Empty { nothing: Nothing::NumberOfSweep });
         }
         let mut label = axis.path.clone();
         if let Some(words) = &words {

@@ -157,40 +157,7 @@ impl<const D: usize, const N: usize> Rest<D, N> {
             }
         }
         let measure: f64 = measures.iter().sum();
-        let mut weights = [[0.0; N]; N];
-        for a in 0..N {
-            for j in 0..D {
-                weights[a][j] = (0..N).map(|q| measures[q] * slopes[q][a][j]).sum::<f64>() / measure;
-            }
-        }
-        // What is left of the hourglass functions without their affine parts, and such that mode α has the amplitude 1.
-        let mut rows = vec![vec![0.0; modes + N]; modes];
-        for (mode, row) in rows.iter_mut().enumerate() {
-            let h: [f64; N] = core::array::from_fn(|a| product(a, axes::<D>(mode)));
-            let along: [f64; D] = core::array::from_fn(|j| (0..N).map(|a| h[a] * corners[a][j]).sum());
-            for a in 0..N {
-                row[modes + a] = h[a] - (0..D).map(|j| along[j] * weights[a][j]).sum::<f64>();
-            }
-            for other in 0..modes {
-                row[other] = (0..N).map(|a| row[modes + a] * product(a, axes::<D>(other))).sum();
-            }
-        }
-        eliminate(&mut rows);
-        for (mode, row) in rows.iter().enumerate() {
-            for a in 0..N {
-                weights[a][D + mode] = row[modes + a];
-            }
-        }
-        // No column sees a translation, so each is a sum of functions.
-        let mut shares = [[0.0; N]; N];
-        for c in 0..N - 1 {
-            let column = sums(&core::array::from_fn::<f64, N, _>(|a| weights[a][c] / N as f64));
-            let largest = column[1..].iter().fold(0.0, |most: f64, x| if x.abs() > most { x.abs() } else { most });
-            for (w, share) in column[1..].iter().enumerate() {
-                shares[w][c] = if share.abs() > ROUNDING * largest { *share } else { 0.0 };
-            }
-        }
-
+        let shares = shares(corners, &slopes, &measures);
         let (at_middle, size) = (E::at([0.0; 3]).1, modes * D);
         let mut jacobian = [[0.0; D]; D];
         for i in 0..D {
@@ -281,6 +248,50 @@ impl<const D: usize, const N: usize> Rest<D, N> {
         }
         rows
     }
+}
+
+/// The shares of the functions in the mean gradient and the hourglass amplitudes.
+fn shares<const D: usize, const N: usize>(
+    corners: &[[f64; D]; N],
+    slopes: &[[[f64; D]; N]; N],
+    measures: &[f64; N],
+) -> [[f64; N]; N] {
+    let modes = modes::<D, N>();
+    let measure: f64 = measures.iter().sum();
+    let mut weights = [[0.0; N]; N];
+    for a in 0..N {
+        for j in 0..D {
+            weights[a][j] = (0..N).map(|q| measures[q] * slopes[q][a][j]).sum::<f64>() / measure;
+        }
+    }
+    // What is left of the hourglass functions without their affine parts, and such that mode α has the amplitude 1.
+    let mut rows = vec![vec![0.0; modes + N]; modes];
+    for (mode, row) in rows.iter_mut().enumerate() {
+        let h: [f64; N] = core::array::from_fn(|a| product(a, axes::<D>(mode)));
+        let along: [f64; D] = core::array::from_fn(|j| (0..N).map(|a| h[a] * corners[a][j]).sum());
+        for a in 0..N {
+            row[modes + a] = h[a] - (0..D).map(|j| along[j] * weights[a][j]).sum::<f64>();
+        }
+        for other in 0..modes {
+            row[other] = (0..N).map(|a| row[modes + a] * product(a, axes::<D>(other))).sum();
+        }
+    }
+    eliminate(&mut rows);
+    for (mode, row) in rows.iter().enumerate() {
+        for a in 0..N {
+            weights[a][D + mode] = row[modes + a];
+        }
+    }
+    // No column sees a translation, so each is a sum of functions.
+    let mut shares = [[0.0; N]; N];
+    for c in 0..N - 1 {
+        let column = sums(&core::array::from_fn::<f64, N, _>(|a| weights[a][c] / N as f64));
+        let largest = column[1..].iter().fold(0.0, |most: f64, x| if x.abs() > most { x.abs() } else { most });
+        for (w, share) in column[1..].iter().enumerate() {
+            shares[w][c] = if share.abs() > ROUNDING * largest { *share } else { 0.0 };
+        }
+    }
+    shares
 }
 
 /// Makes the first columns of as many rows the unit matrix (Gauss and Jordan, with the largest pivot).

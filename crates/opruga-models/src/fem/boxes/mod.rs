@@ -14,6 +14,7 @@
 //! one and a half times the volume (J − 3/2)³ of that comes on top in space.
 //! Under `linear`, which does not know of rotations, F_q is F + ε_q and q is g. In plane stress λ′ is λ.
 
+mod columns;
 mod corners;
 mod deform;
 mod hourglass;

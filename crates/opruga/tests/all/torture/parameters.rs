@@ -17,6 +17,7 @@ fn block(fields: &str) -> String {
 
 /// Rows 43 to 58: what is said about parameters that make no sense.
 #[test]
+#[expect(clippy::too_many_lines, reason = "a table: one row for every parameter")]
 fn parameters_that_make_no_sense() {
     let chain = |points: &str, models: &str| {
         format!(

@@ -1,0 +1,103 @@
+//! Names of kinds, of their parameters and of the words that these take.
+//!
+//! An entry is called after what it names: `model-fem` a kind, `model-fem-plane` a parameter of it, `model-every-plane` this parameter of
+//! all kinds without a line of their own. Its attribute `.about` is a line about it.
+
+use crate::Translation;
+use fluent_syntax::ast::{Entry, Pattern, PatternElement};
+use fluent_syntax::parser::parse_runtime;
+use std::collections::HashMap;
+use std::sync::PoisonError;
+
+/// A name with a line about what it names; that is empty where nothing is to be said.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Named {
+    /// The name.
+    pub name: &'static str,
+    /// One line.
+    pub about: &'static str,
+}
+
+/// All names of a language.
+#[derive(Debug, Default)]
+pub(crate) struct Names {
+    lines: HashMap<&'static str, Named>,
+    /// Of every parameter the first line, whatever its kind.
+    parameters: HashMap<&'static str, Named>,
+}
+
+impl Names {
+    /// Adds the names of a text in Fluent syntax; returns what is wrong with it, which is left out.
+    pub(crate) fn add(&mut self, text: &'static str) -> Vec<String> {
+        let mut problems = Vec::new();
+        let resource = parse_runtime(text).unwrap_or_else(|(resource, errors)| {
+            problems.extend(errors.iter().map(|error| format!("{error} at byte {}", error.pos.start)));
+            resource
+        });
+        for entry in resource.body {
+            let Entry::Message(message) = entry else { continue };
+            let path = message.id.name;
+            let about = message.attributes.iter().find(|attribute| attribute.id.name == "about");
+            let about = about.map_or(Some(""), |attribute| plain(&attribute.value));
+            let (Some(name), Some(about)) = (message.value.as_ref().and_then(plain), about) else {
+                problems.push(format!("`{path}` is not one plain line"));
+                continue;
+            };
+            let named = Named { name, about };
+            if self.lines.contains_key(path) {
+                problems.push(format!("`{path}` is named already"));
+                continue;
+            }
+            self.lines.insert(path, named);
+            if let Some((_, parameter)) = path.split_once('-').and_then(|(_, rest)| rest.split_once('-')) {
+                self.parameters.entry(parameter).or_insert(named);
+            }
+        }
+        problems
+    }
+}
+
+/// The text of a pattern of one line without variables.
+fn plain(pattern: &Pattern<&'static str>) -> Option<&'static str> {
+    match pattern.elements.as_slice() {
+        [PatternElement::TextElement { value }] => Some(*value),
+        _ => None,
+    }
+}
+
+impl Translation {
+    /// What a path names, such as `["model", "fem"]`, `["model", "fem", "plane"]` or `["choice", "stress"]`; none where the
+    /// language has no name for it.
+    pub fn named(&self, path: &[&str]) -> Option<Named> {
+        let names = self.names.read().unwrap_or_else(PoisonError::into_inner);
+        names.lines.get(&*path.join("-")).copied()
+    }
+
+    /// A parameter of a kind: by its own line, or by that of all kinds which have a parameter of this name.
+    pub fn named_parameter(&self, part: &str, kind: &str, parameter: &str) -> Option<Named> {
+        self.named(&[part, kind, parameter]).or_else(|| self.named(&[part, "every", parameter]))
+    }
+
+    /// A parameter of which nobody says whose it is.
+    pub fn any_parameter(&self, parameter: &str) -> Option<Named> {
+        let names = self.names.read().unwrap_or_else(PoisonError::into_inner);
+        names.parameters.get(parameter).copied()
+    }
+
+    /// Adds the names of kinds that a program registers, in Fluent syntax.
+    ///
+    /// # Errors
+    /// What is wrong with the text: its syntax, names that are there already, names with variables. All others are added.
+    pub fn add_names(&self, text: &'static str) -> Result<(), Vec<String>> {
+        let problems = self.names.write().unwrap_or_else(PoisonError::into_inner).add(text);
+        if problems.is_empty() { Ok(()) } else { Err(problems) }
+    }
+
+    /// The paths of all names, joined by `-`, in the order of the alphabet.
+    pub fn paths(&self) -> Vec<&'static str> {
+        let names = self.names.read().unwrap_or_else(PoisonError::into_inner);
+        let mut paths: Vec<&str> = names.lines.keys().copied().collect();
+        paths.sort_unstable();
+        paths
+    }
+}
