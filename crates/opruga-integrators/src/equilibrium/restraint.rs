@@ -25,10 +25,8 @@ const TIMES: [f64; 7] = [0.0, 1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0];
 /// Restraints below this part of the loads are none; squared, since P is squared.
 const NOTHING: f64 = 1e-14;
 
-/// How far the body is turned to look at it in another pose [rad], with its sine and cosine.
+/// How far the body is turned to look at it in another pose [rad].
 pub(super) const TURN: f64 = 0.9;
-const SINE: f64 = 0.783_326_909_627_483_4;
-const COSINE: f64 = 0.621_609_968_270_664_4;
 
 /// The motions of the whole, or of a piece, that neither pins nor loads nor the weight of a pendulum hold, nor obstacles that
 /// hold nodes along the given directions, with the nodes at the given places; translations first.
@@ -170,12 +168,13 @@ fn is_left_behind<const D: usize>(
     add_forces_of(system, member, &scratch, &view, &mut there);
     let speed = motion.rotation.iter().map(|r| r * r).sum::<f64>().sqrt();
     let unit = Motion { translation: [0.0; D], rotation: motion.rotation.iter().map(|r| r / speed).collect() };
+    let (sine, cosine) = libm::sincos(TURN);
     let (mut apart, mut size) = (0.0, 0.0);
     for (force, there) in force.iter().zip(&there) {
         let first = turned(&unit, force);
         let second = turned(&unit, &first);
         for d in 0..D {
-            let carried = force[d] + SINE * first[d] + (1.0 - COSINE) * second[d];
+            let carried = force[d] + sine * first[d] + (1.0 - cosine) * second[d];
             apart += (there[d] - carried).abs();
             size += there[d].abs() + carried.abs();
         }
@@ -364,13 +363,14 @@ pub(super) fn pose<const D: usize>(
     let across = turned(&unit, &motion.translation);
     let through: [f64; D] = core::array::from_fn(|d| center[d] + across[d] / speed);
     let along: f64 = if D == 3 { (0..D).map(|d| axis[d] * motion.translation[d]).sum() } else { 0.0 };
+    let (sine, cosine) = libm::sincos(TURN);
     for node in piece {
         let x = x.at(*node);
         let arm: [f64; D] = core::array::from_fn(|d| x[d] - through[d]);
         // Rodrigues: x + sin θ n × r + (1 − cos θ) n × (n × r).
         let first = turned(&unit, &arm);
         let second = turned(&unit, &first);
-        let mut to: [f64; D] = core::array::from_fn(|d| x[d] + SINE * first[d] + (1.0 - COSINE) * second[d]);
+        let mut to: [f64; D] = core::array::from_fn(|d| x[d] + sine * first[d] + (1.0 - cosine) * second[d]);
         for d in 0..D {
             to[d] += if D == 3 { axis[d] * along * TURN / speed } else { 0.0 };
         }
