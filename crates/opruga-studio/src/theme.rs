@@ -104,11 +104,11 @@ mod tests {
         context.set_fonts(with_own(FontDefinitions::empty()));
         let mut output = context.run_ui(egui::RawInput::default(), |_| {});
         output.textures_delta.clear();
-        let words = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("src/words");
+        let own = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
         let mut said =
             crate::words::ALL.iter().map(|(_, english, croatian)| format!("{english}{croatian}")).collect::<String>();
         said.extend(opruga::scenes::names().filter_map(opruga::scenes::find));
-        let mut folders = vec![words];
+        let mut folders = vec![own.join("src/words"), own.join("../opruga-words/hr")];
         while let Some(folder) = folders.pop() {
             for entry in std::fs::read_dir(folder).expect("a folder").flatten() {
                 match entry.path() {

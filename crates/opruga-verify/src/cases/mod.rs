@@ -83,13 +83,8 @@ pub fn cases() -> impl Iterator<Item = &'static Case> {
 }
 
 /// What a reader may look for and not find, and why.
-pub const LEFT_OUT: &[(&str, &str)] = &[
-    ("thin membranes of rubber", "there is no model of membranes; springs have another law"),
-    (
-        "a shrink fit of two tubes",
-        "bodies of closed surfaces that begin on one another, nearer than their thickness, are pushed through the wall as well",
-    ),
-];
+pub const LEFT_OUT: &[(&str, &str)] =
+    &[("thin membranes of rubber", "there is no model of membranes; springs have another law")];
 
 #[cfg(test)]
 mod tests {
