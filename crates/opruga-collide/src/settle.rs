@@ -113,7 +113,6 @@ impl<const D: usize> Touching<D> {
         for ends in self.turns.starts().windows(2) {
             let rows = &self.rows[ends[0] as usize..ends[1] as usize];
             self.wanted.clear();
-            self.masses.clear();
             let mut overlap = false;
             for row in rows {
                 let u = subtract(&row.mean(&self.spread, &self.v), &row.carry);
@@ -121,12 +120,13 @@ impl<const D: usize> Touching<D> {
                 // Sweeps that end early leave less than this.
                 overlap |= end < -OVERLAP * self.thickest[0];
                 self.wanted.push(if row.of_obstacle { -end } else { (-end).smaller(most) });
-                // Displacements move every point by itself, also of bodies that answer impulses as a whole.
-                self.masses.push(row.mass_apart(&self.spread, &self.inverse_mass));
             }
             if !overlap {
                 continue;
             }
+            // Displacements move every point by itself, also of bodies that answer impulses as a whole.
+            self.masses.clear();
+            self.masses.extend(rows.iter().map(|row| row.mass_apart(&self.spread, &self.inverse_mass)));
             let wanted = (&self.wanted[..], &self.masses[..]);
             part(rows, &self.spread, &self.inverse_mass, wanted, &mut self.multipliers, &mut self.moved, most);
             for (row, _) in rows.iter().zip(&self.multipliers).filter(|(_, multiplier)| **multiplier > 0.0) {

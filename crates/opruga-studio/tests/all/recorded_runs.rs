@@ -3,10 +3,11 @@
 #![allow(clippy::disallowed_methods)]
 
 use opruga::blueprint::AnyBlueprint;
-use opruga::io::recording::{Header, Recording};
+use opruga::io::recording::{Header, Recording, RecordingError};
 use opruga::io::scene;
 use opruga::recordings::Tape;
 use opruga::{Options, World, catalogue};
+use opruga_studio::document::Document;
 use opruga_studio::said::Said;
 use opruga_studio::session::{Grip, Request, Session};
 use opruga_studio::shown::Offer;
@@ -158,4 +159,22 @@ fn what_cannot_be_viewed_says_why() {
     other[place + 6] = b'6';
     let changed = Recording::open(Cursor::new(&other[..])).map(|_| refused(&other));
     assert!(changed.is_err() || changed == Ok(Said::Recording(ViewError::OtherProgram {})), "{changed:?}");
+    // One bit of a state is another one: its bytes are named.
+    let mut damaged = bytes.clone();
+    let place = damaged.len() * 2 / 3;
+    damaged[place] ^= 1;
+    let Said::Recording(ViewError::State { cause: RecordingError::Damaged { from, to } }) = refused(&damaged) else {
+        panic!("{:?}", refused(&damaged))
+    };
+    assert!((from..to).contains(&(place as u64)), "{from} {place} {to}");
+}
+
+#[test]
+fn overrides_that_the_scene_does_not_take_are_named() {
+    let text = opruga::scenes::find("ball").expect("it comes with the program");
+    let mut document = Document::new("ball", text).expect("it is read");
+    let [path, value] = ["time.seconds".to_string(), "= 3".to_string()];
+    assert_eq!(document.take_override(&path, &value), Err(ViewError::NoValue { path, value }));
+    let path = "body.nobody.mass".to_string();
+    assert_eq!(document.take_override(&path, "3"), Err(ViewError::NoPath { path }));
 }
