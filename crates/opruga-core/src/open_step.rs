@@ -12,6 +12,9 @@ use crate::system::System;
 ///
 /// Obstacles hold nodes, and pins lead them: `prescribed` is how far these still have to go, and A is solved in the directions that are free.
 pub trait OpenStep<const D: usize>: Send {
+    /// Lets a body of statics stay where it is now by a part of its mass, y = u and σ [1/s²], from the next evaluation on. Bodies that move have inertia
+    /// of their own, and take no note of it.
+    fn stay(&mut self, _sigma: f64) {}
     /// u.
     fn displacements(&self) -> &[f64];
     /// The correction of u [m], which the search writes.

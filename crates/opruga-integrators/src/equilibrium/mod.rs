@@ -28,8 +28,12 @@
 //! Without `arc_length` obstacles hold it too; a direction without any stiffness is then held by a billionth of the stiffness of the others,
 //! within the iteration only. Where that leads nowhere, the motions are named that contact leaves free.
 //!
+//! Other bodies may hold a body too. Nobody knows before how: so the common balance of bodies that touch is searched for from outside, with the
+//! forces and the matrix of each ([`OpenStep`]).
+//!
 //! Source: Riks 1979; Crisfield 1981; for the direction on the curve Feng, Perić, Owen 1996.
 
+mod among_others;
 mod arc;
 pub mod motion;
 pub(crate) mod pieces;
@@ -39,13 +43,15 @@ mod slack;
 #[cfg(test)]
 mod tests;
 
+use self::among_others::AmongOthers;
 use crate::implicit::balance::{Balance, Solved};
 use crate::implicit::convergence::report;
-use crate::implicit::ends::commit;
+use crate::implicit::ends::Statics;
 use crate::implicit::linear::has_symmetric_matrix;
 use crate::implicit::memory;
 use crate::implicit::minimiser::Minimiser;
 use crate::implicit::newton::Newton;
+use crate::implicit::open;
 use crate::implicit::settings::{Otherwise, Settings, Solver, fields};
 use crate::implicit::step::MOST_HALVINGS;
 use crate::implicit::step_limit::{leaves_nodes_inside, lift_out};
@@ -55,9 +61,10 @@ use opruga_core::error::{BuildError, StepError};
 use opruga_core::history::{Channel, PerBody, PerNode};
 use opruga_core::integrator::{Amplification, Integrator, IntegratorKind};
 use opruga_core::memory::Counts;
+use opruga_core::open_step::OpenStep;
 use opruga_core::potential::{Reading, Views};
 use opruga_core::spec::{Allowed, Condition, Default, Field, Role, Spec, Values};
-use opruga_core::system::{Stage, System};
+use opruga_core::system::System;
 use opruga_solve::blocks::nodes;
 
 /// The parameters.
@@ -257,16 +264,7 @@ impl Equilibrium {
         workspace: &mut Workspace<D>,
         h: f64,
     ) -> Result<(), StepError> {
-        let begun = system.work;
-        system.begin_implicit();
-        let moving = system.kinetic_energy();
-        // Statics knows no velocities.
-        for column in &mut system.state.v.0 {
-            column.fill(0.0);
-        }
-        workspace.load(system);
-        system.evaluate(Stage::Current, 0.0, 0.0, &mut workspace.force)?;
-        let before = system.stored_energy(Stage::Current, 0.0) + moving;
+        let statics = Statics::begin(system, workspace)?;
         let (mut load, complete) = (system.history.get(LOAD), system.history.get(COMPLETE));
         workspace.contacting.clear(system.nodes);
         workspace.y.fill(0.0);
@@ -297,8 +295,6 @@ impl Equilibrium {
             }
         }
         workspace.u1.copy_from_slice(&workspace.u);
-        workspace.v1.fill(0.0);
-        commit(system, workspace);
         if let Some(displacement) = system.history.vectors_mut(DISPLACEMENT) {
             for (node, u) in nodes::<D>(&workspace.u1).iter().enumerate() {
                 displacement.set(node, *u);
@@ -306,19 +302,14 @@ impl Equilibrium {
         }
         system.history.set(LOAD, load);
         system.history.set(COMPLETE, load >= 1.0);
-        system.end_implicit(h);
-        for column in &mut system.state.v.0 {
-            column.fill(0.0);
-        }
-        // The hand that leads the body from balance to balance does what its energy changes by, but for what a gas is given: loads,
-        // pins and whatever slows the way down are all in it. Nothing moves, so pins give and take no motion.
-        system.evaluate(Stage::Current, 0.0, 0.0, &mut workspace.force)?;
-        let after = system.stored_energy(Stage::Current, 0.0);
-        let given: f64 = system.work.gas.iter().sum::<f64>() - begun.gas.iter().sum::<f64>();
-        (system.work.user, system.work.damping) = (begun.user, begun.damping);
-        system.work.user[0] += after - before - given;
-        Ok(())
+        statics.end(system, workspace, h)
     }
+}
+
+/// To rest at once; where nothing pulls back, it stays where it is.
+fn to_rest(omega: f64) -> Amplification {
+    let kept = if omega > 0.0 { 0.0 } else { 1.0 };
+    Amplification::new([[kept, 0.0], [0.0, 0.0]])
 }
 
 impl<const D: usize> Integrator<D> for Equilibrium {
@@ -336,9 +327,7 @@ impl<const D: usize> Integrator<D> for Equilibrium {
         [LOAD.declared(), COMPLETE.declared()].into_iter().chain(along_the_curve).collect()
     }
     fn amplification(&self, omega: f64, _c: f64, _h: f64) -> Amplification {
-        // To rest at once; where nothing pulls back, it stays where it is.
-        let kept = if omega > 0.0 { 0.0 } else { 1.0 };
-        Amplification::new([[kept, 0.0], [0.0, 0.0]])
+        to_rest(omega)
     }
     fn check(&self, system: &System<D>, obstacles: bool) -> Result<(), BuildError> {
         if self.settings.solver == Solver::MatrixFree && !has_symmetric_matrix(system) {
@@ -366,6 +355,13 @@ impl<const D: usize> Integrator<D> for Equilibrium {
     }
     fn is_static(&self) -> bool {
         true
+    }
+    fn takes_pushes(&self) -> bool {
+        // Along a curve of equilibria, and by parts of a load, nobody knows how others push.
+        self.arc_length.is_none() && self.load_steps == 1
+    }
+    fn open(&self, system: &mut System<D>, h: f64) -> Option<Result<Box<dyn OpenStep<D>>, StepError>> {
+        <Self as Integrator<D>>::takes_pushes(self).then(|| open::open_at_rest(AmongOthers, self.settings, system, h))
     }
     fn takes_mass_matrix(&self) -> bool {
         true

@@ -25,6 +25,61 @@ pub(super) struct Ledger {
     pub(super) begun: Work8,
 }
 
+/// A step of statics at its start: the ledger, and the energy of the body [J].
+#[derive(Clone, Copy)]
+pub(crate) struct Statics {
+    begun: Work8,
+    before: f64,
+}
+
+impl Statics {
+    /// Takes the state at the start of a step of statics, which knows no velocities.
+    ///
+    /// # Errors
+    /// [`StepError`] where a model refuses it.
+    pub(crate) fn begin<const D: usize>(
+        system: &mut System<D>,
+        workspace: &mut Workspace<D>,
+    ) -> Result<Statics, StepError> {
+        let begun = system.work;
+        system.begin_implicit();
+        let moving = system.kinetic_energy();
+        stop(system);
+        workspace.load(system);
+        system.evaluate(Stage::Current, 0.0, 0.0, &mut workspace.force)?;
+        Ok(Statics { begun, before: system.stored_energy(Stage::Current, 0.0) + moving })
+    }
+
+    /// Ends a step of statics of h [s] at the displacement in `workspace.u1`.
+    ///
+    /// The hand that leads the body from balance to balance does what its energy changes by, but for what a gas is given: loads, pins and whatever
+    /// slows the way down are all in it. Nothing moves, so pins give and take no motion.
+    ///
+    /// # Errors
+    /// [`StepError`] where a model refuses the end.
+    pub(crate) fn end<const D: usize>(
+        self,
+        system: &mut System<D>,
+        workspace: &mut Workspace<D>,
+        h: f64,
+    ) -> Result<(), StepError> {
+        workspace.v1.fill(0.0);
+        commit(system, workspace);
+        system.end_implicit(h);
+        stop(system);
+        system.evaluate(Stage::Current, 0.0, 0.0, &mut workspace.force)?;
+        let after = system.stored_energy(Stage::Current, 0.0);
+        let given: f64 = system.work.gas.iter().sum::<f64>() - self.begun.gas.iter().sum::<f64>();
+        (system.work.user, system.work.damping) = (self.begun.user, self.begun.damping);
+        system.work.user[0] += after - self.before - given;
+        Ok(())
+    }
+}
+
+fn stop<const D: usize>(system: &mut System<D>) {
+    system.state.v.0.iter_mut().for_each(|column| column.fill(0.0));
+}
+
 /// Takes the state at the start of a step, and enters the works of rules that go by the mean of start and end.
 pub(super) fn open_ledger<R: Rule<D>, const D: usize>(
     system: &mut System<D>,

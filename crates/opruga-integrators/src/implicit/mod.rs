@@ -74,7 +74,7 @@ pub(crate) mod memory;
 pub(crate) mod minimiser;
 mod mixing;
 pub(crate) mod newton;
-mod open;
+pub(crate) mod open;
 mod own_loss;
 mod real_time;
 mod reused_matrix;

@@ -4,7 +4,7 @@ use super::balance::{Balance, Solved};
 use super::contact_query::ContactQuery;
 use super::convergence::{count, finish};
 use super::direction::Keep;
-use super::ends::{Found, Ledger, commit, end, enter_end, enter_stage, open_ledger};
+use super::ends::{Found, Ledger, Statics, commit, end, enter_end, enter_stage, open_ledger};
 use super::holding;
 use super::line_search::given_along;
 use super::linear::{Filter, Mixture};
@@ -24,9 +24,15 @@ struct Open<R, const D: usize> {
     settings: Settings,
     workspace: Box<Workspace<D>>,
     balance: Balance,
-    ledger: Ledger,
+    account: Account,
     /// Whether forces were evaluated at the trial last.
     tried: bool,
+}
+
+/// What the ledger needs from the start of the step.
+enum Account {
+    Motion(Box<Ledger>),
+    Rest(Box<Statics>),
 }
 
 /// What a matrix is made of, one after the other until it is positive definite.
@@ -48,7 +54,33 @@ pub(super) fn open<R: Rule<D>, const D: usize>(
     // What is reused from step to step belongs to searches of the body alone.
     workspace.answer.last = None;
     holding::take_hold(system, &mut workspace.kick, h);
-    let ledger = open_ledger::<R, D>(system, &mut workspace, h)?;
+    let account = Account::Motion(Box::new(open_ledger::<R, D>(system, &mut workspace, h)?));
+    begin((rule, settings), system, workspace, account, h)
+}
+
+/// Begins a step of statics of h [s].
+///
+/// # Errors
+/// [`StepError`] where a model refuses the start.
+pub(crate) fn open_at_rest<R: Rule<D>, const D: usize>(
+    rule: R,
+    settings: Settings,
+    system: &mut System<D>,
+    h: f64,
+) -> Result<Box<dyn OpenStep<D>>, StepError> {
+    let mut workspace = system.cache.take::<Workspace<D>>();
+    let account = Account::Rest(Box::new(Statics::begin(system, &mut workspace)?));
+    begin((rule, settings), system, workspace, account, h)
+}
+
+/// Begins a step whose state at the start has been taken.
+fn begin<R: Rule<D>, const D: usize>(
+    (rule, settings): (R, Settings),
+    system: &mut System<D>,
+    mut workspace: Box<Workspace<D>>,
+    account: Account,
+    h: f64,
+) -> Result<Box<dyn OpenStep<D>>, StepError> {
     workspace.contacting.clear(system.nodes);
     let balance = rule.begin(system, &mut workspace, h);
     workspace.hold(system, balance.theta, h);
@@ -57,7 +89,7 @@ pub(super) fn open<R: Rule<D>, const D: usize>(
     workspace.reaction.fill(0.0);
     workspace.linear.begin();
     workspace.friction.begin(if system.contacts.is_some() { system.nodes } else { 0 });
-    let mut open = Open { rule, settings, workspace, balance, ledger, tried: false };
+    let mut open = Open { rule, settings, workspace, balance, account, tried: false };
     evaluate(system, &mut open.workspace, &balance, false)?;
     Ok(Box::new(open))
 }
@@ -71,6 +103,13 @@ impl<R: Rule<D>, const D: usize> Open<R, D> {
 }
 
 impl<R: Rule<D>, const D: usize> OpenStep<D> for Open<R, D> {
+    fn stay(&mut self, sigma: f64) {
+        if let Account::Rest(_) = self.account {
+            let Workspace { y, u, .. } = &mut *self.workspace;
+            y.copy_from_slice(u);
+            self.balance.sigma = sigma;
+        }
+    }
     fn displacements(&self) -> &[f64] {
         &self.workspace.u
     }
@@ -193,20 +232,30 @@ impl<R: Rule<D>, const D: usize> OpenStep<D> for Open<R, D> {
         (self.settings.iterations, accepts)
     }
     fn close(mut self: Box<Self>, system: &mut System<D>, iterations: u32, converged: bool) -> Result<(), StepError> {
-        let Open { rule, balance, ledger, .. } = *self;
+        let Open { rule, balance, account, .. } = *self;
         let workspace = &mut *self.workspace;
         let solved = Solved { iterations, converged, ..Solved::default() };
         evaluate(system, workspace, &balance, false)?;
         count(system, &solved);
         system.work.solver.accepted += u64::from(!converged);
-        end(rule, system, workspace, &balance, balance.h);
-        finish(system, workspace);
-        let found = Found { rule, balance, solved };
-        enter_stage(system, workspace, &found, &ledger);
-        commit(system, workspace);
-        enter_end(system, workspace, &found)?;
-        rule.remember(system, workspace, balance.h);
-        system.end_implicit(balance.h);
+        match account {
+            Account::Motion(ledger) => {
+                end(rule, system, workspace, &balance, balance.h);
+                finish(system, workspace);
+                let found = Found { rule, balance, solved };
+                enter_stage(system, workspace, &found, &ledger);
+                commit(system, workspace);
+                enter_end(system, workspace, &found)?;
+                rule.remember(system, workspace, balance.h);
+                system.end_implicit(balance.h);
+            }
+            Account::Rest(statics) => {
+                finish(system, workspace);
+                rule.end(system, workspace, &balance, balance.h);
+                statics.end(system, workspace, balance.h)?;
+                rule.remember(system, workspace, balance.h);
+            }
+        }
         system.cache.put(self.workspace);
         Ok(())
     }
