@@ -23,6 +23,10 @@ const MOST_SWEEPS: usize = 60;
 /// on a patch is wrong by 2e-4 (the rows `contact-patch-…` ask for 1e-6).
 const COUPLED_TOLERANCE: f64 = 1e-9;
 
+/// The same of bodies at rest, relative to the approach of the correction at hand: the next one solves for what is left, whose approach is smaller. A tenth
+/// takes half as many corrections again.
+const TOLERANCE_AT_REST: f64 = 1e-3;
+
 /// The most sweeps of them. Contacts without friction take up to 30; those that stick and slide in turn have no end, and with 300 sweeps no test
 /// or row comes nearer.
 const MOST_COUPLED_SWEEPS: usize = 100;
@@ -33,6 +37,9 @@ const SWEEPS_BETWEEN: usize = 2;
 /// After so many of these steps that did not halve what a sweep changes, sweeps go on alone: with friction, contacts may stick and slide in turn.
 /// With 8 the row `contact-patch-tetrahedra` misses 1e-6; without an end sheets on solids take more than twice as long.
 const MOST_FAILURES: usize = 16;
+
+/// After so many of them sweeps of bodies at rest end: the next correction goes on from there.
+const MOST_FAILURES_AT_REST: usize = 2;
 
 /// The part of the tolerance to which Newton's method goes: the sweep that follows finds nothing to change.
 const ENOUGH: f64 = 0.1;
@@ -235,6 +242,8 @@ pub(crate) struct Problem<'a, const D: usize> {
     pub(crate) coupled: &'a mut Coupled<D>,
     pub(crate) v: &'a mut Vec<[f64; D]>,
     pub(crate) turns: &'a mut Turns<D>,
+    /// Of bodies at rest the approach in a whole thickness [m/s]: their sweeps end with the tolerance of it, too.
+    pub(crate) at_rest: Option<f64>,
     /// The body of every point.
     pub(crate) body: &'a [u32],
 }
@@ -252,6 +261,7 @@ impl<const D: usize> Problem<'_, D> {
             coupled: cast(self.coupled)?,
             v: cast(self.v)?,
             turns: cast(self.turns)?,
+            at_rest: self.at_rest,
             body: self.body,
         })
     }
@@ -280,7 +290,7 @@ fn solve_in_space(problem: Problem<'_, 3>) -> usize {
 /// A row is passed over while nothing that it holds has changed since its last turn by more than the tolerance: so sweeps cost what is still
 /// on the move.
 fn solve<const D: usize>(problem: Problem<'_, D>) -> usize {
-    let Problem { rows, spread, inverse_mass, coupled, v, turns, body } = problem;
+    let Problem { rows, spread, inverse_mass, coupled, v, turns, at_rest, body } = problem;
     turns.join(rows, spread, inverse_mass, coupled);
     let Turns { stamps, heads, now, starts, approach, .. } = turns;
     let begin = *now;
@@ -289,14 +299,19 @@ fn solve<const D: usize>(problem: Problem<'_, D>) -> usize {
         let (rows, heads) = (&mut rows[range.clone()], &mut heads[range]);
         let approach = approach.mean[approach.root(body[spread.points_of::<D>(&heads[0].0)[0] as usize]) as usize].0;
         let together = rows.iter().any(|row| row.coupled);
-        let (most, tolerance) =
-            if together { (MOST_COUPLED_SWEEPS, COUPLED_TOLERANCE) } else { (MOST_SWEEPS, TOLERANCE) };
-        let (mut failures, mut least) = (0, f64::INFINITY);
+        let (most, enough) = match (together, at_rest) {
+            (true, None) => (MOST_COUPLED_SWEEPS, COUPLED_TOLERANCE * approach),
+            (true, Some(whole)) => {
+                (MOST_COUPLED_SWEEPS, (TOLERANCE_AT_REST * approach).larger(COUPLED_TOLERANCE * whole))
+            }
+            (false, _) => (MOST_SWEEPS, TOLERANCE * approach),
+        };
+        let (mut failures, mut smallest) = (0, f64::INFINITY);
         for sweep in 0..most {
             let steps = together && sweep > 0 && sweep % SWEEPS_BETWEEN == 0 && failures < MOST_FAILURES;
             if steps {
                 if newton::is_small(rows) {
-                    newton::step(rows, spread, inverse_mass, coupled, v, ENOUGH * tolerance * approach);
+                    newton::step(rows, spread, inverse_mass, coupled, v, ENOUGH * enough);
                 } else {
                     subspace::step(rows, spread, inverse_mass, coupled, v);
                 }
@@ -319,7 +334,7 @@ fn solve<const D: usize>(problem: Problem<'_, D>) -> usize {
                     rows[k].solve(inverse_mass, v)
                 };
                 largest = change.larger(largest);
-                if change > tolerance * approach {
+                if change > enough {
                     changed = true;
                     points.iter().for_each(|p| stamps[*p as usize] = *now);
                     if rows[k].coupled {
@@ -329,10 +344,10 @@ fn solve<const D: usize>(problem: Problem<'_, D>) -> usize {
                 *last = *now;
             }
             if steps {
-                failures += usize::from(largest > 0.5 * least);
-                least = largest.smaller(least);
+                failures += usize::from(largest > 0.5 * smallest);
+                smallest = largest.smaller(smallest);
             }
-            if !changed {
+            if !changed || at_rest.is_some() && failures >= MOST_FAILURES_AT_REST {
                 break;
             }
         }

@@ -30,7 +30,8 @@ impl<const D: usize> Touching<D> {
             self.take_gaps_of(first..k, h, 0.0);
             // Who seems to be deep inside may be outside, before a facet that is nearer and beyond the reach.
             let known = -self.reach.push_of(vertex) - self.thickest_at(vertex);
-            if self.around.iter().any(|(row, _)| row.gap < known) {
+            // Bodies at rest may begin deep inside one another.
+            if self.at_once || self.around.iter().any(|(row, _)| row.gap < known) {
                 self.around.clear();
                 self.take_gaps_of(first..k, h, 0.25 * self.margin);
             }
@@ -115,7 +116,7 @@ impl<const D: usize> Touching<D> {
             return;
         }
         let mut meets = true;
-        if gap.gap > law.thickness && self.goes_far(&gap, with_facet) {
+        if gap.gap > law.thickness && !self.at_once && self.goes_far(&gap, with_facet) {
             // The closest points now are not those of the impact.
             let ends = [&self.before[0][..], &self.after[0]];
             let time = meeting_time(&self.surface, ends, law.thickness, pair, with_facet);
@@ -128,7 +129,9 @@ impl<const D: usize> Touching<D> {
         let ([x0, v0], [x1, v1]) = (&self.before, &self.after);
         let (came, comes) = (-gap.along(v0), -gap.along(v1));
         let end = row.gap + gap.along(x1) - gap.along(x0);
-        let meets = meets && (end < 0.0 || row.gap < 0.0 || h * comes > row.gap);
+        // What pressed bodies at rest in their last correction does so again, unless it turns out that it need not.
+        let presses = self.at_once && self.last.binary_search_by_key(&row.id, |(id, ..)| *id).is_ok();
+        let meets = meets && (end < 0.0 || row.gap < 0.0 || h * comes > row.gap || presses);
         if law.restitution > 0.0 && meets && row.gap > 0.0 {
             // The surface is met within the step, whose force goes on to its end: s² = u² + 2 a g, between the speeds at both ends.
             let square = came * came + 2.0 * (comes - came) / h * row.gap;
@@ -145,7 +148,7 @@ impl<const D: usize> Touching<D> {
         let mut row = Row::new(key(pair, with_facet), gap, law.thickness, law.friction);
         row.put_into(&mut self.spread, &self.surface);
         row.weigh(&self.spread, &self.inverse_mass);
-        row.target = if row.gap > 0.0 { -row.gap / h } else { 0.0 };
+        row.target = if row.gap > 0.0 || self.at_once { -row.gap / h } else { 0.0 };
         row
     }
 

@@ -46,6 +46,13 @@ pub struct Touching<const D: usize> {
     /// What contact and friction took from every point that changed, what obstacles and pins gave by their motion, and what moving the
     /// point gave [J].
     pub losses: Vec<[f64; 4]>,
+    /// Whether overlap is taken apart by impulses, within the step, and not by positions: where bodies are at rest and have no speed.
+    pub(crate) at_once: bool,
+    /// How far points of bodies at rest may go at most [m]: impulses that lead them farther do not hold.
+    pub farthest: f64,
+    /// The impulses on points of bodies that follow as a whole which the free motion contains [N s]: those that are found are all the same the
+    /// whole ones, and [`Coupled::impulses_on`] what they add.
+    pub given: Vec<(u32, [f64; D])>,
     /// Whether the steps report what contact did.
     pub report: bool,
     /// What contact did since the beginning of the frame, ascending by bodies.
@@ -187,6 +194,13 @@ impl<const D: usize> Touching<D> {
         }
     }
 
+    /// Takes overlap apart at once and lets nothing bounce, as bodies need it that look for their balance at rest.
+    pub fn come_to_rest(&mut self) {
+        self.at_once = true;
+        self.laws.recovery_speed = 0.0;
+        self.laws.table.iter_mut().for_each(|law| law.restitution = 0.0);
+    }
+
     /// Lets the points touch after a free substep of h [s]: `after` becomes what contact makes of it.
     ///
     /// # Errors
@@ -230,21 +244,30 @@ impl<const D: usize> Touching<D> {
             self.moved[p] = [0.0; D];
         }
         self.thickest = self.laws.largest_thickness();
-        self.reach.begin([&self.before[0], &self.after[0]], h * self.laws.recovery_speed, self.margin);
+        let [x0, x1] = [&self.before[0], &self.after[0]];
+        if self.at_once {
+            // Where forces of contact are not yet those of the balance, they alone would lead bodies anywhere.
+            self.reach.begin([x0, x0], self.thickest[0] + self.margin, self.margin);
+        } else {
+            self.reach.begin([x0, x1], h * self.laws.recovery_speed, self.margin);
+        }
         let mut rounds = 0;
         loop {
             self.search()?;
             self.take_gaps(h);
-            if !self.rows.is_empty() {
+            if !self.rows.is_empty() || !self.given.is_empty() {
                 if !self.solve(h, obstacles, respond.as_mut().map(|respond| &mut **respond as _)) {
                     return Ok(false);
                 }
                 self.settle(h);
-                if self.reach.grow(&self.touched, &self.after[0], &self.end, self.margin) {
-                    continue;
+                if self.at_once && !self.is_within_limit() {
+                    return Ok(false);
                 }
             } else {
                 self.rest();
+            }
+            if self.grow() {
+                continue;
             }
             if !self.find_passages(h) {
                 break;
@@ -260,6 +283,22 @@ impl<const D: usize> Touching<D> {
         }
         self.keep_impulses();
         Ok(true)
+    }
+
+    /// Lets points reach as far as they end; says whether any did not.
+    fn grow(&mut self) -> bool {
+        let Touching { reach, touched, after: [free, _], before: [from, _], end, margin, at_once, .. } = self;
+        if *at_once {
+            touched.fill(true);
+            return reach.grow(touched, from, end, *margin);
+        }
+        reach.grow(touched, free, end, *margin)
+    }
+
+    /// Whether no point of a body goes farther than it may.
+    fn is_within_limit(&self) -> bool {
+        let within = |p: usize| length(&subtract(&self.end[p], &self.before[0][p])) <= self.farthest;
+        (0..self.coupled.count()).all(|body| self.coupled.points_of(body).all(within))
     }
 
     /// Ends a substep: books what contact did, and moves the points.
@@ -331,7 +370,7 @@ impl<const D: usize> Touching<D> {
         self.counts.searches += 1;
         let (laws, reach) = (&self.laws, &mut self.reach);
         // Where pairs of later steps are too many, those of this one alone.
-        for steps in [STEPS, 0.0] {
+        for steps in [if self.at_once { 0.0 } else { STEPS }, 0.0] {
             reach.widen(self.margin, steps);
             if self.candidates.find(&self.surface, &reach.found_in, self.thickest, self.most, |a, b| laws.meet(a, b)) {
                 return Ok(());
@@ -351,13 +390,17 @@ impl<const D: usize> Touching<D> {
         if !self.weigh_coupled(0, &mut respond) {
             return false;
         }
+        if !self.take_back_given(&mut respond) {
+            return false;
+        }
         self.start_warm();
+        let at_rest = self.at_once.then_some(self.thickest[0] / h);
         self.turns.begin(self.surface.points());
         loop {
             let Touching { rows, spread, inverse_mass, coupled, v, turns, surface, laws, after: [_, free], .. } =
                 &mut *self;
             turns.find_approach(rows, spread, (&surface.body, laws.class.len()), inverse_mass, free);
-            let problem = Problem { rows, spread, inverse_mass, coupled, v, turns, body: &surface.body };
+            let problem = Problem { rows, spread, inverse_mass, coupled, v, turns, at_rest, body: &surface.body };
             self.counts.turns += problem.solve() as u64;
             self.touched.clear();
             self.touched.resize(self.surface.points(), false);
@@ -372,6 +415,18 @@ impl<const D: usize> Touching<D> {
             }
         }
         self.counts.contacts += self.rows.len() as u64;
+        true
+    }
+
+    /// Takes the impulses out of the motion that it contains already; says whether all bodies have answered.
+    fn take_back_given(&mut self, respond: &mut Option<&mut dyn Respond<D>>) -> bool {
+        for (point, impulse) in &self.given {
+            let own = (&[*point][..], &[1.0][..]);
+            if !respond.as_mut().is_some_and(|respond| self.coupled.need(own, &mut **respond)) {
+                return false;
+            }
+            self.coupled.give(own, &impulse.map(|c| -c), &self.inverse_mass, &mut self.v);
+        }
         true
     }
 
