@@ -283,9 +283,19 @@ modes-memory-ModesMemory = { $count } oblika titranja tijela s ovoliko slobodnih
     .allowed = najviše { $most } bajtova
     .hint = manje oblika
 modes-indefinite-Indefinite = krutost ovog stanja nema vlastitih frekvencija
-contact-implicit-TouchesInStatics = `{ $integrator }` nalazi stanje mirovanja, u kojem se tijela zasad ne dodiruju
-    .allowed = integrator gibanja, kao `backward_euler` ili `verlet`
-    .hint = ili `contact.touch = false` u tom tijelu, koje tada prolazi kroz druga
+contact-implicit-RestBesideMotion = `{ $integrator }` i integrator tijela `{ $other }` ne dodiruju se: jedan nalazi stanje mirovanja, a drugi se giba
+    .allowed = tijela koja sva miruju ili se sva gibaju
+    .hint = uz `contact.touch = false` tijelo prolazi kroz druga
+contact-implicit-RestByBarrier = `{ $integrator }` nalazi stanje mirovanja, do kojeg barijera ne vodi
+    .allowed = `response = "constraint"`
+    .hint = uz `contact.touch = false` tijelo prolazi kroz druga
+contact-implicit-RestInParts = `{ $integrator }` uz `arc_length` ili `load_steps` stavlja teret u dijelovima, a tijela koja se dodiruju nalaze ravnotežu pod cijelim teretom
+    .allowed = tijela koja se dodiruju bez `arc_length` i `load_steps`
+    .hint = uz `contact.touch = false` tijelo prolazi kroz druga
+run-model-NoAgreementAtRest = tijela koja se dodiruju ne nalaze zajedničku ravnotežu: koraci i dodir ne slažu se ni o jednom kraju, koliko god put bio kratak
+    .hint = pribodene točke ili trenje drže ono što bi klizilo
+run-model-NoCommonBalance = tijela koja se dodiruju ne nalaze zajedničku ravnotežu: nakon { $steps } koraka prema njoj još se gibaju za { $moved } m
+    .hint = pribodene točke ili trenje drže ono što bi klizilo
 contact-barrier-NoBarrier = `{ $integrator }` ne rješava za kraj koraka, što barijera treba
     .allowed = implicitni integrator, kao `backward_euler`
     .hint = ili `response = "constraint"`, koji prima svaki integrator

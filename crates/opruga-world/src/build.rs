@@ -25,6 +25,17 @@ use opruga_mesh::signed_volume;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+impl<const D: usize> Builder<'_, D> {
+    /// Whether anything beside its own pins may hold a body: obstacles, or others that it touches.
+    fn may_be_supported(&self, body: &BodyBlueprint<D>) -> bool {
+        let scene = self.blueprint;
+        let by_others = scene.contact.is_some()
+            && body.touches()
+            && scene.bodies.iter().filter(|body| body.touches()).nth(1).is_some();
+        !scene.colliders.is_empty() || by_others
+    }
+}
+
 /// The state of a body at the start.
 pub(crate) fn initial_state<const D: usize>(body: &BodyBlueprint<D>) -> BodyState<D> {
     let x: Vec<[f64; D]> =
@@ -135,7 +146,7 @@ impl<const D: usize> Builder<'_, D> {
         for (l, state) in states.iter().enumerate() {
             state.history.restore(&mut system, l);
         }
-        integrator.check(&system, !self.blueprint.colliders.is_empty()).map_err(refuse)?;
+        integrator.check(&system, self.may_be_supported(first)).map_err(refuse)?;
         Ok(Island::new(system, integrator, bodies.to_vec(), range))
     }
 

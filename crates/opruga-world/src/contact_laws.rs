@@ -5,7 +5,7 @@ use crate::refusals::Refusal;
 use opruga_collide::{Laws, PairLaw};
 use opruga_core::error::BuildError;
 use opruga_core::integrator::Integrator;
-use opruga_core::spec::{Value, Values};
+use opruga_core::spec::{Role, Value, Values};
 use opruga_math::Lane;
 use opruga_mesh::{Mesh, TouchingSurface};
 
@@ -149,6 +149,26 @@ fn is_barrier(contact: &ContactBlueprint) -> bool {
     contact.values.text("response") == Some("barrier")
 }
 
+/// Refuses bodies at rest that touch in a way which statics does not know.
+fn check_rest<const D: usize>(
+    scene: &Blueprint<D>,
+    contact: &ContactBlueprint,
+    own: &dyn Integrator<D>,
+) -> Result<(), BuildError> {
+    let is_static =
+        |body: &BodyBlueprint<D>| body.integrator.as_ref().unwrap_or(&scene.integrator).spec().has_role(Role::Statics);
+    let integrator = own.name();
+    let refuse = |why| Err(BuildError::of("contact", why));
+    if let Some(other) = scene.bodies.iter().find(|body| body.touches() && is_static(body) != own.is_static()) {
+        return refuse(Refusal::RestBesideMotion { integrator, other: other.name.clone() });
+    }
+    match own.is_static() {
+        true if is_barrier(contact) => refuse(Refusal::RestByBarrier { integrator }),
+        true if !own.takes_pushes() => refuse(Refusal::RestInParts { integrator }),
+        _ => Ok(()),
+    }
+}
+
 /// Refuses a body that contact cannot step.
 pub(crate) fn check<const D: usize>(
     scene: &Blueprint<D>,
@@ -156,8 +176,8 @@ pub(crate) fn check<const D: usize>(
     integrator: &dyn Integrator<D>,
 ) -> Result<(), BuildError> {
     let Some(contact) = &scene.contact else { return Ok(()) };
-    if body.touches() && integrator.is_static() {
-        return Err(BuildError::of("contact", Refusal::TouchesInStatics { integrator: integrator.name() }));
+    if body.touches() {
+        check_rest(scene, contact, integrator)?;
     }
     if body.touches() && is_barrier(contact) && !integrator.takes_pushes() {
         return Err(BuildError::of("contact", Refusal::NoBarrier { integrator: integrator.name() }));

@@ -57,6 +57,7 @@ mod rebuild;
 mod refusals;
 mod refused;
 pub mod registry;
+mod rest_together;
 mod running;
 mod scene_contact;
 mod scene_delta;

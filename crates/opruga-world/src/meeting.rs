@@ -32,6 +32,8 @@ pub(crate) struct Meeting<const D: usize> {
     pub(crate) outlines: Vec<(Arc<Outline<D>>, usize)>,
     /// The bodies that take pushes into the balance of forces of their steps.
     pub(crate) pushed: Vec<Pushed<D>>,
+    /// Whether they are bodies of statics, which look for their common balance.
+    pub(crate) at_rest: bool,
     /// What keeps them apart instead of impulses, if the scene says so.
     pub(crate) barrier: Option<Kept<D>>,
     /// For the steps of bodies that make them again.
@@ -133,6 +135,10 @@ impl<const D: usize> Meeting<D> {
         for columns in touching.before.iter_mut().chain(&mut touching.after) {
             columns.resize(touching.inverse_mass.len(), [0.0; D]);
         }
+        let at_rest = pushed.iter().any(|pushed| all[islands[pushed.island]].integrator.is_static());
+        if at_rest {
+            touching.come_to_rest();
+        }
         let mut rules: Vec<u32> = cluster.bodies.iter().map(|number| scene.rules[*number as usize]).collect();
         if rules.iter().all(|rule| *rule == rules[0]) {
             rules.clear();
@@ -149,14 +155,20 @@ impl<const D: usize> Meeting<D> {
             mixed: Vec::new(),
             outlines,
             pushed,
+            at_rest,
             barrier: scene.reach.map(Kept::new),
             workspace,
         }
     }
 
-    /// Whether an island makes its substeps as one with others that a barrier keeps apart.
+    /// Whether its bodies make their substeps as one: those that a barrier keeps apart, and those that come to rest on one another.
+    pub(crate) fn is_one(&self) -> bool {
+        self.barrier.is_some() || self.at_rest
+    }
+
+    /// Whether an island makes its substeps as one with others.
     pub(crate) fn steps_as_one(&self, island: usize) -> bool {
-        self.barrier.is_some() && self.pushed.iter().any(|pushed| pushed.island == island)
+        self.is_one() && self.pushed.iter().any(|pushed| pushed.island == island)
     }
 
     /// The numbers of bodies and obstacles in what befell it, as the scene counts them.

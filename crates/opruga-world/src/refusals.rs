@@ -64,10 +64,24 @@ messages! {
         ModesMemory { count: usize, axes: usize, bytes: String, most: String },
         "modes.indefinite" #[error("the stiffness of this state has no natural frequencies")]
         Indefinite {},
-        "contact.implicit" #[error("`{integrator}` finds a state at rest, where bodies do not touch one another yet")]
-        #[allowed("an integrator of motion, such as `backward_euler` or `verlet`")]
-        #[hint("or `contact.touch = false` in this body, which then passes through the others")]
-        TouchesInStatics { integrator: &'static str },
+        "contact.implicit" #[error("`{integrator}` and the integrator of `{other}` do not touch: one finds a state at rest, the other one moves")]
+        #[allowed("bodies that all rest, or all move")]
+        #[hint("`contact.touch = false` in a body lets it pass through the others")]
+        RestBesideMotion { integrator: &'static str, other: String },
+        "contact.implicit" #[error("`{integrator}` finds a state at rest, to which a barrier does not lead")]
+        #[allowed("`response = \"constraint\"`")]
+        #[hint("`contact.touch = false` in a body lets it pass through the others")]
+        RestByBarrier { integrator: &'static str },
+        "contact.implicit" #[error("`{integrator}` with `arc_length` or `load_steps` puts loads on in parts, and bodies that touch find their balance under the whole load")]
+        #[allowed("bodies that touch without `arc_length` and `load_steps`")]
+        #[hint("`contact.touch = false` in a body lets it pass through the others")]
+        RestInParts { integrator: &'static str },
+        "run.model" #[error("bodies that touch find no common balance: steps and contact do not agree on an end, however short the way")]
+        #[hint("pins or friction hold what would slide")]
+        NoAgreementAtRest {},
+        "run.model" #[error("bodies that touch find no common balance: after {steps} steps towards it they still move by {} m", number(*moved))]
+        #[hint("pins or friction hold what would slide")]
+        NoCommonBalance { steps: usize, moved: f64 },
         "contact.barrier" #[error("`{integrator}` does not solve for the end of a step, which a barrier needs")]
         #[allowed("an implicit integrator, such as `backward_euler`")] #[hint("or `response = \"constraint\"`, which takes every integrator")]
         NoBarrier { integrator: &'static str },

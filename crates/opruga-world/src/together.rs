@@ -127,7 +127,11 @@ impl<const D: usize> Job<'_, D> {
             let step = Substep { plan, number: substep, time, obstacles: contacts.as_deref() };
             for meeting in meetings.iter_mut() {
                 meeting.set_out(islands);
-                let stepped = meeting.step_with_barrier(islands, &step);
+                let stepped = if meeting.at_rest {
+                    meeting.come_to_balance(islands, &step)
+                } else {
+                    meeting.step_with_barrier(islands, &step)
+                };
                 stepped.map_err(|trouble| (meeting.in_scene(trouble), time))?;
             }
             hands.step_freely(islands, meetings, plan, substep);
@@ -160,7 +164,7 @@ fn touch<const D: usize>(
     threaded: bool,
 ) -> Result<(), (Trouble, f64)> {
     let solve = |meeting: &mut Meeting<D>| {
-        let alone = meeting.barrier.is_none() && !meeting.is_pushed();
+        let alone = !meeting.is_one() && !meeting.is_pushed();
         let outcome = if alone { meeting.solve(step) } else { Ok(()) };
         outcome.map_err(|trouble| (meeting.in_scene(trouble), step.time))
     };
@@ -170,7 +174,7 @@ fn touch<const D: usize>(
     } else {
         meetings.iter_mut().try_for_each(solve)?;
     }
-    for meeting in meetings.iter_mut().filter(|meeting| meeting.barrier.is_none()) {
+    for meeting in meetings.iter_mut().filter(|meeting| !meeting.is_one()) {
         if meeting.is_pushed() {
             let outcome = meeting.solve_in_turn(islands, step);
             outcome.map_err(|trouble| (meeting.in_scene(trouble), step.time))?;
@@ -206,8 +210,8 @@ impl<const D: usize> Hands<'_, D> {
         plan: &FramePlan<'_, D>,
         substep: u32,
     ) {
-        let barriers = meetings.iter().any(|meeting| meeting.barrier.is_some());
-        let alone = |number: usize| !barriers || !meetings.iter().any(|meeting| meeting.steps_as_one(number));
+        let any_is_one = meetings.iter().any(Meeting::is_one);
+        let alone = |number: usize| !any_is_one || !meetings.iter().any(|meeting| meeting.steps_as_one(number));
         let step = |island: &mut Island<D>| {
             self.lend(island, |island, workspace| island.step_together(plan, substep, workspace));
             island.keep_path(plan);

@@ -153,7 +153,7 @@ pub(super) const CASES: &[Case] = &[
         expected: &[1.0],
         tolerance: 1e-6,
         check: Check::Everywhere,
-        measure: |lab, ratio| weight(lab, "", ratio, 1.0),
+        measure: |lab, ratio| weight(lab, "backward_euler", "", ratio, 1.0),
         ..BARS
     },
 ];

@@ -3,6 +3,7 @@
 //! Where nothing else is said, a case passes if the error on the finest mesh is at most 1 % and falls, over at least three
 //! meshes, at the order of the theory less 0.2. Tighter tolerances belong to what is exact on every mesh.
 
+mod at_rest;
 mod balloons;
 mod beams;
 mod belts;
@@ -61,6 +62,7 @@ pub fn cases() -> impl Iterator<Item = &'static Case> {
         boundary::STATICS,
         pressed::CASES,
         fits::CASES,
+        at_rest::CASES,
         finite_differences::MATERIALS,
         materials::CASES,
         volumes::MATERIALS,

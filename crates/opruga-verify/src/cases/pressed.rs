@@ -49,7 +49,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "contact-patch-barrier",
-        measure: |lab, reach| Ok(patch::<2>(lab, 3.0, Cells::Linear, Some(reach))?.worst),
+        measure: |lab, reach| Ok(patch::<2>(lab, 3.0, Cells::Linear, Some(reach), DAMPED)?.worst),
         ..BARRIER
     },
     Case {
@@ -60,7 +60,7 @@ pub(super) const CASES: &[Case] = &[
         // What the pressure takes from the height of each.
         scale: Scale::Of(1e-3),
         measure: |lab, reach| {
-            let by = |reach| Ok::<f64, Trouble>(patch::<2>(lab, 3.0, Cells::Linear, reach)?.height);
+            let by = |reach| Ok::<f64, Trouble>(patch::<2>(lab, 3.0, Cells::Linear, reach, DAMPED)?.height);
             Ok(by(Some(reach))? - by(None)?)
         },
         ..BARRIER
@@ -79,21 +79,21 @@ pub(super) const CASES: &[Case] = &[
         name: "weight-on-body-masses",
         over: Over::Parameter("mass of the upper over that of the lower"),
         levels: &[1e-4, 1e4],
-        measure: |lab, ratio| weight(lab, "", ratio, 1.0),
+        measure: |lab, ratio| weight(lab, "backward_euler", "", ratio, 1.0),
         ..STACK
     },
     Case {
         name: "weight-on-body-barrier",
         over: Over::Parameter("mass of the upper over that of the lower"),
         levels: &[0.01, 1.0, 100.0],
-        measure: |lab, ratio| weight(lab, "response = \"barrier\"\n", ratio, 1.0),
+        measure: |lab, ratio| weight(lab, "backward_euler", "response = \"barrier\"\n", ratio, 1.0),
         ..STACK
     },
     Case {
         name: "weight-on-body-stiffness",
         over: Over::Parameter("stiffness of the upper over that of the lower"),
         levels: &[1e-4, 1e4],
-        measure: |lab, ratio| weight(lab, "", 1.0, ratio),
+        measure: |lab, ratio| weight(lab, "backward_euler", "", 1.0, ratio),
         ..STACK
     },
 ];
@@ -163,8 +163,16 @@ fn pressures<const D: usize>(lab: &Lab, n: f64, cells: Cells) -> Result<f64, Tro
 where
     Lab: Worlds<D>,
 {
-    Ok(patch(lab, n, cells, None)?.worst)
+    Ok(patch(lab, n, cells, None, DAMPED)?.worst)
 }
+
+/// The same by statics.
+pub(super) fn pressures_at_rest(lab: &Lab, n: f64) -> Result<f64, Trouble> {
+    Ok(patch::<2>(lab, n, Cells::Boxes, None, "equilibrium")?.worst)
+}
+
+/// The rule that comes to rest in steps of 0.1 s, since it damps all.
+const DAMPED: &str = "backward_euler";
 
 /// What became of two blocks.
 struct Patch {
@@ -174,9 +182,8 @@ struct Patch {
     height: f64,
 }
 
-/// Two blocks without friction, the upper one pressed by 1 kPa: at rest after steps of 0.1 s by backward Euler, which damps all. By a barrier of
-/// a reach [m], beyond which they begin, or by a constraint.
-fn patch<const D: usize>(lab: &Lab, n: f64, cells: Cells, reach: Option<f64>) -> Result<Patch, Trouble>
+/// Two blocks without friction, the upper one pressed by 1 kPa, at rest. By a barrier of a reach [m], beyond which they begin, or by a constraint.
+fn patch<const D: usize>(lab: &Lab, n: f64, cells: Cells, reach: Option<f64>, rule: &str) -> Result<Patch, Trouble>
 where
     Lab: Worlds<D>,
 {
@@ -188,7 +195,7 @@ where
     let mut value = vec!["0.0".to_string(); D];
     value[1] = format!("{:?}", -pressure);
     let top = nodes(&upper, |x| (x[1] - 2.0 - gap).abs() < 1e-9);
-    let scene = Scene::new(D, 0.1, 1, "backward_euler")
+    let scene = Scene::new(D, 0.1, 1, rule)
         .add(&format!("[contact]\nthickness = {thickness:?}\nself = false\n{barrier}"))
         .named("lower", &lower, &solid("", &[walls(&lower), vec![bottom]].concat()))?
         .named("upper", &upper, &solid("", &walls(&upper)))?
@@ -197,7 +204,7 @@ where
             value.join(", ")
         ));
     let mut world = lab.world(scene)?;
-    for _ in 0..60 {
+    for _ in 0..if rule == DAMPED { 60 } else { 1 } {
         world.frame()?;
     }
     let forces = world.contact_forces(1);
@@ -262,7 +269,7 @@ fn hertz_line(lab: &Lab, n: f64) -> Result<f64, Trouble> {
 
 /// The force between two blocks of solid after 5 s, over the weight of the upper one, which has so many times the mass and the stiffness of
 /// the lower one. The stiffness of both grows with the mass above: so the lower one is pressed by as much of its height.
-pub(super) fn weight(lab: &Lab, contact: &str, masses: f64, stiffness: f64) -> Result<f64, Trouble> {
+pub(super) fn weight(lab: &Lab, rule: &str, contact: &str, masses: f64, stiffness: f64) -> Result<f64, Trouble> {
     let base = 1e5 * masses.max(1.0);
     let block = |name: &str, x: f64, y: f64, width: f64, mass: f64, young: f64, more: &str| {
         format!(
@@ -273,12 +280,12 @@ pub(super) fn weight(lab: &Lab, contact: &str, masses: f64, stiffness: f64) -> R
         )
     };
     let (below, above) = (base * (1.0 / stiffness).max(1.0), base * stiffness.max(1.0));
-    let scene = Scene::new(2, 1.0 / 60.0, 1, "backward_euler")
+    let scene = Scene::new(2, 1.0 / 60.0, 1, rule)
         .add(&format!("[world]\ngravity = [0.0, -9.81]\n[contact]\nfriction = 0.5\n{contact}"))
         .add(&block("lower", -0.5, -1.0, 2.0, 1.0, below, "pin = [{ select = { side = \"bottom\" } }]"))
         .add(&block("upper", 0.03, 0.01, 1.0, masses, above, ""));
     let mut world = lab.plane(scene)?;
-    for _ in 0..300 {
+    for _ in 0..if rule == DAMPED { 300 } else { 1 } {
         world.frame()?;
     }
     let force: f64 = world.contact_forces(1).iter().map(|force| force[1]).sum();

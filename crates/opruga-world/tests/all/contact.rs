@@ -323,9 +323,21 @@ fn what_contact_cannot_do_is_refused() {
     for body in &mut implicit.bodies {
         body.pins.push(PinBlueprint { select: Selector::Nodes(vec![0, 1]), axes: [true; 2], motion: Vec::new() });
     }
-    let error = World::new(implicit.clone(), Options::default()).expect_err("refused");
-    assert_eq!(error.code(), "contact.implicit");
-    assert!(error.to_string().contains("body `a`") && error.in_full().contains("hint"), "{error}");
+    assert!(World::new(implicit.clone(), Options::default()).is_ok());
+    // Bodies at rest beside moving ones, by a barrier, and under a load that comes in parts.
+    let registry = Registry::<2>::default();
+    let rule = |name: &str, fields: &[(&str, Value)]| registry.integrator_values(name, fields).expect("a rule");
+    let mut mixed = implicit.clone();
+    mixed.bodies[1].integrator = Some(rule("verlet", &[]));
+    let mut kept_apart = implicit.clone();
+    kept_apart.contact = contact::<2>(&[("response", "barrier".into())]);
+    let in_parts = |field: (&str, Value)| Blueprint { integrator: rule("equilibrium", &[field]), ..implicit.clone() };
+    let parts = [in_parts(("load_steps", Value::Integer(2))), in_parts(("arc_length", 0.1.into()))];
+    for scene in [mixed, kept_apart].into_iter().chain(parts) {
+        let error = World::new(scene, Options::default()).expect_err("refused");
+        assert_eq!(error.code(), "contact.implicit");
+        assert!(error.to_string().contains("body `a`") && error.in_full().contains("hint"), "{error}");
+    }
     let mut apart = Values::defaults(BODY_CONTACT.spec, 2);
     apart.set(BODY_CONTACT.spec, "touch", Value::Boolean(false), 2).expect("a field");
     implicit.bodies.iter_mut().for_each(|body| body.contact = Some(apart.clone()));

@@ -24,6 +24,7 @@ mod pins_and_masses;
 mod queries;
 mod real_time;
 mod refusals;
+mod rest_together;
 mod robust_steps;
 mod shapes_of_cells;
 mod skins;

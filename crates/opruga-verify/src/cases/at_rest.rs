@@ -1,0 +1,32 @@
+//! Bodies at rest that touch one another, by `equilibrium`.
+
+use super::BASE;
+use super::pressed::{pressures_at_rest, weight};
+use crate::case::{Case, Check, Over, Scale};
+
+const WEIGHT: Case = Case {
+    quantity: "force between a solid at rest and one that it stands on, by `equilibrium`, over its weight",
+    source: "exact: 1 (I. Newton)",
+    over: Over::Parameter("mass of the upper over that of the lower"),
+    levels: &[1e-4, 1.0, 1e4],
+    expected: &[1.0],
+    tolerance: 1e-6,
+    check: Check::Everywhere,
+    ..BASE
+};
+
+pub(super) const CASES: &[Case] = &[
+    Case {
+        name: "contact-patch-statics",
+        quantity: "largest difference of the pressure on a node from the one that presses two blocks of meshes that do not match, over it, by `equilibrium`",
+        source: "exact: uniform pressure (R. L. Taylor, P. Papadopoulos 1991, contact patch test)",
+        over: Over::Cells("cells along a side of the lower block; one more of the upper"),
+        levels: &[2.0, 3.0, 4.0],
+        scale: Scale::Of(1.0),
+        tolerance: 1e-6,
+        check: Check::Everywhere,
+        measure: pressures_at_rest,
+        ..BASE
+    },
+    Case { name: "weight-on-body-statics", measure: |lab, ratio| weight(lab, "equilibrium", "", ratio, 1.0), ..WEIGHT },
+];

@@ -1,0 +1,433 @@
+//! Bodies at rest that touch: their common balance.
+//!
+//! ```text
+//! correction   (K + σM) d = F(x) + f',   x' = x + d        of every body; K the matrix at x, f' the forces of contact at the end of d
+//! contact      f' from the gaps at x and the answers (K + σM)⁻¹ of all bodies, as of implicit rules
+//! ```
+//!
+//! Newton's method for the balance of all bodies at once: positions and forces of contact are unknowns of the same linear problem, so a body that only
+//! lies on others is held by them within every correction. Where forces were given to bodies instead, each of which then finds its own end, errors of the
+//! forces would lead it as far as σ lets them.
+//!
+//! Far from the balance σ M keeps corrections short, where the forces at their end are not those that were foreseen; it falls as these become so
+//! (pseudo-transient continuation), and the balance is one of F and f alone. Friction opposes the slide of each correction.
+//!
+//! Sources: C. T. Kelley, D. E. Keyes, Convergence analysis of pseudo-transient continuation (1998); for the contact within a correction that of
+//! implicit rules (`pushes.rs`).
+
+use crate::barrier_search::{Opened, Refused};
+use crate::island::Island;
+use crate::meeting::{Meeting, Pushed, Substep};
+use crate::refusals::Refusal;
+use opruga_collide::{Respond, Touching, Trouble};
+use opruga_core::error::StepError;
+use opruga_core::stability::estimate;
+use opruga_core::system::{System, Workspace};
+use opruga_math::Lane;
+use opruga_solve::dot;
+
+/// σ at first, relative to the square of the highest frequency of a body: the slowest vibrations of a body of ten cells are as slow.
+const FIRST: f64 = 1e-2;
+
+/// The part of the forces that act in a correction by which those at its end may differ from what was foreseen, and the one below which σ falls.
+const FORESEEN: f64 = 0.5;
+const WELL_FORESEEN: f64 = 0.1;
+
+/// By how much σ falls, and down to where: with less, the motion of a body as a whole hides its bending from the solution of contact.
+const SOFTER: f64 = 0.1;
+const LEAST: f64 = 1e-6;
+
+/// By how much it grows, and up to where: then nodes hardly move.
+const HARDER: f64 = 16.0;
+const MOST: f64 = 1e6;
+
+/// Corrections at most, those that were refused included. Stacks of five bodies take less than forty; what slides without an end would take all.
+const MOST_CORRECTIONS: usize = 200;
+
+/// The longest correction, in extents of the body.
+const LONGEST: f64 = 0.5;
+
+/// The last correction at most, relative to the thickness of surfaces, and what is out of balance then, relative to the forces on the body.
+const AT_REST: f64 = 1e-7;
+const BALANCED: f64 = 1e-8;
+
+/// The same where rounding leaves no less in so many corrections.
+const NEARLY_BALANCED: f64 = 1e-6;
+const MOST_AT_REST: usize = 10;
+
+/// The forces of other bodies, by nodes [N].
+type Pushes<const D: usize> = Vec<(usize, [f64; D])>;
+
+/// A body on its way to the balance.
+struct Body<const D: usize> {
+    open: Opened<D>,
+    /// Where its points stand among the coordinates of its nodes, from the first point on.
+    points: std::ops::Range<usize>,
+    coordinates: Vec<usize>,
+    /// The square of its highest frequency [1/s²], and its extent [m].
+    square: f64,
+    extent: f64,
+    /// What is out of balance, and the size of the forces that balance [N].
+    rest: f64,
+    size: f64,
+    /// Whether obstacles hold other nodes than before, or in another way.
+    constraints_changed: bool,
+}
+
+/// The search for the common balance.
+struct Search<'a, 'b, const D: usize> {
+    islands: &'a mut [&'b mut Island<D>],
+    touching: &'a mut Touching<D>,
+    bodies: Vec<Body<D>>,
+    h: f64,
+    /// σ of every body over the square of its highest frequency.
+    part: f64,
+}
+
+/// Asks bodies for their answers.
+struct Answers<'a, const D: usize> {
+    bodies: &'a [Body<D>],
+    vector: Vec<f64>,
+    h: f64,
+}
+
+impl<const D: usize> Body<D> {
+    fn solve(&self, vector: &mut [f64]) {
+        self.open.step.filter(vector);
+        self.open.step.solve(vector);
+        self.open.step.filter(vector);
+    }
+
+    /// The forces that other bodies exert, as [`System::pushes`] has them, from the impulses on all points [N].
+    fn pushes(&self, impulses: &[[f64; D]], h: f64) -> Pushes<D> {
+        let own = self.coordinates.iter().zip(&impulses[self.points.clone()]);
+        own.filter(|(_, impulse)| **impulse != [0.0; D]).map(|(at, p)| (at / D, p.map(|c| c / h))).collect()
+    }
+
+    /// Takes forces and the matrix where it is, and makes of them the correction with the forces of contact as they are; says whether the matrix has
+    /// a factor.
+    fn begin_correction(&mut self, system: &mut System<D>, part: f64) -> Result<bool, StepError> {
+        system.go_on()?;
+        let step = &mut self.open.step;
+        step.stay(part * self.square);
+        step.evaluate(system, 0.0)?;
+        self.constraints_changed |= step.look(system);
+        if !step.factor(system, true) {
+            return Ok(false);
+        }
+        let (none, mut displacement) = (vec![0.0; step.displacements().len()], vec![0.0; step.displacements().len()]);
+        step.right_side(system, &none, &mut displacement);
+        self.rest = norm(&displacement);
+        let pushes: f64 = system.pushes.iter().flatten().flat_map(|(_, force)| force).map(|c| c * c).sum();
+        self.size = (norm(step.residual()) + pushes.sqrt()).larger(f64::MIN_POSITIVE);
+        self.solve(&mut displacement);
+        let step = &mut self.open.step;
+        displacement
+            .iter_mut()
+            .zip(step.prescribed())
+            .for_each(|(displacement, prescribed)| *displacement += prescribed);
+        step.correction().copy_from_slice(&displacement);
+        Ok(true)
+    }
+
+    /// Adds to the correction what other forces of contact make of it, and looks at the forces at its end: how far it goes at most [m], and the part of the
+    /// forces that was not foreseen. None where it goes too far, or a model has no meaning there.
+    fn end_correction(&mut self, system: &mut System<D>, pushes: Pushes<D>) -> Option<(f64, f64)> {
+        let mut change = vec![0.0; self.open.step.displacements().len()];
+        for (of, sign) in [(&pushes, 1.0), (system.pushes.as_ref().unwrap_or(&Vec::new()), -1.0)] {
+            of.iter().for_each(|(node, force)| (0..D).for_each(|d| change[node * D + d] += sign * force[d]));
+        }
+        let mut added = change.clone();
+        self.solve(&mut added);
+        let step = &mut self.open.step;
+        step.correction().iter_mut().zip(&added).for_each(|(c, added)| *c += added);
+        if !self.is_short() {
+            return None;
+        }
+        // What holds nodes takes the forces between bodies too.
+        let step = &mut self.open.step;
+        let without: Vec<f64> = change.iter().map(|c| -c).collect();
+        self.constraints_changed = step.follow(system, &without, BALANCED, &mut added);
+        system.pushes = Some(pushes);
+        step.evaluate(system, 1.0).ok()?;
+        step.filter(&mut change);
+        let acting = self.rest + norm(&change);
+        // The right side of another correction is what is out of balance, and what is prescribed, which this one has done.
+        let (mut left, mut done) = (vec![0.0; change.len()], vec![0.0; change.len()]);
+        step.multiply(system, step.prescribed(), &mut done);
+        step.filter(&mut done);
+        change.fill(0.0);
+        step.right_side(system, &change, &mut left);
+        left.iter_mut().zip(&done).for_each(|(left, done)| *left += done);
+        let left = norm(&left);
+        Some((self.longest_displacement(), if left > BALANCED * self.size { left / acting } else { 0.0 }))
+    }
+
+    fn is_short(&mut self) -> bool {
+        let most = LONGEST * self.extent;
+        self.open.step.correction().iter().all(|c| c.abs() <= most)
+    }
+
+    /// How far the correction goes at most [m].
+    fn longest_displacement(&mut self) -> f64 {
+        self.open.step.correction().iter().fold(0.0, |most: f64, c| c.abs().larger(most))
+    }
+}
+
+fn norm(of: &[f64]) -> f64 {
+    dot(of, of).sqrt()
+}
+
+impl<const D: usize> Respond<D> for Answers<'_, D> {
+    fn respond(&mut self, body: usize, point: usize, out: &mut [[[f64; D]; D]]) -> bool {
+        let body = &self.bodies[body];
+        for d in 0..D {
+            self.vector.clear();
+            self.vector.resize(body.open.step.displacements().len(), 0.0);
+            self.vector[body.coordinates[point] + d] = 1.0 / self.h;
+            body.solve(&mut self.vector);
+            for (out, at) in out.iter_mut().zip(&body.coordinates) {
+                for i in 0..D {
+                    out[d][i] = self.vector[at + i] / self.h;
+                }
+            }
+        }
+        self.vector.iter().all(|x| x.is_finite())
+    }
+}
+
+impl<const D: usize> Meeting<D> {
+    /// Brings bodies at rest into their common balance. Where there is none, the outcome of an island says so.
+    pub(crate) fn come_to_balance(
+        &mut self,
+        islands: &mut [&mut Island<D>],
+        step: &Substep<'_, D>,
+    ) -> Result<(), Trouble> {
+        let squares = squares_of_frequencies(&self.pushed, islands);
+        let mut workspaces: Vec<Workspace<D>> = self.pushed.iter().map(|_| Workspace::default()).collect();
+        exchange(&self.pushed, islands, &mut workspaces);
+        self.move_outlines(step.time);
+        let mut search =
+            Search { islands, touching: &mut self.touching, bodies: Vec::new(), h: step.plan.h, part: FIRST };
+        let outcome = search.begin(&self.pushed, &squares, step).and_then(|()| search.find_balance());
+        let outcome = outcome.and_then(|iterations| search.close(iterations));
+        let farthest = search.farthest();
+        exchange(&self.pushed, islands, &mut workspaces);
+        match outcome {
+            Ok(()) => {
+                for pushed in &self.pushed {
+                    islands[pushed.island].keep_path(step.plan);
+                }
+                Ok(())
+            }
+            Err(Refused::Trouble(trouble)) => Err(trouble),
+            Err(Refused::Step(error)) => {
+                islands[self.pushed[farthest].island].refuse(error);
+                Ok(())
+            }
+        }
+    }
+}
+
+impl<const D: usize> Search<'_, '_, D> {
+    /// Begins the steps of all bodies, and takes where their points are.
+    fn begin(&mut self, pushed: &[Pushed<D>], squares: &[f64], step: &Substep<'_, D>) -> Result<(), Refused> {
+        let [x0, v0] = &mut self.touching.before;
+        for v in v0.iter_mut() {
+            *v = [0.0; D];
+        }
+        for (number, (pushed, square)) in pushed.iter().zip(squares).enumerate() {
+            let island = &mut self.islands[pushed.island];
+            island.system.pushes = Some(Vec::new());
+            island.begin_as_one(step.plan, step.number);
+            // Bodies whose integrator does not solve for the end of a step are refused before the run.
+            let Some(begun) = island.integrator.open(&mut island.system, self.h) else { continue };
+            let points = self.touching.coupled.points_of(number);
+            let mut extent: f64 = 0.0;
+            for d in 0..D {
+                let own = x0[points.clone()].iter().map(|x| x[d]);
+                let (low, high) =
+                    own.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (x.smaller(low), x.larger(high)));
+                extent = (high - low).larger(extent);
+            }
+            self.bodies.push(Body {
+                open: Opened { island: pushed.island, first: 0, step: begun? },
+                points,
+                coordinates: pushed.indices.iter().map(|index| *index as usize * D).collect(),
+                square: *square,
+                extent,
+                rest: f64::INFINITY,
+                size: 0.0,
+                constraints_changed: false,
+            });
+        }
+        self.touching.begin_step();
+        self.touching.given.clear();
+        let extent = self.bodies.iter().fold(0.0, |most: f64, body| body.extent.larger(most));
+        self.touching.farthest = 2.0 * LONGEST * extent;
+        Ok(())
+    }
+
+    /// Finds the balance; gives the number of corrections.
+    fn find_balance(&mut self) -> Result<u32, Refused> {
+        let goal = AT_REST * self.touching.laws.largest_thickness()[0];
+        let (mut moved, mut at_rest) = (f64::INFINITY, 0);
+        for number in 0..MOST_CORRECTIONS {
+            let factored = self.begin_correction()?;
+            if factored && moved <= goal && !self.bodies.iter().any(|body| body.constraints_changed) {
+                at_rest += 1;
+                if self.left() <= if at_rest > MOST_AT_REST { NEARLY_BALANCED } else { BALANCED } {
+                    return Ok(number as u32);
+                }
+            }
+            match if factored { self.correct()? } else { None } {
+                Some((displacement, unforeseen)) if unforeseen <= FORESEEN => {
+                    self.go();
+                    moved = displacement;
+                    if unforeseen <= WELL_FORESEEN {
+                        self.part = (self.part * SOFTER).larger(LEAST);
+                    }
+                }
+                _ => {
+                    self.part *= HARDER;
+                    if self.part > MOST {
+                        return Err(StepError::of("contact", Refusal::NoAgreementAtRest {}).into());
+                    }
+                    self.put_pushes_back();
+                }
+            }
+        }
+        Err(StepError::of("contact", Refusal::NoCommonBalance { steps: MOST_CORRECTIONS, moved }).into())
+    }
+
+    /// The largest part of the forces on a body that is out of balance.
+    fn left(&self) -> f64 {
+        self.bodies.iter().fold(0.0, |most: f64, body| (body.rest / body.size).larger(most))
+    }
+
+    /// Takes forces and matrices where bodies are; says whether the matrices have factors.
+    fn begin_correction(&mut self) -> Result<bool, Refused> {
+        for (number, body) in self.bodies.iter_mut().enumerate() {
+            self.touching.coupled.forget(number);
+            if !body.begin_correction(&mut self.islands[body.open.island].system, self.part)? {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Finds the correction of all bodies, with the forces of contact at its end: how far it goes at most [m], and the part of the forces that was
+    /// not foreseen. None where it cannot be gone.
+    fn correct(&mut self) -> Result<Option<(f64, f64)>, Refused> {
+        let Search { islands, touching, bodies, h, .. } = &mut *self;
+        let h = *h;
+        let Touching { before: [x0, _], after: [x1, v1], .. } = &mut **touching;
+        for body in bodies.iter_mut() {
+            if !body.is_short() {
+                return Ok(None);
+            }
+            let displacement = body.open.step.correction();
+            for (p, at) in body.points.clone().zip(&body.coordinates) {
+                x1[p] = std::array::from_fn(|d| x0[p][d] + displacement[at + d]);
+            }
+        }
+        for ((x0, x1), v1) in x0.iter().zip(x1.iter()).zip(v1.iter_mut()) {
+            *v1 = std::array::from_fn(|d| (x1[d] - x0[d]) / h);
+        }
+        let mut answers = Answers { bodies, vector: Vec::new(), h };
+        if !touching.find_impulses(h, None, Some(&mut answers))? {
+            return Ok(None);
+        }
+        let mut impulses = vec![[0.0; D]; touching.inverse_mass.len()];
+        touching.visit_impulses(|point, impulse| (0..D).for_each(|d| impulses[point][d] += impulse[d]));
+        let (mut displacement, mut unforeseen): (f64, f64) = (0.0, 0.0);
+        for body in bodies.iter_mut() {
+            let pushes = body.pushes(&impulses, h);
+            let end = body.end_correction(&mut islands[body.open.island].system, pushes);
+            let Some((own, part)) = end else { return Ok(None) };
+            (displacement, unforeseen) = (own.larger(displacement), part.larger(unforeseen));
+        }
+        Ok(Some((displacement, unforeseen)))
+    }
+
+    /// Goes the corrections.
+    fn go(&mut self) {
+        let (h, touching) = (self.h, &mut *self.touching);
+        let mut given = Vec::new();
+        for body in &mut self.bodies {
+            let Opened { island, step, .. } = &mut body.open;
+            step.advance(1.0);
+            let system = &self.islands[*island].system;
+            body.constraints_changed |= step.judge(system);
+            let displacement = step.correction();
+            for (p, at) in body.points.clone().zip(&body.coordinates) {
+                (0..D).for_each(|d| touching.before[0][p][d] += displacement[at + d]);
+            }
+            let first = body.points.start;
+            for (node, force) in system.pushes.iter().flatten() {
+                if let Some(k) = body.coordinates.iter().position(|at| at / D == *node) {
+                    given.push(((first + k) as u32, force.map(|c| c * h)));
+                }
+            }
+        }
+        touching.given = given;
+        // Obstacles are where they are at the end.
+        let Touching { surface, before: [x0, _], after: [x1, _], .. } = &mut *touching;
+        for p in (0..x0.len()).filter(|p| surface.is_of_obstacle(*p as u32)) {
+            x0[p] = x1[p];
+        }
+    }
+
+    /// Gives bodies the forces again with which a correction began that was refused.
+    fn put_pushes_back(&mut self) {
+        for body in &self.bodies {
+            let mut pushes = Vec::new();
+            for (point, impulse) in self.touching.given.iter().filter(|(p, _)| body.points.contains(&(*p as usize))) {
+                pushes.push((body.coordinates[*point as usize - body.points.start] / D, impulse.map(|c| c / self.h)));
+            }
+            self.islands[body.open.island].system.pushes = Some(pushes);
+        }
+    }
+
+    /// The body whose last correction was the longest.
+    fn farthest(&mut self) -> usize {
+        let mut most = (0, 0.0);
+        for (number, body) in self.bodies.iter_mut().enumerate() {
+            let displacement = body.longest_displacement();
+            if displacement > most.1 {
+                most = (number, displacement);
+            }
+        }
+        most.0
+    }
+
+    /// Ends the steps of all bodies.
+    fn close(&mut self, iterations: u32) -> Result<(), Refused> {
+        self.touching.after[0].clone_from(&self.touching.before[0]);
+        self.touching.end_step(self.h);
+        for body in std::mem::take(&mut self.bodies) {
+            let Opened { island, step, .. } = body.open;
+            step.close(&mut self.islands[island].system, iterations, true)?;
+        }
+        Ok(())
+    }
+}
+
+/// Exchanges what bodies work in for what is lent to each.
+fn exchange<const D: usize>(pushed: &[Pushed<D>], islands: &mut [&mut Island<D>], lent: &mut [Workspace<D>]) {
+    for (pushed, workspace) in pushed.iter().zip(lent) {
+        islands[pushed.island].system.exchange(workspace);
+    }
+}
+
+/// The square of the highest frequency of every body [1/s²]; that of the others where one has none.
+fn squares_of_frequencies<const D: usize>(pushed: &[Pushed<D>], islands: &[&mut Island<D>]) -> Vec<f64> {
+    let square = |island: &Island<D>| {
+        let omega = estimate(&island.system, &*island.integrator).map_or(0.0, |found| found.spectrum.omega);
+        if omega.is_finite() { omega * omega } else { 0.0 }
+    };
+    let mut squares: Vec<f64> = pushed.iter().map(|pushed| square(islands[pushed.island])).collect();
+    let most = squares.iter().fold(0.0, |most: f64, square| square.larger(most));
+    squares.iter_mut().filter(|square| **square == 0.0).for_each(|square| *square = most);
+    squares
+}
