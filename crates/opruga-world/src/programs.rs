@@ -116,37 +116,3 @@ impl ColliderBlueprint {
         Ok(ColliderBlueprint { values: values::<D>(kind, "collider", &opruga_collide::all(D), fields)? })
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{Options, World};
-
-    #[test]
-    fn fields_are_refused_as_the_reader_of_scenes_refuses_them() {
-        let registry = Registry::<2>::default();
-        let code = |kind, fields: &[(&str, Value)]| registry.model_values(kind, fields).expect_err("refused").code();
-        assert_eq!(code("mass_sprong", &[]), "scene.unknown_name");
-        assert_eq!(code("drag", &[]), "scene.missing");
-        assert_eq!(code("mass_spring", &[]), "model.one_of");
-        assert_eq!(code("mass_spring", &[("stiffness", (-1.0).into())]), "scene.range");
-        assert_eq!(code("mass_spring", &[("stiffnes", 1.0.into())]), "scene.unknown_field");
-        let floor = ColliderBlueprint::new::<2>("half_space", &[("normal", [0.0, 0.0].into())]);
-        assert_eq!(floor.expect_err("no direction").code(), "scene.range");
-    }
-
-    #[test]
-    fn a_blueprint_from_code_is_a_world() {
-        let registry = Registry::<2>::default();
-        let springs = registry.model_values("mass_spring", &[("stiffness", 100.0.into())]).expect("springs");
-        let mut scene = Blueprint::new("test", registry.integrator_values("verlet", &[]).expect("a rule"));
-        let ring = Mesh::ring(0.5, 12, [0.0; 2], 0.0).expect("a ring");
-        let rest = ring.positions[3];
-        scene.bodies.push(BodyBlueprint::new("ring", ring, Mass::Total(1.0), vec![springs]));
-        let mut world = World::new(scene, Options::default()).expect("a world");
-        assert_eq!(world.node_count(0), 12);
-        world.frame().expect("a frame");
-        let x = world.position(0, 3);
-        assert!((0..2).all(|d| (x[d] - rest[d]).abs() < 1e-15), "nothing acts on it: {x:?}");
-    }
-}

@@ -465,7 +465,3 @@ fn close<P: Pack, const D: usize, const BATCH: bool, const DAMPED: bool>(
         *power += if BATCH { own } else { P::select(P::first(1), own, P::zero()) };
     }
 }
-
-#[cfg(test)]
-#[path = "along_tests.rs"]
-mod tests;

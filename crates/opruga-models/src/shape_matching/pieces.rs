@@ -263,7 +263,3 @@ fn middle<const D: usize>(positions: &[[f64; D]]) -> usize {
     }
     best.0
 }
-
-#[cfg(test)]
-#[path = "pieces_tests.rs"]
-mod tests;

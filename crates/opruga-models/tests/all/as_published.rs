@@ -3,10 +3,10 @@
 
 use crate::support;
 
+use crate::support::models::AsPublished;
 use opruga_core::spec::Values;
 use opruga_core::system::System;
 use opruga_mesh::Mesh;
-use opruga_models::as_published::AsPublishedModel;
 use support::{refusal, system_with_mass};
 
 const N: usize = 36;
@@ -185,7 +185,7 @@ fn deviation(
     mouse: &dyn Fn(f64) -> Option<(f64, f64)>,
 ) -> f64 {
     let mut ball = Ball::new(program);
-    let mut system = system_with_mass(&ring(), &[(&AsPublishedModel, values)], program.mass);
+    let mut system = system_with_mass(&ring(), &[(&AsPublished, values)], program.mass);
     let (mut worst, mut bounced, mut pulled) = (0.0, false, false);
     for _ in 0..steps {
         let pointer = mouse(system.time);
@@ -264,7 +264,7 @@ fn onto_the_published_floor() {
 /// Thesis.md §4: in flight the ball settles about a mean radius of 131.
 #[test]
 fn mean_radius_in_flight() {
-    let mut system = system_with_mass(&ring(), &[(&AsPublishedModel, values!(as_published))], 1.0);
+    let mut system = system_with_mass(&ring(), &[(&AsPublished, values!(as_published))], 1.0);
     let (mut sum, mut count) = (0.0, 0.0);
     for number in 0..5000 {
         step(&mut system, 1.0, f64::INFINITY);
@@ -284,7 +284,7 @@ fn mean_radius_in_flight() {
 /// Refusals name what is wrong.
 #[test]
 fn refusals() {
-    let refused = |values| refusal(&ring(), &AsPublishedModel, values);
+    let refused = |values| refusal(&ring(), &AsPublished, values);
     assert_eq!(
         refused(values!(as_published, held: &[[0.1, 0.2]])),
         "model.one_of as_published: `held` needs `pointer`"
@@ -294,7 +294,7 @@ fn refusals() {
         "model.interval as_published: each row of `held` is [press, release] with press < release"
     );
     assert_eq!(
-        refusal(&Mesh::icosphere(1.0, 1).unwrap(), &AsPublishedModel, values!(as_published)),
+        refusal(&Mesh::icosphere(1.0, 1).unwrap(), &AsPublished, values!(as_published)),
         "model.dimension as_published: the published program is plane; allowed: dimension = 2"
     );
 }

@@ -1,15 +1,14 @@
 //! Rows 26, 27, 31, 35, 37, 39, 47 and 59 of the list of bad inputs for finite volumes, finite differences and shape matching, and row 47
 //! for boundary elements: bodies and numbers of no meaning are refused, odd ones have forces that are finite and none at rest.
 
+use crate::support::models::{
+    BoundaryElement as Boundary, FiniteDifference as Difference, FiniteVolume as Volume, ShapeMatching as Matching,
+};
 use crate::support::{energy, forces, refusal, system};
 use opruga_core::check::{Options, conformance};
 use opruga_core::potential::Model;
 use opruga_core::spec::{Spec, Value, Values};
 use opruga_mesh::Mesh;
-use opruga_models::boundary_element::BoundaryElementModel as Boundary;
-use opruga_models::finite_difference::FiniteDifferenceModel as Difference;
-use opruga_models::finite_volume::FiniteVolumeModel as Volume;
-use opruga_models::shape_matching::ShapeMatchingModel as Matching;
 
 fn size(v: &[f64]) -> f64 {
     v.iter().fold(0.0, |most, x| if x.abs() > most { x.abs() } else { most })

@@ -3,10 +3,8 @@
 
 use crate::support;
 
+use crate::support::models::{Bending, MassSpring, Pressure};
 use opruga_mesh::Mesh;
-use opruga_models::bending::BendingModel as Bending;
-use opruga_models::mass_spring::MassSpring;
-use opruga_models::pressure::PressureModel as Pressure;
 use std::f64::consts::PI;
 use support::{Part, eigenvalues_below, forces, newton, refusal, system};
 

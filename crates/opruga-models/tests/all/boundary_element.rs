@@ -1,10 +1,10 @@
 //! Boundary elements: what is refused, the energy of uniform strains, and stresses.
 
+use crate::support::models::BoundaryElement as Boundary;
 use crate::support::{energy, forces, refusal, system};
 use opruga_core::spec::{Value, Values};
 use opruga_core::system::Stage;
 use opruga_mesh::Mesh;
-use opruga_models::boundary_element::BoundaryElementModel as Boundary;
 
 fn ring() -> Mesh<2> {
     Mesh::ring(0.5, 24, [0.2, 2.0], 0.1).unwrap()

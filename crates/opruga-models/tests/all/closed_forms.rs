@@ -3,10 +3,9 @@
 
 use crate::support;
 
+use crate::support::models::{MassSpring, Pressure};
 use opruga_core::system::{Stage, System};
 use opruga_mesh::{Cells, Mesh, signed_volume};
-use opruga_models::mass_spring::MassSpring;
-use opruga_models::pressure::PressureModel as Pressure;
 use std::f64::consts::PI;
 use support::{Part, energy, forces, hessian, newton, system, system_with_mass};
 

@@ -1,5 +1,8 @@
 //! Every model in the plane and in space, one line each.
 
+use crate::support::models::{
+    AsPublished, Bending, BoundaryElement, Drag, FiniteVolume, MassSpring, Pressure, ShapeMatching,
+};
 use opruga_core::check::{Options, conformance};
 use opruga_core::error::BuildError;
 use opruga_core::potential::{Definiteness, Ingredients, Model, Observe, Potential, Properties, Sink};
@@ -8,15 +11,8 @@ use opruga_core::state::{Layout, View};
 use opruga_core::tile::Tile;
 use opruga_math::Simd;
 use opruga_mesh::Mesh;
-use opruga_models::as_published::AsPublishedModel as AsPublished;
-use opruga_models::bending::BendingModel as Bending;
-use opruga_models::boundary_element::BoundaryElementModel as BoundaryElement;
-use opruga_models::drag::DragModel as Drag;
-use opruga_models::finite_volume::FiniteVolumeModel as FiniteVolume;
-use opruga_models::mass_spring::{self, MassSpring};
+use opruga_models::mass_spring;
 use opruga_models::materials::NAMES;
-use opruga_models::pressure::PressureModel as Pressure;
-use opruga_models::shape_matching::ShapeMatchingModel as ShapeMatching;
 
 fn ring(vertices: u32) -> Mesh<2> {
     Mesh::ring(0.5, vertices, [0.2, 2.0], 0.1).unwrap()

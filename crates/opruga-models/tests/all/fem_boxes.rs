@@ -3,10 +3,10 @@
 use crate::sparse;
 use crate::support;
 
+use crate::support::models::Fem;
 use opruga_core::potential::Model;
 use opruga_core::spec::Values;
 use opruga_mesh::Mesh;
-use opruga_models::fem::FemModel as Fem;
 use opruga_models::materials::NAMES;
 use support::{eigenvalues_below, forces, hessian, system};
 

@@ -2,11 +2,11 @@
 
 use crate::support;
 
+use crate::support::models::Fem;
 use opruga_core::potential::{Definiteness, Model, Sink};
 use opruga_core::spec::Values;
 use opruga_core::system::Stage;
 use opruga_mesh::Mesh;
-use opruga_models::fem::FemModel as Fem;
 use opruga_models::materials::NAMES;
 use support::system;
 

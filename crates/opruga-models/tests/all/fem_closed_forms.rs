@@ -2,11 +2,12 @@
 
 use crate::support;
 
+use crate::support::models::Fem;
 use opruga_core::potential::{CellState, Model, Potential};
 use opruga_core::spec::{Value, Values};
 use opruga_core::system::{Stage, System};
 use opruga_mesh::Mesh;
-use opruga_models::fem::{FemModel as Fem, SPEC};
+use opruga_models::fem::SPEC;
 use opruga_models::materials::NAMES;
 use support::{eigenvalues_below, forces, hessian, newton, refusal, system};
 

@@ -1,9 +1,9 @@
 //! Thermal expansion: every law on every cell, warmer than at rest, obeys what models must obey.
 
+use crate::support::models::Fem;
 use opruga_core::check::{Options, conformance};
 use opruga_core::spec::Values;
 use opruga_mesh::Mesh;
-use opruga_models::fem::FemModel as Fem;
 use opruga_models::materials::NAMES;
 
 /// A grid whose nodes are moved, by up to a tenth of a cell.

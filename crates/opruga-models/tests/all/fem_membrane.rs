@@ -5,10 +5,10 @@
 use crate::sparse;
 use crate::support;
 
+use crate::support::models::Fem;
 use opruga_core::potential::Model;
 use opruga_core::spec::Values;
 use opruga_mesh::Mesh;
-use opruga_models::fem::FemModel as Fem;
 use support::system;
 
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,8 +2,8 @@
 
 use crate::support;
 
+use crate::support::models::Fem;
 use opruga_mesh::Mesh;
-use opruga_models::fem::FemModel as Fem;
 use support::refusal;
 
 #[test]

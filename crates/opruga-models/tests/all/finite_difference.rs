@@ -1,5 +1,6 @@
 //! Curves, surfaces and solids by finite differences: derivatives, closed forms, refusals.
 
+use crate::support::models::FiniteDifference;
 use crate::support::{Part, system};
 use opruga_core::check::{Options, conformance};
 use opruga_core::potential::{Ingredients, Model};
@@ -8,7 +9,6 @@ use opruga_core::state::{Layout, Parameter};
 use opruga_core::system::Stage;
 use opruga_math::Lane;
 use opruga_mesh::Mesh;
-use opruga_models::finite_difference::FiniteDifferenceModel as FiniteDifference;
 
 fn chain<const D: usize>() -> Mesh<D> {
     let at =
@@ -323,10 +323,10 @@ fn cells_under_affine_motion_have_the_stress_of_finite_elements() {
     let plate = Mesh::<2>::grid([0.0, 1.0], [1.0, 0.6], [5, 3]).unwrap();
     let block = Mesh::<3>::grid([0.0; 3], [1.0, 0.8, 0.6], [3, 2, 2]).unwrap();
     let flat = [[1.1, 0.2], [-0.1, 0.9]];
-    compare(&plate, flat, Some("strain"), &opruga_models::fem::FemModel);
-    compare(&plate, flat, Some("stress"), &opruga_models::fem::FemModel);
+    compare(&plate, flat, Some("strain"), &crate::support::models::Fem);
+    compare(&plate, flat, Some("stress"), &crate::support::models::Fem);
     let f = [[1.1, 0.2, 0.1], [-0.1, 0.9, 0.05], [0.0, 0.1, 1.2]];
-    compare(&block, f, None, &opruga_models::fem::FemModel);
+    compare(&block, f, None, &crate::support::models::Fem);
 }
 
 /// The energy of a body whose neighbours move to and fro along an axis, by 1e-3 of a cell, and of one that a wave as long as the body moves.

@@ -1,13 +1,12 @@
 //! Finite volumes beside linear finite elements, patches, and what quadrilaterals and hexahedra have no claim on.
 
+use crate::support::models::{Fem, FiniteVolume};
 use crate::support::{Part, energy, forces, hessian, refusal, system};
 use opruga_core::check::Random;
 use opruga_core::potential::Model;
 use opruga_core::spec::Values;
 use opruga_core::system::System;
 use opruga_mesh::Mesh;
-use opruga_models::fem::FemModel as Fem;
-use opruga_models::finite_volume::FiniteVolumeModel as FiniteVolume;
 use opruga_models::materials::NAMES;
 
 /// Cells of no two alike forms: inner nodes of a grid are moved.

@@ -1,13 +1,10 @@
 //! What the forces of a body do not depend on: where it is, how it lies, how its nodes are numbered, and in which units it is given.
 
+use crate::support::models::{BoundaryElement as Boundary, FiniteDifference, FiniteVolume, ShapeMatching};
 use crate::support::{Part, energy, forces, system};
 use opruga_core::potential::Model;
 use opruga_core::spec::Values;
 use opruga_mesh::Mesh;
-use opruga_models::boundary_element::BoundaryElementModel as Boundary;
-use opruga_models::finite_difference::FiniteDifferenceModel as FiniteDifference;
-use opruga_models::finite_volume::FiniteVolumeModel as FiniteVolume;
-use opruga_models::shape_matching::ShapeMatchingModel as ShapeMatching;
 
 /// A body of some method.
 struct Body<'a, const D: usize> {

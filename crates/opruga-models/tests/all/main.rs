@@ -9,6 +9,7 @@ mod bending;
 mod boundary_element;
 mod closed_forms;
 mod conformance;
+mod curves_in_order;
 mod drag;
 mod fem;
 mod fem_boxes;

@@ -1,9 +1,9 @@
 //! Shape matching against what its energy says in closed form, and on bodies of too few nodes.
 
+use crate::support::models::ShapeMatching as Matching;
 use crate::support::{energy, forces, hessian, refusal, system, system_with_mass};
 use opruga_core::system::System;
 use opruga_mesh::Mesh;
-use opruga_models::shape_matching::ShapeMatchingModel as Matching;
 
 fn block() -> Mesh<3> {
     Mesh::grid([0.1, 0.2, 0.3], [1.0, 0.8, 0.6], [2, 2, 3]).unwrap()
@@ -187,4 +187,66 @@ fn another_step_is_refused_where_the_stiffness_depends_on_it() {
     let refused = potential.prepare(simd, &view, &memory, &mut scratch).unwrap_err().to_string();
     assert!(refused.contains("the substep is 0.0005 s"), "{refused}");
     body.forces(false).unwrap();
+}
+
+/// Overlapping groups: boxes of half of the extent along every axis, at both ends and in the middle.
+fn grouped<const D: usize>(mut mesh: Mesh<D>, groups: u32) -> Mesh<D> {
+    let extent = |d: usize, mesh: &Mesh<D>| {
+        mesh.positions.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
+            [if x[d] < low { x[d] } else { low }, if x[d] > high { x[d] } else { high }]
+        })
+    };
+    let [low, high] = extent(0, &mesh);
+    for group in 0..groups {
+        let begin = low + (high - low) * f64::from(group) / f64::from(groups + 1);
+        let end = begin + 2.0 * (high - low) / f64::from(groups + 1);
+        let within = |x: &[f64; D]| x[0] >= begin - 1e-9 && x[0] <= end + 1e-9;
+        let own = (0..mesh.positions.len() as u32).filter(|node| within(&mesh.positions[*node as usize]));
+        let own: Vec<u32> = own.collect();
+        mesh.groups.insert(format!("group{group}"), own);
+    }
+    mesh
+}
+
+/// Nodes with the same clusters are summed up together, unless the body is so much larger than its clusters that digits would be lost; then every
+/// cluster is taken by itself. A far part of the same body decides between the two, and changes no force.
+#[test]
+fn a_far_part_changes_no_force_of_overlapping_clusters() {
+    fn compare<const D: usize>(mesh: &Mesh<D>, groups: u32, fit_share: f64) -> bool {
+        let mut with_far = mesh.clone();
+        let first = mesh.positions.len() as u32;
+        for k in 0..8 {
+            let corner = |d: usize| f64::from(k >> d & 1u32);
+            with_far.positions.push(core::array::from_fn(|d| corner(d) + if d == 0 { 1e4 } else { 0.0 }));
+        }
+        with_far.groups.insert("far".into(), (first..first + 8).collect());
+        let names: Vec<String> = (0..groups).map(|group| format!("group{group}")).collect();
+        let names = names.join(", ");
+        let disturbed = |mesh: &Mesh<D>, names: &str| {
+            let values = values!(shape_matching, stiffness: 300.0, groups: names, fit_share: fit_share);
+            let mut system = system(mesh, &[(&Matching, values)]);
+            for (node, at) in mesh.positions.iter().take(first as usize).enumerate() {
+                let x = |d: usize| at[d] * (1.0 + 0.2 * at[(d + 1) % D]) + 0.01 * ((node + d) % 7) as f64;
+                system.state.x.set(node, core::array::from_fn(x));
+            }
+            forces(&mut system)[..first as usize * D].to_vec()
+        };
+        let alone = disturbed(mesh, &names);
+        let together = disturbed(&with_far, &format!("{names}, far"));
+        let off = size(&alone.iter().zip(&together).map(|(a, b)| a - b).collect::<Vec<f64>>());
+        assert!(off < 1e-12 * size(&together), "{off} of {}", size(&together));
+        off > 0.0
+    }
+    let plate = Mesh::<2>::grid([0.3, 0.2], [1.0, 0.7], [13, 9]).unwrap();
+    let block = Mesh::<3>::grid([0.3, 0.2, 0.1], [1.0, 0.7, 0.5], [9, 7, 5]).unwrap();
+    let sheet = Mesh::sheet([0.0; 3], [[1.0, 0.0, 0.5], [0.0, 1.0, 0.2]], [11, 12]).unwrap();
+    let mut two_ways = 0;
+    for fit_share in [0.0, 0.6] {
+        for groups in [2, 5] {
+            two_ways += u32::from(compare(&grouped(plate.clone(), groups), groups, fit_share));
+            two_ways += u32::from(compare(&grouped(block.clone(), groups), groups, fit_share));
+            two_ways += u32::from(compare(&grouped(sheet.clone(), groups), groups, fit_share));
+        }
+    }
+    assert!(two_ways > 8, "{two_ways} of 12: what is summed up in one way compares nothing");
 }

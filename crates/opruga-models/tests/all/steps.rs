@@ -2,14 +2,12 @@
 
 use crate::support;
 
+use crate::support::models::{Bending, MassSpring, Pressure};
 use opruga_core::state::{Parameter, View};
 use opruga_core::system::{Stage, State, System, Update};
 use opruga_core::tile::Tile;
 use opruga_math::{Column, Pack, WIDTH};
 use opruga_mesh::Mesh;
-use opruga_models::bending::BendingModel as Bending;
-use opruga_models::mass_spring::MassSpring;
-use opruga_models::pressure::PressureModel as Pressure;
 use std::ops::Range;
 use support::{Part, system};
 

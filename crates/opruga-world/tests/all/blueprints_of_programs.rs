@@ -7,7 +7,7 @@ use common::{clamp, solid, text};
 use opruga_core::spec::Value;
 use opruga_mesh::Mesh;
 use opruga_world::blueprint::*;
-use opruga_world::{Options, World, WorldError};
+use opruga_world::{Options, Registry, World, WorldError};
 use std::sync::Arc;
 
 fn sound() -> Blueprint<2> {
@@ -114,4 +114,32 @@ fn names_of_copies_are_names() {
     let mut blueprint = sound();
     blueprint.bodies[0].name = "row[3]".into();
     World::new(blueprint, Options::default()).expect("a copy");
+}
+
+#[test]
+fn fields_are_refused_as_the_reader_of_scenes_refuses_them() {
+    let registry = Registry::<2>::default();
+    let code = |kind, fields: &[(&str, Value)]| registry.model_values(kind, fields).expect_err("refused").code();
+    assert_eq!(code("mass_sprong", &[]), "scene.unknown_name");
+    assert_eq!(code("drag", &[]), "scene.missing");
+    assert_eq!(code("mass_spring", &[]), "model.one_of");
+    assert_eq!(code("mass_spring", &[("stiffness", (-1.0).into())]), "scene.range");
+    assert_eq!(code("mass_spring", &[("stiffnes", 1.0.into())]), "scene.unknown_field");
+    let floor = ColliderBlueprint::new::<2>("half_space", &[("normal", [0.0, 0.0].into())]);
+    assert_eq!(floor.expect_err("no direction").code(), "scene.range");
+}
+
+#[test]
+fn a_blueprint_from_code_is_a_world() {
+    let registry = Registry::<2>::default();
+    let springs = registry.model_values("mass_spring", &[("stiffness", 100.0.into())]).expect("springs");
+    let mut scene = Blueprint::new("test", registry.integrator_values("verlet", &[]).expect("a rule"));
+    let ring = Mesh::ring(0.5, 12, [0.0; 2], 0.0).expect("a ring");
+    let rest = ring.positions[3];
+    scene.bodies.push(BodyBlueprint::new("ring", ring, Mass::Total(1.0), vec![springs]));
+    let mut world = World::new(scene, Options::default()).expect("a world");
+    assert_eq!(world.node_count(0), 12);
+    world.frame().expect("a frame");
+    let x = world.position(0, 3);
+    assert!((0..2).all(|d| (x[d] - rest[d]).abs() < 1e-15), "nothing acts on it: {x:?}");
 }

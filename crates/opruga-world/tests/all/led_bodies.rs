@@ -89,7 +89,7 @@ fn bars_that_pins_have_turned_three_times_round_and_drawn_are_accounted_for() {
 #[test]
 #[ignore = "a sweep: cargo test -- --ignored whole_sweep"]
 fn bars_that_pins_have_turned_three_times_round_and_drawn_are_accounted_for_whole_sweep() {
-    bars_turned(&MATERIALS);
+    bars_turned(&MATERIALS[1..]);
 }
 
 fn bars_turned(materials: &[&str]) {

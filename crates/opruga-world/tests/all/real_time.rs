@@ -198,7 +198,7 @@ fn slender_beams_swing_and_rest_as_with_exact_steps() {
 #[test]
 #[ignore = "a sweep: cargo test -- --ignored whole_sweep"]
 fn slender_beams_swing_and_rest_as_with_exact_steps_whole_sweep() {
-    slender_beams(&[[16, 2, 2], [14, 2, 1], [32, 2, 2]]);
+    slender_beams(&[[16, 2, 2], [32, 2, 2]]);
 }
 
 fn slender_beams(beams: &[[u32; 3]]) {

@@ -462,7 +462,7 @@ fn boxes_come_back_from_shapes_that_no_body_has() {
 #[test]
 #[ignore = "a sweep: cargo test -- --ignored whole_sweep"]
 fn boxes_come_back_from_shapes_that_no_body_has_whole_sweep() {
-    boxes_come_back(&MATERIALS);
+    boxes_come_back(&MATERIALS[1..]);
 }
 
 fn boxes_come_back(materials: &[&str]) {

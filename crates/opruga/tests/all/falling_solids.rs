@@ -158,13 +158,13 @@ fn growth<const D: usize>(mut world: World<D>, frames: u64) -> Result<[f64; 2], 
 /// Newmark's rule once let such a body gain energy without end. In flight, rules that damp nothing let energy swing.
 #[test]
 fn drawings_of_elements_that_fall_on_a_floor_gain_no_energy() {
-    drawings_fall(&["backward_euler", "newmark"]);
+    drawings_fall(&RULES[3..]);
 }
 
 #[test]
 #[ignore = "a sweep: cargo test -- --ignored whole_sweep"]
 fn drawings_of_elements_that_fall_on_a_floor_gain_no_energy_whole_sweep() {
-    drawings_fall(&RULES);
+    drawings_fall(&RULES[..3]);
 }
 
 fn drawings_fall(rules: &[&str]) {
@@ -230,13 +230,13 @@ fn iterations_of_falling_solids() {
 /// game would take: three iterations do not reach the end of such a step, and what counts all the same makes no energy.
 #[test]
 fn what_falls_in_real_time_makes_no_energy() {
-    falls_in_real_time(&["stable_neo_hookean", "corotated"]);
+    falls_in_real_time(&["stable_neo_hookean"]);
 }
 
 #[test]
 #[ignore = "a sweep: cargo test -- --ignored whole_sweep"]
 fn what_falls_in_real_time_makes_no_energy_whole_sweep() {
-    falls_in_real_time(&["stable_neo_hookean", "neo_hookean", "fixed_corotated", "corotated"]);
+    falls_in_real_time(&["neo_hookean", "fixed_corotated", "corotated"]);
 }
 
 fn falls_in_real_time(materials: &[&str]) {

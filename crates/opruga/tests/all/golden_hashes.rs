@@ -1,10 +1,11 @@
 //! Every scene that comes with the library ends with the bits of `scenes/golden.txt`, on any number of threads and with
 //! any vector instructions of this processor. The test tries the best instructions with 3 threads; the sweep tries them with 1 and 8
-//! threads, and the others with 3.
+//! threads, and the others with 3. The first frames are recorded, and played back.
 //!
 //! `cargo xtask goldens` writes the hashes anew (it runs the sweep with `OPRUGA_GOLDENS=write`); the numbers of frames
 //! are written by hand. A changed hash is a changed result: its reason belongs into the commit.
 
+use crate::recordings::first_frames_are_replayed;
 use opruga::blueprint::{AnyBlueprint, Blueprint};
 use opruga::io::scene;
 use opruga::{Options, Simd, World, catalogue, scenes};
@@ -41,10 +42,12 @@ fn file() -> (String, Vec<Golden>) {
 /// In place of the hash of a scene whose bits are the same on processors of one class only.
 const OF_A_CLASS: &str = "this_cpu_class";
 
-/// The state after some frames; a scene without a promise for every processor is marked.
-fn hash<const D: usize>(blueprint: &Blueprint<D>, frames: u64, options: Options) -> String {
-    let mut world = World::new(blueprint.clone(), options).expect("a world");
-    for _ in 0..frames {
+/// The state after some frames, of which the first are replayed where a name is given; a scene without a promise for every processor is marked.
+fn hash<const D: usize>(blueprint: &Blueprint<D>, frames: u64, options: &Options, replay: Option<&str>) -> String {
+    let new = || World::new(blueprint.clone(), options.clone()).expect("a world");
+    let mut world = new();
+    let recorded = replay.map_or(0, |name| first_frames_are_replayed(name, &mut world, new, frames as usize));
+    for _ in recorded..frames {
         world.frame().expect("a frame");
     }
     let mark = if world.same_bits_everywhere() { String::new() } else { format!("{OF_A_CLASS}:") };
@@ -56,10 +59,10 @@ fn written(found: &str) -> &str {
     if found.starts_with(OF_A_CLASS) { OF_A_CLASS } else { found }
 }
 
-fn hash_of_any(blueprint: &AnyBlueprint, frames: u64, options: Options) -> String {
+fn hash_of_any(blueprint: &AnyBlueprint, frames: u64, options: &Options, replay: Option<&str>) -> String {
     match blueprint {
-        AnyBlueprint::Plane(blueprint) => hash(blueprint, frames, options),
-        AnyBlueprint::Space(blueprint) => hash(blueprint, frames, options),
+        AnyBlueprint::Plane(blueprint) => hash(blueprint, frames, options, replay),
+        AnyBlueprint::Space(blueprint) => hash(blueprint, frames, options, replay),
     }
 }
 
@@ -76,19 +79,19 @@ fn every_scene_file_comes_with_the_library() {
 }
 
 #[test]
-fn every_scene_ends_with_its_golden_hash() {
-    compare(&|best| if best { &[3] } else { &[] });
+fn every_scene_ends_with_its_golden_hash_and_its_recording_replays_it() {
+    compare(&|best| if best { &[3] } else { &[] }, true);
 }
 
 #[test]
 #[ignore = "a sweep: cargo test -- --ignored whole_sweep"]
 fn every_scene_ends_with_its_golden_hash_whole_sweep() {
     // How many threads share the work does not depend on the instructions that they use.
-    compare(&|best| if best { &[1, 8] } else { &[3] });
+    compare(&|best| if best { &[1, 8] } else { &[3] }, false);
 }
 
 /// Runs every scene with as many threads as given for the best vector instructions and for others.
-fn compare(threads_of: &dyn Fn(bool) -> &'static [usize]) {
+fn compare(threads_of: &dyn Fn(bool) -> &'static [usize], replay: bool) {
     let write = std::env::var("OPRUGA_GOLDENS").is_ok_and(|w| w == "write");
     let (head, golden) = file();
     let (mut text, mut wrong) = (head, Vec::new());
@@ -106,7 +109,7 @@ fn compare(threads_of: &dyn Fn(bool) -> &'static [usize]) {
         for simd in Simd::available() {
             for &threads in threads_of(simd.name() == Simd::best().name()) {
                 let options = Options { threads, simd: Some(simd), ..Options::default() };
-                let found = hash_of_any(&blueprint, frames, options);
+                let found = hash_of_any(&blueprint, frames, &options, replay.then_some(name));
                 if first.is_empty() {
                     first.clone_from(&found);
                 }

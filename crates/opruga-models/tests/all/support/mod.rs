@@ -1,6 +1,8 @@
 //! What the tests of the models share: parameters, meshes, energies and dense matrices, Newton's method.
 #![allow(dead_code)] // each test uses some of it
 
+pub(crate) mod models;
+
 use opruga_core::potential::{Definiteness, Ingredients, Model, Potential, Sink};
 use opruga_core::spec::{Spec, Value, Values};
 use opruga_core::state::{Columns, Layout, Parameter};
