@@ -35,14 +35,10 @@ const MOST_COUPLED_SWEEPS: usize = 100;
 const SWEEPS_BETWEEN: usize = 2;
 
 /// After so many of these steps that did not halve what a sweep changes, sweeps go on alone: with friction, contacts may stick and slide in turn.
-/// With 8 the row `contact-patch-tetrahedra` misses 1e-6; without an end sheets on solids take more than twice as long.
 const MOST_FAILURES: usize = 16;
 
 /// After so many of them sweeps of bodies at rest end: the next correction goes on from there.
 const MOST_FAILURES_AT_REST: usize = 2;
-
-/// The part of the tolerance to which Newton's method goes: the sweep that follows finds nothing to change.
-const ENOUGH: f64 = 0.1;
 
 /// When rows were solved for, and when what they hold has changed, counted in turns of rows: beside the rows, which are large.
 #[derive(Clone, Debug, Default)]
@@ -306,15 +302,15 @@ fn solve<const D: usize>(problem: Problem<'_, D>) -> usize {
             }
             (false, _) => (MOST_SWEEPS, TOLERANCE * approach),
         };
+        if together && newton::is_small(rows) {
+            *now += newton::solve(rows, spread, inverse_mass, coupled, v, enough) as u64;
+            continue;
+        }
         let (mut failures, mut smallest) = (0, f64::INFINITY);
         for sweep in 0..most {
             let steps = together && sweep > 0 && sweep % SWEEPS_BETWEEN == 0 && failures < MOST_FAILURES;
             if steps {
-                if newton::is_small(rows) {
-                    newton::step(rows, spread, inverse_mass, coupled, v, ENOUGH * enough);
-                } else {
-                    subspace::step(rows, spread, inverse_mass, coupled, v);
-                }
+                subspace::step(rows, spread, inverse_mass, coupled, v);
                 // All velocities may have changed.
                 heads.iter_mut().for_each(|(_, last)| *last = 0);
             }

@@ -8,8 +8,8 @@
 //!
 //! A contact that is apart (a ≤ 0) has no impulse, one that sticks (|b| ≤ µ a) does not move, one that slides has the whole friction along b.
 //! What they miss is linear but at the borders between these cases, so Newton's method converges where sweeps let contacts stick and slide in
-//! turn. Contacts are redundant, and W has no inverse: a small part of its diagonal, on the change of the impulses, makes the solution
-//! unique (a proximal point; what it holds back, the next step gives).
+//! turn. Contacts are redundant, and W has no inverse: a part of its diagonal, on the change of the impulses, makes the solution unique (a
+//! proximal point). What that holds back, the next attempt gives, with a smaller part where this one has ended and with a larger one where not.
 //!
 //! Source: P. Alart, A. Curnier, A mixed formulation for frictional contact problems prone to Newton like solution methods, Computer Methods in
 //! Applied Mechanics and Engineering 92 (1991) 353–375; V. Acary, M. Brémond, O. Huber, On solving contact problems with Coulomb friction:
@@ -20,21 +20,36 @@ use crate::elimination::{Add, Eliminate};
 use crate::row::Row;
 use crate::spread::Spread;
 use crate::vector::{across, add, dot, scaled, subtract};
-use opruga_math::{Simd, WIDTH};
+use opruga_math::{Lane, Simd, WIDTH};
 
 /// The most unknowns. An elimination takes ⅓ n³ products: 0.2 · 10⁹ for so many, as much as a hundred sweeps take over bodies of so many points.
 const MOST_UNKNOWNS: usize = 900;
 
-/// The part of the diagonal of W that holds changes of impulses back. A tenth of problems with friction on which sweeps did not end needs
-/// three times the iterations with 1e-5; rounding shows at 1e-12.
+/// The part of the diagonal of W that holds changes of impulses back: at the beginning, and at least and at most. It is larger where Newton's method
+/// did not end, which then finds it easier, and smaller where it did, as the next impulses are to come nearer.
 const PROXIMAL: f64 = 1e-7;
+const PROXIMAL_RANGE: [f64; 2] = [1e-7, 1.0];
+const FIRMER: f64 = 10.0;
+const LOOSER: f64 = 0.03;
 
-/// The most iterations of one step. Half of the steps need four, and nine in ten less than 20.
+/// Sweeps between attempts with Newton's method. They choose which contacts stick and slide; one by one they do not converge.
+const SWEEPS: usize = 10;
+
+/// The most attempts in a row that do not halve what a sweep changes.
+const MOST_IN_VAIN: usize = 10;
+
+/// The most iterations of one attempt, and the most of them after which more is missed.
 const MOST_ITERATIONS: usize = 30;
+const MOST_UPHILL: usize = 1;
 
 /// How often a correction is halved. Where nothing helps, a tenth of it is taken: cases change then, and what is missed may rise on the way.
 const MOST_HALVINGS: usize = 12;
 const UPHILL: f64 = 0.1;
+
+/// The part of the tolerance to which Newton's method goes: the sweep that follows finds nothing to change. And the part of the squares of what is
+/// missed at the beginning below which the rest is rounding.
+const ENOUGH: f64 = 0.1;
+const ROUNDING: f64 = 1e-12;
 
 /// A contact and its unknowns: the impulse along its normal, and where it has friction those across it.
 struct Contact<const D: usize> {
@@ -62,9 +77,10 @@ struct Equations<const D: usize> {
     stride: usize,
     /// Velocities without impulses, less the targets [m/s].
     free: Vec<f64>,
-    /// The impulses that changes are counted from [N s], and what holds changes back [1/kg].
+    /// The impulses that changes are counted from [N s]; of the diagonal of W [1/kg] the part that holds changes back.
     center: Vec<f64>,
-    resistance: Vec<f64>,
+    diagonal: Vec<f64>,
+    proximal: f64,
 }
 
 /// Impulses, what they give, and what they miss.
@@ -88,46 +104,56 @@ fn count_of<const D: usize>(row: &Row<D>) -> usize {
     }
 }
 
-/// Goes to the impulses at which all contacts obey their laws, as near as it comes. What they miss at the end is at most `enough` [m/s] where
-/// it converges; it takes no impulses that miss more than those before.
-pub(crate) fn step<const D: usize>(
+/// Goes to the impulses at which all contacts obey their laws: sweeps over all contacts, and Newton's method where these have not ended. Ends where
+/// no turn of a contact changes its velocity by more than `enough` [m/s], or where many attempts in a row have hardly changed that. Gives the
+/// number of turns.
+pub(crate) fn solve<const D: usize>(
     rows: &mut [Row<D>],
     spread: &Spread,
     inverse_mass: &[[f64; D]],
     coupled: &mut Coupled<D>,
     v: &mut [[f64; D]],
     enough: f64,
-) {
-    let equations = Equations::new(rows, spread, inverse_mass, coupled, v);
+) -> usize {
+    if rows.iter().all(|row| count_of(row) == 0) {
+        return 0;
+    }
+    let mut equations = Equations::new(rows, spread, inverse_mass, coupled, v);
     let old = equations.center.clone();
-    let mut trial = equations.trial(old.clone(), equations.velocities(&old));
-    let before = square(&trial.missed);
-    let mut best = (before, old.clone());
-    for _ in 0..MOST_ITERATIONS {
-        if trial.missed.iter().all(|missed| missed.abs() <= enough) {
+    let mut impulses = old.clone();
+    let (mut turns, mut best, mut in_vain, mut ended) = (0, f64::INFINITY, 0, true);
+    loop {
+        let mut velocities = equations.by_impulses(&impulses);
+        velocities.iter_mut().zip(&equations.free).for_each(|(u, free)| *u += free);
+        turns += equations.contacts.len();
+        let change = equations.sweep(&mut impulses, &mut velocities, false);
+        in_vain = if change < 0.5 * best { 0 } else { in_vain + 1 };
+        best = change.smaller(best);
+        if change <= enough || in_vain > MOST_IN_VAIN {
             break;
         }
-        let Some(correction) = equations.correction(&trial) else { break };
-        trial = equations.search(&trial, &correction);
-        let size = square(&trial.missed);
-        if size < best.0 {
-            best = (size, trial.impulses.clone());
+        // Where Newton's method has ended, sweeps would only disturb what it has found.
+        for sweep in 1..if ended { 1 } else { SWEEPS } {
+            turns += equations.contacts.len();
+            equations.sweep(&mut impulses, &mut velocities, sweep % 2 == 1);
         }
-    }
-    if best.0 >= before || before.is_nan() {
-        return;
+        ended = equations.improve(&mut impulses, ENOUGH * enough);
+        let [least, most] = PROXIMAL_RANGE;
+        let factor = if ended { LOOSER } else { FIRMER };
+        equations.proximal = (factor * equations.proximal).larger(least).smaller(most);
     }
     for contact in &equations.contacts {
         let unknowns = contact.first..contact.first + contact.count;
         let sum = |of: &[f64]| {
             contact.axes.iter().zip(&of[unknowns.clone()]).fold([0.0; D], |sum, (axis, x)| add(&sum, &scaled(axis, *x)))
         };
-        let (from, to) = (sum(&old), sum(&best.1));
+        let (from, to) = (sum(&old), sum(&impulses));
         let row = &mut rows[contact.row];
         coupled.give(row.on(spread), &subtract(&to, &from), inverse_mass, v);
-        row.normal_impulse = best.1[contact.first];
+        row.normal_impulse = impulses[contact.first];
         row.friction_impulse = subtract(&to, &scaled(&row.normal, row.normal_impulse));
     }
+    turns
 }
 
 impl<const D: usize> Equations<D> {
@@ -142,7 +168,7 @@ impl<const D: usize> Equations<D> {
         }
         let stride = size.next_multiple_of(WIDTH);
         let (mut mobility, mut moved) = (vec![0.0; size * stride], vec![[0.0; D]; v.len()]);
-        let (mut center, mut free, mut resistance) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut center, mut free, mut diagonal) = (Vec::new(), Vec::new(), Vec::new());
         for contact in &contacts {
             let row = &rows[contact.row];
             let (impulse, u) = (row.impulse(), subtract(&row.mean(spread, v), &row.carry));
@@ -156,23 +182,85 @@ impl<const D: usize> Equations<D> {
                     own.iter_mut().zip(&other.axes).for_each(|(entry, axis)| *entry = dot(axis, &velocity));
                 }
                 center.push(dot(&impulse, axis));
-                resistance.push(PROXIMAL / contact.mass[usize::from(k > 0)]);
+                diagonal.push(1.0 / contact.mass[usize::from(k > 0)]);
                 free.push(dot(&u, axis) - if k == 0 { row.target } else { 0.0 });
             }
         }
-        let mut equations = Equations { contacts, mobility, stride, free, center, resistance };
+        let mut equations = Equations { contacts, mobility, stride, free, center, diagonal, proximal: PROXIMAL };
         let by_impulses = equations.by_impulses(&equations.center);
         equations.free.iter_mut().zip(&by_impulses).for_each(|(free, given)| *free -= given);
         equations
     }
 
-    /// W λ, by symmetry.
+    /// One turn of every contact: the normal impulse that its bound needs, then the friction that this allows. Velocities are those without what holds
+    /// changes back. Gives by how much one of them changed, at most [m/s].
+    fn sweep(&self, impulses: &mut [f64], u: &mut [f64], back: bool) -> f64 {
+        let change = |k: usize, by: f64, impulses: &mut [f64], u: &mut [f64]| {
+            if by != 0.0 {
+                impulses[k] += by;
+                Simd::best().run(Add { from: &self.mobility[k * self.stride..][..self.stride], factor: by, to: u });
+            }
+        };
+        let mut largest: f64 = 0.0;
+        for k in 0..self.contacts.len() {
+            let Contact { first, count, friction, mass: [along, across], .. } =
+                self.contacts[if back { self.contacts.len() - 1 - k } else { k }];
+            let normal = impulses[first];
+            let by = (normal - along * u[first]).larger(0.0) - normal;
+            change(first, by, impulses, u);
+            largest = (by / along).abs().larger(largest);
+            if count == 1 || normal <= 0.0 && impulses[first] <= 0.0 {
+                continue;
+            }
+            let mut after = [0.0; D];
+            for k in 1..count {
+                after[k] = impulses[first + k] - across * u[first + k];
+            }
+            let (size, most) = (dot(&after, &after).sqrt(), friction * impulses[first]);
+            let part = if size > most { most / size } else { 1.0 };
+            let mut square = 0.0;
+            for k in 1..count {
+                let by = part * after[k] - impulses[first + k];
+                square += by * by;
+                change(first + k, by, impulses, u);
+            }
+            largest = (square.sqrt() / across).larger(largest);
+        }
+        largest
+    }
+
+    /// Newton's method with changes counted from some impulses, which become those that miss least. Says whether it ended.
+    fn improve(&mut self, impulses: &mut Vec<f64>, enough: f64) -> bool {
+        self.center.clone_from(impulses);
+        let mut trial = self.trial(impulses.clone(), self.velocities(impulses));
+        let before = square(&trial.missed);
+        let (mut best, mut uphill) = (before, 0);
+        for _ in 0..MOST_ITERATIONS {
+            if best < ROUNDING * before || trial.missed.iter().all(|missed| missed.abs() <= enough) {
+                return true;
+            }
+            let Some(correction) = self.correction(&trial) else { return false };
+            let rises;
+            (trial, rises) = self.search(&trial, &correction);
+            uphill += usize::from(rises);
+            let size = square(&trial.missed);
+            if size < best {
+                best = size;
+                impulses.clone_from(&trial.impulses);
+            }
+            if uphill > MOST_UPHILL {
+                break;
+            }
+        }
+        false
+    }
+
+    /// W λ, by symmetry, filled up to whole packs.
     fn by_impulses(&self, impulses: &[f64]) -> Vec<f64> {
         let mut out = vec![0.0; self.stride];
         for (line, impulse) in self.mobility.chunks_exact(self.stride).zip(impulses).filter(|(_, x)| **x != 0.0) {
             Simd::best().run(Add { from: line, factor: *impulse, to: &mut out });
         }
-        out.truncate(self.free.len());
         out
     }
 
@@ -180,7 +268,7 @@ impl<const D: usize> Equations<D> {
     fn velocities(&self, impulses: &[f64]) -> Vec<f64> {
         let mut out = self.by_changes(impulses);
         for (at, (u, free)) in out.iter_mut().zip(&self.free).enumerate() {
-            *u += free - self.resistance[at] * self.center[at];
+            *u += free - self.proximal * self.diagonal[at] * self.center[at];
         }
         out
     }
@@ -188,7 +276,10 @@ impl<const D: usize> Equations<D> {
     /// How velocities change with impulses, what holds changes back included.
     fn by_changes(&self, impulses: &[f64]) -> Vec<f64> {
         let mut out = self.by_impulses(impulses);
-        out.iter_mut().zip(&self.resistance).zip(impulses).for_each(|((u, resistance), x)| *u += resistance * x);
+        out.iter_mut()
+            .zip(&self.diagonal)
+            .zip(impulses)
+            .for_each(|((u, diagonal), x)| *u += self.proximal * diagonal * x);
         out
     }
 
@@ -260,7 +351,7 @@ impl<const D: usize> Equations<D> {
                 line[size] = lost[contact.first + k];
             };
             let own = unknowns.partition_point(|k| *k < contact.first);
-            let resistance = |k: usize| self.resistance[contact.first + k];
+            let resistance = |k: usize| self.proximal * self.diagonal[contact.first + k];
             let normal = lines.next()?;
             line_of(0, normal);
             normal[own] += resistance(0);
@@ -301,8 +392,8 @@ impl<const D: usize> Equations<D> {
         out.iter().all(|x| x.is_finite()).then_some(out)
     }
 
-    /// The impulses along a correction that miss less, halving it; where none does, a tenth of it.
-    fn search(&self, from: &Trial, correction: &[f64]) -> Trial {
+    /// The impulses along a correction that miss less, halving it; where none does, a tenth of it, and what they miss rises.
+    fn search(&self, from: &Trial, correction: &[f64]) -> (Trial, bool) {
         let change = self.by_changes(correction);
         let along = |x: &[f64], c: &[f64], part: f64| x.iter().zip(c).map(|(x, c)| x + part * c).collect();
         let at =
@@ -311,11 +402,11 @@ impl<const D: usize> Equations<D> {
         for _ in 0..MOST_HALVINGS {
             let trial = at(part);
             if square(&trial.missed) < (1.0 - 1e-4 * part) * now {
-                return trial;
+                return (trial, false);
             }
             part *= 0.5;
         }
-        at(UPHILL)
+        (at(UPHILL), true)
     }
 }
 
@@ -360,7 +451,7 @@ mod tests {
 
     fn solved(rows: &mut [Row<3>], inverse_mass: &[[f64; 3]], v: &mut [[f64; 3]]) {
         for _ in 0..3 {
-            step(rows, &Spread::default(), inverse_mass, &mut Coupled::default(), v, 1e-12);
+            solve(rows, &Spread::default(), inverse_mass, &mut Coupled::default(), v, 1e-12);
         }
     }
 

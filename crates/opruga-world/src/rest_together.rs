@@ -37,7 +37,10 @@ const WELL_FORESEEN: f64 = 0.1;
 const SOFTER: f64 = 0.1;
 const LEAST: f64 = 1e-6;
 
-/// By how much it grows, and up to where: then nodes hardly move.
+/// By how much it grows where a correction goes farther than the one before: contacts that come and go in turn would do so for ever.
+const FIRMER: f64 = 4.0;
+
+/// By how much it grows where a correction was not foreseen, and up to where: then nodes hardly move.
 const HARDER: f64 = 16.0;
 const MOST: f64 = 1e6;
 
@@ -283,10 +286,12 @@ impl<const D: usize> Search<'_, '_, D> {
             match if factored { self.correct()? } else { None } {
                 Some((displacement, unforeseen)) if unforeseen <= FORESEEN => {
                     self.go();
-                    moved = displacement;
-                    if unforeseen <= WELL_FORESEEN {
+                    if displacement > moved {
+                        self.part *= FIRMER;
+                    } else if unforeseen <= WELL_FORESEEN {
                         self.part = (self.part * SOFTER).larger(LEAST);
                     }
+                    moved = displacement;
                 }
                 _ => {
                     self.part *= HARDER;

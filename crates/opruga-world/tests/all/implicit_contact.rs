@@ -25,10 +25,10 @@ pub(crate) fn heavy(rule: &str, bodies: Vec<BodyBlueprint<2>>, substeps: u32) ->
 }
 
 /// The force of bodies on a body [N].
-pub(crate) fn force_on(world: &mut World<2>, body: usize) -> [f64; 2] {
-    let mut sum = [0.0; 2];
+pub(crate) fn force_on<const D: usize>(world: &mut World<D>, body: usize) -> [f64; D] {
+    let mut sum = [0.0; D];
     for force in world.contact_forces(body) {
-        (0..2).for_each(|d| sum[d] += force[d]);
+        (0..D).for_each(|d| sum[d] += force[d]);
     }
     sum
 }

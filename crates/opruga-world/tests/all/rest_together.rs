@@ -32,7 +32,7 @@ fn height(world: &World<2>) -> f64 {
     top(22) - top(2)
 }
 
-fn world(scene: &Blueprint<2>, threads: usize) -> World<2> {
+fn world<const D: usize>(scene: &Blueprint<D>, threads: usize) -> World<D> {
     World::new(scene.clone(), Options { threads, ..Options::default() }).expect("a world")
 }
 
@@ -108,6 +108,32 @@ fn high_stacks_come_to_their_balance() {
             let wrong = ((force[1] - wanted).abs() + force[0].abs()) / wanted.abs();
             assert!(wrong < 1e-6, "{bodies}, {friction}: {body}: {force:?} instead of {wanted}");
         }
+    }
+}
+
+/// In space many contacts of flat faces carry one weight, and which of them stick or slide has many answers.
+#[test]
+fn a_cube_of_space_comes_to_its_balance_on_a_slab() {
+    for friction in [0.5, 0.0] {
+        let body = |name: &str, size: [f64; 3], cells: [u32; 3], at: [f64; 3], mass: f64| {
+            let mesh = Mesh::grid([0.0; 3], size, cells).expect("a grid");
+            let fem = model::<3>("fem", &[("youngs_modulus", 5e4), ("poissons_ratio", 0.3)]);
+            BodyBlueprint { translation: at, ..BodyBlueprint::new(name, mesh, Mass::Total(mass), vec![fem]) }
+        };
+        let mut slab = body("slab", [2.0, 0.5, 2.0], [4, 1, 4], [-1.0, -0.5, -1.0], 200.0);
+        slab.pins.push(PinBlueprint { select: Selector::Side("bottom".into()), axes: [true; 3], motion: Vec::new() });
+        let cube = body("cube", [1.0; 3], [3; 3], [-0.6, 0.01, -0.4], 400.0);
+        let mut scene = scene("equilibrium", vec![slab, cube]);
+        scene.surroundings.gravity = [0.0, -9.81, 0.0];
+        scene.time = Time { seconds: 0.05, frame: 0.05, substeps: 1 };
+        scene.contact = contact::<3>(&[("friction", friction.into())]);
+        let mut world = world(&scene, 1);
+        world.frame().unwrap_or_else(|error| panic!("{friction}: {error}"));
+        assert_eq!(world.crossed_surfaces(), []);
+        let force = force_on(&mut world, 1);
+        let wanted = 9.81 * 400.0;
+        let wrong = (0..3).map(|d| (force[d] - if d == 1 { wanted } else { 0.0 }).abs()).sum::<f64>() / wanted;
+        assert!(wrong < 1e-6, "{friction}: {force:?} instead of {wanted}");
     }
 }
 
