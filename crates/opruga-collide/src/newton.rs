@@ -26,7 +26,8 @@ use opruga_math::{Lane, Simd, WIDTH};
 const MOST_UNKNOWNS: usize = 900;
 
 /// The part of the diagonal of W that holds changes of impulses back: at the beginning, and at least and at most. It is larger where Newton's method
-/// did not end, which then finds it easier, and smaller where it did, as the next impulses are to come nearer.
+/// did not end, which then finds it easier, and smaller where it did, as the next impulses are to come nearer. With a fixed part,
+/// `a_cube_of_space_comes_to_its_balance_on_a_slab` has no end.
 const PROXIMAL: f64 = 1e-7;
 const PROXIMAL_RANGE: [f64; 2] = [1e-7, 1.0];
 const FIRMER: f64 = 10.0;

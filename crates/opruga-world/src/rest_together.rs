@@ -37,7 +37,8 @@ const WELL_FORESEEN: f64 = 0.1;
 const SOFTER: f64 = 0.1;
 const LEAST: f64 = 1e-6;
 
-/// By how much it grows where a correction goes farther than the one before: contacts that come and go in turn would do so for ever.
+/// By how much it grows where a correction goes farther than the one before: contacts that come and go in turn would do so for ever
+/// (`high_stacks_come_to_their_balance` without friction).
 const FIRMER: f64 = 4.0;
 
 /// By how much it grows where a correction was not foreseen, and up to where: then nodes hardly move.

@@ -51,10 +51,10 @@ fn the_table_is_for_people_and_the_list_tells_sources() {
 #[test]
 fn a_word_that_names_no_case_is_refused_with_the_nearest() {
     let folder = tempfile::tempdir().expect("a folder");
-    let output = opruga(folder.path(), &["verify", "--filter", "static"]);
+    let output = opruga(folder.path(), &["verify", "--filter", "ledger"]);
     // A part of a name is enough, but of the name of a family all is needed.
     assert_eq!(code(&output), 2, "{}", said(&output));
-    assert!(said(&output).contains("did you mean `statics`"), "{}", said(&output));
+    assert!(said(&output).contains("did you mean `ledgers`"), "{}", said(&output));
 }
 
 #[test]
