@@ -218,12 +218,7 @@ impl<const D: usize> Meeting<D> {
         let farthest = search.farthest();
         exchange(&self.pushed, islands, &mut workspaces);
         match outcome {
-            Ok(()) => {
-                for pushed in &self.pushed {
-                    islands[pushed.island].keep_path(step.plan);
-                }
-                Ok(())
-            }
+            Ok(()) => Ok(()),
             Err(Refused::Trouble(trouble)) => Err(trouble),
             Err(Refused::Step(error)) => {
                 islands[self.pushed[farthest].island].refuse(error);

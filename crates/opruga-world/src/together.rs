@@ -133,6 +133,9 @@ impl<const D: usize> Job<'_, D> {
                     meeting.step_with_barrier(islands, &step)
                 };
                 stepped.map_err(|trouble| (meeting.in_scene(trouble), time))?;
+                if meeting.is_one() {
+                    meeting.pushed.iter().for_each(|pushed| islands[pushed.island].keep_path(plan));
+                }
             }
             hands.step_freely(islands, meetings, plan, substep);
             if failed(islands) {

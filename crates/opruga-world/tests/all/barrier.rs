@@ -72,6 +72,24 @@ fn bodies_keep_momentum_and_part() {
     }
 }
 
+/// A body that is pushed out of where it was going meets others within the same frame.
+#[test]
+fn a_body_that_is_hit_meets_the_next_one_within_the_frame() {
+    let bodies = vec![
+        ball("a", 24, [-1.2, 0.0], [8.0, 0.0]),
+        ball("b", 24, [0.0, 0.0], [0.0; 2]),
+        ball("c", 24, [4.0, 0.0], [0.0; 2]),
+    ];
+    let mut scene = scene("backward_euler", bodies);
+    scene.time = Time { seconds: 1.0, frame: 1.0, substeps: 120 };
+    scene.contact = contact::<2>(&[("response", "barrier".into())]);
+    let mut world = world(&scene);
+    world.frame().expect("a frame");
+    assert_eq!(world.crossed_surfaces(), []);
+    let mean = (0..24).map(|node| world.velocity(2, node)[0]).sum::<f64>() / 24.0;
+    assert!(mean > 1.0, "{mean}");
+}
+
 /// A small body that goes many times its size in a step does not pass a thin wall; where no end of the step is found, nothing has moved.
 #[test]
 fn fast_bodies_do_not_tunnel() {
