@@ -1,47 +1,32 @@
 //! Curves whose edges follow the numbers of their nodes are walked along; others are taken stencil by stencil. Both have the same forces.
 
 use crate::support::models::FiniteDifference;
-use opruga_core::potential::{Ingredients, Model, Potential};
+use crate::support::{Part, system};
 use opruga_core::spec::Values;
-use opruga_core::state::{Columns, Layout, Parameter, View};
+use opruga_core::state::Columns;
+use opruga_core::system::Stage;
 use opruga_core::tile::{TILE, Tile};
-use opruga_math::{Column, Lane, Simd, WIDTH};
+use opruga_math::{Column, Lane, WIDTH};
 use opruga_mesh::Mesh;
-
-fn potential<const D: usize>(mesh: &Mesh<D>, values: &Values) -> Box<dyn Potential<D>> {
-    let mass = Parameter::uniform(1.0);
-    let ingredients = Ingredients {
-        mesh,
-        layout: Layout::Single,
-        values: &[values],
-        mass: &mass,
-        densities: None,
-        thickness: 1.0,
-        gravity: [0.0; D],
-        step: 1e-3,
-        break_off: &Default::default(),
-    };
-    FiniteDifference.build(&ingredients).unwrap()
-}
 
 /// Forces of a disturbed curve, and the power of its damping.
 fn forces<const D: usize>(mesh: &Mesh<D>, values: &Values) -> (Vec<f64>, f64) {
-    let nodes = mesh.positions.len();
-    let padded = Layout::Single.places(nodes);
-    let (mut x, mut v, mut force) = (Columns::<D>::zeros(padded), Columns::<D>::zeros(padded), Columns::zeros(padded));
+    let parts: [Part<D>; 1] = [(&FiniteDifference, values.clone())];
+    let mut system = system(mesh, &parts);
     for (node, at) in mesh.positions.iter().enumerate() {
-        x.set(node, core::array::from_fn(|d| at[d] + 0.01 * ((node * 3 + d * 5) % 7) as f64));
-        v.set(node, core::array::from_fn(|d| 0.1 * ((node * 5 + d * 3) % 11) as f64));
+        system.state.x.set(node, core::array::from_fn(|d| at[d] + 0.01 * ((node * 3 + d * 5) % 7) as f64));
+        system.state.v.set(node, core::array::from_fn(|d| 0.1 * ((node * 5 + d * 3) % 11) as f64));
     }
-    let view = View { x: x.slices(), v: v.slices(), nodes, layout: Layout::Single, time: 0.0, threads: 1 };
-    let (curve, mut slots, mut power) = (potential(mesh, values), Column::default(), [0.0; WIDTH]);
+    let (view, member) = (system.view(Stage::Current, 0.0), &system.members[0]);
+    let padded = system.layout.places(system.nodes);
+    let (mut force, mut slots, mut power) = (Columns::<D>::zeros(padded), Column::default(), [0.0; WIDTH]);
     for start in (0..padded).step_by(TILE) {
         let range = start..(start + TILE).min(padded);
         let columns = force.0.each_mut().map(|column| &mut column[range.clone()]);
         let mut tile = Tile { range, force: columns, power: &mut power, weight: None, slots: &mut slots };
-        curve.add_force(Simd::best(), &view, &[], &mut tile);
+        member.potential.add_force(system.simd, &view, &member.scratch, &mut tile);
     }
-    ((0..nodes).flat_map(|node| force.at(node)).collect(), power.iter().sum())
+    ((0..system.nodes).flat_map(|node| force.at(node)).collect(), power.iter().sum())
 }
 
 /// Compares a curve with the same one whose edges come in another order; says whether rounding tells them apart.
