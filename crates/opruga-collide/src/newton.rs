@@ -25,11 +25,11 @@ use opruga_math::{Lane, Simd, WIDTH};
 /// The most unknowns. An elimination takes ⅓ n³ products: 0.2 · 10⁹ for so many, as much as a hundred sweeps take over bodies of so many points.
 const MOST_UNKNOWNS: usize = 900;
 
-/// The part of the diagonal of W that holds changes of impulses back: at the beginning, and at least and at most. It is larger where Newton's method
+/// The part of the diagonal of W that holds changes of impulses back: at the beginning and at least, and at most. It is larger where Newton's method
 /// did not end, which then finds it easier, and smaller where it did, as the next impulses are to come nearer. With a fixed part,
 /// `a_cube_of_space_comes_to_its_balance_on_a_slab` has no end.
-const PROXIMAL: f64 = 1e-7;
-const PROXIMAL_RANGE: [f64; 2] = [1e-7, 1.0];
+const LEAST_PROXIMAL: f64 = 1e-7;
+const MOST_PROXIMAL: f64 = 1.0;
 const FIRMER: f64 = 10.0;
 const LOOSER: f64 = 0.03;
 
@@ -139,9 +139,8 @@ pub(crate) fn solve<const D: usize>(
             equations.sweep(&mut impulses, &mut velocities, sweep % 2 == 1);
         }
         ended = equations.improve(&mut impulses, ENOUGH * enough);
-        let [least, most] = PROXIMAL_RANGE;
         let factor = if ended { LOOSER } else { FIRMER };
-        equations.proximal = (factor * equations.proximal).larger(least).smaller(most);
+        equations.proximal = (factor * equations.proximal).larger(LEAST_PROXIMAL).smaller(MOST_PROXIMAL);
     }
     for contact in &equations.contacts {
         let unknowns = contact.first..contact.first + contact.count;
@@ -187,7 +186,7 @@ impl<const D: usize> Equations<D> {
                 free.push(dot(&u, axis) - if k == 0 { row.target } else { 0.0 });
             }
         }
-        let mut equations = Equations { contacts, mobility, stride, free, center, diagonal, proximal: PROXIMAL };
+        let mut equations = Equations { contacts, mobility, stride, free, center, diagonal, proximal: LEAST_PROXIMAL };
         let by_impulses = equations.by_impulses(&equations.center);
         equations.free.iter_mut().zip(&by_impulses).for_each(|(free, given)| *free -= given);
         equations

@@ -365,8 +365,10 @@ impl<const D: usize> Search<'_, '_, D> {
                 (0..D).for_each(|d| touching.before[0][p][d] += displacement[at + d]);
             }
             let first = body.points.start;
+            // Both are in the order of the points.
+            let mut points = body.coordinates.iter().enumerate();
             for (node, force) in system.pushes.iter().flatten() {
-                if let Some(k) = body.coordinates.iter().position(|at| at / D == *node) {
+                if let Some((k, _)) = points.find(|(_, at)| *at / D == *node) {
                     given.push(((first + k) as u32, force.map(|c| c * h)));
                 }
             }
