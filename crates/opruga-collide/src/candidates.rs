@@ -16,6 +16,9 @@ pub struct Candidates<const D: usize> {
     pub vertex_facet: Vec<[u32; 2]>,
     /// Two edges, the lower number first; empty in 2D.
     pub edge_edge: Vec<[u32; 2]>,
+    /// Pairs that a search adds, and both together.
+    fresh: Vec<[u32; 2]>,
+    merged: Vec<[u32; 2]>,
     grid: Grid<D>,
     found: Vec<u32>,
     /// Around the points of every body.
@@ -38,9 +41,21 @@ fn meet_boxes<const D: usize>(a: &Bounds<D>, b: &Bounds<D>) -> bool {
     (0..D).all(|d| a[0][d] <= b[1][d] && b[0][d] <= a[1][d])
 }
 
-/// Sorts pairs: by one number each, which is compared faster than two.
-fn sort(pairs: &mut [[u32; 2]]) {
-    pairs.sort_unstable_by_key(|[a, b]| u64::from(*a) << 32 | u64::from(*b));
+/// Adds pairs to others, which are ascending.
+fn merge(pairs: &mut Vec<[u32; 2]>, fresh: &mut [[u32; 2]], merged: &mut Vec<[u32; 2]>) {
+    // One number each, which is compared faster than two.
+    let key = |[a, b]: &[u32; 2]| u64::from(*a) << 32 | u64::from(*b);
+    fresh.sort_unstable_by_key(key);
+    merged.clear();
+    let mut known = pairs.iter().peekable();
+    for one in fresh.iter() {
+        while let Some(other) = known.next_if(|other| key(other) < key(one)) {
+            merged.push(*other);
+        }
+        merged.push(*one);
+    }
+    merged.extend(known);
+    std::mem::swap(pairs, merged);
 }
 
 /// Products of counts up to which all pairs of features of two bodies are compared: sorting them into cells costs as much as some
@@ -62,20 +77,43 @@ impl<const D: usize> Candidates<D> {
         most: usize,
         meet: impl Fn(u32, u32) -> bool,
     ) -> bool {
-        self.vertex_facet.clear();
-        self.edge_edge.clear();
-        self.find_close_bodies(surface, boxes, distances, meet);
-        let mut pairs = std::mem::take(&mut self.vertex_facet);
+        let own = |p: u32| boxes[p as usize];
+        self.refresh(surface, boxes, own, distances, most, meet, |_, _| true)
+    }
+
+    /// The same for those pairs of bodies, and bodies with themselves, of which `stale` says that their pairs at hand are not all; those of others
+    /// stay. `own` gives the boxes of points for pairs of one body.
+    #[allow(clippy::too_many_arguments)]
+    pub(crate) fn refresh(
+        &mut self,
+        surface: &Surface<D>,
+        boxes: &[Bounds<D>],
+        own: impl Fn(u32) -> Bounds<D>,
+        distances: [f64; 2],
+        most: usize,
+        meet: impl Fn(u32, u32) -> bool,
+        stale: impl Fn(u32, u32) -> bool,
+    ) -> bool {
+        let body = |point: u32| surface.body[point as usize];
+        self.vertex_facet.retain(|[p, facet]| !stale(body(*p), body(surface.facets[*facet as usize][0])));
+        self.edge_edge.retain(|pair| {
+            let [a, b] = pair.map(|edge| body(surface.edges[edge as usize][0]));
+            !stale(a, b)
+        });
+        self.find_close_bodies(surface, boxes, distances, |a, b| meet(a, b) && stale(a, b));
+        let mut pairs = std::mem::take(&mut self.fresh);
         let close = std::mem::take(&mut self.close_bodies);
         let mut complete = true;
         let of_obstacle = |body: u32| surface.is_obstacle(body);
         let distance_of = |pair: &[u32; 2]| distances[usize::from(pair.iter().any(|body| of_obstacle(*body)))];
+        pairs.clear();
         for pair @ [a, b] in close.iter().filter(|[_, b]| !of_obstacle(*b)) {
             let distance = distance_of(pair);
             let [a, b] = [*a as usize, *b as usize];
-            self.choose(surface.vertices_of(a), b, distance, |p| boxes[p]);
+            let at = |p: u32| if a == b { own(p) } else { boxes[p as usize] };
+            self.choose(surface.vertices_of(a), b, distance, |p| at(p as u32));
             std::mem::swap(&mut self.first, &mut self.second);
-            self.choose(surface.facets_of(b), a, 0.0, |f| wider(around(boxes, &surface.facets[f]), distance));
+            self.choose(surface.facets_of(b), a, 0.0, |f| wider(around(at, &surface.facets[f]), distance));
             std::mem::swap(&mut self.first, &mut self.second);
             let apart = |p: u32, facet: u32| a != b || !surface.share(&[p], &surface.facets[facet as usize]);
             self.join(|p, facet| {
@@ -83,18 +121,18 @@ impl<const D: usize> Candidates<D> {
                     pairs.push([p, facet]);
                 }
             });
-            complete = pairs.len() <= most;
+            complete = self.len() + pairs.len() <= most;
             if !complete {
                 break;
             }
         }
-        sort(&mut pairs);
-        self.vertex_facet = pairs;
-        let mut pairs = std::mem::take(&mut self.edge_edge);
+        merge(&mut self.vertex_facet, &mut pairs, &mut self.merged);
+        pairs.clear();
         for pair @ [a, b] in close.iter().filter(|[a, b]| D == 3 && a <= b) {
             let distance = distance_of(pair);
             let [a, b] = [*a as usize, *b as usize];
-            let of = |edge: usize| around(boxes, &surface.edges[edge]);
+            let at = |p: u32| if a == b { own(p) } else { boxes[p as usize] };
+            let of = |edge: usize| around(at, &surface.edges[edge]);
             self.choose(surface.edges_of(a), b, distance, of);
             std::mem::swap(&mut self.first, &mut self.second);
             self.choose(surface.edges_of(b), a, 0.0, |edge| wider(of(edge), distance));
@@ -108,14 +146,13 @@ impl<const D: usize> Candidates<D> {
                     pairs.push(if i < j { [i, j] } else { [j, i] });
                 }
             });
-            complete &= self.vertex_facet.len() + pairs.len() <= most;
+            complete &= self.len() + pairs.len() <= most;
             if !complete {
                 break;
             }
         }
-        sort(&mut pairs);
-        self.edge_edge = pairs;
-        self.close_bodies = close;
+        merge(&mut self.edge_edge, &mut pairs, &mut self.merged);
+        (self.fresh, self.close_bodies) = (pairs, close);
         complete
     }
 
@@ -203,7 +240,8 @@ impl<const D: usize> Candidates<D> {
 
     /// Bytes on the heap.
     pub fn heap_bytes(&self) -> usize {
-        8 * (self.vertex_facet.capacity() + self.edge_edge.capacity())
+        let pairs = [&self.vertex_facet, &self.edge_edge, &self.fresh, &self.merged];
+        8 * pairs.map(Vec::capacity).iter().sum::<usize>()
             + 4 * self.found.capacity()
             + 16 * D * (self.bodies.capacity() + self.first.capacity() + self.second.capacity())
             + self.grid.heap_bytes()

@@ -97,6 +97,13 @@ impl<const D: usize> Gap<D> {
         Some(out)
     }
 
+    /// The distance of two edges [m].
+    pub(crate) fn distance_of_edges(surface: &Surface<D>, x: &[[f64; D]], a: u32, b: u32) -> f64 {
+        let [a, b] = [a, b].map(|edge| surface.edges[edge as usize].map(|p| x[p as usize]));
+        let [s, t] = closest_of_segments(&a, &b);
+        length(&subtract(&mean(&[1.0 - s, s], &a), &mean(&[1.0 - t, t], &b)))
+    }
+
     /// Sets gap and normal from the vector between the closest points.
     fn point_along(&mut self, between: &[f64; D], closed: bool, origin: &[f64; D], outward: impl Fn() -> [f64; D]) {
         let distance = length(between);

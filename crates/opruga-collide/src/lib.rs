@@ -62,6 +62,7 @@ mod barrier;
 mod bounds;
 mod candidates;
 mod ccd;
+mod clearance;
 mod closest;
 mod collider;
 mod contacts;

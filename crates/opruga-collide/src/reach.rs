@@ -16,66 +16,109 @@ pub(crate) struct Reach<const D: usize> {
     pub(crate) swept: Vec<Bounds<D>>,
     /// Where points may be while the candidates at hand are all [m]; nowhere where there are none.
     pub(crate) found_in: Vec<Bounds<D>>,
-    /// Whether the boxes of the step lie within those, with a quarter of a margin to spare.
-    covered: bool,
+    /// The largest of these of every body.
+    body_push: Vec<f64>,
+    /// By the bodies: whether boxes of the step do not lie within those, with a quarter of a margin to spare.
+    stale: Vec<bool>,
+    /// By the bodies: whether they are soon stale, or have candidates for a faster motion than they have now. A search looks for those of all of
+    /// these at once.
+    due: Vec<bool>,
 }
+
+/// Boxes so many times as wide as they would be found now have many candidates that do not meet.
+const MOST_WIDTHS: f64 = 4.0;
 
 /// A box in which nothing lies.
 const NOWHERE: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
 
 impl<const D: usize> Reach<D> {
-    /// Begins a step from the positions before and after the free motion [m]: contact may push every point as far as it goes by itself, and
-    /// by what takes overlapping bodies apart.
-    pub(crate) fn begin(&mut self, [from, to]: [&[[f64; D]]; 2], recovery: f64, margin: f64) {
+    /// Begins a step from the positions before and after the free motion [m] of points, whose bodies are given: contact may push every point as far
+    /// as it goes by itself, and by what takes overlapping bodies apart.
+    pub(crate) fn begin(&mut self, body: &[u32], [from, to]: [&[[f64; D]]; 2], recovery: f64, margin: f64, steps: f64) {
         self.push.resize(from.len(), 0.0);
         self.swept.resize(from.len(), [[0.0; D]; 2]);
         if self.found_in.len() != self.swept.len() {
-            self.forget();
+            self.found_in.clear();
             self.found_in.resize(from.len(), NOWHERE.map(|c| [c; D]));
+            self.stale.resize(body.iter().map(|body| *body as usize + 1).max().unwrap_or(0), true);
+            self.due.resize(self.stale.len(), true);
+            self.body_push.resize(self.stale.len(), 0.0);
         }
+        self.stale.fill(false);
+        self.due.fill(false);
+        self.body_push.fill(0.0);
         let spare = 0.25 * margin;
-        let mut covered = true;
         let boxes = self.push.iter_mut().zip(&mut self.swept).zip(&self.found_in);
-        for ((from, to), ((push, swept), found)) in from.iter().zip(to).zip(boxes) {
+        for (((from, to), ((push, swept), found)), body) in from.iter().zip(to).zip(boxes).zip(body) {
             let displacement = subtract(to, from);
             *push = dot(&displacement, &displacement).sqrt() + recovery;
+            let body = *body as usize;
+            self.body_push[body] = push.larger(self.body_push[body]);
+            let (mut least, mut most) = (f64::INFINITY, 0.0);
             for d in 0..D {
                 let (low, high) = (from[d].smaller(to[d]) - *push, from[d].larger(to[d]) + *push);
                 (swept[0][d], swept[1][d]) = (low, high);
-                covered &= (found[0][d] <= low - spare) & (high + spare <= found[1][d]);
+                let [below, above] = [low - found[0][d], found[1][d] - high];
+                least = below.smaller(above).smaller(least);
+                most = below.larger(above).larger(most);
             }
+            let wide = (0.5 * margin).larger(steps * *push);
+            self.stale[body] |= !(least >= spare);
+            self.due[body] |= !(least >= spare + 0.5 * (wide - spare) && most <= MOST_WIDTHS * wide);
         }
-        self.covered = covered;
     }
 
     /// Whether all boxes lie within those for which candidates were looked for, with a quarter of a margin to spare: pairs that are
     /// asked for beyond the step are at hand then, whenever they were looked for.
     pub(crate) fn is_covered(&self) -> bool {
-        self.covered
+        !self.stale.contains(&true)
     }
 
-    /// Sets the boxes for which candidates are looked for: half a margin [m] beyond those of the step, and for fast points as far as they
-    /// go in so many more steps.
-    pub(crate) fn widen(&mut self, margin: f64, steps: f64) {
-        self.covered = true;
-        self.found_in.clone_from(&self.swept);
-        for ([low, high], push) in self.found_in.iter_mut().zip(&self.push) {
+    /// The bodies for which this does not hold.
+    pub(crate) fn stale(&self) -> &[bool] {
+        &self.stale
+    }
+
+    /// Takes bodies that are due for stale.
+    pub(crate) fn take_due(&mut self) {
+        self.stale.iter_mut().zip(&self.due).for_each(|(stale, due)| *stale |= due);
+    }
+
+    /// Sets the boxes of stale bodies for which candidates are looked for: half a margin [m] beyond those of the step, and for fast points as far
+    /// as they go in so many more steps.
+    pub(crate) fn widen(&mut self, body: &[u32], margin: f64, steps: f64) {
+        let own = self.swept.iter().zip(&self.push).zip(body);
+        for (found, ((swept, push), body)) in self.found_in.iter_mut().zip(own) {
+            if !self.stale[*body as usize] {
+                continue;
+            }
+            *found = *swept;
             let more = (0.5 * margin).larger(steps * push);
             for d in 0..D {
-                low[d] -= more;
-                high[d] += more;
+                found[0][d] -= more;
+                found[1][d] += more;
             }
         }
     }
 
-    /// Forgets the candidates.
+    /// Takes the candidates for none of any body.
     pub(crate) fn forget(&mut self) {
-        self.covered = false;
         self.found_in.clear();
+        self.stale.fill(true);
+    }
+
+    /// Forgets nothing, but looks for the candidates of all bodies.
+    pub(crate) fn look_at_all(&mut self) {
+        self.stale.fill(true);
+    }
+
+    /// Takes note that candidates were found.
+    pub(crate) fn found(&mut self) {
+        self.stale.fill(false);
     }
 
     /// Widens the boxes of touched points that contact pushes beyond them; says whether there are any.
-    pub(crate) fn grow(&mut self, touched: &[bool], free: &[[f64; D]], end: &[[f64; D]], margin: f64) -> bool {
+    pub(crate) fn grow(&mut self, body: &[u32], touched: &[bool], [free, end]: [&[[f64; D]]; 2], margin: f64) -> bool {
         let (mut any, spare) = (false, 0.25 * margin);
         for p in (0..touched.len()).filter(|p| touched[*p]) {
             let displacement = subtract(&end[p], &free[p]);
@@ -83,16 +126,25 @@ impl<const D: usize> Reach<D> {
             if pushed > self.push[p] {
                 let more = 2.0 * pushed - self.push[p];
                 self.push[p] = 2.0 * pushed;
+                let most = &mut self.body_push[body[p] as usize];
+                *most = self.push[p].larger(*most);
                 let ([low, high], found) = (&mut self.swept[p], &self.found_in[p]);
                 for d in 0..D {
                     low[d] -= more;
                     high[d] += more;
-                    self.covered &= found[0][d] <= low[d] - spare && high[d] + spare <= found[1][d];
+                    if found[0][d] > low[d] - spare || high[d] + spare > found[1][d] {
+                        self.stale[body[p] as usize] = true;
+                    }
                 }
                 any = true;
             }
         }
         any
+    }
+
+    /// What contact may add to the motion of any point of every body [m], at most.
+    pub(crate) fn body_push(&self) -> &[f64] {
+        &self.body_push
     }
 
     /// What contact may add to the motion of a point [m].
@@ -101,11 +153,16 @@ impl<const D: usize> Reach<D> {
         self.push[point as usize]
     }
 
-    /// Whether two features may come closer than a distance [m] within the step.
+    /// How far the boxes of two features within the step are apart, along the axis where that is most [m]; negative where they overlap.
     #[inline]
-    pub(crate) fn meet<const M: usize, const N: usize>(&self, a: &[u32; M], b: &[u32; N], distance: f64) -> bool {
-        let ([low_a, high_a], [low_b, high_b]) = (around(&self.swept, a), around(&self.swept, b));
-        (0..D).all(|d| low_a[d] <= high_b[d] + distance && low_b[d] <= high_a[d] + distance)
+    pub(crate) fn apart<const M: usize, const N: usize>(&self, a: &[u32; M], b: &[u32; N]) -> f64 {
+        let of = |p: u32| self.swept[p as usize];
+        let ([low_a, high_a], [low_b, high_b]) = (around(of, a), around(of, b));
+        let mut most = f64::NEG_INFINITY;
+        for d in 0..D {
+            most = (low_a[d] - high_b[d]).larger(low_b[d] - high_a[d]).larger(most);
+        }
+        most
     }
 
     pub(crate) fn points(&self) -> usize {
@@ -115,10 +172,10 @@ impl<const D: usize> Reach<D> {
 
 /// The box around the boxes of some points.
 #[inline]
-pub(crate) fn around<const D: usize, const N: usize>(boxes: &[Bounds<D>], points: &[u32; N]) -> Bounds<D> {
-    let mut out = boxes[points[0] as usize];
+pub(crate) fn around<const D: usize, const N: usize>(of: impl Fn(u32) -> Bounds<D>, points: &[u32; N]) -> Bounds<D> {
+    let mut out = of(points[0]);
     for p in &points[1..] {
-        let [low, high] = &boxes[*p as usize];
+        let [low, high] = &of(*p);
         for d in 0..D {
             out[0][d] = low[d].smaller(out[0][d]);
             out[1][d] = high[d].larger(out[1][d]);

@@ -23,45 +23,69 @@ impl<const D: usize> Touching<D> {
         while k < pairs {
             let [vertex, _] = self.candidates.vertex_facet[k];
             let first = k;
-            self.around.clear();
             while self.candidates.vertex_facet.get(k).is_some_and(|pair| pair[0] == vertex) {
                 k += 1;
             }
-            self.take_gaps_of(first..k, h, 0.0);
-            // Who seems to be deep inside may be outside, before a facet that is nearer and beyond the reach.
-            let known = -self.reach.push_of(vertex) - self.thickest_at(vertex);
-            // Bodies at rest may begin deep inside one another.
-            if self.at_once || self.around.iter().any(|(row, _)| row.gap < known) {
-                self.around.clear();
-                self.take_gaps_of(first..k, h, 0.25 * self.margin);
-            }
-            self.keep_the_nearest();
-            self.take_around();
+            self.take_gaps_of_vertex(vertex, first..k, h);
         }
         for k in 0..self.candidates.edge_edge.len() {
-            let [a, b] = self.candidates.edge_edge[k];
-            let edges = [a, b].map(|e| self.surface.edges[e as usize]);
-            if !self.reach.meet(&edges[0], &edges[1], self.thickest_at(edges[1][0])) {
-                continue;
-            }
-            let bodies = edges.map(|edge| self.surface.body[edge[0] as usize]);
-            let law = *self.laws.of(bodies[0], bodies[1]);
-            if !self.reach.meet(&edges[0], &edges[1], law.thickness) {
-                continue;
-            }
-            self.close[1].push([a, b]);
-            let Some(mut gap) = Gap::of_edges(&self.surface, &self.before[0], a, b) else { continue };
-            if bodies[0] == bodies[1] && gap.gap < 0.0 {
-                (gap.gap, gap.normal) = (-gap.gap, gap.normal.map(|n| -n));
-            }
-            // Edges deep in one another are those of opposite sides as often as not: vertices and facets say where to go.
-            if gap.gap < -law.thickness {
-                continue;
-            }
-            self.push(gap, &law, h, [a, b], false, 0.0);
-            self.take_around();
+            self.take_gap_of_edges(k, h);
         }
         self.put_passing(h);
+    }
+
+    /// Takes the gaps of all candidates of one vertex.
+    fn take_gaps_of_vertex(&mut self, vertex: u32, candidates: Range<usize>, h: f64) {
+        self.around.clear();
+        let close = self.close[0].len();
+        let mut inside = self.take_gaps_of(candidates.clone(), h, 0.0, false);
+        if inside {
+            // The nearest facet counts there, whatever was known of it before.
+            self.around.clear();
+            self.close[0].truncate(close);
+            self.take_gaps_of(candidates.clone(), h, 0.0, true);
+        }
+        // Who seems to be deep inside may be outside, before a facet that is nearer and beyond the reach.
+        let known = -self.reach.push_of(vertex) - self.thickest_at(vertex);
+        // Bodies at rest may begin deep inside one another.
+        if self.at_once || self.around.iter().any(|(row, _)| row.gap < known) {
+            inside |= self.at_once;
+            self.around.clear();
+            self.take_gaps_of(candidates, h, 0.25 * self.margin, inside);
+        }
+        self.keep_the_nearest();
+        self.take_around();
+    }
+
+    /// Takes the gap of a candidate of two edges.
+    fn take_gap_of_edges(&mut self, candidate: usize, h: f64) {
+        let pair @ [a, b] = self.candidates.edge_edge[candidate];
+        let edges = pair.map(|e| self.surface.edges[e as usize]);
+        let farthest = self.thickest_at(edges[1][0]);
+        if self.clearance.is_clear(1, candidate, farthest) {
+            return;
+        }
+        let bodies = self.clearance.bodies(1, candidate);
+        let law = *self.laws.of(bodies[0], bodies[1]);
+        let apart = self.reach.apart(&edges[0], &edges[1]);
+        if apart > law.thickness {
+            return self.clearance.note(1, candidate, apart);
+        }
+        self.close[1].push(pair);
+        let Some(mut gap) = Gap::of_edges(&self.surface, &self.before[0], a, b) else {
+            let distance = Gap::distance_of_edges(&self.surface, &self.before[0], a, b);
+            return self.clearance.note(1, candidate, distance);
+        };
+        self.clearance.note(1, candidate, gap.gap.abs());
+        if bodies[0] == bodies[1] && gap.gap < 0.0 {
+            (gap.gap, gap.normal) = (-gap.gap, gap.normal.map(|n| -n));
+        }
+        // Edges deep in one another are those of opposite sides as often as not: vertices and facets say where to go.
+        if gap.gap < -law.thickness {
+            return;
+        }
+        self.push(gap, &law, h, pair, false, 0.0);
+        self.take_around();
     }
 
     /// Puts rows in play, or under watch where they do not meet by themselves; those that cannot move are neither.
@@ -81,30 +105,38 @@ impl<const D: usize> Touching<D> {
         self.thickest[usize::from(self.surface.is_of_obstacle(point))]
     }
 
-    /// Takes the gaps of some candidates of one vertex that may come closer than a distance [m].
-    fn take_gaps_of(&mut self, candidates: Range<usize>, h: f64, distance: f64) {
+    /// Takes the gaps of some candidates of one vertex that may come closer than a distance [m]: of `all`, or without those that are known to be
+    /// farther apart. Says whether the vertex seems to be inside another body.
+    fn take_gaps_of(&mut self, candidates: Range<usize>, h: f64, distance: f64, all: bool) -> bool {
+        let mut inside = false;
         for k in candidates {
-            let [vertex, facet] = self.candidates.vertex_facet[k];
+            let pair @ [vertex, facet] = self.candidates.vertex_facet[k];
             let farthest = self.thickest_at(vertex) + distance;
-            let corners = &self.surface.facets[facet as usize];
-            if !self.reach.meet(&[vertex], corners, farthest) {
+            if !all && self.clearance.is_clear(0, k, farthest) {
                 continue;
             }
-            let [own, other] = [vertex, corners[0]].map(|p| self.surface.body[p as usize]);
+            let corners = &self.surface.facets[facet as usize];
+            let [own, other] = self.clearance.bodies(0, k);
             let law = *self.laws.of(own, other);
-            if !self.reach.meet(&[vertex], corners, law.thickness + distance) {
+            let apart = self.reach.apart(&[vertex], corners);
+            if apart > law.thickness + distance {
+                self.clearance.note(0, k, apart);
                 continue;
             }
             if distance == 0.0 {
-                self.close[0].push([vertex, facet]);
+                self.close[0].push(pair);
             }
             let mut gap = Gap::of_vertex_and_facet(&self.surface, &self.before[0], vertex, facet);
             if own == other && gap.gap < 0.0 {
                 // A body holds itself on both sides.
                 (gap.gap, gap.normal) = (-gap.gap, gap.normal.map(|n| -n));
             }
-            self.push(gap, &law, h, [vertex, facet], true, distance);
+            // What is inside has to come out, however far.
+            self.clearance.note(0, k, if gap.gap < 0.0 { f64::NEG_INFINITY } else { gap.gap });
+            inside |= gap.gap < 0.0;
+            self.push(gap, &law, h, pair, true, distance);
         }
+        inside
     }
 
     /// Adds a row for the gap of a vertex and a facet, or of two edges, unless they stay apart by more than a distance [m].

@@ -1,6 +1,7 @@
 //! Deformable bodies that touch: what a substep makes of their surfaces.
 
 use crate::candidates::Candidates;
+use crate::clearance::Clearance;
 use crate::coupled::{Coupled, Respond};
 use crate::gap::Gap;
 use crate::impulses::{Problem, Turns};
@@ -63,6 +64,11 @@ pub struct Touching<const D: usize> {
     pub most: usize,
     pub(crate) candidates: Candidates<D>,
     pub(crate) reach: Reach<D>,
+    pub(crate) clearance: Clearance<D>,
+    /// The laws for which candidates were looked for.
+    found_for: Laws,
+    /// By the bodies: whether pairs that they have with themselves are looked for.
+    own: Vec<bool>,
     /// The contacts that are solved for: once solved, in the order of that.
     pub(crate) rows: Vec<Row<D>>,
     /// What they act on where nodes carry their points.
@@ -159,11 +165,15 @@ pub enum Trouble {
 pub type Obstacles<'a, const D: usize> = &'a dyn Fn(u32, &[f64; D], &[f64; D], f64, &mut dyn FnMut(Touch<D>));
 
 impl<const D: usize> Touching<D> {
-    /// Forgets impulses and candidates, at the beginning of a frame.
+    /// Forgets impulses and reports, at the beginning of a frame; candidates too, if the laws have changed.
     pub fn begin(&mut self) {
         self.last.clear();
         self.reports.clear();
-        self.reach.forget();
+        if self.found_for != self.laws {
+            self.found_for.clone_from(&self.laws);
+            self.reach.forget();
+            self.clearance.forget_own();
+        }
     }
 
     /// Forgets the impulses of the last step, where the state is no longer the one that they led to.
@@ -247,10 +257,11 @@ impl<const D: usize> Touching<D> {
         let [x0, x1] = [&self.before[0], &self.after[0]];
         if self.at_once {
             // Where forces of contact are not yet those of the balance, they alone would lead bodies anywhere.
-            self.reach.begin([x0, x0], self.thickest[0] + self.margin, self.margin);
+            self.reach.begin(&self.surface.body, [x0, x0], self.thickest[0] + self.margin, self.margin, 0.0);
         } else {
-            self.reach.begin([x0, x1], h * self.laws.recovery_speed, self.margin);
+            self.reach.begin(&self.surface.body, [x0, x1], h * self.laws.recovery_speed, self.margin, STEPS);
         }
+        self.clearance.follow(&self.surface, x0);
         let mut rounds = 0;
         loop {
             self.search()?;
@@ -287,12 +298,12 @@ impl<const D: usize> Touching<D> {
 
     /// Lets points reach as far as they end; says whether any did not.
     fn grow(&mut self) -> bool {
-        let Touching { reach, touched, after: [free, _], before: [from, _], end, margin, at_once, .. } = self;
+        let Touching { surface, reach, touched, after: [free, _], before: [from, _], end, margin, at_once, .. } = self;
         if *at_once {
             touched.fill(true);
-            return reach.grow(touched, from, end, *margin);
+            return reach.grow(&surface.body, touched, [from, end], *margin);
         }
-        reach.grow(touched, free, end, *margin)
+        reach.grow(&surface.body, touched, [free, end], *margin)
     }
 
     /// Whether no point of a body goes farther than it may.
@@ -364,17 +375,30 @@ impl<const D: usize> Touching<D> {
 
     /// Looks for candidates where those at hand may not be all that meet in this step.
     fn search(&mut self) -> Result<(), Trouble> {
-        if self.reach.is_covered() {
+        self.clearance.set_push(self.reach.body_push());
+        if self.reach.is_covered() && self.clearance.covers_all(self.margin) {
             return Ok(());
         }
         self.counts.searches += 1;
-        let (laws, reach) = (&self.laws, &mut self.reach);
-        // Where pairs of later steps are too many, those of this one alone.
+        let Touching { surface, laws, reach, clearance, candidates, margin, thickest, most, own, .. } = self;
         for steps in [if self.at_once { 0.0 } else { STEPS }, 0.0] {
-            reach.widen(self.margin, steps);
-            if self.candidates.find(&self.surface, &reach.found_in, self.thickest, self.most, |a, b| laws.meet(a, b)) {
+            reach.take_due();
+            reach.widen(&surface.body, *margin, steps);
+            clearance.widen(*margin, steps, own);
+            let stale = |a: u32, b: u32| {
+                let [a, b] = [a, b].map(|body| body as usize);
+                if a == b { own[a] } else { reach.stale()[a] || reach.stale()[b] }
+            };
+            let own = |p: u32| clearance.own_box(surface, p);
+            let meet = |a, b| laws.meet(a, b);
+            if candidates.refresh(surface, &reach.found_in, own, *thickest, *most, meet, stale) {
+                reach.found();
+                clearance.take(surface, candidates, *margin);
                 return Ok(());
             }
+            // Where pairs of later steps are too many, those of this one alone.
+            reach.look_at_all();
+            clearance.forget_own();
         }
         reach.forget();
         Err(Trouble::TooMany { found: self.candidates.len() })
@@ -540,6 +564,7 @@ impl<const D: usize> Touching<D> {
             + self.coupled.heap_bytes()
             + self.spread.heap_bytes()
             + self.candidates.heap_bytes()
+            + self.clearance.heap_bytes()
             + core::mem::size_of::<Row<D>>() * (self.rows.capacity() + self.watched.capacity())
     }
 }

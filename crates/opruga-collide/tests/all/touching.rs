@@ -352,6 +352,44 @@ fn cubes_stack() {
     assert!((low(1) - 0.5).abs() < 0.03 && (low(2) - 1.0).abs() < 0.06, "{} {}", low(1), low(2));
 }
 
+/// What a step has found out about pairs saves looks in later steps, and changes no bit: bodies that know nothing of the steps before do the same.
+#[test]
+fn what_is_known_of_distances_changes_no_bits() {
+    fn compare<const D: usize>(make: impl Fn() -> Toy<D>, h: f64, steps: usize) {
+        let [mut knowing, mut ignorant] = [make(), make()];
+        for step in 0..steps {
+            // Neither begins with impulses of the step before, which the other one would not have.
+            knowing.touching.begin();
+            let old = std::mem::take(&mut ignorant.touching);
+            let fresh = &mut ignorant.touching;
+            (fresh.surface, fresh.laws, fresh.inverse_mass) = (old.surface, old.laws, old.inverse_mass);
+            (fresh.before, fresh.after) = (old.before, old.after);
+            (fresh.margin, fresh.most) = (old.margin, old.most);
+            knowing.step(h);
+            ignorant.step(h);
+            assert_eq!(knowing.touching.after, ignorant.touching.after, "step {step}");
+        }
+        let counts = knowing.touching.counts;
+        assert!(3 * counts.searches < steps as u64 && counts.contacts > 0, "{counts:?}");
+    }
+    let heap = || {
+        let place = |k: u32| [0.55 * f64::from(k % 3) + 0.01 * f64::from(k / 3), 0.3 + 0.56 * f64::from(k / 3)];
+        let bodies: Vec<_> = (0..6).map(|k| (ring(24, 0.25), place(k), [0.0; 2])).collect();
+        let mut toy = Toy::new(&bodies, law(0.3, 0.2));
+        (toy.gas, toy.gravity, toy.floor) = (8.0, 9.81, vec![(1, 0.0, 1.0), (0, -0.3, 1.0), (0, 1.42, -1.0)]);
+        toy
+    };
+    compare(heap, 1.0 / 1920.0, 1000);
+    let stack = || {
+        let cube = || Mesh::<3>::grid([0.0; 3], [0.5; 3], [3, 3, 3]).expect("a cube");
+        let bodies = [(cube(), [0.0; 3], [0.0; 3]), (cube(), [0.11, 0.52, 0.07], [0.3, -1.0, 0.2])];
+        let mut toy = Toy::new(&bodies, law(0.5, 0.0));
+        (toy.gravity, toy.stiffness, toy.floor) = (9.81, 120.0, vec![(1, 0.0, 1.0)]);
+        toy
+    };
+    compare(stack, 1.0 / 1920.0, 500);
+}
+
 /// Points that nodes carry hand impulses on to these: momentum and angular momentum stay, and nothing crosses.
 #[test]
 fn carried_points_meet() {

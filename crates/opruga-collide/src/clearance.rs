@@ -1,0 +1,217 @@
+//! Lower bounds of the distances of candidates, by which most of them need no look in a step.
+
+use crate::candidates::Candidates;
+use crate::surface::Surface;
+use crate::vector::{add, length, scaled, subtract};
+use opruga_math::Lane;
+
+/// What is known of the distances of candidates.
+///
+/// ```text
+/// d(t) ≥ d(t₀) − (s_a(t) − s_a(t₀)) − (s_b(t) − s_b(t₀))
+/// ```
+///
+/// s is the path of a body: the largest displacement of its points, summed over the steps. It is relative to the mean displacement of all points, or of
+/// the points of the body where both features are its own. So bodies that fall together, or turn little, keep their distances.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Clearance<const D: usize> {
+    /// The positions at which the paths end [m].
+    x: Vec<[f64; D]>,
+    /// How the bodies move, and the mean displacement of all points in the step before [m].
+    motions: Vec<Motion<D>>,
+    whole: Option<[f64; D]>,
+    /// The paths of every body [m]: relative to all, and to itself.
+    paths: Vec<[f64; 2]>,
+    /// How far contact may push a point of every body in this step [m], at most.
+    push: Vec<f64>,
+    /// Both paths of every body to the end of this step [m], wherever contact pushes its points.
+    ends: Vec<[f64; 2]>,
+    /// Of every body the path up to which pairs of its own were looked for, and how far beyond its points [m].
+    own: Vec<[f64; 2]>,
+    /// Pairs of a vertex and a facet, and of two edges, in the order of the candidates.
+    pairs: [Vec<Known>; 2],
+    merged: Vec<Known>,
+}
+
+/// How a body moves in a step: the sum and the number of the displacements of its points, their mean in the step before, and the square of the
+/// largest one relative to that mean; the largest of the step before [m].
+#[derive(Clone, Copy, Debug)]
+struct Motion<const D: usize> {
+    sum: [f64; D],
+    points: f64,
+    mean: [f64; D],
+    square: f64,
+    largest: f64,
+}
+
+/// What is known of a pair.
+#[derive(Clone, Copy, Debug)]
+struct Known {
+    features: [u32; 2],
+    bodies: [u32; 2],
+    /// Its distance when it was last taken, and the paths of both bodies up to then [m].
+    until: f64,
+}
+
+/// The sum of the paths of two bodies relative to all, or of both features of one body relative to that.
+#[inline(always)]
+fn of_both(paths: &[[f64; 2]], [a, b]: &[u32; 2]) -> f64 {
+    let own = usize::from(a == b);
+    paths[*a as usize][own] + paths[*b as usize][own]
+}
+
+/// Of a body for which none were.
+const NEVER: [f64; 2] = [0.0, f64::NEG_INFINITY];
+
+/// Paths are counted anew beyond so many margins: what is added to them there is rounded to 1e-12 of a margin.
+const LONG: f64 = 1e4;
+
+/// Puts pairs, ascending, in place of those that were known.
+fn take_list(
+    known: &mut Vec<Known>,
+    merged: &mut Vec<Known>,
+    pairs: &[[u32; 2]],
+    bodies: impl Fn([u32; 2]) -> [u32; 2],
+) {
+    merged.clear();
+    let mut before = known.iter().peekable();
+    for features in pairs {
+        while before.next_if(|one| one.features < *features).is_some() {}
+        merged.push(match before.next_if(|one| one.features == *features) {
+            Some(one) => *one,
+            None => Known { features: *features, bodies: bodies(*features), until: f64::NEG_INFINITY },
+        });
+    }
+    std::mem::swap(known, merged);
+}
+
+/// Distances below this part of themselves are rounding.
+const ROUNDING: f64 = 1e-9;
+
+impl<const D: usize> Clearance<D> {
+    /// Goes on to the positions at the start of a step [m].
+    pub(crate) fn follow(&mut self, surface: &Surface<D>, x: &[[f64; D]]) {
+        if self.x.len() != x.len() {
+            self.x = x.to_vec();
+            let bodies = surface.body.iter().map(|body| *body as usize + 1).max().unwrap_or(0);
+            self.motions =
+                vec![Motion { sum: [0.0; D], points: 0.0, mean: [0.0; D], square: 0.0, largest: 0.0 }; bodies];
+            self.paths = vec![[0.0; 2]; bodies];
+            self.push = vec![0.0; bodies];
+            self.own = vec![NEVER; bodies];
+            self.pairs.iter_mut().for_each(Vec::clear);
+            return;
+        }
+        // Relative to the mean displacements of the step before: what these are changes the bounds, not that they hold.
+        for ((from, to), body) in self.x.iter_mut().zip(x).zip(&surface.body) {
+            let Motion { sum, points, mean, square, .. } = &mut self.motions[*body as usize];
+            let mut own = 0.0;
+            for d in 0..D {
+                let displacement = to[d] - from[d];
+                sum[d] += displacement;
+                own += (displacement - mean[d]) * (displacement - mean[d]);
+            }
+            *points += 1.0;
+            *square = own.larger(*square);
+            *from = *to;
+        }
+        let whole = self.whole.unwrap_or([0.0; D]);
+        let (mut sum, mut points) = ([0.0; D], 0.0);
+        for ([among_all, own], motion) in self.paths.iter_mut().zip(&mut self.motions) {
+            motion.largest = motion.square.sqrt();
+            *own += motion.largest;
+            *among_all += motion.largest + length(&subtract(&motion.mean, &whole));
+            (sum, points) = (add(&sum, &motion.sum), points + motion.points);
+            motion.mean = scaled(&motion.sum, 1.0 / motion.points.larger(1.0));
+            (motion.sum, motion.points, motion.square) = ([0.0; D], 0.0, 0.0);
+        }
+        self.whole = Some(scaled(&sum, 1.0 / points.larger(1.0)));
+    }
+
+    /// Takes the pairs that bodies have with themselves for none.
+    pub(crate) fn forget_own(&mut self) {
+        self.own.fill(NEVER);
+    }
+
+    /// How far points of a body may go relative to its mean in this step, and pairs beyond that may be asked for [m].
+    fn wanted(&self, body: usize, margin: f64) -> f64 {
+        2.0 * self.push[body] + 0.125 * margin
+    }
+
+    /// Whether all pairs that a body may have with itself in this step are at hand.
+    pub(crate) fn covers(&self, body: usize, margin: f64) -> bool {
+        let [path, width] = self.own[body];
+        self.paths[body][1] - path + self.wanted(body, margin) <= width
+    }
+
+    /// Whether this holds for all bodies.
+    pub(crate) fn covers_all(&self, margin: f64) -> bool {
+        (0..self.own.len()).all(|body| self.covers(body, margin))
+    }
+
+    /// Sets how far beyond the points of bodies whose pairs are looked for soon pairs of their own are looked for: half a margin [m] beyond this
+    /// step, and for fast bodies as far as they go in so many more. Lists these bodies.
+    pub(crate) fn widen(&mut self, margin: f64, steps: f64, own: &mut Vec<bool>) {
+        own.clear();
+        for body in 0..self.own.len() {
+            let due = !self.covers(body, 3.0 * margin);
+            own.push(due);
+            if due {
+                let more = (0.5 * margin).larger(steps * self.motions[body].largest);
+                self.own[body] = [self.paths[body][1], self.wanted(body, margin) + more];
+            }
+        }
+    }
+
+    /// The box of a point in which pairs of its own body are looked for [m].
+    pub(crate) fn own_box(&self, surface: &Surface<D>, point: u32) -> [[f64; D]; 2] {
+        let width = self.own[surface.body[point as usize] as usize][1];
+        [-width, width].map(|side| self.x[point as usize].map(|c| c + side))
+    }
+
+    /// Takes in the pairs of a search, both lists ascending; of those that it knows it knows what it knew.
+    pub(crate) fn take(&mut self, surface: &Surface<D>, candidates: &Candidates<D>, margin: f64) {
+        let body = |point: u32| surface.body[point as usize];
+        let of_facet = |[p, f]: [u32; 2]| [body(p), body(surface.facets[f as usize][0])];
+        let of_edges = |pair: [u32; 2]| pair.map(|e| body(surface.edges[e as usize][0]));
+        if self.paths.iter().flatten().any(|path| *path > LONG * margin) {
+            self.own.iter_mut().zip(&self.paths).for_each(|([path, _], [_, own])| *path -= own);
+            self.paths.fill([0.0; 2]);
+            self.pairs.iter_mut().for_each(Vec::clear);
+        }
+        take_list(&mut self.pairs[0], &mut self.merged, &candidates.vertex_facet, of_facet);
+        take_list(&mut self.pairs[1], &mut self.merged, &candidates.edge_edge, of_edges);
+    }
+
+    /// Takes in how far contact may push a point of every body at most [m].
+    pub(crate) fn set_push(&mut self, push: &[f64]) {
+        self.push.copy_from_slice(push);
+        self.ends.clear();
+        self.ends.extend(self.paths.iter().zip(push).map(|(paths, push)| paths.map(|path| path + 2.0 * push)));
+    }
+
+    /// The bodies of a pair.
+    pub(crate) fn bodies(&self, list: usize, pair: usize) -> [u32; 2] {
+        self.pairs[list][pair].bodies
+    }
+
+    /// Whether a pair does not come closer than a distance [m] within the step, whatever contact does.
+    #[inline(always)]
+    pub(crate) fn is_clear(&self, list: usize, pair: usize, distance: f64) -> bool {
+        let Known { bodies, until, .. } = &self.pairs[list][pair];
+        *until > of_both(&self.ends, bodies) + distance
+    }
+
+    /// Takes note that a pair is at least so far apart at the start of the step [m].
+    #[inline]
+    pub(crate) fn note(&mut self, list: usize, pair: usize, distance: f64) {
+        let known = &mut self.pairs[list][pair];
+        known.until = of_both(&self.paths, &known.bodies) + (1.0 - ROUNDING) * distance;
+    }
+
+    /// Bytes on the heap.
+    pub(crate) fn heap_bytes(&self) -> usize {
+        let pairs = self.pairs.iter().map(Vec::capacity).sum::<usize>() + self.merged.capacity();
+        8 * D * self.x.capacity() + (16 * D + 88) * self.paths.capacity() + core::mem::size_of::<Known>() * pairs
+    }
+}
