@@ -60,7 +60,7 @@ pub(crate) fn measure(arguments: &[String]) -> Result<(), String> {
 #[cfg(not(feature = "web"))]
 fn page() -> Result<PathBuf, String> {
     let mut cargo = std::process::Command::new(env!("CARGO"));
-    cargo.args(["run", "--profile", "tools", "--quiet", "--package", "xtask", "--features", "web", "--", "web"]);
+    cargo.args(["run", "--quiet", "--package", "xtask", "--features", "web", "--", "web"]);
     let status = cargo.current_dir(root()?).status().map_err(|e| format!("cargo run: {e}"))?;
     if status.success() { Ok(folder()?) } else { Err("the page was not built".into()) }
 }
