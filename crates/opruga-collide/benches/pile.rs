@@ -64,7 +64,8 @@ fn pile(count: [usize; 3]) -> Pile {
         let first = out_x.len() as u32;
         for a in 0..mesh.positions.len() {
             for b in 0..a {
-                let length = (0..3).map(|d| (mesh.positions[a][d] - mesh.positions[b][d]).powi(2)).sum::<f64>().sqrt();
+                let apart: [f64; 3] = std::array::from_fn(|d| mesh.positions[a][d] - mesh.positions[b][d]);
+                let length = (apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2]).sqrt();
                 if length < 1.8 * SPACING {
                     springs.push(([first + a as u32, first + b as u32], length));
                 }

@@ -28,6 +28,8 @@ pub(crate) struct Clearance<const D: usize> {
     ends: Vec<[f64; 2]>,
     /// Of every body the path up to which pairs of its own were looked for, and how far beyond its points [m].
     own: Vec<[f64; 2]>,
+    /// Of every body whether pairs of its own are looked for in this search.
+    due: Vec<bool>,
     /// Pairs of a vertex and a facet, and of two edges, in the order of the candidates.
     pairs: [Vec<Known>; 2],
     merged: Vec<Known>,
@@ -150,17 +152,23 @@ impl<const D: usize> Clearance<D> {
     }
 
     /// Sets how far beyond the points of bodies whose pairs are looked for soon pairs of their own are looked for: half a margin [m] beyond this
-    /// step, and for fast bodies as far as they go in so many more. Lists these bodies.
-    pub(crate) fn widen(&mut self, margin: f64, steps: f64, own: &mut Vec<bool>) {
-        own.clear();
+    /// step, and for fast bodies as far as they go in so many more.
+    pub(crate) fn widen(&mut self, margin: f64, steps: f64) {
+        self.due.clear();
         for body in 0..self.own.len() {
+            // What is used up by half is used up soon: one search for many bodies.
             let due = !self.covers(body, 3.0 * margin);
-            own.push(due);
+            self.due.push(due);
             if due {
                 let more = (0.5 * margin).larger(steps * self.motions[body].largest);
                 self.own[body] = [self.paths[body][1], self.wanted(body, margin) + more];
             }
         }
+    }
+
+    /// Whether pairs of a body with itself are looked for.
+    pub(crate) fn is_due(&self, body: u32) -> bool {
+        self.due[body as usize]
     }
 
     /// The box of a point in which pairs of its own body are looked for [m].

@@ -92,6 +92,7 @@ mod reports;
 mod response;
 mod row;
 mod rows;
+mod search;
 mod settle;
 mod shape;
 pub mod spec;

@@ -18,14 +18,14 @@ pub(crate) struct Reach<const D: usize> {
     pub(crate) found_in: Vec<Bounds<D>>,
     /// The largest of these of every body.
     body_push: Vec<f64>,
-    /// By the bodies: whether boxes of the step do not lie within those, with a quarter of a margin to spare.
+    /// By the bodies: whether boxes of the step do not lie within those, with a quarter of a margin to spare, or those are for a faster motion.
     stale: Vec<bool>,
-    /// By the bodies: whether they are soon stale, or have candidates for a faster motion than they have now. A search looks for those of all of
-    /// these at once.
+    /// By the bodies: whether they are soon stale. A search looks for the candidates of all of these at once.
     due: Vec<bool>,
 }
 
-/// Boxes so many times as wide as they would be found now have many candidates that do not meet.
+/// Boxes that are so many times as wide as they would be now are found anew: after an impact, bodies at rest would keep the candidates of their flight
+/// (`candidates_of_a_flight_are_dropped_at_rest`). Points that go straight ahead have twice the width behind them.
 const MOST_WIDTHS: f64 = 4.0;
 
 /// A box in which nothing lies.
@@ -63,8 +63,11 @@ impl<const D: usize> Reach<D> {
                 most = below.larger(above).larger(most);
             }
             let wide = (0.5 * margin).larger(steps * *push);
-            self.stale[body] |= !(least >= spare);
-            self.due[body] |= !(least >= spare + 0.5 * (wide - spare) && most <= MOST_WIDTHS * wide);
+            // Numbers that are none are covered by nothing.
+            let covered = least >= spare && most <= MOST_WIDTHS * wide;
+            let lasting = least >= spare + 0.5 * (wide - spare);
+            self.stale[body] |= !covered;
+            self.due[body] |= !lasting;
         }
     }
 
@@ -74,9 +77,9 @@ impl<const D: usize> Reach<D> {
         !self.stale.contains(&true)
     }
 
-    /// The bodies for which this does not hold.
-    pub(crate) fn stale(&self) -> &[bool] {
-        &self.stale
+    /// Whether this does not hold for a body.
+    pub(crate) fn is_stale(&self, body: u32) -> bool {
+        self.stale[body as usize]
     }
 
     /// Takes bodies that are due for stale.

@@ -67,8 +67,6 @@ pub struct Touching<const D: usize> {
     pub(crate) clearance: Clearance<D>,
     /// The laws for which candidates were looked for.
     found_for: Laws,
-    /// By the bodies: whether pairs that they have with themselves are looked for.
-    own: Vec<bool>,
     /// The contacts that are solved for: once solved, in the order of that.
     pub(crate) rows: Vec<Row<D>>,
     /// What they act on where nodes carry their points.
@@ -254,14 +252,7 @@ impl<const D: usize> Touching<D> {
             self.moved[p] = [0.0; D];
         }
         self.thickest = self.laws.largest_thickness();
-        let [x0, x1] = [&self.before[0], &self.after[0]];
-        if self.at_once {
-            // Where forces of contact are not yet those of the balance, they alone would lead bodies anywhere.
-            self.reach.begin(&self.surface.body, [x0, x0], self.thickest[0] + self.margin, self.margin, 0.0);
-        } else {
-            self.reach.begin(&self.surface.body, [x0, x1], h * self.laws.recovery_speed, self.margin, STEPS);
-        }
-        self.clearance.follow(&self.surface, x0);
+        self.begin_search(h);
         let mut rounds = 0;
         loop {
             self.search()?;
@@ -294,16 +285,6 @@ impl<const D: usize> Touching<D> {
         }
         self.keep_impulses();
         Ok(true)
-    }
-
-    /// Lets points reach as far as they end; says whether any did not.
-    fn grow(&mut self) -> bool {
-        let Touching { surface, reach, touched, after: [free, _], before: [from, _], end, margin, at_once, .. } = self;
-        if *at_once {
-            touched.fill(true);
-            return reach.grow(&surface.body, touched, [from, end], *margin);
-        }
-        reach.grow(&surface.body, touched, [free, end], *margin)
     }
 
     /// Whether no point of a body goes farther than it may.
@@ -371,37 +352,6 @@ impl<const D: usize> Touching<D> {
         self.touched.resize(self.surface.points(), false);
         self.v.clone_from(&self.after[1]);
         self.end.clone_from(&self.after[0]);
-    }
-
-    /// Looks for candidates where those at hand may not be all that meet in this step.
-    fn search(&mut self) -> Result<(), Trouble> {
-        self.clearance.set_push(self.reach.body_push());
-        if self.reach.is_covered() && self.clearance.covers_all(self.margin) {
-            return Ok(());
-        }
-        self.counts.searches += 1;
-        let Touching { surface, laws, reach, clearance, candidates, margin, thickest, most, own, .. } = self;
-        for steps in [if self.at_once { 0.0 } else { STEPS }, 0.0] {
-            reach.take_due();
-            reach.widen(&surface.body, *margin, steps);
-            clearance.widen(*margin, steps, own);
-            let stale = |a: u32, b: u32| {
-                let [a, b] = [a, b].map(|body| body as usize);
-                if a == b { own[a] } else { reach.stale()[a] || reach.stale()[b] }
-            };
-            let own = |p: u32| clearance.own_box(surface, p);
-            let meet = |a, b| laws.meet(a, b);
-            if candidates.refresh(surface, &reach.found_in, own, *thickest, *most, meet, stale) {
-                reach.found();
-                clearance.take(surface, candidates, *margin);
-                return Ok(());
-            }
-            // Where pairs of later steps are too many, those of this one alone.
-            reach.look_at_all();
-            clearance.forget_own();
-        }
-        reach.forget();
-        Err(Trouble::TooMany { found: self.candidates.len() })
     }
 
     /// Solves for the velocities after contact; says whether all bodies that follow as a whole have answered.
@@ -574,9 +524,6 @@ pub(crate) fn acting<'a, const D: usize>(spread: &'a Spread, row: &'a Row<D>) ->
     let (points, weights) = row.on(spread);
     points.iter().copied().zip(weights.iter().copied()).filter(|(_, weight)| *weight != 0.0)
 }
-
-/// For how many steps candidates of fast points are looked for at once. A search costs about as much as the gaps of eight steps.
-const STEPS: f64 = 8.0;
 
 /// How often pairs that would pass through one another are solved for along their normals, before what still passes moves as one: four, as an impulse
 /// along one pair may send another one through, but each round leaves fewer.

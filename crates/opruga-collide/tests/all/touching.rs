@@ -390,6 +390,22 @@ fn what_is_known_of_distances_changes_no_bits() {
     compare(stack, 1.0 / 1920.0, 500);
 }
 
+/// Bodies that have come to rest keep no candidates of a fast motion.
+#[test]
+fn candidates_of_a_flight_are_dropped_at_rest() {
+    let bodies: Vec<_> = (0..5).map(|k| (ring(24, 0.25), [0.6 * f64::from(k), 0.0], [0.0, 400.0])).collect();
+    let mut toy = Toy::new(&bodies, law(0.0, 0.0));
+    let candidates = |toy: &mut Toy<2>| {
+        let before = toy.touching.counts.candidates;
+        toy.step(1e-3);
+        toy.touching.counts.candidates - before
+    };
+    let flying = candidates(&mut toy);
+    toy.touching.after[1].iter_mut().for_each(|v| *v = [0.0; 2]);
+    let resting = candidates(&mut toy);
+    assert!(resting < flying / 2, "{flying} in flight, {resting} at rest");
+}
+
 /// Points that nodes carry hand impulses on to these: momentum and angular momentum stay, and nothing crosses.
 #[test]
 fn carried_points_meet() {

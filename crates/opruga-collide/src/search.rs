@@ -1,0 +1,60 @@
+//! Which pairs are at hand in a step: all that may meet in it, whatever contact does.
+
+use crate::touching::{Touching, Trouble};
+
+impl<const D: usize> Touching<D> {
+    /// Begins a step of h [s]: where points may be in it.
+    pub(crate) fn begin_search(&mut self, h: f64) {
+        let [x0, x1] = [&self.before[0], &self.after[0]];
+        if self.at_once {
+            // Where forces of contact are not yet those of the balance, they alone would lead bodies anywhere.
+            self.reach.begin(&self.surface.body, [x0, x0], self.thickest[0] + self.margin, self.margin, 0.0);
+        } else {
+            self.reach.begin(&self.surface.body, [x0, x1], h * self.laws.recovery_speed, self.margin, STEPS);
+        }
+        self.clearance.follow(&self.surface, x0);
+    }
+
+    /// Looks for candidates where those at hand may not be all that meet in this step.
+    pub(crate) fn search(&mut self) -> Result<(), Trouble> {
+        self.clearance.set_push(self.reach.body_push());
+        if self.reach.is_covered() && self.clearance.covers_all(self.margin) {
+            return Ok(());
+        }
+        self.counts.searches += 1;
+        let Touching { surface, laws, reach, clearance, candidates, margin, thickest, most, .. } = self;
+        for steps in [if self.at_once { 0.0 } else { STEPS }, 0.0] {
+            reach.take_due();
+            reach.widen(&surface.body, *margin, steps);
+            clearance.widen(*margin, steps);
+            let stale = |a: u32, b: u32| {
+                if a == b { clearance.is_due(a) } else { reach.is_stale(a) || reach.is_stale(b) }
+            };
+            let own = |p: u32| clearance.own_box(surface, p);
+            let meet = |a, b| laws.meet(a, b);
+            if candidates.refresh(surface, &reach.found_in, own, *thickest, *most, meet, stale) {
+                reach.found();
+                clearance.take(surface, candidates, *margin);
+                return Ok(());
+            }
+            // Where pairs of later steps are too many, those of this one alone.
+            reach.look_at_all();
+            clearance.forget_own();
+        }
+        reach.forget();
+        Err(Trouble::TooMany { found: self.candidates.len() })
+    }
+
+    /// Lets points reach as far as they end; says whether any did not.
+    pub(crate) fn grow(&mut self) -> bool {
+        let Touching { surface, reach, touched, after: [free, _], before: [from, _], end, margin, at_once, .. } = self;
+        if *at_once {
+            touched.fill(true);
+            return reach.grow(&surface.body, touched, [from, end], *margin);
+        }
+        reach.grow(&surface.body, touched, [free, end], *margin)
+    }
+}
+
+/// For how many steps candidates of fast points are looked for at once. A search costs about as much as the gaps of eight steps.
+const STEPS: f64 = 8.0;
