@@ -1,8 +1,9 @@
 //! Every scene that comes with the library ends with the bits of `scenes/golden.txt`, on any number of threads and with
-//! any vector instructions of this processor. The test tries the best instructions with 3 threads; the sweep tries them with 1 and 8
-//! threads, and the others with 3. The first frames are recorded, and played back.
+//! any vector instructions of this processor. The test tries the best instructions with 3 threads; the other ways are the best ones with 1 and 8
+//! threads, and the others with 3. The sweep tries one of them with every scene, by turns: all of them with every scene take four times as long
+//! (`cargo test -p opruga --test all -- --ignored in_all_ways`). The first frames are recorded, and played back.
 //!
-//! `cargo xtask goldens` writes the hashes anew (it runs the sweep with `OPRUGA_GOLDENS=write`); the numbers of frames
+//! `cargo xtask goldens` writes the hashes anew (it tries all ways with `OPRUGA_GOLDENS=write`); the numbers of frames
 //! are written by hand. A changed hash is a changed result: its reason belongs into the commit.
 
 use crate::recordings::first_frames_are_replayed;
@@ -80,22 +81,35 @@ fn every_scene_file_comes_with_the_library() {
 
 #[test]
 fn every_scene_ends_with_its_golden_hash_and_its_recording_replays_it() {
-    compare(&|best| if best { &[3] } else { &[] }, true);
+    compare(&|_| vec![(Simd::best(), 3)], true);
 }
 
 #[test]
 #[ignore = "a sweep: cargo test -- --ignored whole_sweep"]
 fn every_scene_ends_with_its_golden_hash_whole_sweep() {
-    // How many threads share the work does not depend on the instructions that they use.
-    compare(&|best| if best { &[1, 8] } else { &[3] }, false);
+    let ways = other_ways();
+    compare(&|scene| vec![ways[scene % ways.len()]], false);
 }
 
-/// Runs every scene with as many threads as given for the best vector instructions and for others.
-fn compare(threads_of: &dyn Fn(bool) -> &'static [usize], replay: bool) {
+#[test]
+#[ignore = "four times as long as the sweep: cargo test -p opruga --test all -- --ignored in_all_ways"]
+fn every_scene_ends_with_its_golden_hash_in_all_ways() {
+    compare(&|_| other_ways(), false);
+}
+
+/// Instructions and threads beside those of the test: how many threads share the work does not depend on the instructions that they use.
+fn other_ways() -> Vec<(Simd, usize)> {
+    let best = |simd: &Simd| simd.name() == Simd::best().name();
+    let others = Simd::available().into_iter().filter(|simd| !best(simd)).map(|simd| (simd, 3));
+    others.chain([1, 8].map(|threads| (Simd::best(), threads))).collect()
+}
+
+/// Runs every scene in the ways that are given by its number.
+fn compare(ways_of: &dyn Fn(usize) -> Vec<(Simd, usize)>, replay: bool) {
     let write = std::env::var("OPRUGA_GOLDENS").is_ok_and(|w| w == "write");
     let (head, golden) = file();
     let (mut text, mut wrong) = (head, Vec::new());
-    for name in scenes::names() {
+    for (number, name) in scenes::names().enumerate() {
         let known = golden.iter().find(|g| g.scene == name);
         let frames = known.map_or(FRAMES, |g| g.frames);
         let source = scenes::find(name).expect("a scene of the library");
@@ -106,20 +120,16 @@ fn compare(threads_of: &dyn Fn(bool) -> &'static [usize], replay: bool) {
         assert!(notices.iter().all(|n| n.about.code == "shape.dropped"), "{name}: {}", notices[0]);
         let start = std::time::Instant::now();
         let mut first = String::new();
-        for simd in Simd::available() {
-            for &threads in threads_of(simd.name() == Simd::best().name()) {
-                let options = Options { threads, simd: Some(simd), ..Options::default() };
-                let found = hash_of_any(&blueprint, frames, &options, replay.then_some(name));
-                if first.is_empty() {
-                    first.clone_from(&found);
-                }
-                let wanted = if write { written(&first) } else { known.map_or("no hash", |g| g.hash.as_str()) };
-                if written(&found) != wanted || found != first {
-                    wrong.push(format!(
-                        "{name} after {frames} frames, {threads} threads, {}: {found}, not {wanted}",
-                        simd.name()
-                    ));
-                }
+        for (simd, threads) in ways_of(number) {
+            let options = Options { threads, simd: Some(simd), ..Options::default() };
+            let found = hash_of_any(&blueprint, frames, &options, replay.then_some(name));
+            if first.is_empty() {
+                first.clone_from(&found);
+            }
+            let wanted = if write { written(&first) } else { known.map_or("no hash", |g| g.hash.as_str()) };
+            if written(&found) != wanted || found != first {
+                let simd = simd.name();
+                wrong.push(format!("{name} after {frames} frames, {threads} threads, {simd}: {found}, not {wanted}"));
             }
         }
         println!("{name}: {:.2} s", start.elapsed().as_secs_f64());
