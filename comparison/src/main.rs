@@ -9,11 +9,12 @@ mod cube;
 mod motion;
 mod mujoco;
 mod ours;
+mod pile;
 mod rapier;
 mod table;
 
 use clap::Parser;
-use table::Table;
+use serde_json::Value;
 
 /// Length of a frame, the same for all [s].
 pub const FRAME: f64 = 1.0 / 60.0;
@@ -27,12 +28,15 @@ pub fn processor_time() -> f64 {
 /// Opruga beside Rapier and MuJoCo: milliseconds per frame of one thread, and errors.
 #[derive(Debug, Parser)]
 pub struct Settings {
-    /// Bodies: `cube`, `beam`
+    /// Bodies: `cube`, `beam`, `pile`
     #[arg(long, value_delimiter = ',', default_value = "cube,beam")]
     bodies: Vec<String>,
     /// Cells along a side of the cube
     #[arg(long, value_delimiter = ',', default_value = "4,10")]
     cells: Vec<usize>,
+    /// Cubes of the pile along every axis
+    #[arg(long, value_delimiter = ',', default_value = "3")]
+    along: Vec<usize>,
     /// Young's moduli of the cube [Pa]
     #[arg(long, value_delimiter = ',', default_value = "1e5,1e6")]
     moduli: Vec<f64>,
@@ -53,22 +57,30 @@ pub struct Settings {
     json: bool,
 }
 
-fn compare(settings: &Settings, done: &mut dyn FnMut(Table)) -> Result<(), String> {
+fn compare(settings: &Settings, done: &mut dyn FnMut(String, Value)) -> Result<(), String> {
     for body in &settings.bodies {
         match body.as_str() {
             "cube" => {
                 for &n in &settings.cells {
                     for &modulus in &settings.moduli {
-                        done(cube::compare(n, modulus, settings)?);
+                        let table = cube::compare(n, modulus, settings)?;
+                        done(table.markdown(), table.json());
                     }
                 }
             }
             "beam" => {
                 for modulus in [1e8, 1e6] {
-                    done(beam::compare(modulus, settings)?);
+                    let table = beam::compare(modulus, settings)?;
+                    done(table.markdown(), table.json());
                 }
             }
-            other => return Err(format!("there is no body `{other}`; known: cube, beam")),
+            "pile" => {
+                for &along in &settings.along {
+                    let table = pile::compare(along)?;
+                    done(table.markdown(), table.json());
+                }
+            }
+            other => return Err(format!("there is no body `{other}`; known: cube, beam, pile")),
         }
     }
     Ok(())
@@ -77,11 +89,11 @@ fn compare(settings: &Settings, done: &mut dyn FnMut(Table)) -> Result<(), Strin
 fn main() {
     let settings = Settings::parse();
     let mut tables = Vec::new();
-    let outcome = compare(&settings, &mut |table| {
+    let outcome = compare(&settings, &mut |text, table| {
         if settings.json {
-            tables.push(table.json());
+            tables.push(table);
         } else {
-            print!("{}", table.markdown());
+            print!("{text}");
         }
     });
     if settings.json {

@@ -1,0 +1,286 @@
+//! Cubes of tetrahedra that fall on one another in a walled box: time, height, and how deep they are in one another.
+
+use crate::{processor_time, rapier};
+use opruga::blueprint::AnyBlueprint;
+use opruga::io::scene;
+use opruga::{Options, World, catalogue};
+use rapier3d::prelude::*;
+use serde_json::{Value, json};
+
+const SCENE: &str = include_str!("../../benches/scenes/falling-cubes.toml");
+
+/// Edge of a cube [m].
+const EDGE: f64 = 0.8;
+
+/// Frames before the first one that is timed, and those that are: from 1.5 to 2.5 s.
+const BEFORE: usize = 90;
+const TIMED: usize = 60;
+
+/// How often the depth is looked at [frames].
+const LOOK: usize = 10;
+
+/// What the programs share.
+struct Cubes {
+    positions: Vec<Vec<[f64; 3]>>,
+    masses: Vec<f64>,
+    tetrahedra: Vec<[u32; 4]>,
+    facets: Vec<[u32; 3]>,
+}
+
+/// One program with one setting.
+struct Row {
+    name: String,
+    milliseconds: Vec<f64>,
+    height: f64,
+    depth: f64,
+}
+
+/// All programs on as many cubes along every axis.
+pub struct Table {
+    title: String,
+    rows: Vec<Row>,
+}
+
+fn world(along: usize) -> Result<World<3>, String> {
+    let overrides = vec![("body.cube.copies.count".to_string(), format!("[{along}, {along}, {along}]"))];
+    let far = format!("[{:?}, 60.0, {:?}]", along as f64 + 0.5, along as f64 + 0.5);
+    let text = SCENE.replace("max = [3.5, 20.0, 3.5]", &format!("max = {far}"));
+    let reading = scene::Options { overrides, ..scene::Options::default() };
+    let (blueprint, _) = scene::read(text.as_bytes(), "falling-cubes", &catalogue(), &reading)
+        .map_err(|errors| errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))?;
+    let AnyBlueprint::Space(blueprint) = blueprint else { return Err("the cubes are not in space".into()) };
+    World::new(blueprint, Options::default()).map_err(|e| e.to_string())
+}
+
+fn cubes(world: &World<3>) -> Cubes {
+    let nodes = world.node_count(0) as u32;
+    let mesh = &world.blueprint().bodies[0].mesh;
+    Cubes {
+        positions: positions(world),
+        masses: (0..nodes).map(|node| world.node_mass(0, node)).collect(),
+        tetrahedra: mesh.cells.tetrahedra.clone(),
+        facets: mesh.facets.clone(),
+    }
+}
+
+fn positions(world: &World<3>) -> Vec<Vec<[f64; 3]>> {
+    let bodies = 0..world.blueprint().bodies.len();
+    bodies.map(|body| (0..world.node_count(body) as u32).map(|node| world.position(body, node)).collect()).collect()
+}
+
+/// Steps through the frames: `step` makes one, `place` says where all nodes are.
+fn run<W>(
+    name: &str,
+    cubes: &Cubes,
+    world: &mut W,
+    mut step: impl FnMut(&mut W) -> Result<(), String>,
+    place: impl Fn(&W) -> Vec<Vec<[f64; 3]>>,
+) -> Result<Row, String> {
+    let mut row = Row { name: name.into(), milliseconds: Vec::new(), height: 0.0, depth: 0.0 };
+    for frame in 0..BEFORE + TIMED {
+        let start = processor_time();
+        step(world)?;
+        if frame < BEFORE {
+            continue;
+        }
+        row.milliseconds.push((processor_time() - start) * 1e3);
+        if (frame + 1 - BEFORE).is_multiple_of(LOOK) {
+            row.depth = row.depth.max(depth(cubes, &place(world)));
+        }
+    }
+    let end = place(world);
+    let heights: Vec<f64> = end.iter().flatten().map(|x| x[1]).collect();
+    row.height = heights.iter().sum::<f64>() / heights.len() as f64;
+    row.milliseconds.sort_by(f64::total_cmp);
+    Ok(row)
+}
+
+fn of_rapier(cubes: &Cubes, along: usize, name: &str, solver: SoftBodySolver) -> Result<Row, String> {
+    let mut world = PhysicsWorld::new();
+    world.gravity = Vector::new(0.0, -9.81, 0.0);
+    world.integration_parameters.num_solver_iterations = rapier::SUBSTEPS as usize;
+    let far = along as f32 + 0.5;
+    let middle = 0.5 * (far - 0.5);
+    // Thick walls: the inside is that of Opruga's box.
+    for (center, half) in [
+        ([middle, -2.0, middle], [far + 4.0, 2.0, far + 4.0]),
+        ([-2.5, 20.0, middle], [2.0, 30.0, far + 4.0]),
+        ([far + 2.0, 20.0, middle], [2.0, 30.0, far + 4.0]),
+        ([middle, 20.0, -2.5], [far + 4.0, 30.0, 2.0]),
+        ([middle, 20.0, far + 2.0], [far + 4.0, 30.0, 2.0]),
+    ] {
+        let wall = ColliderBuilder::cuboid(half[0], half[1], half[2]).friction(0.5);
+        let place = Vector::new(center[0], center[1], center[2]);
+        world.insert(RigidBodyBuilder::fixed().translation(place), wall);
+    }
+    let handles: Vec<SoftBodyHandle> = (cubes.positions.iter())
+        .map(|nodes| {
+            let narrow = |x: &[f64; 3]| Vector::new(x[0] as f32, x[1] as f32, x[2] as f32);
+            let material = SoftBodyMaterial { young_modulus: 1e5, poisson_ratio: 0.4, ..SoftBodyMaterial::default() };
+            let body = SoftBodyBuilder::new(nodes.iter().map(narrow).collect())
+                .cells(cubes.tetrahedra.clone())
+                .surface(cubes.facets.clone())
+                .cell_model(SoftBodyCellModel::Corotational)
+                .material(material)
+                .solver(solver)
+                .masses(cubes.masses.iter().map(|m| *m as f32).collect())
+                .can_sleep(false);
+            world.insert_soft_body(body)
+        })
+        .collect();
+    let place = |world: &PhysicsWorld| {
+        let of = |handle: &SoftBodyHandle| {
+            let body = &world.soft_bodies[*handle];
+            let at = |node| {
+                let x = body.particle_position(node);
+                [f64::from(x.x), f64::from(x.y), f64::from(x.z)]
+            };
+            (0..cubes.masses.len()).map(at).collect()
+        };
+        handles.iter().map(of).collect()
+    };
+    let step = |world: &mut PhysicsWorld| {
+        world.step();
+        Ok(())
+    };
+    run(name, cubes, &mut world, step, place)
+}
+
+/// Rapier and Opruga on so many cubes along every axis.
+pub fn compare(along: usize) -> Result<Table, String> {
+    let mut own = world(along)?;
+    let cubes = cubes(&own);
+    let step = |world: &mut World<3>| world.frame().map(|_| ()).map_err(|e| e.to_string());
+    let rows = vec![
+        of_rapier(&cubes, along, "Rapier, constraints, 4 steps", SoftBodySolver::Constraints)?,
+        run("Opruga, symplectic Euler, 20 steps", &cubes, &mut own, step, positions)?,
+    ];
+    let title = format!("{} cubes of 320 tetrahedra, E = 1e5 Pa, that fall on one another", cubes.positions.len());
+    Ok(Table { title, rows })
+}
+
+impl Table {
+    /// Markdown.
+    pub fn markdown(&self) -> String {
+        let mut out = format!(
+            "\n{}\n\n| | ms per frame, median | least | ratio | mean height, m | deepest node, % of an edge |\n|---|---|---|---|---|---|\n",
+            self.title
+        );
+        for row in &self.rows {
+            out += &format!(
+                "| {} | {:.1} | {:.1} | {:.2} | {:.3} | {:.2} |\n",
+                row.name,
+                row.median(),
+                row.milliseconds[0],
+                row.median() / self.rows[0].median(),
+                row.height,
+                100.0 * row.depth / EDGE
+            );
+        }
+        out
+    }
+
+    /// An object with all digits.
+    pub fn json(&self) -> Value {
+        let row = |row: &Row| {
+            json!({
+                "program": row.name, "milliseconds_per_frame": row.median(), "least": row.milliseconds[0],
+                "ratio": row.median() / self.rows[0].median(), "mean_height": row.height, "deepest_node": row.depth,
+            })
+        };
+        json!({ "body": self.title, "rows": self.rows.iter().map(row).collect::<Vec<_>>() })
+    }
+}
+
+impl Row {
+    fn median(&self) -> f64 {
+        self.milliseconds[self.milliseconds.len() / 2]
+    }
+}
+
+type Point = [f64; 3];
+
+fn minus(a: &Point, b: &Point) -> Point {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn dot(a: &Point, b: &Point) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn cross(a: &Point, b: &Point) -> Point {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// Six times the volume of a tetrahedron.
+fn volume(a: &Point, b: &Point, c: &Point, d: &Point) -> f64 {
+    dot(&cross(&minus(b, a), &minus(c, a)), &minus(d, a))
+}
+
+fn is_within(p: &Point, corners: [&Point; 4]) -> bool {
+    let [a, b, c, d] = corners;
+    let whole = volume(a, b, c, d);
+    [volume(p, b, c, d), volume(a, p, c, d), volume(a, b, p, d), volume(a, b, c, p)].iter().all(|v| v * whole >= 0.0)
+}
+
+/// The distance of a point and a triangle, by its plane, its sides and its corners.
+fn distance(p: &Point, corners: [&Point; 3]) -> f64 {
+    let mut least = f64::INFINITY;
+    for k in 0..3 {
+        let (a, b) = (corners[k], corners[(k + 1) % 3]);
+        let (along, to) = (minus(b, a), minus(p, a));
+        let t = (dot(&to, &along) / dot(&along, &along)).clamp(0.0, 1.0);
+        let rest = minus(&to, &along.map(|c| t * c));
+        least = least.min(dot(&rest, &rest).sqrt());
+    }
+    let normal = cross(&minus(corners[1], corners[0]), &minus(corners[2], corners[0]));
+    let over = (0..3).all(|k| {
+        let (a, b) = (corners[k], corners[(k + 1) % 3]);
+        dot(&cross(&minus(b, a), &minus(p, a)), &normal) >= 0.0
+    });
+    if over {
+        least = least.min((dot(&normal, &minus(p, corners[0])) / dot(&normal, &normal).sqrt()).abs());
+    }
+    least
+}
+
+/// How deep a node of one cube is inside another one, at most [m].
+fn depth(cubes: &Cubes, at: &[Vec<Point>]) -> f64 {
+    let boxes: Vec<[Point; 2]> = at
+        .iter()
+        .map(|nodes| {
+            nodes.iter().fold([[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]], |[low, high], x| {
+                [std::array::from_fn(|d| low[d].min(x[d])), std::array::from_fn(|d| high[d].max(x[d]))]
+            })
+        })
+        .collect();
+    let mut deepest: f64 = 0.0;
+    for (a, nodes) in at.iter().enumerate() {
+        for (b, other) in at.iter().enumerate().filter(|(b, _)| *b != a) {
+            let near = |x: &&Point| (0..3).all(|d| boxes[b][0][d] <= x[d] && x[d] <= boxes[b][1][d]);
+            for p in nodes.iter().filter(near) {
+                let of = |k: &u32| &other[*k as usize];
+                if cubes.tetrahedra.iter().any(|cell| is_within(p, cell.each_ref().map(of))) {
+                    let out = cubes.facets.iter().map(|facet| distance(p, facet.each_ref().map(of)));
+                    deepest = deepest.max(out.fold(f64::INFINITY, f64::min));
+                }
+            }
+        }
+    }
+    deepest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_node_is_as_deep_as_the_nearest_side_is_away() {
+        let world = world(1).expect("a cube");
+        let cubes = cubes(&world);
+        let one = positions(&world).remove(0);
+        let moved = |by: f64| one.iter().map(|x| [x[0] + EDGE - by, x[1] + 0.01, x[2] + 0.013]).collect::<Vec<_>>();
+        assert_eq!(depth(&cubes, &[one.clone(), moved(-0.01)]), 0.0);
+        assert!((depth(&cubes, &[one.clone(), moved(0.03)]) - 0.03).abs() < 1e-12);
+    }
+}
