@@ -28,8 +28,11 @@ impl<const D: usize> Touching<D> {
             }
             self.take_gaps_of_vertex(vertex, first..k, h);
         }
+        let farthest = self.thickest[0].larger(self.thickest[1]);
         for k in 0..self.candidates.edge_edge.len() {
-            self.take_gap_of_edges(k, h);
+            if !self.clearance.is_clear(1, k, farthest) {
+                self.take_gap_of_edges(k, h);
+            }
         }
         self.put_passing(h);
     }
@@ -61,10 +64,6 @@ impl<const D: usize> Touching<D> {
     fn take_gap_of_edges(&mut self, candidate: usize, h: f64) {
         let pair @ [a, b] = self.candidates.edge_edge[candidate];
         let edges = pair.map(|e| self.surface.edges[e as usize]);
-        let farthest = self.thickest_at(edges[1][0]);
-        if self.clearance.is_clear(1, candidate, farthest) {
-            return;
-        }
         let bodies = self.clearance.bodies(1, candidate);
         let law = *self.laws.of(bodies[0], bodies[1]);
         let apart = self.reach.apart(&edges[0], &edges[1]);
