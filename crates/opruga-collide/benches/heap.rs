@@ -1,6 +1,8 @@
 //! Time of contact in a heap of gas balls in a box, beside that of their free motion: `cargo bench -p opruga-collide --bench heap`.
 #![allow(missing_docs)]
 
+mod common;
+
 use opruga_collide::{Laws, PairLaw, Touching};
 use opruga_core::contacts::Touch;
 use opruga_mesh::Mesh;
@@ -112,25 +114,7 @@ impl Heap {
     fn touch(&mut self) {
         let walls = self.walls;
         let obstacles = |_: u32, from: &[f64; 2], to: &[f64; 2], reach: f64, visit: &mut dyn FnMut(Touch<2>)| {
-            for (surface, &(k, bound, sign)) in walls.iter().enumerate() {
-                let gap = sign * (to[k] - bound);
-                if gap <= reach {
-                    let mut normal = [0.0; 2];
-                    normal[k] = sign;
-                    visit(Touch {
-                        surface,
-                        gap,
-                        gap_before: sign * (from[k] - bound),
-                        normal,
-                        carried: *from,
-                        velocity: [0.0; 2],
-                        friction: 0.3,
-                        restitution: 0.0,
-                        rest_speed: 0.0,
-                        rounding: 0.0,
-                    });
-                }
-            }
+            common::touch_walls(&walls, 0.3, [from, to], reach, visit);
         };
         self.touching.step(H, Some(&obstacles)).expect("no trouble");
     }
@@ -155,27 +139,7 @@ fn run(columns: usize, rows: usize, frames: usize) {
             }
             touch.push(of_frame);
         }
-        touch.sort_by(f64::total_cmp);
-        let counts = heap.touching.counts;
-        let of = |n: u64| n as f64 / counts.steps as f64;
-        let hash = heap.touching.after[0]
-            .iter()
-            .flatten()
-            .fold(0u64, |h, x| (h.rotate_left(5) ^ x.to_bits()).wrapping_mul(0x9E37_79B9_7F4A_7C15));
-        println!(
-            "frames {:4}..: contact {:8.3} ms (least {:8.3}, most {:8.3}), {:5.1} ns a vertex and step; free {:6.3} ms; searches {:.3}, candidates {:.0}, pairs {:.0}, contacts {:.0}, turns {:.0}; {hash:016x}",
-            10 * block,
-            touch[5] * 1e3,
-            touch[0] * 1e3,
-            touch[9] * 1e3,
-            touch[5] * 1e9 / (points * SUBSTEPS) as f64,
-            free * 1e2,
-            of(counts.searches),
-            of(counts.candidates),
-            of(counts.pairs),
-            of(counts.contacts),
-            of(counts.turns),
-        );
+        common::report(10 * block, touch, free, &heap.touching.counts, points, &heap.touching.after[0]);
     }
     println!("{:.0} bytes a vertex", heap.touching.heap_bytes() as f64 / points as f64);
 }

@@ -1,6 +1,8 @@
 //! Time of contact in a pile of elastic cubes in a walled box, beside that of their free motion: `cargo bench -p opruga-collide --bench pile`.
 #![allow(missing_docs)]
 
+mod common;
+
 use opruga_collide::{Laws, PairLaw, Touching};
 use opruga_core::contacts::Touch;
 use opruga_mesh::Mesh;
@@ -139,25 +141,7 @@ impl Pile {
     fn touch(&mut self) {
         let walls = self.walls();
         let obstacles = |_: u32, from: &[f64; 3], to: &[f64; 3], reach: f64, visit: &mut dyn FnMut(Touch<3>)| {
-            for (surface, &(k, bound, sign)) in walls.iter().enumerate() {
-                let gap = sign * (to[k] - bound);
-                if gap <= reach {
-                    let mut normal = [0.0; 3];
-                    normal[k] = sign;
-                    visit(Touch {
-                        surface,
-                        gap,
-                        gap_before: sign * (from[k] - bound),
-                        normal,
-                        carried: *from,
-                        velocity: [0.0; 3],
-                        friction: 0.5,
-                        restitution: 0.0,
-                        rest_speed: 0.0,
-                        rounding: 0.0,
-                    });
-                }
-            }
+            common::touch_walls(&walls, 0.5, [from, to], reach, visit);
         };
         self.touching.step(H, Some(&obstacles)).expect("no trouble");
         for p in &self.touching.changed {
@@ -187,25 +171,7 @@ fn run(edge: usize, frames: usize) {
             }
             touch.push(of_frame);
         }
-        touch.sort_by(f64::total_cmp);
-        let counts = pile.touching.counts;
-        let of = |n: u64| n as f64 / counts.steps as f64;
-        let hash = (pile.x.iter().flatten())
-            .fold(0u64, |h, x| (h.rotate_left(5) ^ x.to_bits()).wrapping_mul(0x9E37_79B9_7F4A_7C15));
-        println!(
-            "frames {:4}..: contact {:8.3} ms (least {:8.3}, most {:8.3}), {:5.1} ns a vertex and step; free {:6.3} ms; searches {:.3}, candidates {:.0}, pairs {:.0}, contacts {:.0}, turns {:.0}; {hash:016x}",
-            10 * block,
-            touch[5] * 1e3,
-            touch[0] * 1e3,
-            touch[9] * 1e3,
-            touch[5] * 1e9 / (points * SUBSTEPS) as f64,
-            free * 1e2,
-            of(counts.searches),
-            of(counts.candidates),
-            of(counts.pairs),
-            of(counts.contacts),
-            of(counts.turns),
-        );
+        common::report(10 * block, touch, free, &pile.touching.counts, points, &pile.x);
     }
     println!("{:.0} bytes a vertex", pile.touching.heap_bytes() as f64 / points as f64);
 }
