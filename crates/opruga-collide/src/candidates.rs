@@ -67,7 +67,7 @@ impl<const D: usize> Candidates<D> {
     /// distance for pairs of bodies, the second one for those with obstacles.
     ///
     /// `meet` says of two bodies whether they may touch, of a body with itself whether it may touch itself. Features that share a point
-    /// or a node that carries a point of both are no pair, and neither are vertices of bodies with facets of obstacles. False where there are more than `most` pairs: then the
+    /// or a node that carries a point of both are no pair, and neither are facets of obstacles with vertices of bodies whose nodes obstacles hold. False where there are more than `most` pairs: then the
     /// search ends.
     pub fn find(
         &mut self,
@@ -107,7 +107,7 @@ impl<const D: usize> Candidates<D> {
         let of_obstacle = |body: u32| surface.is_obstacle(body);
         let distance_of = |pair: &[u32; 2]| distances[usize::from(pair.iter().any(|body| of_obstacle(*body)))];
         pairs.clear();
-        for pair @ [a, b] in close.iter().filter(|[_, b]| !of_obstacle(*b)) {
+        for pair @ [a, b] in close.iter().filter(|[a, b]| !of_obstacle(*b) || surface.touches_faces(*a)) {
             let distance = distance_of(pair);
             let [a, b] = [*a as usize, *b as usize];
             let at = |p: u32| if a == b { own(p) } else { boxes[p as usize] };

@@ -34,6 +34,17 @@ pub(crate) enum Part<const D: usize> {
     Facets(Facets<D>),
 }
 
+impl<const D: usize> Form<D> {
+    /// Whether it has faces between corners, in the plane lines.
+    pub(crate) fn has_faces(&self) -> bool {
+        match self {
+            Form::Box { inside, .. } => !inside,
+            Form::Polygon { .. } | Form::Polyline { .. } | Form::Triangles { .. } => true,
+            Form::HalfSpace { .. } | Form::Ball { .. } | Form::Capsule { .. } => false,
+        }
+    }
+}
+
 impl<const D: usize> Part<D> {
     /// Whether it is a solid with edges.
     pub(crate) fn has_edges(&self) -> bool {
@@ -150,6 +161,10 @@ impl<const D: usize> Collider<D> {
     pub(crate) fn margin_of_rounding(&self) -> f64 {
         let margin = |part: &Part<D>| if let Part::Facets(facets) = part { facets.skin() } else { 0.0 };
         self.parts.iter().map(margin).fold(0.0, |most, margin| margin.larger(most))
+    }
+    /// Whether it has faces between corners, in the plane lines.
+    pub(crate) fn has_faces(&self) -> bool {
+        self.form.has_faces()
     }
     /// Whether it stands still.
     pub(crate) fn is_static(&self) -> bool {

@@ -28,7 +28,11 @@ fn of_space(colliders: Arc<Colliders<3>>) -> Arc<dyn Contacts<3>> {
 
 /// The rigid obstacles of a world. Cloning shares them.
 #[derive(Clone, Debug)]
-pub struct Colliders<const D: usize>(Arc<[Collider<D>]>);
+pub struct Colliders<const D: usize> {
+    all: Arc<[Collider<D>]>,
+    /// Whether those with faces hold no nodes: bodies meet their faces as those of other bodies.
+    without_faces: bool,
+}
 
 impl<const D: usize> Colliders<D> {
     /// Builds colliders from their parameters, in order; the kind of each is that of its [`Values`].
@@ -42,7 +46,15 @@ impl<const D: usize> Colliders<D> {
         for (number, values) in values.iter().enumerate() {
             colliders.push(Collider::build(number, values)?);
         }
-        Ok(Colliders(colliders.into()))
+        Ok(Colliders { all: colliders.into(), without_faces: false })
+    }
+    /// The same colliders, of which those with faces hold no nodes. Surfaces keep their numbers.
+    pub fn without_faces(&self) -> Colliders<D> {
+        Colliders { all: Arc::clone(&self.all), without_faces: true }
+    }
+    /// Whether a collider holds nodes.
+    fn holds(&self, collider: &Collider<D>) -> bool {
+        !(self.without_faces && collider.has_faces())
     }
     /// The colliders as what a system collides with.
     pub fn into_contacts(self: Arc<Self>) -> Arc<dyn Contacts<D>> {
@@ -59,15 +71,15 @@ impl<const D: usize> Colliders<D> {
     }
     /// The number of colliders.
     pub fn len(&self) -> usize {
-        self.0.len()
+        self.all.len()
     }
     /// Whether there is none.
     pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
+        self.all.is_empty()
     }
     /// Whether any of them moves.
     pub fn any_moves(&self) -> bool {
-        self.0.iter().any(|collider| !collider.is_static())
+        self.all.iter().any(|collider| !collider.is_static())
     }
     /// Whether any of them may touch something that stays between the corners `min` and `max` [m] of a box of space
     /// from `time0` to `time1` [s]. Never no where one does; it may be yes where none does.
@@ -76,7 +88,7 @@ impl<const D: usize> Colliders<D> {
     }
     /// The same of one of them.
     pub fn one_reaches(&self, collider: usize, time0: f64, time1: f64, min: &[f64; D], max: &[f64; D]) -> bool {
-        let collider = &self.0[collider];
+        let collider = &self.all[collider];
         let reach = collider.reach(time0, time1);
         collider.parts.iter().any(|part| collider.may_touch(part, &reach, min, max))
     }
@@ -87,25 +99,25 @@ impl<const D: usize> Colliders<D> {
             parts += collider.parts.len();
             parts > surface
         };
-        self.0.iter().position(behind).unwrap_or(0)
+        self.all.iter().position(behind).unwrap_or(0)
     }
     /// A collider by its number.
     pub(crate) fn collider(&self, number: usize) -> &Collider<D> {
-        &self.0[number]
+        &self.all[number]
     }
     /// Where the colliders are at a time [s], in order.
     pub fn pictures(&self, time: f64) -> Vec<Picture<D>> {
-        self.0.iter().map(|collider| picture(collider, time)).collect()
+        self.all.iter().map(|collider| picture(collider, time)).collect()
     }
     /// Whether there are solids with edges, beside which there is something else.
     fn has_seams(&self) -> bool {
-        let parts = || self.0.iter().flat_map(|collider| &collider.parts);
+        let parts = || self.all.iter().filter(|collider| self.holds(collider)).flat_map(|collider| &collider.parts);
         parts().nth(1).is_some() && parts().any(Part::has_edges)
     }
     /// Whether they are so near to the nodes of a tile that these may go from one to the other.
     fn has_seams_in(&self, moved: &Moved<D>, space: &[[f64; D]; 2]) -> bool {
         let (mut count, mut edges) = (0, false);
-        for collider in self.0.iter() {
+        for collider in self.all.iter().filter(|collider| self.holds(collider)) {
             let sweep = collider.sweep(moved.time, moved.h, space);
             for part in collider.parts.iter().filter(|part| collider.may_touch(part, &sweep, &space[0], &space[1])) {
                 count += 1;
@@ -116,7 +128,7 @@ impl<const D: usize> Colliders<D> {
     }
     /// One plane or ball has no corners: then one look at every node is enough, and no bounds are needed first.
     fn is_simple(&self) -> bool {
-        matches!(&*self.0, [one] if matches!(&*one.parts, [Part::HalfSpace(_)]))
+        matches!(&*self.all, [one] if matches!(&*one.parts, [Part::HalfSpace(_)]))
     }
 }
 
@@ -131,14 +143,14 @@ impl<const D: usize> Contacts<D> for Colliders<D> {
         }
         let near = |collider: &Collider<D>| {
             let sweep = collider.sweep(time, h, &[low, high]);
-            collider.parts.iter().any(|part| collider.may_touch(part, &sweep, &low, &high))
+            self.holds(collider) && collider.parts.iter().any(|part| collider.may_touch(part, &sweep, &low, &high))
         };
         let mut way = Way { from, to, kept: *to, faces: Faces::NONE, time, h, reach };
         if self.has_seams() {
-            self.0.iter().filter(|collider| near(collider)).for_each(|collider| way.keep(collider));
+            self.all.iter().filter(|collider| near(collider)).for_each(|collider| way.keep(collider));
         }
         let mut first = 0;
-        for collider in self.0.iter() {
+        for collider in self.all.iter() {
             let numbers = first..first + collider.parts.len();
             first = numbers.end;
             if near(collider) {
@@ -161,7 +173,7 @@ impl<const D: usize> Contacts<D> for Colliders<D> {
         let first = seams.then_some(Meets::WhatItLiesOn);
         for meets in first.into_iter().chain([Meets::Everything; ROUNDS]) {
             let mut touched = false;
-            for collider in self.0.iter() {
+            for collider in self.all.iter().filter(|collider| self.holds(collider)) {
                 let mut frame = None;
                 for part in &collider.parts {
                     if let Some(space) = &space

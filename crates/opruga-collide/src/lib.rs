@@ -67,6 +67,7 @@ mod closest;
 mod collider;
 mod contacts;
 mod coupled;
+mod creases;
 mod elimination;
 mod entries;
 mod facet_contacts;

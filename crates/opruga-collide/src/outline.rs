@@ -3,6 +3,7 @@
 use crate::closest::facet_normal;
 use crate::collider::Form;
 use crate::contacts::Colliders;
+use crate::creases::Creases;
 use crate::law::PairLaw;
 use crate::vector::{add, dot, scaled, subtract};
 use opruga_mesh::Mesh;
@@ -15,8 +16,12 @@ use opruga_mesh::Mesh;
 pub struct Outline<const D: usize> {
     /// The number of the collider.
     pub collider: usize,
-    /// Corners, edges and faces where they are at time 0 without any motion [m].
+    /// Corners, edges and faces where they are at time 0 without any motion [m]. Its first points are no corners.
     pub mesh: Mesh<D>,
+    /// How many points lie within plane faces, in the plane within straight lines: these belong to faces alone.
+    pub within_faces: usize,
+    /// In space the edges, ascending, but those between two faces of one plane.
+    pub edges: Vec<[u32; 2]>,
     /// How they answer to touch.
     pub law: PairLaw,
 }
@@ -30,7 +35,8 @@ impl<const D: usize> Colliders<D> {
             let Some((mesh, radius)) = outline_of(&self.collider(collider).form) else { continue };
             let thickness = law.thickness + radius;
             let law = PairLaw { touch: true, friction: law.friction, restitution: law.restitution, thickness };
-            out.push(Outline { collider, mesh, law });
+            let Creases { mesh, within_faces, edges } = Creases::of(mesh);
+            out.push(Outline { collider, mesh, within_faces, edges, law });
         }
         out
     }

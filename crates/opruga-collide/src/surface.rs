@@ -1,7 +1,6 @@
 //! The surface of deformable bodies: what touches.
 
-use crate::closest::facet_normal;
-use crate::vector::{dot, subtract};
+use crate::outline::Outline;
 use opruga_mesh::{Carrier, Mesh, TouchingSurface};
 
 /// Points, edges and facets of the surfaces of some bodies, all of one kind for those who look for contact.
@@ -26,6 +25,8 @@ pub struct Surface<const D: usize> {
     /// The points that others carry, ascending, and what carries each: points that move by themselves.
     carried: Vec<u32>,
     carriers: Vec<Carrier>,
+    /// Which bodies touch faces of obstacles, by their place among those that were added: of others, obstacles hold the nodes.
+    touch_faces: Vec<bool>,
     /// The first body that is an obstacle, and its first point.
     obstacles: Option<[u32; 2]>,
     /// The facets around a point: `around[ring[p]..ring[p + 1]]`, ascending.
@@ -93,33 +94,31 @@ impl<const D: usize> Surface<D> {
         own.nodes
     }
 
-    /// Adds the surface of an obstacle, after all bodies. Edges between faces of one plane are left out.
-    pub fn add_obstacle(&mut self, mesh: &Mesh<D>, body: u32) {
+    /// Adds the surface of an obstacle, after all bodies, with the edges and corners of its outline alone.
+    pub fn add_obstacle(&mut self, outline: &Outline<D>, body: u32) {
         let (point, first) = (self.points() as u32, self.edges.len());
         self.obstacles.get_or_insert([body, point]);
-        let nodes = self.add(mesh, body);
-        let normal = |facet: u32| {
-            let corners = self.facets[facet as usize];
-            facet_normal(&corners.map(|p| mesh.positions[nodes[(p - point) as usize] as usize]))
-        };
-        let mut keep = Vec::new();
-        for k in first..self.edges.len() {
-            let [a, b] = self.sides[k];
-            let flat = a != u32::MAX && b != u32::MAX && {
-                let (a, b) = (normal(a), normal(b));
-                let difference = subtract(&a.map(|c| c / dot(&a, &a).sqrt()), &b.map(|c| c / dot(&b, &b).sqrt()));
-                dot(&difference, &difference) < FLAT * FLAT
-            };
-            if !flat {
-                keep.push((self.edges[k], self.sides[k]));
-            }
+        self.add(&outline.mesh, body);
+        if let Some(start) = self.starts.last_mut() {
+            start[3] += outline.within_faces as u32;
         }
-        self.edges.truncate(first);
-        self.sides.truncate(first);
-        for (edge, sides) in keep {
-            self.edges.push(edge);
-            self.sides.push(sides);
-        }
+        let is_kept = |edge: &[u32; 2]| outline.edges.binary_search(&edge.map(|p| p - point)).is_ok();
+        let all = self.edges.drain(first..).zip(self.sides.drain(first..));
+        let (edges, sides): (Vec<_>, Vec<_>) = all.filter(|(edge, _)| is_kept(edge)).unzip();
+        self.edges.extend(edges);
+        self.sides.extend(sides);
+    }
+
+    /// Lets a body, by its place among those that were added, touch faces of obstacles with its vertices. Otherwise obstacles hold its nodes by
+    /// themselves.
+    pub fn touch_faces(&mut self, number: usize) {
+        self.touch_faces.resize(self.touch_faces.len().max(number + 1), false);
+        self.touch_faces[number] = true;
+    }
+
+    /// Whether a body touches faces of obstacles, by its place among those that were added.
+    pub(crate) fn touches_faces(&self, number: u32) -> bool {
+        self.touch_faces.get(number as usize).is_some_and(|touches| *touches)
     }
 
     /// Whether a body is an obstacle.
@@ -245,6 +244,3 @@ impl<const D: usize> Surface<D> {
             + core::mem::size_of::<Carrier>() * self.carriers.capacity()
     }
 }
-
-/// The angle of an edge below which its two faces lie in one plane.
-const FLAT: f64 = 1e-9;

@@ -18,6 +18,8 @@ pub(crate) struct Meeting<const D: usize> {
     pub(crate) cluster: Cluster,
     numbers: Vec<u32>,
     colliders: Option<Arc<Colliders<D>>>,
+    /// Those that hold nodes of bodies that touch faces of obstacles.
+    pub(crate) without_faces: Option<Arc<dyn Contacts<D>>>,
     /// For every island of the group the first of its points and where their nodes lie in its columns, body by body.
     columns: Vec<Vec<(u32, Vec<u32>)>>,
     /// The island of every point and the index in its columns; `u32::MAX` for one that nodes carry.
@@ -97,6 +99,7 @@ impl<const D: usize> Meeting<D> {
         numbers.extend(cluster.outlines.iter().map(|outline| first_outline + outline));
         let mut touching = Touching::<D>::default();
         let (mut columns, mut points, mut pushed) = (vec![Vec::new(); islands.len()], Vec::new(), Vec::new());
+        let mut pushed_bodies = Vec::new();
         let mut workspace = Workspace::default();
         for (own, number) in cluster.bodies.iter().enumerate() {
             let (island, lane) = scene.seats[*number as usize];
@@ -117,6 +120,7 @@ impl<const D: usize> Meeting<D> {
             if integrator.takes_pushes() {
                 touching.coupled.add(first as usize..first as usize + indices.len());
                 pushed.push(Pushed::new(island, indices.clone()));
+                pushed_bodies.push(own);
                 workspace.fit(system);
             }
             points.resize(touching.surface.points(), (island as u32, u32::MAX));
@@ -126,7 +130,7 @@ impl<const D: usize> Meeting<D> {
         let mut outlines = Vec::new();
         for (k, number) in cluster.outlines.iter().enumerate() {
             let (outline, first) = (&scene.outlines[*number as usize], touching.surface.points());
-            touching.surface.add_obstacle(&outline.mesh, (cluster.bodies.len() + k) as u32);
+            touching.surface.add_obstacle(outline, (cluster.bodies.len() + k) as u32);
             touching.inverse_mass.resize(touching.surface.points(), [0.0; D]);
             outlines.push((Arc::clone(outline), first));
         }
@@ -139,6 +143,13 @@ impl<const D: usize> Meeting<D> {
         if at_rest {
             touching.come_to_rest();
         }
+        // An obstacle that holds a node lets no contact lift it off within the step. Beside an edge, contacts and held nodes would contradict each
+        // other: so what steps implicitly meets faces as those of bodies.
+        let mut without_faces = None;
+        if let Some(colliders) = scene.colliders().filter(|_| !at_rest && !pushed.is_empty()) {
+            without_faces = Some(Arc::new(colliders.without_faces()).into_contacts());
+            pushed_bodies.into_iter().for_each(|own| touching.surface.touch_faces(own));
+        }
         let mut rules: Vec<u32> = cluster.bodies.iter().map(|number| scene.rules[*number as usize]).collect();
         if rules.iter().all(|rule| *rule == rules[0]) {
             rules.clear();
@@ -149,6 +160,7 @@ impl<const D: usize> Meeting<D> {
             numbers,
             cluster,
             colliders: scene.colliders().cloned(),
+            without_faces,
             columns,
             points,
             rules,

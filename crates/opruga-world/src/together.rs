@@ -118,6 +118,10 @@ impl<const D: usize> Job<'_, D> {
         islands.iter_mut().for_each(|island| island.begin_together(plan));
         let contacts = plan.colliders.map(|colliders| Arc::clone(colliders).into_contacts());
         for meeting in meetings.iter_mut() {
+            if let Some(contacts) = &meeting.without_faces {
+                let own = meeting.pushed.iter();
+                own.for_each(|pushed| islands[pushed.island].system.contacts = Some(Arc::clone(contacts)));
+            }
             meeting.begin();
             meeting.recall(hands.memory, islands, plan.h);
             meeting.take(islands, plan.start);
