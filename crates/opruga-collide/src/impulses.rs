@@ -1,11 +1,11 @@
 //! Impulses on pairs in contact: projected Gauss–Seidel.
 
 use crate::coupled::Coupled;
-use crate::newton;
 use crate::row::Row;
 use crate::spread::Spread;
 use crate::subspace;
 use crate::vector::{dot, length, scaled, subtract};
+use crate::working_set;
 use core::any::Any;
 use opruga_math::Lane;
 
@@ -302,8 +302,8 @@ fn solve<const D: usize>(problem: Problem<'_, D>) -> usize {
             }
             (false, _) => (MOST_SWEEPS, TOLERANCE * approach),
         };
-        if together && newton::is_small(rows) {
-            *now += newton::solve(rows, spread, inverse_mass, coupled, v, enough) as u64;
+        if together && let Some(turns) = working_set::solve(rows, spread, inverse_mass, coupled, v, enough) {
+            *now += turns as u64;
             continue;
         }
         let (mut failures, mut smallest) = (0, f64::INFINITY);

@@ -103,6 +103,7 @@ mod surface;
 mod touch;
 mod touching;
 mod vector;
+mod working_set;
 mod zones;
 
 pub use barrier::{Barrier, Pressed, Rubbing};

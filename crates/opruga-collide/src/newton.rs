@@ -23,7 +23,7 @@ use crate::vector::{across, add, dot, scaled, subtract};
 use opruga_math::{Lane, Simd, WIDTH};
 
 /// The most unknowns. An elimination takes ⅓ n³ products: 0.2 · 10⁹ for so many, as much as a hundred sweeps take over bodies of so many points.
-const MOST_UNKNOWNS: usize = 900;
+pub(crate) const MOST_UNKNOWNS: usize = 900;
 
 /// The part of the diagonal of W that holds changes of impulses back: at the beginning and at least, and at most. It is larger where Newton's method
 /// did not end, which then finds it easier, and smaller where it did, as the next impulses are to come nearer. With a fixed part,
@@ -93,12 +93,8 @@ struct Trial {
     missed: Vec<f64>,
 }
 
-/// Whether so many contacts are few enough.
-pub(crate) fn is_small<const D: usize>(rows: &[Row<D>]) -> bool {
-    rows.iter().map(count_of).sum::<usize>() <= MOST_UNKNOWNS
-}
-
-fn count_of<const D: usize>(row: &Row<D>) -> usize {
+/// The unknowns of a contact.
+pub(crate) fn count_of<const D: usize>(row: &Row<D>) -> usize {
     match row.mass[0] > 0.0 {
         true if row.friction > 0.0 => D,
         moves => usize::from(moves),

@@ -1,0 +1,65 @@
+//! Impulses of contacts of bodies that answer as a whole, where far more pairs are looked at than press.
+//!
+//! Most pairs of a step only might touch: they are near, and have no impulse in the end. So the laws are solved for some contacts alone, the
+//! working set. Those that approach too fast then join it, the fastest first, until none does. Each solution holds the laws of all contacts
+//! of the set, so the last one holds those of all.
+
+use crate::coupled::Coupled;
+use crate::newton;
+use crate::row::Row;
+use crate::spread::Spread;
+use crate::vector::{dot, subtract};
+
+/// The most solutions. Two to five are enough in most steps; contacts that leave and join in turn have no end.
+const MOST_SOLUTIONS: usize = 40;
+
+/// Goes to the impulses at which all contacts obey their laws, to `enough` [m/s]. Gives the number of turns; none where more contacts press than
+/// are solved at once, or no set is the last one: impulses and velocities then belong together, and sweeps go on from there.
+pub(crate) fn solve<const D: usize>(
+    rows: &mut [Row<D>],
+    spread: &Spread,
+    inverse_mass: &[[f64; D]],
+    coupled: &mut Coupled<D>,
+    v: &mut [[f64; D]],
+    enough: f64,
+) -> Option<usize> {
+    let mut belongs: Vec<bool> = rows.iter().map(|row| row.normal_impulse > 0.0).collect();
+    let mut turns = 0;
+    for solution in 0..MOST_SOLUTIONS {
+        let approach = |row: &Row<D>| row.target - dot(&subtract(&row.mean(spread, v), &row.carry), &row.normal);
+        let mut joining: Vec<(f64, usize)> = (0..rows.len())
+            .filter(|k| !belongs[*k] && rows[*k].mass[0] > 0.0)
+            .map(|k| (approach(&rows[k]), k))
+            .filter(|(approach, _)| *approach > enough)
+            .collect();
+        if joining.is_empty() && solution > 0 {
+            return Some(turns);
+        }
+        joining.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        let unknowns = |belongs: &[bool]| -> usize {
+            rows.iter().zip(belongs).filter(|(_, own)| **own).map(|(row, _)| newton::count_of(row)).sum()
+        };
+        let mut size = unknowns(&belongs);
+        // What does not press leaves room for what approaches.
+        let fits = |size: usize, k: usize| size + newton::count_of(&rows[k]) <= newton::MOST_UNKNOWNS;
+        if size > newton::MOST_UNKNOWNS || joining.first().is_some_and(|(_, k)| !fits(size, *k)) {
+            belongs.iter_mut().zip(rows.iter()).for_each(|(own, row)| *own = row.normal_impulse > 0.0);
+            size = unknowns(&belongs);
+            if size > newton::MOST_UNKNOWNS || joining.first().is_some_and(|(_, k)| !fits(size, *k)) {
+                return None;
+            }
+        }
+        for (_, k) in joining {
+            if !fits(size, k) {
+                break;
+            }
+            belongs[k] = true;
+            size += newton::count_of(&rows[k]);
+        }
+        let numbers: Vec<usize> = (0..rows.len()).filter(|k| belongs[*k]).collect();
+        let mut set: Vec<Row<D>> = numbers.iter().map(|k| rows[*k]).collect();
+        turns += rows.len() + newton::solve(&mut set, spread, inverse_mass, coupled, v, enough);
+        numbers.iter().zip(set).for_each(|(k, row)| rows[*k] = row);
+    }
+    None
+}
