@@ -59,6 +59,7 @@
 #![allow(rustdoc::broken_intra_doc_links)]
 
 mod barrier;
+mod began_inside;
 mod bounds;
 mod candidates;
 mod ccd;

@@ -54,7 +54,10 @@ impl<const D: usize> Touching<D> {
         if self.at_once || self.around.iter().any(|(row, _)| row.gap < known) {
             inside |= self.at_once;
             self.around.clear();
-            self.take_gaps_of(candidates, h, 0.25 * self.margin, inside);
+            self.take_gaps_of(candidates.clone(), h, 0.25 * self.margin, inside);
+        }
+        if self.began_inside.binary_search(&vertex).is_ok() {
+            self.take_nearest_of(candidates, h);
         }
         self.keep_the_nearest();
         self.take_around();
@@ -110,7 +113,8 @@ impl<const D: usize> Touching<D> {
         let mut inside = false;
         for k in candidates {
             let pair @ [vertex, facet] = self.candidates.vertex_facet[k];
-            let farthest = self.thickest_at(vertex) + distance;
+            let farthest =
+                self.thickest_at(vertex).larger(self.thickest_at(self.surface.facets[facet as usize][0])) + distance;
             if !all && self.clearance.is_clear(0, k, farthest) {
                 continue;
             }
@@ -136,6 +140,31 @@ impl<const D: usize> Touching<D> {
             self.push(gap, &law, h, pair, true, distance);
         }
         inside
+    }
+
+    /// Takes the gap of a vertex and the nearest facet of every other body among some candidates of it, however far.
+    fn take_nearest_of(&mut self, candidates: Range<usize>, h: f64) {
+        let mut nearest: Vec<(u32, [u32; 2], Gap<D>)> = Vec::new();
+        for k in candidates {
+            let pair @ [vertex, facet] = self.candidates.vertex_facet[k];
+            let [own, other] = self.clearance.bodies(0, k);
+            if own == other {
+                continue;
+            }
+            let gap = Gap::of_vertex_and_facet(&self.surface, &self.before[0], vertex, facet);
+            match nearest.iter_mut().find(|(body, ..)| *body == other) {
+                Some((_, known, least)) if gap.gap.abs() < least.gap.abs() => (*known, *least) = (pair, gap),
+                Some(_) => {}
+                None => nearest.push((other, pair, gap)),
+            }
+        }
+        for (other, pair, gap) in nearest {
+            let own = self.surface.body[pair[0] as usize];
+            let law = *self.laws.of(own, other);
+            if self.around.iter().all(|(row, _)| row.id != key(pair, true)) {
+                self.push(gap, &law, h, pair, true, f64::INFINITY);
+            }
+        }
     }
 
     /// Adds a row for the gap of a vertex and a facet, or of two edges, unless they stay apart by more than a distance [m].

@@ -95,6 +95,9 @@ pub struct Touching<const D: usize> {
     /// The pairs of a vertex and a facet, and of two edges, that may meet in the step.
     pub(crate) close: [Vec<[u32; 2]>; 2],
     pub(crate) zones: Zones<D>,
+    /// Whether the frame has begun without a look at which points lie inside other bodies; and these points, ascending.
+    pub(crate) looks_inside: bool,
+    pub(crate) began_inside: Vec<u32>,
     /// The largest distance that surfaces keep in contact [m]: of bodies, and with obstacles.
     pub(crate) thickest: [f64; 2],
     pub(crate) wanted: Vec<f64>,
@@ -167,6 +170,7 @@ impl<const D: usize> Touching<D> {
     pub fn begin(&mut self) {
         self.last.clear();
         self.reports.clear();
+        self.looks_inside = true;
         if self.found_for != self.laws {
             self.found_for.clone_from(&self.laws);
             self.reach.forget();
@@ -256,6 +260,9 @@ impl<const D: usize> Touching<D> {
         let mut rounds = 0;
         loop {
             self.search()?;
+            if std::mem::take(&mut self.looks_inside) {
+                self.find_began_inside();
+            }
             self.take_gaps(h);
             if !self.rows.is_empty() || !self.given.is_empty() {
                 if !self.solve(h, obstacles, respond.as_mut().map(|respond| &mut **respond as _)) {
