@@ -3,7 +3,7 @@
 use crate::any_scene::{AnyBody, AnyScene, three};
 use crate::blueprint::{AnyBlueprint, CommandBlueprint};
 use crate::contact_report::Contact;
-use crate::crossed::Crossed;
+use crate::crossed::{Crossed, Overlap};
 use crate::error::WorldError;
 use crate::inputs::Input;
 use crate::ledger::Energy;
@@ -151,6 +151,8 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     fn warn_of_missing_contact(&mut self);
     /// The surfaces that cross, and bodies that lie in one another.
     fn crossed_surfaces(&self) -> Vec<Crossed>;
+    /// Bodies of which points lie inside another one.
+    fn overlaps(&self) -> Vec<Overlap>;
     /// Lets the frames that follow report their contacts, or not.
     fn report_contacts(&mut self, report: bool);
     /// The contacts between bodies in the last frame, ascending by bodies.
@@ -353,6 +355,9 @@ impl<const D: usize> AnyWorld for World<D> {
     }
     fn crossed_surfaces(&self) -> Vec<Crossed> {
         self.crossed_surfaces()
+    }
+    fn overlaps(&self) -> Vec<Overlap> {
+        self.overlaps()
     }
     fn report_contacts(&mut self, report: bool) {
         self.report_contacts(report);

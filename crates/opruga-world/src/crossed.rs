@@ -14,6 +14,15 @@ pub struct Crossed {
     pub facets: Option<[u32; 2]>,
 }
 
+/// A body of which points lie inside another one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Overlap {
+    /// The body whose points they are, and the one that they are in, by their place in the scene.
+    pub bodies: [usize; 2],
+    /// The part of the points of its surface.
+    pub share: f64,
+}
+
 /// The surfaces of some bodies as they are now, as one mesh.
 struct Surfaces<const D: usize> {
     positions: Vec<[f64; D]>,
@@ -21,8 +30,15 @@ struct Surfaces<const D: usize> {
     facets: Vec<[u32; D]>,
     /// The body of every facet, and its number there.
     origin: Vec<(usize, u32)>,
-    /// The closed boundary of every body, by its facets here.
-    closed: Vec<(usize, core::ops::Range<usize>)>,
+    /// The closed boundaries of bodies.
+    closed: Vec<Boundary<D>>,
+}
+
+/// A closed boundary: its body, its facets among those of all, and the box around it.
+struct Boundary<const D: usize> {
+    body: usize,
+    facets: core::ops::Range<usize>,
+    bounds: [[f64; D]; 2],
 }
 
 impl<const D: usize> World<D> {
@@ -71,6 +87,32 @@ impl<const D: usize> World<D> {
         found
     }
 
+    /// Bodies of which points lie within the closed boundary of another one, of those that contact keeps apart, without a section `[contact]`
+    /// of all; ascending by bodies. A check that shares no code with the detection of contact.
+    pub fn overlaps(&self) -> Vec<Overlap> {
+        let there = (0..self.blueprint.bodies.len()).filter(|body| self.handle(*body).is_some());
+        let contact = self.blueprint.contact.as_ref();
+        let bodies: Vec<usize> = there.filter(|b| contact.is_none() || self.blueprint.bodies[*b].touches()).collect();
+        let laws = contact.map(|contact| laws(&self.blueprint, contact, &bodies, 1.0));
+        let surfaces = self.surfaces(&bodies);
+        let points = surfaces.points_of(&bodies);
+        let mut found = Vec::new();
+        for (inner, own) in bodies.iter().enumerate() {
+            for boundary in &surfaces.closed {
+                let other = bodies.binary_search(&boundary.body).unwrap_or(inner);
+                if other == inner || laws.as_ref().is_some_and(|laws| !laws.meet(inner as u32, other as u32)) {
+                    continue;
+                }
+                let inside = points[inner].iter().filter(|p| surfaces.is_inside(boundary, **p)).count();
+                if inside > 0 {
+                    let share = inside as f64 / points[inner].len() as f64;
+                    found.push(Overlap { bodies: [*own, boundary.body], share });
+                }
+            }
+        }
+        found
+    }
+
     /// The box around the nodes of a body [m].
     pub(crate) fn bounds_of(&self, body: usize) -> [[f64; D]; 2] {
         let nodes = 0..self.blueprint.bodies[body].mesh.nodes() as u32;
@@ -102,7 +144,10 @@ impl<const D: usize> World<D> {
             out.positions.extend(surface.positions(&nodes));
             out.facets.extend(surface.facets.iter().map(|facet| facet.map(|point| first + point)));
             if surface.closed > 0 {
-                out.closed.push((*body, begin..begin + surface.closed));
+                let facets = begin..begin + surface.closed;
+                let points = out.facets[facets.clone()].iter().flatten();
+                let bounds = bounds(points.map(|point| out.positions[*point as usize]));
+                out.closed.push(Boundary { body: *body, facets, bounds });
             }
             out.origin.extend((0..(out.facets.len() - begin) as u32).map(|number| (*body, number)));
         }
@@ -125,23 +170,42 @@ impl<const D: usize> Surfaces<D> {
         lifted.crossing_facets()
     }
 
+    /// The points of the facets of some bodies, which are all that have any.
+    fn points_of(&self, bodies: &[usize]) -> Vec<Vec<u32>> {
+        let mut points = vec![Vec::new(); bodies.len()];
+        for (facet, (body, _)) in self.facets.iter().zip(&self.origin) {
+            if let Ok(own) = bodies.binary_search(body) {
+                points[own].extend(facet);
+            }
+        }
+        for own in &mut points {
+            own.sort_unstable();
+            own.dedup();
+        }
+        points
+    }
+
+    /// Whether a point lies within a closed boundary.
+    fn is_inside(&self, Boundary { facets, bounds: [low, high], .. }: &Boundary<D>, point: u32) -> bool {
+        let x = &self.positions[point as usize];
+        let within = (0..D).all(|d| low[d] <= x[d] && x[d] <= high[d]);
+        within && winding_number(&self.facets[facets.clone()], &self.positions, x).abs() > 0.5
+    }
+
     /// Bodies of which a point lies inside another one.
     fn nested(&self) -> Vec<Crossed> {
-        let around = |facets: &[[u32; D]]| bounds(facets.iter().flatten().map(|node| self.positions[*node as usize]));
         let mut found = Vec::new();
-        for (outer, range) in &self.closed {
-            let own = around(&self.facets[range.clone()]);
+        for boundary in &self.closed {
+            let outer = boundary.body;
             let mut last = None;
             for (facet, (inner, _)) in self.facets.iter().zip(&self.origin) {
                 // One point of every other body.
-                if inner == outer || last == Some(*inner) {
+                if *inner == outer || last == Some(*inner) {
                     continue;
                 }
                 last = Some(*inner);
-                let point = &self.positions[facet[0] as usize];
-                let within = (0..D).all(|d| own[0][d] <= point[d] && point[d] <= own[1][d]);
-                if within && winding_number(&self.facets[range.clone()], &self.positions, point).abs() > 0.5 {
-                    let bodies = if inner < outer { [*inner, *outer] } else { [*outer, *inner] };
+                if self.is_inside(boundary, facet[0]) {
+                    let bodies = if *inner < outer { [*inner, outer] } else { [outer, *inner] };
                     found.push(Crossed { bodies, facets: None });
                 }
             }

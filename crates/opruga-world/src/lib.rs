@@ -82,7 +82,7 @@ pub use any_scene::{AnyBody, AnyScene};
 pub use any_world::AnyWorld;
 pub use body_view::BodyView;
 pub use contact_report::{Contact, ContactPhase};
-pub use crossed::Crossed;
+pub use crossed::{Crossed, Overlap};
 pub use error::WorldError;
 pub use inputs::Input;
 pub use ledger::{Energy, Momentum};

@@ -10,7 +10,14 @@ use opruga_world::{Options, World};
 const RULES: [&str; 4] = ["backward_euler", "bdf2", "implicit_midpoint", "newmark"];
 
 /// A solid rectangle of triangles.
-fn block(name: &str, size: [f64; 2], cells: [u32; 2], x: [f64; 2], mass: f64, youngs_modulus: f64) -> BodyBlueprint<2> {
+pub(crate) fn block(
+    name: &str,
+    size: [f64; 2],
+    cells: [u32; 2],
+    x: [f64; 2],
+    mass: f64,
+    youngs_modulus: f64,
+) -> BodyBlueprint<2> {
     let mesh = Mesh::grid([0.0; 2], size, cells).expect("a grid");
     let solid =
         vec![model::<2>("fem", &[("youngs_modulus", youngs_modulus), ("poissons_ratio", 0.3), ("damping", 1e-3)])];
@@ -101,7 +108,7 @@ fn bodies_of_all_rules_meet_and_keep_momentum() {
     }
 }
 
-fn fixed(body: BodyBlueprint<2>) -> BodyBlueprint<2> {
+pub(crate) fn fixed(body: BodyBlueprint<2>) -> BodyBlueprint<2> {
     let pin = PinBlueprint { select: Selector::Box([-1e3; 2], [1e3; 2]), axes: [true; 2], motion: Vec::new() };
     BodyBlueprint { pins: vec![pin], ..body }
 }

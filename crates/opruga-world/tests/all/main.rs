@@ -13,6 +13,7 @@ mod damped_bars;
 mod far_from_the_origin;
 mod flat_bodies;
 mod handles;
+mod hard_contact;
 mod implicit_contact;
 mod interrupted_near_obstacles;
 mod invariance_of_solids;

@@ -26,6 +26,7 @@ mod pictures;
 mod published_beside_physics;
 mod recordings;
 mod registered;
+mod robust;
 mod said_by_scenes;
 mod seams;
 mod shipped_measures;
