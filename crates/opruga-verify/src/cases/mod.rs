@@ -14,6 +14,7 @@ mod contact;
 mod finite_differences;
 mod fits;
 mod heat;
+mod hertz;
 mod integrators;
 mod ledgers;
 mod matching;
@@ -61,6 +62,7 @@ pub fn cases() -> impl Iterator<Item = &'static Case> {
         matching::STATICS,
         boundary::STATICS,
         pressed::CASES,
+        hertz::CASES,
         fits::CASES,
         at_rest::CASES,
         finite_differences::MATERIALS,

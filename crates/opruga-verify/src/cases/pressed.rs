@@ -1,4 +1,4 @@
-//! Bodies that press on one another at rest: patches, Hertz's contact, stacks.
+//! Bodies that press on one another at rest: patches, Hertz's contact with an obstacle, stacks.
 
 use super::BASE;
 use crate::bodies::{Cells, mapped, nodes};
@@ -217,7 +217,7 @@ where
 }
 
 /// Worlds of a dimension.
-trait Worlds<const D: usize> {
+pub(super) trait Worlds<const D: usize> {
     fn world(&self, scene: Scene) -> Result<World<D>, Trouble>;
 }
 

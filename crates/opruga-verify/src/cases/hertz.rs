@@ -1,0 +1,150 @@
+//! Hertz's contact between two elastic bodies at rest: how far it reaches, at the force that is measured.
+//!
+//! Hertz's pressure on a line of half width b is p₀ √(1 − x²/b²), so the mean of x² weighted by the force is b²/4. On a circle of radius a it is
+//! p₀ √(1 − r²/a²), and the mean of r² is 2a²/5. These means count every force by its place, so they do not jump by a cell where one more node touches.
+
+use super::BASE;
+use super::pressed::Worlds;
+use crate::bodies::{Cells, mapped, nodes};
+use crate::case::{Case, Over};
+use crate::lab::{Lab, Scene, Trouble};
+use opruga::mesh::Mesh;
+use std::f64::consts::{FRAC_PI_4, PI};
+
+pub(super) const CASES: &[Case] = &[
+    Case {
+        name: "hertz-line-bodies",
+        quantity: "half width of the contact of two elastic cylinders of radii 1 and 2 m, the second of which is twice as stiff, over that of Hertz at the same force, plane strain, by `equilibrium`",
+        source: "closed form: √(4 F R/(π E*)), 1/R = 1/R₁ + 1/R₂, 1/E* = (1 − ν²)(1/E₁ + 1/E₂) (H. Hertz 1882; K. L. Johnson, Contact Mechanics, 1985, ch. 4)",
+        over: Over::Cells("cells along an eighth of the smaller circle; 7/8 as many of the larger"),
+        levels: &[12.0, 24.0, 48.0],
+        expected: &[1.0],
+        measure: line,
+        ..BASE
+    },
+    Case {
+        name: "hertz-sphere",
+        quantity: "radius of the contact of two equal elastic balls over that of Hertz at the same force, by `equilibrium`",
+        source: "closed form: (3 F R/(4 E*))^⅓, R = R₁/2, E* = E/(2(1 − ν²)) (H. Hertz 1882; K. L. Johnson, Contact Mechanics, 1985, ch. 4)",
+        over: Over::Cells("cells along an eighth of a great circle; one less of the other ball"),
+        levels: &[4.0, 5.0, 6.0],
+        expected: &[1.0],
+        measure: sphere,
+        ..BASE
+    },
+];
+
+/// The distance at which surfaces touch [m].
+const THICKNESS: f64 = 1e-3;
+const POISSON: f64 = 0.3;
+
+/// Half of a cylinder, or half of a ball.
+#[derive(Clone, Copy)]
+struct Round {
+    /// m
+    radius: f64,
+    /// Pa
+    young: f64,
+    /// Cells along an axis.
+    cells: u32,
+}
+
+/// What two bodies do to each other.
+struct Press {
+    /// The force between them [N].
+    force: f64,
+    /// The mean of the square of the distance from the axis at rest, weighted by the force [m²].
+    spread: f64,
+}
+
+impl Round {
+    /// A half of it (in space a quarter) about the origin, with its pole up or down. Cells are small near the pole.
+    fn mesh<const D: usize>(self, up: bool) -> Result<Mesh<D>, Trouble> {
+        // Bodies touch half of the thickness outside of their meshes.
+        let radius = self.radius - 0.5 * THICKNESS;
+        // Cells grow by a factor of 27 from the pole to the rim.
+        let graded = |s: f64| (4.0 * s).sinh() / 4f64.sinh();
+        mapped([self.cells; D], Cells::Boxes, |s| {
+            let cube: [f64; D] = core::array::from_fn(|d| match d {
+                1 if up => 1.0 - graded(1.0 - s[1]),
+                1 => 1.0 - graded(s[1]),
+                _ => graded(s[d]),
+            });
+            // From a cube at the centre to a ball at the surface, on which equal lengths of the cube's sides have equal angles.
+            let most = cube.iter().copied().fold(0.0, f64::max);
+            let ray = cube.map(|c| if most > 0.0 { (FRAC_PI_4 * c / most).tan() } else { 1.0 });
+            let length = ray.iter().map(|c| c * c).sum::<f64>().sqrt();
+            core::array::from_fn(|d| {
+                let x = radius * ((1.0 - most) * cube[d] + most * most * ray[d] / length);
+                if d == 1 && !up { -x } else { x }
+            })
+        })
+    }
+
+    /// The lines of its body, whose centre is at a height, with the plane through it moving by so much.
+    fn text<const D: usize>(self, mesh: &Mesh<D>, height: f64, by: f64) -> String {
+        let upward =
+            |y: f64| (0..D).map(|d| if d == 1 { format!("{y:?}") } else { "0".into() }).collect::<Vec<_>>().join(", ");
+        let still: Vec<String> = (0..D)
+            .filter(|d| *d != 1)
+            .map(|d| {
+                let middle = nodes(mesh, |x| x[d].abs() < 1e-9);
+                format!("{{ select = {{ nodes = {middle:?} }}, axes = \"{}\" }}", ["x", "y", "z"][d])
+            })
+            .collect();
+        let base = nodes(mesh, |x| x[1].abs() < 1e-9);
+        // Hertz's theory is linear: forces belong to places at rest.
+        format!(
+            "density = 1.0\nposition = [{}]\n\
+             models = [{{ kind = \"fem\", material = \"linear\", youngs_modulus = {:?}, poissons_ratio = {POISSON:?} }}]\n\
+             pin = [{}, {{ select = {{ nodes = {base:?} }}, axes = \"y\", motion = [[0, {}], [1, {}]] }}]",
+            upward(height),
+            self.young,
+            still.join(", "),
+            upward(0.0),
+            upward(by)
+        )
+    }
+}
+
+/// Two bodies whose planes through their centres approach by so much [m]. The force is that on whole bodies, of which the scene has a half or a
+/// quarter. Both planes move, as statics does not yet find the balance of a body without any force beside one under force.
+fn press<const D: usize>(lab: &Lab, lower: Round, upper: Round, approach: f64) -> Result<Press, Trouble>
+where
+    Lab: Worlds<D>,
+{
+    let meshes = [lower.mesh::<D>(true)?, upper.mesh::<D>(false)?];
+    let scene = Scene::statics(D, 1e-9)
+        .add(&format!("[contact]\nthickness = {THICKNESS:?}\nself = false"))
+        .named("lower", &meshes[0], &lower.text(&meshes[0], -lower.radius, 0.5 * approach))?
+        .named("upper", &meshes[1], &upper.text(&meshes[1], upper.radius, -0.5 * approach))?;
+    let mut world = lab.world(scene)?;
+    world.frame()?;
+    // Both bodies feel the same pressure at nodes of their own.
+    let (mut force, mut moment) = (0.0, 0.0);
+    for (body, (mesh, half)) in meshes.iter().zip([-0.5, 0.5]).enumerate() {
+        for (x, push) in mesh.positions.iter().zip(world.contact_forces(body)) {
+            force += half * push[1];
+            moment += half * push[1] * (0..D).filter(|d| *d != 1).map(|d| x[d] * x[d]).sum::<f64>();
+        }
+    }
+    Ok(Press { force: (1 << (D - 1)) as f64 * force, spread: moment / force })
+}
+
+fn line(lab: &Lab, n: f64) -> Result<f64, Trouble> {
+    // Their meshes do not match.
+    let upper = Round { radius: 1.0, young: 1e6, cells: n as u32 };
+    let lower = Round { radius: 2.0, young: 2e6, cells: n as u32 * 7 / 8 };
+    let press = press::<2>(lab, lower, upper, 0.02)?;
+    let stiffness = 1.0 / ((1.0 - POISSON * POISSON) * (1.0 / upper.young + 1.0 / lower.young));
+    let radius = 1.0 / (1.0 / upper.radius + 1.0 / lower.radius);
+    Ok(2.0 * press.spread.sqrt() / (4.0 * press.force * radius / (PI * stiffness)).sqrt())
+}
+
+fn sphere(lab: &Lab, n: f64) -> Result<f64, Trouble> {
+    let upper = Round { radius: 1.0, young: 1e6, cells: n as u32 };
+    let lower = Round { cells: upper.cells - 1, ..upper };
+    let press = press::<3>(lab, lower, upper, 0.02)?;
+    let stiffness = upper.young / (2.0 * (1.0 - POISSON * POISSON));
+    Ok((2.5 * press.spread).sqrt() / (0.75 * press.force * 0.5 * upper.radius / stiffness).cbrt())
+}
