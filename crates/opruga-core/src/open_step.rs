@@ -28,6 +28,8 @@ pub trait OpenStep<const D: usize>: Send {
     fn potential(&self, system: &System<D>) -> Option<[f64; 2]>;
     /// What rounding makes of Φ by itself, in its models [J].
     fn rounding(&self, system: &System<D>) -> f64;
+    /// What rounding of positions makes of r by itself, in the directions that are free and by the last derivatives: the root of the sum of squares [N].
+    fn rounding_of_forces(&self, system: &System<D>) -> f64;
     /// r where forces were evaluated last [N].
     fn residual(&self) -> &[f64];
     /// Adds a part of the correction to u.

@@ -74,6 +74,9 @@ struct Body<const D: usize> {
     /// What is out of balance, and the size of the forces that balance [N].
     rest: f64,
     size: f64,
+    /// What rounding of positions makes of these [N]. Without a floor rounding is compared with itself in a body on which no force acts, and keeps all
+    /// others from their balance (`bodies_without_forces_do_not_keep_others_from_their_balance`).
+    rounding: f64,
     /// Whether obstacles hold other nodes than before, or in another way.
     constraints_changed: bool,
 }
@@ -123,7 +126,8 @@ impl<const D: usize> Body<D> {
         step.right_side(system, &none, &mut displacement);
         self.rest = norm(&displacement);
         let pushes: f64 = system.pushes.iter().flatten().flat_map(|(_, force)| force).map(|c| c * c).sum();
-        self.size = (norm(step.residual()) + pushes.sqrt()).larger(f64::MIN_POSITIVE);
+        self.size = norm(step.residual()) + pushes.sqrt();
+        self.rounding = step.rounding_of_forces(system);
         self.solve(&mut displacement);
         let step = &mut self.open.step;
         displacement
@@ -164,7 +168,12 @@ impl<const D: usize> Body<D> {
         step.right_side(system, &change, &mut left);
         left.iter_mut().zip(&done).for_each(|(left, done)| *left += done);
         let left = norm(&left);
-        Some((self.longest_displacement(), if left > BALANCED * self.size { left / acting } else { 0.0 }))
+        Some((self.longest_displacement(), if self.is_balance(left, BALANCED) { 0.0 } else { left / acting }))
+    }
+
+    /// Whether what is left of the forces is at most such a part of those on the body, or rounding.
+    fn is_balance(&self, left: f64, part: f64) -> bool {
+        left <= part * self.size || left <= self.rounding
     }
 
     fn is_short(&mut self) -> bool {
@@ -257,6 +266,7 @@ impl<const D: usize> Search<'_, '_, D> {
                 extent,
                 rest: f64::INFINITY,
                 size: 0.0,
+                rounding: 0.0,
                 constraints_changed: false,
             });
         }
@@ -275,7 +285,8 @@ impl<const D: usize> Search<'_, '_, D> {
             let factored = self.begin_correction()?;
             if factored && moved <= goal && !self.bodies.iter().any(|body| body.constraints_changed) {
                 at_rest += 1;
-                if self.left() <= if at_rest > MOST_AT_REST { NEARLY_BALANCED } else { BALANCED } {
+                let part = if at_rest > MOST_AT_REST { NEARLY_BALANCED } else { BALANCED };
+                if self.bodies.iter().all(|body| body.is_balance(body.rest, part)) {
                     return Ok(number as u32);
                 }
             }
@@ -299,11 +310,6 @@ impl<const D: usize> Search<'_, '_, D> {
             }
         }
         Err(StepError::of("contact", Refusal::NoCommonBalance { steps: MOST_CORRECTIONS, moved }).into())
-    }
-
-    /// The largest part of the forces on a body that is out of balance.
-    fn left(&self) -> f64 {
-        self.bodies.iter().fold(0.0, |most: f64, body| (body.rest / body.size).larger(most))
     }
 
     /// Takes forces and matrices where bodies are; says whether the matrices have factors.

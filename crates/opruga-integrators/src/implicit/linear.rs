@@ -188,6 +188,12 @@ impl<const D: usize> Mixture<'_, D> {
             }
         }
     }
+
+    /// The diagonal entry of the mass matrix at a node [kg].
+    fn mass_at(&self, node: usize) -> f64 {
+        let beside = self.system.inertia.iter().flat_map(|inertia| inertia.row(node));
+        self.mass[node] + beside.filter(|(other, _)| *other == node).map(|(_, mass)| mass).sum::<f64>()
+    }
 }
 
 impl<const D: usize> Linear<D> {
@@ -274,6 +280,11 @@ impl<const D: usize> Linear<D> {
             size += block[d][d].abs();
         }
         size
+    }
+
+    /// The same without the mass.
+    pub(crate) fn stiffness_at(&self, mixture: &Mixture<D>, node: usize) -> f64 {
+        (self.size_at(mixture, node) - D as f64 * mixture.sigma * mixture.mass_at(node)).larger(0.0)
     }
 
     /// Solves for the correction; b and what comes out lie in the free directions. Returns the products that it took.

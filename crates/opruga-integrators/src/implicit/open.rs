@@ -8,6 +8,7 @@ use super::ends::{Found, Ledger, Statics, commit, end, enter_end, enter_stage, o
 use super::holding;
 use super::line_search::given_along;
 use super::linear::{Filter, Mixture};
+use super::rounding::rounding_of_forces;
 use super::rule::Rule;
 use super::settings::{Otherwise, Settings, Solver};
 use super::stage::{evaluate, judge, look, mixture, potential, rounding_of_models};
@@ -132,6 +133,9 @@ impl<R: Rule<D>, const D: usize> OpenStep<D> for Open<R, D> {
     }
     fn rounding(&self, system: &System<D>) -> f64 {
         rounding_of_models(system)
+    }
+    fn rounding_of_forces(&self, system: &System<D>) -> f64 {
+        rounding_of_forces(&self.workspace, &self.mixture(system, Definiteness::Clamped))
     }
     fn residual(&self) -> &[f64] {
         &self.workspace.residual

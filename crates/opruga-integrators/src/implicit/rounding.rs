@@ -181,6 +181,20 @@ pub(super) fn roundings_of(contrast: f64, size: f64) -> f64 {
     ROUNDING * contrast * size
 }
 
+/// The forces in the free directions that rounding of positions makes, by the last matrix: the root of the sum of their squares [N]. Those of inertia
+/// belong to displacements, whose rounding is smaller.
+pub(super) fn rounding_of_forces<const D: usize>(workspace: &Workspace<D>, mixture: &Mixture<D>) -> f64 {
+    let Workspace { linear, x0, free, projectors, .. } = workspace;
+    let size = x0.iter().fold(0.0, |most: f64, x| x.abs().larger(most));
+    let mut square = 0.0;
+    for (node, (free, projector)) in free.iter().zip(projectors).enumerate() {
+        let directions = if *free { D as f64 } else { (0..D).map(|d| projector[d][d]).sum() };
+        let force = f64::EPSILON * size * linear.stiffness_at(mixture, node) / D as f64;
+        square += directions * force * force;
+    }
+    square.sqrt()
+}
+
 /// The largest rounding of the force of a node [N], in a body so far from the origin.
 fn floor<const D: usize>(linear: &Linear<D>, mixture: &Mixture<D>, node: usize, size: f64) -> f64 {
     ROUNDING * linear.size_at(mixture, node) * size

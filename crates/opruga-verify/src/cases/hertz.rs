@@ -108,7 +108,7 @@ impl Round {
 }
 
 /// Two bodies whose planes through their centres approach by so much [m]. The force is that on whole bodies, of which the scene has a half or a
-/// quarter. Both planes move, as statics does not yet find the balance of a body without any force beside one under force.
+/// quarter.
 fn press<const D: usize>(lab: &Lab, lower: Round, upper: Round, approach: f64) -> Result<Press, Trouble>
 where
     Lab: Worlds<D>,
@@ -116,8 +116,8 @@ where
     let meshes = [lower.mesh::<D>(true)?, upper.mesh::<D>(false)?];
     let scene = Scene::statics(D, 1e-9)
         .add(&format!("[contact]\nthickness = {THICKNESS:?}\nself = false"))
-        .named("lower", &meshes[0], &lower.text(&meshes[0], -lower.radius, 0.5 * approach))?
-        .named("upper", &meshes[1], &upper.text(&meshes[1], upper.radius, -0.5 * approach))?;
+        .named("lower", &meshes[0], &lower.text(&meshes[0], -lower.radius, 0.0))?
+        .named("upper", &meshes[1], &upper.text(&meshes[1], upper.radius, -approach))?;
     let mut world = lab.world(scene)?;
     world.frame()?;
     // Both bodies feel the same pressure at nodes of their own.

@@ -157,3 +157,51 @@ fn overlap_is_taken_apart_and_what_nothing_holds_is_refused() {
     assert!(said.contains("`cube`") && said.contains("no common balance") && said.contains("hint"), "{said}");
     assert_eq!(falling.state_hash(), kept);
 }
+
+/// A block that is held below, and another one 31 mm above it, whose upper side goes down by so much within each second. Nothing has a weight.
+fn lowered(ways: &[f64]) -> World<2> {
+    let body = |name: &str, size: [f64; 2], cells: [u32; 2], at: [f64; 2], side: &str, motion: Vec<Vec<f64>>| {
+        let mut body = block(name, size, cells, at, 1.0);
+        body.pins.push(PinBlueprint { select: Selector::Side(side.into()), axes: [true; 2], motion });
+        body
+    };
+    let mut motion = vec![vec![0.0; 3]];
+    for (second, way) in ways.iter().enumerate() {
+        motion.push(vec![second as f64 + 1.0, 0.0, motion[second][2] - way]);
+    }
+    let below = body("below", [1.0, 1.0], [2, 2], [0.1, -1.03], "bottom", Vec::new());
+    let above = body("above", [1.0, 2.0], [2, 4], [0.13, 0.001], "top", motion);
+    let mut scene = scene("equilibrium", vec![below, above]);
+    scene.time = Time { seconds: ways.len() as f64, frame: 1.0, substeps: 1 };
+    scene.contact = contact::<2>(&[("thickness", 1e-3.into())]);
+    world(&scene, 1)
+}
+
+/// What is out of balance in a body on which no force acts is rounding, and so are the forces on it.
+#[test]
+fn bodies_without_forces_do_not_keep_others_from_their_balance() {
+    let mut world = lowered(&[0.0, 0.02]);
+    for second in 0..2 {
+        world.frame().unwrap_or_else(|error| panic!("{second}: {error}"));
+        for body in 0..2 {
+            assert_eq!(force_on(&mut world, body), [0.0; 2], "{second}: {body}");
+        }
+    }
+}
+
+#[test]
+fn a_block_that_comes_down_presses_one_on_which_no_force_acted() {
+    let mut world = lowered(&[0.02, 0.03]);
+    world.frame().expect("a balance apart");
+    world.frame().expect("a balance");
+    assert_eq!(world.crossed_surfaces(), []);
+    // The nodes of the lower side of the one and of the upper side of the other.
+    let held = [(0, [0, 1, 2]), (1, [12, 13, 14])].map(|(body, nodes)| world.reaction(body, &nodes)[1]);
+    // Together 3 m high, and 20 mm shorter. A bar would take 1e5 · 0.02/3 N; pins and the even strain of the plane stiffen the blocks.
+    assert!(held[0] > 7e2 && held[0] < 1e3, "{held:?}");
+    assert!((held[0] + held[1]).abs() < 1e-6 * held[0], "{held:?}");
+    for (body, held) in held.into_iter().enumerate() {
+        let pushed = force_on(&mut world, body)[1];
+        assert!((pushed + held).abs() < 1e-6 * held.abs(), "{body}: {pushed} {held}");
+    }
+}
