@@ -57,7 +57,7 @@ impl<const D: usize> Touching<D> {
             self.take_gaps_of(candidates.clone(), h, 0.25 * self.margin, inside);
         }
         if self.began_inside.binary_search(&vertex).is_ok() {
-            self.take_nearest_of(candidates, h);
+            self.take_exit(candidates, h);
         }
         self.keep_the_nearest();
         self.take_around();
@@ -72,6 +72,9 @@ impl<const D: usize> Touching<D> {
         let apart = self.reach.apart(&edges[0], &edges[1]);
         if apart > law.thickness {
             return self.clearance.note(1, candidate, apart);
+        }
+        if self.are_entangled(bodies) {
+            return;
         }
         self.close[1].push(pair);
         let Some(mut gap) = Gap::of_edges(&self.surface, &self.before[0], a, b) else {
@@ -142,33 +145,16 @@ impl<const D: usize> Touching<D> {
         inside
     }
 
-    /// Takes the gap of a vertex and the nearest facet of every other body among some candidates of it, however far.
-    fn take_nearest_of(&mut self, candidates: Range<usize>, h: f64) {
-        let mut nearest: Vec<(u32, [u32; 2], Gap<D>)> = Vec::new();
-        for k in candidates {
-            let pair @ [vertex, facet] = self.candidates.vertex_facet[k];
-            let [own, other] = self.clearance.bodies(0, k);
-            if own == other {
-                continue;
-            }
-            let gap = Gap::of_vertex_and_facet(&self.surface, &self.before[0], vertex, facet);
-            match nearest.iter_mut().find(|(body, ..)| *body == other) {
-                Some((_, known, least)) if gap.gap.abs() < least.gap.abs() => (*known, *least) = (pair, gap),
-                Some(_) => {}
-                None => nearest.push((other, pair, gap)),
-            }
-        }
-        for (other, pair, gap) in nearest {
-            let own = self.surface.body[pair[0] as usize];
-            let law = *self.laws.of(own, other);
-            if self.around.iter().all(|(row, _)| row.id != key(pair, true)) {
-                self.push(gap, &law, h, pair, true, f64::INFINITY);
-            }
-        }
-    }
-
     /// Adds a row for the gap of a vertex and a facet, or of two edges, unless they stay apart by more than a distance [m].
-    fn push(&mut self, mut gap: Gap<D>, law: &PairLaw, h: f64, pair: [u32; 2], with_facet: bool, distance: f64) {
+    pub(crate) fn push(
+        &mut self,
+        mut gap: Gap<D>,
+        law: &PairLaw,
+        h: f64,
+        pair: [u32; 2],
+        with_facet: bool,
+        distance: f64,
+    ) {
         // A point goes by itself as far as contact may push it, at most.
         let first = if with_facet { 1 } else { 2 };
         let reach = |points: &[u32]| points.iter().fold(0.0, |most: f64, p| self.reach.push_of(*p).larger(most));

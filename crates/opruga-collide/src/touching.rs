@@ -98,6 +98,8 @@ pub struct Touching<const D: usize> {
     /// Whether the frame has begun without a look at which points lie inside other bodies; and these points, ascending.
     pub(crate) looks_inside: bool,
     pub(crate) began_inside: Vec<u32>,
+    /// The bodies of these points and of what they lie inside, ascending.
+    pub(crate) entangled: Vec<[u32; 2]>,
     /// The largest distance that surfaces keep in contact [m]: of bodies, and with obstacles.
     pub(crate) thickest: [f64; 2],
     pub(crate) wanted: Vec<f64>,
