@@ -201,11 +201,11 @@ fn sum(a: &[f64], b: &[f64]) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
 
     /// Contacts of a column of points along y on one that is held, each with an impulse of 1 N s.
-    fn column(points: usize, friction: f64) -> (Vec<Row<2>>, Vec<[f64; 2]>) {
+    pub(crate) fn column(points: usize, friction: f64) -> (Vec<Row<2>>, Vec<[f64; 2]>) {
         let mut inverse_mass = vec![[1.0; 2]; points];
         inverse_mass[0] = [0.0; 2];
         let row = |k: usize| {

@@ -63,3 +63,30 @@ pub(crate) fn solve<const D: usize>(
     }
     None
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::subspace::tests::column;
+
+    /// Forty points fall onto a held one, and two thousand pairs of them might approach one another by a kilometre a second before they touch.
+    #[test]
+    fn pairs_that_only_might_touch_are_no_unknowns() {
+        let (mut rows, inverse_mass) = column(41, 0.5);
+        let pressing = rows.len();
+        for k in 0..2000 {
+            let mut apart = rows[k % pressing];
+            (apart.id, apart.target, apart.normal_impulse) = (1000 + k as u64, -1000.0, 0.0);
+            rows.push(apart);
+        }
+        let mut v = vec![[0.0, -1.0]; 41];
+        v[0] = [0.0; 2];
+        let spread = Spread::default();
+        let turns = solve(&mut rows, &spread, &inverse_mass, &mut Coupled::default(), &mut v, 1e-9);
+        assert!(turns.is_some() && v.iter().flatten().all(|v| v.abs() < 1e-6), "{turns:?} {v:?}");
+        assert!(rows[pressing..].iter().all(|row| row.normal_impulse == 0.0));
+        // Each carries those above it, beside what it had.
+        let carried = rows[..pressing].iter().zip((1..=40).rev());
+        carried.for_each(|(row, above)| assert!((row.normal_impulse - 1.0 - f64::from(above)).abs() < 1e-3, "{row:?}"));
+    }
+}
