@@ -56,10 +56,11 @@ impl<const D: usize> Touching<D> {
                 }
             }
             let is_inside = |other: u32| {
-                let facets = &self.surface.facets[self.surface.facets_of(other as usize)];
-                let closed = facets.iter().zip(&self.surface.closed[self.surface.facets_of(other as usize)]);
-                let boundary: Vec<[u32; D]> = closed.filter(|(_, closed)| **closed).map(|(facet, _)| *facet).collect();
-                winding_number(&boundary, x, at).abs() > 0.5
+                // Facets of closed boundaries come first.
+                let all = self.surface.facets_of(other as usize);
+                let closed = self.surface.closed[all.clone()].partition_point(|closed| *closed);
+                let boundary = &self.surface.facets[all.start..all.start + closed];
+                winding_number(boundary, x, at).abs() > 0.5
             };
             let mut inside = nearest.iter().filter(|(other, gap)| *gap < 0.0 && is_inside(*other)).peekable();
             if inside.peek().is_some() {
@@ -75,31 +76,32 @@ impl<const D: usize> Touching<D> {
         self.entangled.dedup();
     }
 
-    /// Whether points of one of two bodies have begun the frame inside the other one. Their edges pass through one another: they have to come out the
-    /// way that they would not have come in.
+    /// Whether points of one of two bodies have begun the frame inside the other one. Edges of such bodies are no pairs: they cross already, and
+    /// contact that holds them would lock the bodies in one another.
     pub(crate) fn are_entangled(&self, [a, b]: [u32; 2]) -> bool {
         let pair = if a < b { [a, b] } else { [b, a] };
         self.entangled.binary_search(&pair).is_ok()
     }
 
-    /// The exit of a vertex that has begun inside other bodies: through the nearest facet of each that faces the surface at the vertex, among some
-    /// candidates of it; the nearest one where none does.
+    /// Takes the gap through which a vertex leaves each body inside which it has begun: that of the nearest facet, among some candidates of the vertex,
+    /// that faces the surface at the vertex. Where none does, the nearest one counts.
     pub(crate) fn take_exit(&mut self, candidates: Range<usize>, h: f64) {
         let x = &self.before[0];
         let normal = |facet: u32| {
             let normal = facet_normal(&self.surface.facets[facet as usize].map(|p| x[p as usize]));
             scaled(&normal, 1.0 / dot(&normal, &normal).sqrt())
         };
+        let vertex = self.candidates.vertex_facet[candidates.start][0];
+        let around = self.surface.facets_around(vertex).iter();
+        let outward = around.fold([0.0; D], |sum, facet| add(&sum, &normal(*facet)));
+        let size = dot(&outward, &outward).sqrt();
         let mut nearest: Vec<(u32, bool, [u32; 2], Gap<D>)> = Vec::new();
         for k in candidates {
-            let pair @ [vertex, facet] = self.candidates.vertex_facet[k];
+            let pair @ [_, facet] = self.candidates.vertex_facet[k];
             let [own, other] = self.clearance.bodies(0, k);
             if own == other || !self.surface.closed[facet as usize] {
                 continue;
             }
-            let around = self.surface.facets_around(vertex).iter();
-            let outward = around.fold([0.0; D], |sum, facet| add(&sum, &normal(*facet)));
-            let size = dot(&outward, &outward).sqrt();
             let faces = size > 0.0 && dot(&outward, &normal(facet)) < FACING * size;
             let gap = Gap::of_vertex_and_facet(&self.surface, x, vertex, facet);
             let is_better = |known: bool, least: f64| (faces, -gap.gap.abs()) > (known, -least.abs());

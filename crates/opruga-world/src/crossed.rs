@@ -3,6 +3,7 @@
 use crate::contact_laws::laws;
 use crate::warnings::{Warning, WorldWarning};
 use crate::world::World;
+use opruga_collide::Laws;
 use opruga_mesh::{Crossings, Mesh, crossing_edges, winding_number};
 
 /// Two bodies, or a body and itself, whose surfaces cross.
@@ -47,10 +48,7 @@ impl<const D: usize> World<D> {
     ///
     /// Exact for the coordinates as they are. Wires of space are not looked at.
     pub fn crossed_surfaces(&self) -> Vec<Crossed> {
-        let there = (0..self.blueprint.bodies.len()).filter(|body| self.handle(*body).is_some());
-        let contact = self.blueprint.contact.as_ref();
-        let bodies: Vec<usize> = there.filter(|b| contact.is_none() || self.blueprint.bodies[*b].touches()).collect();
-        let laws = contact.map(|contact| laws(&self.blueprint, contact, &bodies, 1.0));
+        let (bodies, laws) = self.kept_apart();
         let index = |body: usize| bodies.binary_search(&body).unwrap_or(0) as u32;
         let meet = |a: usize, b: usize| laws.as_ref().map_or(a != b, |laws| laws.meet(index(a), index(b)));
         // Most bodies are far from all others: a line that sweeps along x holds the boxes over it.
@@ -87,13 +85,19 @@ impl<const D: usize> World<D> {
         found
     }
 
-    /// Bodies of which points lie within the closed boundary of another one, of those that contact keeps apart, without a section `[contact]`
-    /// of all; ascending by bodies. A check that shares no code with the detection of contact.
-    pub fn overlaps(&self) -> Vec<Overlap> {
+    /// The bodies that contact keeps apart, and the laws of their pairs; without a section `[contact]` all bodies, and no laws.
+    fn kept_apart(&self) -> (Vec<usize>, Option<Laws>) {
         let there = (0..self.blueprint.bodies.len()).filter(|body| self.handle(*body).is_some());
         let contact = self.blueprint.contact.as_ref();
         let bodies: Vec<usize> = there.filter(|b| contact.is_none() || self.blueprint.bodies[*b].touches()).collect();
         let laws = contact.map(|contact| laws(&self.blueprint, contact, &bodies, 1.0));
+        (bodies, laws)
+    }
+
+    /// Bodies of which points lie within the closed boundary of another one, of those that contact keeps apart, without a section `[contact]`
+    /// of all; ascending by bodies. A check that shares no code with the detection of contact.
+    pub fn overlaps(&self) -> Vec<Overlap> {
+        let (bodies, laws) = self.kept_apart();
         let surfaces = self.surfaces(&bodies);
         let points = surfaces.points_of(&bodies);
         let mut found = Vec::new();
