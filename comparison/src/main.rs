@@ -6,11 +6,13 @@
 
 mod beam;
 mod cube;
+mod falling;
 mod motion;
 mod mujoco;
 mod ours;
 mod pile;
 mod rapier;
+mod solids;
 mod table;
 
 use clap::Parser;
@@ -28,7 +30,7 @@ pub fn processor_time() -> f64 {
 /// Opruga beside Rapier and MuJoCo: milliseconds per frame of one thread, and errors.
 #[derive(Debug, Parser)]
 pub struct Settings {
-    /// Bodies: `cube`, `beam`, `pile`
+    /// Bodies: `cube`, `beam`, `pile`, `solids`
     #[arg(long, value_delimiter = ',', default_value = "cube,beam")]
     bodies: Vec<String>,
     /// Cells along a side of the cube
@@ -49,7 +51,7 @@ pub struct Settings {
     /// A Python with the package `mujoco`; MuJoCo is left out without
     #[arg(long, value_name = "PYTHON")]
     mujoco: Option<String>,
-    /// Times of the cubes without their errors, for which exact steps and rests of many cells take long
+    /// Times of cubes and solids without exact steps and rests, which take long
     #[arg(long)]
     times_only: bool,
     /// An object for programs
@@ -80,7 +82,11 @@ fn compare(settings: &Settings, done: &mut dyn FnMut(String, Value)) -> Result<(
                     done(table.markdown(), table.json());
                 }
             }
-            other => return Err(format!("there is no body `{other}`; known: cube, beam, pile")),
+            "solids" => {
+                let table = solids::compare(settings.times_only)?;
+                done(table.markdown(), table.json());
+            }
+            other => return Err(format!("there is no body `{other}`; known: cube, beam, pile, solids")),
         }
     }
     Ok(())

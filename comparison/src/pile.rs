@@ -1,22 +1,22 @@
 //! Cubes of tetrahedra that fall on one another in a walled box: time, height, and how deep they are in one another.
 
-use crate::{processor_time, rapier};
+use crate::falling::{Row, Table, positions, run};
+use crate::rapier;
 use opruga::blueprint::AnyBlueprint;
 use opruga::io::scene;
 use opruga::{Options, World, catalogue};
 use rapier3d::prelude::*;
-use serde_json::{Value, json};
+use std::ops::Range;
 
 const SCENE: &str = include_str!("../../benches/scenes/falling-cubes.toml");
 
 /// Edge of a cube [m].
 const EDGE: f64 = 0.8;
 
-/// Frames before the first one that is timed, and those that are: from 1.5 to 2.5 s.
-const BEFORE: usize = 90;
-const TIMED: usize = 60;
+/// The frames that are timed: from 1.5 to 2.5 s.
+const TIMED: Range<usize> = 90..150;
 
-/// How often the depth is looked at [frames].
+/// Every such frame, the depth is measured.
 const LOOK: usize = 10;
 
 /// What the programs share.
@@ -25,20 +25,6 @@ struct Cubes {
     masses: Vec<f64>,
     tetrahedra: Vec<[u32; 4]>,
     facets: Vec<[u32; 3]>,
-}
-
-/// One program with one setting.
-struct Row {
-    name: String,
-    milliseconds: Vec<f64>,
-    height: f64,
-    depth: f64,
-}
-
-/// All programs on as many cubes along every axis.
-pub struct Table {
-    title: String,
-    rows: Vec<Row>,
 }
 
 fn world(along: usize) -> Result<World<3>, String> {
@@ -63,35 +49,23 @@ fn cubes(world: &World<3>) -> Cubes {
     }
 }
 
-fn positions(world: &World<3>) -> Vec<Vec<[f64; 3]>> {
-    let bodies = 0..world.blueprint().bodies.len();
-    bodies.map(|body| (0..world.node_count(body) as u32).map(|node| world.position(body, node)).collect()).collect()
-}
-
-/// Steps through the frames: `step` makes one, `place` says where all nodes are.
-fn run<W>(
+/// Lets a program step through the frames: time, mean height, and how deep cubes are in one another.
+fn measure<W>(
     name: &str,
     cubes: &Cubes,
     world: &mut W,
-    mut step: impl FnMut(&mut W) -> Result<(), String>,
+    step: impl FnMut(&mut W) -> Result<(), String>,
     place: impl Fn(&W) -> Vec<Vec<[f64; 3]>>,
 ) -> Result<Row, String> {
-    let mut row = Row { name: name.into(), milliseconds: Vec::new(), height: 0.0, depth: 0.0 };
-    for frame in 0..BEFORE + TIMED {
-        let start = processor_time();
-        step(world)?;
-        if frame < BEFORE {
-            continue;
+    let mut deepest: f64 = 0.0;
+    let mut row = run(name, TIMED, world, step, |world, frame| {
+        let at = place(world);
+        if TIMED.contains(&frame) && (frame + 1 - TIMED.start).is_multiple_of(LOOK) {
+            deepest = deepest.max(depth(cubes, &at));
         }
-        row.milliseconds.push((processor_time() - start) * 1e3);
-        if (frame + 1 - BEFORE).is_multiple_of(LOOK) {
-            row.depth = row.depth.max(depth(cubes, &place(world)));
-        }
-    }
-    let end = place(world);
-    let heights: Vec<f64> = end.iter().flatten().map(|x| x[1]).collect();
-    row.height = heights.iter().sum::<f64>() / heights.len() as f64;
-    row.milliseconds.sort_by(f64::total_cmp);
+        at
+    })?;
+    row.more.push(100.0 * deepest / EDGE);
     Ok(row)
 }
 
@@ -143,7 +117,7 @@ fn of_rapier(cubes: &Cubes, along: usize, name: &str, solver: SoftBodySolver) ->
         world.step();
         Ok(())
     };
-    run(name, cubes, &mut world, step, place)
+    measure(name, cubes, &mut world, step, place)
 }
 
 /// Rapier and Opruga on so many cubes along every axis.
@@ -153,49 +127,10 @@ pub fn compare(along: usize) -> Result<Table, String> {
     let step = |world: &mut World<3>| world.frame().map(|_| ()).map_err(|e| e.to_string());
     let rows = vec![
         of_rapier(&cubes, along, "Rapier, constraints, 4 steps", SoftBodySolver::Constraints)?,
-        run("Opruga, symplectic Euler, 20 steps", &cubes, &mut own, step, positions)?,
+        measure("Opruga, symplectic Euler, 20 steps", &cubes, &mut own, step, positions)?,
     ];
     let title = format!("{} cubes of 320 tetrahedra, E = 1e5 Pa, that fall on one another", cubes.positions.len());
-    Ok(Table { title, rows })
-}
-
-impl Table {
-    /// Markdown.
-    pub fn markdown(&self) -> String {
-        let mut out = format!(
-            "\n{}\n\n| | ms per frame, median | least | ratio | mean height, m | deepest node, % of an edge |\n|---|---|---|---|---|---|\n",
-            self.title
-        );
-        for row in &self.rows {
-            out += &format!(
-                "| {} | {:.1} | {:.1} | {:.2} | {:.3} | {:.2} |\n",
-                row.name,
-                row.median(),
-                row.milliseconds[0],
-                row.median() / self.rows[0].median(),
-                row.height,
-                100.0 * row.depth / EDGE
-            );
-        }
-        out
-    }
-
-    /// An object with all digits.
-    pub fn json(&self) -> Value {
-        let row = |row: &Row| {
-            json!({
-                "program": row.name, "milliseconds_per_frame": row.median(), "least": row.milliseconds[0],
-                "ratio": row.median() / self.rows[0].median(), "mean_height": row.height, "deepest_node": row.depth,
-            })
-        };
-        json!({ "body": self.title, "rows": self.rows.iter().map(row).collect::<Vec<_>>() })
-    }
-}
-
-impl Row {
-    fn median(&self) -> f64 {
-        self.milliseconds[self.milliseconds.len() / 2]
-    }
+    Ok(Table { title, more: vec!["deepest node, % of an edge"], rows })
 }
 
 type Point = [f64; 3];

@@ -1,0 +1,103 @@
+//! Bodies that fall on something: the same frames for every program, and a table of their times.
+
+use crate::processor_time;
+use opruga::World;
+use serde_json::{Value, json};
+use std::ops::Range;
+
+/// One program with one setting.
+pub struct Row {
+    name: String,
+    /// Of the frames that are timed, ascending [ms].
+    milliseconds: Vec<f64>,
+    /// The mean height of all nodes at the end [m].
+    height: f64,
+    /// The numbers of further columns.
+    pub more: Vec<f64>,
+}
+
+/// All programs on the same bodies.
+pub struct Table {
+    pub title: String,
+    /// The names of further columns.
+    pub more: Vec<&'static str>,
+    pub rows: Vec<Row>,
+}
+
+/// The positions of all nodes of every body [m].
+pub type Positions<const D: usize> = Vec<Vec<[f64; D]>>;
+
+/// Where the nodes of Opruga's bodies are [m].
+pub fn positions<const D: usize>(world: &World<D>) -> Positions<D> {
+    let bodies = 0..world.blueprint().bodies.len();
+    bodies.map(|body| (0..world.node_count(body) as u32).map(|node| world.position(body, node)).collect()).collect()
+}
+
+/// Steps through frames to the end of those that are timed: `step` makes one, and `look` says where all nodes are after it.
+pub fn run<W, const D: usize>(
+    name: &str,
+    timed: Range<usize>,
+    world: &mut W,
+    mut step: impl FnMut(&mut W) -> Result<(), String>,
+    mut look: impl FnMut(&W, usize) -> Positions<D>,
+) -> Result<Row, String> {
+    let mut row = Row { name: name.into(), milliseconds: Vec::new(), height: f64::NAN, more: Vec::new() };
+    for frame in 0..timed.end {
+        let start = processor_time();
+        step(world)?;
+        let end = processor_time();
+        if timed.contains(&frame) {
+            row.milliseconds.push((end - start) * 1e3);
+        }
+        let at = look(world, frame);
+        let heights: Vec<f64> = at.iter().flatten().map(|x| x[1]).collect();
+        row.height = heights.iter().sum::<f64>() / heights.len() as f64;
+    }
+    row.milliseconds.sort_by(f64::total_cmp);
+    Ok(row)
+}
+
+impl Row {
+    fn median(&self) -> f64 {
+        self.milliseconds[self.milliseconds.len() / 2]
+    }
+}
+
+impl Table {
+    /// Markdown.
+    pub fn markdown(&self) -> String {
+        let further: String = self.more.iter().map(|name| format!(" {name} |")).collect();
+        let mut out = format!(
+            "\n{}\n\n| | ms per frame, median | least | ratio | mean height, m |{further}\n|---|---|---|---|---|{}\n",
+            self.title,
+            "---|".repeat(self.more.len())
+        );
+        for row in &self.rows {
+            let further: String = row.more.iter().map(|number| format!(" {number:.2} |")).collect();
+            out += &format!(
+                "| {} | {:.1} | {:.1} | {:.2} | {:.3} |{further}\n",
+                row.name,
+                row.median(),
+                row.milliseconds[0],
+                row.median() / self.rows[0].median(),
+                row.height,
+            );
+        }
+        out
+    }
+
+    /// An object with all digits.
+    pub fn json(&self) -> Value {
+        let row = |row: &Row| {
+            let mut out = json!({
+                "program": row.name, "milliseconds_per_frame": row.median(), "least": row.milliseconds[0],
+                "ratio": row.median() / self.rows[0].median(), "mean_height": row.height,
+            });
+            for (name, number) in self.more.iter().zip(&row.more) {
+                out[name] = json!(number);
+            }
+            out
+        };
+        json!({ "body": self.title, "rows": self.rows.iter().map(row).collect::<Vec<_>>() })
+    }
+}
