@@ -11,6 +11,7 @@
 //! step: no force leaves Coulomb's cone, and the last word is that no node may be inside.
 
 use super::contact_query::ContactQuery;
+use super::friction::{Followed, SlipRule, against_slide, projected};
 use super::mixing::Mixing;
 use opruga_core::contacts::Touch;
 use opruga_math::Lane;
@@ -68,6 +69,10 @@ const MOST_CHANGES: u8 = 4;
 
 /// Depths and slides below this part of the extent of a body do not count.
 pub(crate) const SMALL: f64 = 1e-9;
+
+/// The part of its diagonal block by which friction of a node is projected: with nodes around it that give way, a node moves against a half to the
+/// whole of it.
+const HALF: f64 = 0.5;
 
 /// A slipping contact is settled when its force changes by no more than this part of itself.
 const SETTLED: f64 = 1e-7;
@@ -337,17 +342,18 @@ impl<const D: usize> Contacting<D> {
     }
 
     /// Decides anew from the forces that the constraints take (`reaction`, per node) and from the displacements after the
-    /// correction; says what changed.
-    /// `stiffness` of a node [N/m] says how far friction would move it by itself; by less than `tolerance` of the extent is not
-    /// at all.
+    /// correction; says what changed. `stiffness` of a node [N/m] says how far friction would move it by itself.
     pub(crate) fn judge(
         &mut self,
         reaction: &[f64],
         contact_query: &ContactQuery<'_, D>,
-        tolerance: f64,
+        rule: SlipRule,
         stiffness: &dyn Fn(usize) -> f64,
     ) -> Verdict {
-        let moves = |node: usize| tolerance * contact_query.extent * stiffness(node);
+        let moves = |node: usize| match rule {
+            SlipRule::AgainstSlide { tolerance } => tolerance * contact_query.extent * stiffness(node),
+            SlipRule::Projected => 0.0,
+        };
         let ContactQuery { x0, u, theta, extent, .. } = *contact_query;
         let small = SMALL * extent;
         let mut verdict = Verdict::default();
@@ -382,19 +388,26 @@ impl<const D: usize> Contacting<D> {
                     }
                     _ => {
                         let slide = contact.slide(u, theta, x0);
-                        let size = dot(&slide, &slide).sqrt();
-                        if dot(&slide, &contact.push) > 0.0 && size > small {
-                            // Friction would push it along.
-                            if contact.changes < MOST_CHANGES {
+                        let followed = match rule {
+                            SlipRule::AgainstSlide { .. } => against_slide(&slide, &contact.push, small),
+                            SlipRule::Projected => {
+                                let before = contact.touch.friction * contact.normal_force;
+                                let before = contact.along(&contact.push.map(|p| before * p));
+                                projected(&slide, &before, HALF * stiffness(node), most)
+                            }
+                        };
+                        match followed {
+                            Followed::Sticks if contact.changes < MOST_CHANGES => {
                                 contact.hold = Hold::Stick;
                                 contact.changes += 1;
                                 verdict.anew = true;
                             }
-                        } else if size > small {
-                            let push = slide.map(|s| -s / size);
-                            let turn: f64 = (0..D).map(|d| (push[d] - contact.push[d]).abs()).sum();
-                            verdict.unsettled |= turn > SETTLED && turn * most > moves(node);
-                            (contact.push, contact.turn) = (push, turn);
+                            Followed::Pushes(push) => {
+                                let turn: f64 = (0..D).map(|d| (push[d] - contact.push[d]).abs()).sum();
+                                verdict.unsettled |= turn > SETTLED && turn * most > moves(node);
+                                (contact.push, contact.turn) = (push, turn);
+                            }
+                            Followed::Sticks | Followed::Rests => {}
                         }
                         let change = (normal_force - contact.normal_force).abs();
                         let settled =

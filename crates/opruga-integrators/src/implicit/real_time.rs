@@ -2,12 +2,17 @@
 //!
 //! Every iteration balances the exact forces; the matrix only says how far to go. Where it is of another shape of the body,
 //! or its equations are solved roughly, what is left out of balance is a part of what there was; the next step begins with
-//! it. At rest nothing is left. The iteration begins where the body would come to under the acceleration of the last step.
+//! it. At rest nothing is left. The iteration begins where the body would come to under the acceleration of the last step, and with the forces
+//! of contact of that (`contact_forces`).
+//!
+//! Whether the matrix still leads there shows in what a step leaves out of balance. Near obstacles, that is mostly what changes of contacts
+//! leave; there it shows in the forces after an iteration less those that the matrix has foreseen.
 //!
 //! Sizes of what is out of balance are taken in the norm of the inverse diagonal blocks of the matrix, √(r·B r).
 
 use super::balance::{Balance, Solved};
 use super::direction::wanted_forces;
+use super::friction::SlipRule;
 use super::linear::{Filter, Mixture};
 use super::rigid_balance::settles;
 use super::settings::Settings;
@@ -26,7 +31,10 @@ use opruga_solve::Indefinite;
 const LINEAR: f64 = 0.05;
 
 /// The part with which the matrix is made anew in the next step.
-const WORN: f64 = 0.2;
+const MOST_MISMATCH: f64 = 0.2;
+
+/// The same of bodies that are free or near obstacles: three iterations with it leave a thousandth.
+const MOST_MISMATCH_LOOSE: f64 = 0.1;
 
 /// The part that the linear solver leaves of bodies that are free or near obstacles; an iteration is enough with its square.
 const LOOSE: f64 = 1e-3;
@@ -47,6 +55,9 @@ const MANY_PRODUCTS: u32 = 120;
 /// The shape in which the matrix was made [m], the velocity at the start of the last step [m/s] and its length [s]; zero: its
 /// acceleration leads nowhere.
 const REFERENCE: PerNode = PerNode::new("real_time.reference");
+
+/// The forces of obstacles at the end of the last step, with friction where nodes slip [N].
+const CONTACT_FORCE: PerNode = PerNode::new("real_time.contact_force");
 const VELOCITY: PerNode = PerNode::new("real_time.velocity");
 const STEP: PerBody<f64> = PerBody::new("real_time.step");
 
@@ -68,15 +79,15 @@ fn raised(matrix: u64) -> f64 {
     part
 }
 
-/// Whether nothing holds a body, or obstacles may be near. What is left out of balance would push and turn it, a matrix of
-/// another shape is one that is turned, and the acceleration of an impact leads nowhere: nothing is kept from step to step.
+/// Whether nothing holds a body, or obstacles may be near. What is left out of balance would push and turn it, and the acceleration of an
+/// impact leads nowhere.
 fn is_loose<const D: usize>(system: &System<D>) -> bool {
     system.contacts.is_some() || system.pins.is_empty()
 }
 
 /// What the setting keeps from step to step.
 pub(super) fn channels() -> Vec<Channel> {
-    let vectors = [REFERENCE, VELOCITY].map(|channel| channel.declared());
+    let vectors = [REFERENCE, VELOCITY, CONTACT_FORCE].map(|channel| channel.declared());
     vectors.into_iter().chain([STEP.declared(), MATRIX.declared(), STALE.declared()]).collect()
 }
 
@@ -120,6 +131,9 @@ pub(super) fn remember<const D: usize>(system: &mut System<D>, workspace: &Works
             before.0[d][contact.node] = workspace.v1[contact.node * D + d];
         }
     }
+    let Some(forces) = history.vectors_mut(CONTACT_FORCE) else { return };
+    forces.0.iter_mut().for_each(|column| column[..*nodes].fill(0.0));
+    workspace.contacting.visit_forces(|node, force| (0..D).for_each(|d| forces.0[d][node] += force[d]));
 }
 
 /// What an iteration needs to know beside the room.
@@ -167,7 +181,7 @@ impl Task<'_> {
     /// Makes the matrix of the reference shape that the state remembers, if it is not at hand; none where there is none.
     fn recall<const D: usize>(&self, system: &mut System<D>, workspace: &mut Workspace<D>) -> Result<bool, StepError> {
         let matrix = system.history.get(MATRIX);
-        if matrix == 0 || system.history.get(STALE) || is_loose(system) || !system.hessian_is_of_positions() {
+        if matrix == 0 || system.history.get(STALE) || !system.hessian_is_of_positions() {
             return Ok(false);
         }
         let Some(reference) = system.history.vectors(REFERENCE) else { return Ok(false) };
@@ -302,6 +316,8 @@ pub(super) fn iterate<const D: usize>(
     let mut solved = Solved { converged: true, ..Solved::default() };
     task.begin(system, workspace)?;
     let (mut first, mut undecided, mut slow, mut remade) = (0.0, false, false, false);
+    // What the matrix of another shape has left of what was out of balance, in the last iteration.
+    let mut mismatch = 0.0;
     loop {
         system.go_on()?;
         let last = solved.iterations == settings.iterations;
@@ -309,22 +325,32 @@ pub(super) fn iterate<const D: usize>(
         let mut moves = false;
         if !last {
             undecided |= look(system, workspace, balance, false);
+            if solved.iterations == 0
+                && let Some(forces) = system.history.vectors(CONTACT_FORCE)
+            {
+                workspace.contacting.start_from(|node| core::array::from_fn(|d| forces.0[d][node]));
+            }
             let Workspace { contacting, u, held, x0, free, projectors, prescribed, .. } = &mut *workspace;
             moves = contacting.hold(u, balance.theta, held, x0, free, projectors, prescribed) > 0.0;
         }
         let mut size = task.out_of_balance(system, workspace, moves).unwrap_or(f64::NAN);
         if solved.iterations == 0 {
             first = size;
+        } else if !is_loose(system) {
+            mismatch = size / first;
         }
         let floor = NOTHING * workspace.extent * workspace.reused.stiffness().sqrt();
         let settled = !undecided && !moves;
         let (enough, linear) = aims(system, settings);
         let enough = if solved.iterations > 0 { (enough * first).larger(floor) } else { floor };
         if last || settled && size <= enough {
+            if mismatch > if is_loose(system) { MOST_MISMATCH_LOOSE } else { MOST_MISMATCH } {
+                mark_stale(system);
+            }
             let end = End { size, first, floor, most: settings.leaves[1], slow, remade };
             return conclude(system, workspace, balance, settings, solved, &end);
         }
-        if solved.iterations > 0 && (is_loose(system) || size > WORN * first) {
+        if mismatch > MOST_MISMATCH {
             // The matrix of another shape does not lead there.
             remade = true;
             task.make_here(system, workspace, CLAMPED);
@@ -334,17 +360,19 @@ pub(super) fn iterate<const D: usize>(
             workspace.reused.forget_right_hand_side();
         }
         solved.iterations += 1;
-        let (products, found) = task.direction(system, workspace, moves, (linear * first).larger(floor));
+        let goal = if is_loose(system) { (linear * size).larger(enough) } else { (linear * first).larger(floor) };
+        let (products, found) = task.direction(system, workspace, moves, goal);
         solved.products += products;
         slow |= products > MANY_PRODUCTS;
         if !found {
             solved.converged = false;
             return Ok((solved, Trust::None));
         }
-        go(system, workspace, &task, moves, &mut solved)?;
+        let missed = go(system, workspace, &task, moves, &mut solved)?;
+        mismatch = missed / size;
         undecided = false;
         if system.contacts.is_some() {
-            let verdict = judge(system, workspace, balance, settings, 0.0, false);
+            let verdict = judge(system, workspace, balance, settings, SlipRule::Projected);
             undecided = verdict.anew || verdict.unsettled;
         }
     }
@@ -374,9 +402,6 @@ fn conclude<const D: usize>(
     end: &End,
 ) -> Result<(Solved, Trust), StepError> {
     let End { size, first, floor, most, slow, remade } = *end;
-    if size > (WORN * first).larger(floor) {
-        mark_stale(system);
-    }
     let as_promised = size <= (most * first).larger(floor);
     if slow || !as_promised {
         let left = size / workspace.reused.stiffness().sqrt();
@@ -399,16 +424,19 @@ fn conclude<const D: usize>(
     Ok((solved, trust))
 }
 
-/// Goes the step that was found, and what is prescribed; `workspace.reaction` is then what the constraints take.
+/// Goes the step that was found, and what is prescribed; `workspace.reaction` is then what the constraints take. Gives by how much the matrix
+/// has missed the forces that are there now, of bodies that are free or near obstacles: r − (r₀ + A Δ), in which r₀ + A Δ is what the linear
+/// solver has left, and taken for nothing, where no node is held.
 fn go<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
     task: &Task<'_>,
     moves: bool,
     solved: &mut Solved,
-) -> Result<(), StepError> {
+) -> Result<f64, StepError> {
     let Workspace { linear, mass, free, projectors, residual, reaction, step, prescribed, contacting, u, .. } =
         &mut *workspace;
+    let any = contacting.any();
     let filter = Filter { free, projectors };
     each_block(system.threads, D, [step], |first, [step]| filter.apply_from(first / D, step));
     if moves {
@@ -417,7 +445,7 @@ fn go<const D: usize>(
         }
     }
     // What is out of balance after the step in the directions that are held: r + A Δ.
-    if contacting.any() {
+    if any {
         linear.multiply(&task.mixture(system, mass), step, reaction);
         for (r, residual) in reaction.iter_mut().zip(&*residual) {
             *r += residual;
@@ -433,5 +461,15 @@ fn go<const D: usize>(
             *u += s;
         }
     });
-    evaluate(system, workspace, task.balance, false)
+    evaluate(system, workspace, task.balance, false)?;
+    if !is_loose(system) {
+        return Ok(0.0);
+    }
+    let Workspace { reused, free, projectors, residual, reaction, trial, .. } = &mut *workspace;
+    trial.copy_from_slice(residual);
+    if any {
+        trial.iter_mut().zip(&*reaction).for_each(|(missed, foreseen)| *missed -= foreseen);
+    }
+    Filter { free, projectors }.apply(trial);
+    Ok(reused.begin(system, trial))
 }

@@ -3,6 +3,7 @@
 use super::balance::Balance;
 use super::contact::Verdict;
 use super::contact_query::ContactQuery;
+use super::friction::SlipRule;
 use super::linear::{Mixture, is_matrix_free};
 use super::settings::Settings;
 use super::workspace::Workspace;
@@ -43,15 +44,12 @@ pub(crate) fn judge<const D: usize>(
     workspace: &mut Workspace<D>,
     balance: &Balance,
     settings: &Settings,
-    tolerance: f64,
-    yields: bool,
+    rule: SlipRule,
 ) -> Verdict {
     let Workspace { contacting, reaction, x0, u, extent, linear, mass, .. } = workspace;
     let contact_query = ContactQuery::new(system, balance, x0, u, *extent);
     let mixture = mixture(system, mass, balance, Definiteness::Clamped, settings);
-    contacting.judge(reaction, &contact_query, tolerance, &|node| {
-        if yields { linear.size_at(&mixture, node) / D as f64 } else { 0.0 }
-    })
+    contacting.judge(reaction, &contact_query, rule, &|node| linear.size_at(&mixture, node) / D as f64)
 }
 
 pub(crate) fn mixture<'a, const D: usize>(

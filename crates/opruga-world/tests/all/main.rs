@@ -24,6 +24,7 @@ mod other_balances;
 mod pins_and_masses;
 mod queries;
 mod real_time;
+mod real_time_contact;
 mod refusals;
 mod rest_together;
 mod robust_steps;

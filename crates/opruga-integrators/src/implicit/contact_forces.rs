@@ -1,0 +1,41 @@
+//! The forces of contact that a step in real time begins with: those of the last one.
+
+use super::contact::{Contacting, Hold, dot, split};
+use opruga_math::Lane;
+
+impl<const D: usize> Contacting<D> {
+    /// Calls back with the force on every node that is held [N]: along the normal, and of friction where the node slips.
+    pub(super) fn visit_forces(&self, mut visit: impl FnMut(usize, [f64; D])) {
+        for contact in self.contacts.iter().filter(|contact| contact.is_active()) {
+            let friction = if contact.rubs() { contact.touch.friction } else { 0.0 };
+            let direction = |d: usize| contact.touch.normal[d] + friction * contact.push[d];
+            visit(contact.node, core::array::from_fn(|d| contact.normal_force * direction(d)));
+        }
+    }
+
+    /// Lets contacts that a first look has found go on with the forces of the last step, as [`Contacting::visit_forces`] gave them:
+    /// what slipped slips on, and what stuck sticks.
+    pub(super) fn start_from(&mut self, force: impl Fn(usize) -> [f64; D]) {
+        for contacts in self.contacts.chunk_by_mut(|a, b| a.node == b.node) {
+            let force = force(contacts[0].node);
+            if force == [0.0; D] {
+                continue;
+            }
+            let normal_forces = split(contacts, &force);
+            for (k, contact) in contacts.iter_mut().enumerate().filter(|(_, contact)| contact.is_active()) {
+                contact.normal_force = normal_forces[k.min(D - 1)].larger(0.0);
+                if contact.touch.friction == 0.0 {
+                    continue;
+                }
+                let friction = contact.along(&force);
+                let size = dot(&friction, &friction).sqrt();
+                // The force of a node that slipped is µ λ along its surface, and that of one that stuck nothing.
+                if size > 0.5 * contact.touch.friction * contact.normal_force {
+                    (contact.hold, contact.push) = (Hold::Slip, friction.map(|f| f / size));
+                } else {
+                    contact.hold = Hold::Stick;
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! The force of friction on nodes that slip.
+//!
+//! The exact minimiser lets friction push against the slide w, t = −µ λ w/|w|, with the derivatives of that in its matrix. The
+//! real-time one keeps a matrix that knows nothing of friction, and t would flip from iteration to iteration where w is small. There
+//!
+//! ```text
+//! t' = t − k w     sticks where |t'| ≤ µ λ, else t = µ λ t'/|t'|
+//! ```
+//!
+//! whose fixed point is Coulomb's law for every k > 0, and which converges below twice the stiffness against which a node moves by itself.
+//!
+//! # Source
+//! P. Alart, A. Curnier, A mixed formulation for frictional contact problems prone to Newton like solution methods, CMAME 92 (1991)
+//! 353–375.
+
+use opruga_solve::dot;
+
+/// How friction on a node that slips follows from its slide.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum SlipRule {
+    /// It pushes against the slide. What would move a node by less than `tolerance` of the extent is nothing.
+    AgainstSlide { tolerance: f64 },
+    /// The force before, less the slide times a stiffness, is projected onto Coulomb's cone.
+    Projected,
+}
+
+/// What friction does on a node that slips.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Followed<const D: usize> {
+    /// It holds the node.
+    Sticks,
+    /// It pushes in this direction.
+    Pushes([f64; D]),
+    /// The node does not slide: what was known of the direction holds.
+    Rests,
+}
+
+/// Friction against a slide [m], where it has pushed in a direction before; a slide below `small` is none.
+pub(super) fn against_slide<const D: usize>(slide: &[f64; D], push: &[f64; D], small: f64) -> Followed<D> {
+    let size = dot(slide, slide).sqrt();
+    if size <= small {
+        Followed::Rests
+    } else if dot(slide, push) > 0.0 {
+        // Friction would push it along.
+        Followed::Sticks
+    } else {
+        Followed::Pushes(slide.map(|s| -s / size))
+    }
+}
+
+/// Friction by projection: of the force before [N], by a slide [m] and a stiffness [N/m], where it is `most` [N] at most.
+pub(super) fn projected<const D: usize>(slide: &[f64; D], before: &[f64; D], stiffness: f64, most: f64) -> Followed<D> {
+    let force: [f64; D] = core::array::from_fn(|d| before[d] - stiffness * slide[d]);
+    let size = dot(&force, &force).sqrt();
+    if size <= most {
+        Followed::Sticks
+    } else if size > 0.0 {
+        Followed::Pushes(force.map(|f| f / size))
+    } else {
+        Followed::Rests
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A node on a spring of 1 N/m, which 0.5 N along x move against friction of 0.3 N.
+    #[test]
+    fn friction_by_projection_settles_against_the_slide_below_twice_the_stiffness() {
+        for stiffness in [0.1, 1.0, 1.9] {
+            let mut push = [-0.6, 0.8];
+            let slide_by = |push: [f64; 2]| [0.5 + 0.3 * push[0], 0.3 * push[1]];
+            for _ in 0..400 {
+                match projected(&slide_by(push), &push.map(|p| 0.3 * p), stiffness, 0.3) {
+                    Followed::Pushes(next) => push = next,
+                    other => panic!("{stiffness}: {push:?} {other:?}"),
+                }
+            }
+            let slide = slide_by(push);
+            assert!((slide[0] - 0.2).abs() + slide[1].abs() < 1e-9, "{stiffness}: {slide:?}, {push:?}");
+        }
+    }
+
+    #[test]
+    fn friction_by_projection_holds_what_it_can_hold() {
+        assert_eq!(projected(&[1e-3, 0.0], &[-0.1, 0.0], 100.0, 0.3), Followed::Sticks);
+        assert_eq!(projected(&[1e-3, 0.0], &[-0.3, 0.0], 100.0, 0.3), Followed::Pushes([-1.0, 0.0]));
+    }
+}
