@@ -2,7 +2,6 @@
 
 use super::balance::Balance;
 use super::contact::dot;
-use super::rule::Rule;
 use super::stage;
 use super::workspace::Workspace;
 use opruga_core::error::StepError;
@@ -16,33 +15,75 @@ const NO_GAIN: f64 = 1e-9;
 /// The part of its energy of motion that a body may gain in a step in real time.
 const LITTLE_GAIN: f64 = 1e-3;
 
-/// The energy of a body before a step [J]; none where it may gain some: from loads, a gas or moving pins.
+/// What a step did to the energy of a body.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Change {
+    /// The energy before the step, that of its end where that is known, and of that the part of motion [J].
+    before: f64,
+    after: Option<f64>,
+    kinetic: f64,
+}
+
+impl Change {
+    /// Whether the body has more energy than before, and than a part of that of its motion.
+    fn is_gain(&self, part: f64) -> bool {
+        let Change { before, after, kinetic } = *self;
+        // What cannot be told is a gain where some is allowed for.
+        let Some(after) = after else { return part > 0.0 };
+        // Written so that what is no number is a gain.
+        let within = after - before <= NO_GAIN * (after.abs() + before.abs() + kinetic) + part * kinetic;
+        !within
+    }
+
+    /// Whether a step whose end is doubtful may have made energy; one of which nobody knows what it may have gained has.
+    pub(super) fn is_doubtful(change: Option<Change>) -> bool {
+        change.is_none_or(|change| change.is_gain(LITTLE_GAIN))
+    }
+
+    /// Whether a rule has made energy.
+    pub(super) fn is_made(change: Option<Change>) -> bool {
+        change.is_some_and(|change| change.is_gain(0.0))
+    }
+}
+
+/// Whether a body may gain energy in a step of h [s]: from loads, a gas or moving pins.
+fn may_gain<const D: usize>(system: &System<D>, h: f64) -> bool {
+    let moves = |pin: &Pin<D>| pin.target(system.time).0 != pin.target(system.time + h).0;
+    let given = system.members.iter().any(|member| member.potential.properties().account != Account::Elastic);
+    given || system.pins.iter().any(moves)
+}
+
+/// The energy of a body before a step [J]; none where models do not say.
 fn energy_before<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
-    h: f64,
 ) -> Result<Option<f64>, StepError> {
-    let moves = |pin: &Pin<D>| pin.target(system.time).0 != pin.target(system.time + h).0;
-    let given = system.members.iter().any(|member| member.potential.properties().account != Account::Elastic);
-    if given || system.pins.iter().any(moves) {
-        return Ok(None);
-    }
     system.evaluate(Stage::Current, 0.0, 0.0, &mut workspace.force)?;
     Ok(system.potential_energy(Stage::Current, 0.0).map(|stored| stored + system.kinetic_energy()))
 }
 
-/// Whether a body has more energy at the end of the step than before, and than a part of that of its motion.
-fn gains<const D: usize>(
+/// What the step whose end was found does to the energy of a body; none where it may gain some, and where its models do not say. Forces are
+/// those of the stage afterwards. `energy` is that before the step, once it was asked for.
+pub(super) fn change<const D: usize>(
+    energy: &mut Option<Option<f64>>,
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
-    before: f64,
-    h: f64,
-    part: f64,
-) -> Result<bool, StepError> {
+    balance: &Balance,
+) -> Result<Option<Change>, StepError> {
+    let h = balance.h;
+    if may_gain(system, h) {
+        return Ok(None);
+    }
+    let before = match *energy {
+        Some(known) => known,
+        None => *energy.insert(energy_before(system, workspace)?),
+    };
+    let Some(before) = before else {
+        stage::evaluate(system, workspace, balance, false)?;
+        return Ok(None);
+    };
     Workspace::show(system, &workspace.x0, &workspace.u1, &workspace.z, 0.0);
     system.evaluate(Workspace::<D>::STAGE, h, 0.0, &mut workspace.force)?;
-    // What cannot be told is a gain where some is allowed for.
-    let Some(stored) = system.potential_energy(Workspace::<D>::STAGE, h) else { return Ok(part > 0.0) };
     let mut kinetic = 0.0;
     for (velocity, mass) in nodes::<D>(&workspace.v1).iter().zip(&workspace.mass) {
         kinetic += 0.5 * mass * dot(velocity, velocity);
@@ -50,47 +91,7 @@ fn gains<const D: usize>(
     if let Some(inertia) = &system.inertia {
         kinetic += 0.5 * inertia.square::<D>(&workspace.v1);
     }
-    let after = stored + kinetic;
-    // Written so that what is no number is a gain.
-    let within = after - before <= NO_GAIN * (after.abs() + before.abs() + kinetic) + part * kinetic;
-    Ok(!within)
-}
-
-/// Whether a step whose end is doubtful may have made energy; else forces are again those of the stage.
-pub(super) fn gains_in_doubt<const D: usize>(
-    system: &mut System<D>,
-    workspace: &mut Workspace<D>,
-    balance: &Balance,
-) -> Result<bool, StepError> {
-    let gained = match energy_before(system, workspace, balance.h)? {
-        Some(before) => gains(system, workspace, before, balance.h, LITTLE_GAIN)?,
-        // Nobody knows what it may have gained.
-        None => true,
-    };
-    if !gained {
-        stage::evaluate(system, workspace, balance, false)?;
-    }
-    Ok(gained)
-}
-
-/// The rule instead of one by which a body in contact has gained energy; else forces are again those of the stage. `energy` is that
-/// before the step, once it was asked for.
-pub(super) fn calmer_rule<R: Rule<D>, const D: usize>(
-    rule: R,
-    energy: &mut Option<Option<f64>>,
-    system: &mut System<D>,
-    workspace: &mut Workspace<D>,
-    balance: &Balance,
-) -> Result<Option<R>, StepError> {
-    let Some(calmed) = rule.calmed().filter(|_| workspace.contacting.any_at_rest()) else { return Ok(None) };
-    if energy.is_none() {
-        *energy = Some(energy_before(system, workspace, balance.h)?);
-    }
-    let Some(before) = energy.flatten() else { return Ok(None) };
-    if gains(system, workspace, before, balance.h, 0.0)? {
-        return Ok(Some(calmed));
-    }
-    // What is entered later goes by the stage.
+    let after = system.potential_energy(Workspace::<D>::STAGE, h).map(|stored| stored + kinetic);
     stage::evaluate(system, workspace, balance, false)?;
-    Ok(None)
+    Ok(Some(Change { before, after, kinetic }))
 }

@@ -21,7 +21,7 @@ use super::balance::{Balance, Solved};
 use super::contact::SMALL;
 use super::convergence::{accept_or_refuse, count, finish, refusal};
 use super::ends::{Found, commit, end, enter_end, enter_stage, open_ledger};
-use super::energy;
+use super::energy::{self, Change};
 use super::fallback::{RealTime, exactly};
 use super::growth;
 use super::holding;
@@ -222,17 +222,22 @@ impl<R: Rule<D>, const D: usize> Method<'_, R, D> {
             }
             let work = system.work;
             end(rule, system, workspace, &balance, h);
-            if solved.doubtful && energy::gains_in_doubt(system, workspace, &balance)? {
-                system.work = work;
-                minimiser.discard(system);
-                minimiser = &exact;
-                continue;
+            let calmed = rule.calmed().filter(|_| workspace.contacting.any_at_rest());
+            if solved.doubtful || calmed.is_some() {
+                let change = energy::change(&mut energy, system, workspace, &balance)?;
+                if solved.doubtful && Change::is_doubtful(change) {
+                    system.work = work;
+                    minimiser.discard(system);
+                    minimiser = &exact;
+                    continue;
+                }
+                if let Some(calmed) = calmed.filter(|_| Change::is_made(change)) {
+                    system.work = work;
+                    rule = calmed;
+                    continue;
+                }
             }
-            let Some(calmed) = energy::calmer_rule(rule, &mut energy, system, workspace, &balance)? else {
-                return Ok(Found { rule, balance, solved });
-            };
-            system.work = work;
-            rule = calmed;
+            return Ok(Found { rule, balance, solved });
         }
     }
 
