@@ -6,6 +6,7 @@
 
 mod beam;
 mod cube;
+mod discs;
 mod falling;
 mod motion;
 mod mujoco;
@@ -30,7 +31,7 @@ pub fn processor_time() -> f64 {
 /// Opruga beside Rapier and MuJoCo: milliseconds per frame of one thread, and errors.
 #[derive(Debug, Parser)]
 pub struct Settings {
-    /// Bodies: `cube`, `beam`, `pile`, `solids`
+    /// Bodies: `cube`, `beam`, `pile`, `discs`, `solids`
     #[arg(long, value_delimiter = ',', default_value = "cube,beam")]
     bodies: Vec<String>,
     /// Cells along a side of the cube
@@ -51,7 +52,7 @@ pub struct Settings {
     /// A Python with the package `mujoco`; MuJoCo is left out without
     #[arg(long, value_name = "PYTHON")]
     mujoco: Option<String>,
-    /// Times of cubes and solids without exact steps and rests, which take long
+    /// Times of the cubes without their errors, for which exact steps and rests of many cells take long; of the solids without finer steps
     #[arg(long)]
     times_only: bool,
     /// An object for programs
@@ -82,11 +83,15 @@ fn compare(settings: &Settings, done: &mut dyn FnMut(String, Value)) -> Result<(
                     done(table.markdown(), table.json());
                 }
             }
+            "discs" => {
+                let table = discs::compare()?;
+                done(table.markdown(), table.json());
+            }
             "solids" => {
                 let table = solids::compare(settings.times_only)?;
                 done(table.markdown(), table.json());
             }
-            other => return Err(format!("there is no body `{other}`; known: cube, beam, pile, solids")),
+            other => return Err(format!("there is no body `{other}`; known: cube, beam, pile, discs, solids")),
         }
     }
     Ok(())
