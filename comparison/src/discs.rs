@@ -15,14 +15,19 @@ const BOX: [f32; 2] = [57.8, 40.0];
 const RADIUS: f64 = 0.5;
 const FRICTION: f32 = 0.3;
 
+/// The substeps of Opruga in a frame: near its limit of stability, and those of the scene.
+const SUBSTEPS: [u32; 3] = [8, 16, 32];
+
 /// The frames that are timed: from 0.5 to 1 s.
 const TIMED: Range<usize> = 30..60;
 
 /// Every such frame, the depth is measured.
 const LOOK: usize = 10;
 
-fn world() -> Result<World<2>, String> {
-    let reading = scene::Options::default();
+/// The scene, with as many substeps.
+fn world(substeps: u32) -> Result<World<2>, String> {
+    let overrides = vec![("time.substeps".to_string(), substeps.to_string())];
+    let reading = scene::Options { overrides, ..scene::Options::default() };
     let (blueprint, _) = scene::read(SCENE.as_bytes(), "heap", &catalogue(), &reading)
         .map_err(|errors| errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))?;
     let AnyBlueprint::Plane(blueprint) = blueprint else { return Err("the discs are not in the plane".into()) };
@@ -93,9 +98,13 @@ fn of_rapier(own: &World<2>) -> Result<Row, String> {
 
 /// Rapier and Opruga on the thousand discs.
 pub fn compare() -> Result<Table, String> {
-    let mut own = world()?;
-    let step = |world: &mut World<2>| world.frame().map(|_| ()).map_err(|e| e.to_string());
-    let rows = vec![of_rapier(&own)?, measure("Opruga, symplectic Euler, 32 steps", &mut own, step, positions)?];
+    let own = world(SUBSTEPS[0])?;
+    let mut rows = vec![of_rapier(&own)?];
+    for substeps in SUBSTEPS {
+        let mut own = world(substeps)?;
+        let step = |world: &mut World<2>| world.frame().map(|_| ()).map_err(|e| e.to_string());
+        rows.push(measure(&format!("Opruga, symplectic Euler, {substeps} steps"), &mut own, step, positions)?);
+    }
     let title = format!("{} discs of 36 vertices that fill a box", own.blueprint().bodies.len());
     Ok(Table { title, more: vec!["deepest node, % of a diameter"], rows })
 }

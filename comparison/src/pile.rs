@@ -13,6 +13,9 @@ const SCENE: &str = include_str!("../../benches/scenes/falling-cubes.toml");
 /// Edge of a cube [m].
 const EDGE: f64 = 0.8;
 
+/// The substeps of Opruga in a frame: near its limit of stability, and those of the scene.
+const SUBSTEPS: [u32; 3] = [8, 12, 20];
+
 /// The frames that are timed: from 1.5 to 2.5 s.
 const TIMED: Range<usize> = 90..150;
 
@@ -27,8 +30,12 @@ struct Cubes {
     facets: Vec<[u32; 3]>,
 }
 
-fn world(along: usize) -> Result<World<3>, String> {
-    let overrides = vec![("body.cube.copies.count".to_string(), format!("[{along}, {along}, {along}]"))];
+/// The scene, with as many cubes along every axis and as many substeps.
+fn world(along: usize, substeps: u32) -> Result<World<3>, String> {
+    let overrides = vec![
+        ("body.cube.copies.count".to_string(), format!("[{along}, {along}, {along}]")),
+        ("time.substeps".to_string(), substeps.to_string()),
+    ];
     let far = format!("[{:?}, 60.0, {:?}]", along as f64 + 0.5, along as f64 + 0.5);
     let text = SCENE.replace("max = [3.5, 20.0, 3.5]", &format!("max = {far}"));
     let reading = scene::Options { overrides, ..scene::Options::default() };
@@ -122,13 +129,15 @@ fn of_rapier(cubes: &Cubes, along: usize, name: &str, solver: SoftBodySolver) ->
 
 /// Rapier and Opruga on so many cubes along every axis.
 pub fn compare(along: usize) -> Result<Table, String> {
-    let mut own = world(along)?;
+    let own = world(along, SUBSTEPS[0])?;
     let cubes = cubes(&own);
-    let step = |world: &mut World<3>| world.frame().map(|_| ()).map_err(|e| e.to_string());
-    let rows = vec![
-        of_rapier(&cubes, along, "Rapier, constraints, 4 steps", SoftBodySolver::Constraints)?,
-        measure("Opruga, symplectic Euler, 20 steps", &cubes, &mut own, step, positions)?,
-    ];
+    let mut rows = vec![of_rapier(&cubes, along, "Rapier, constraints, 4 steps", SoftBodySolver::Constraints)?];
+    for substeps in SUBSTEPS {
+        let mut own = world(along, substeps)?;
+        let step = |world: &mut World<3>| world.frame().map(|_| ()).map_err(|e| e.to_string());
+        let name = format!("Opruga, symplectic Euler, {substeps} steps");
+        rows.push(measure(&name, &cubes, &mut own, step, positions)?);
+    }
     let title = format!("{} cubes of 320 tetrahedra, E = 1e5 Pa, that fall on one another", cubes.positions.len());
     Ok(Table { title, more: vec!["deepest node, % of an edge"], rows })
 }
@@ -211,7 +220,7 @@ mod tests {
 
     #[test]
     fn a_node_is_as_deep_as_the_nearest_side_is_away() {
-        let world = world(1).expect("a cube");
+        let world = world(1, SUBSTEPS[0]).expect("a cube");
         let cubes = cubes(&world);
         let one = positions(&world).remove(0);
         let moved = |by: f64| one.iter().map(|x| [x[0] + EDGE - by, x[1] + 0.01, x[2] + 0.013]).collect::<Vec<_>>();
