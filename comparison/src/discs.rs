@@ -1,6 +1,6 @@
 //! A thousand discs of gas that fill a box, so that all of them touch: time, height, and how deep they are in one another.
 
-use crate::falling::{Positions, Row, Table, positions, run};
+use crate::falling::{Depth, Row, Table, positions, run_and_measure};
 use crate::rapier;
 use opruga::blueprint::AnyBlueprint;
 use opruga::io::scene;
@@ -9,6 +9,9 @@ use rapier2d::prelude::*;
 use std::ops::Range;
 
 const SCENE: &str = include_str!("../../benches/scenes/heap.toml");
+
+/// The depth of a node inside another disc, in parts of the diameter.
+const MEASURE: Depth<2> = Depth { of: &depth, unit: 2.0 * RADIUS };
 
 /// The walled box of the scene [m].
 const BOX: [f32; 2] = [57.8, 40.0];
@@ -21,9 +24,6 @@ const SUBSTEPS: [u32; 3] = [8, 16, 32];
 /// The frames that are timed: from 0.5 to 1 s.
 const TIMED: Range<usize> = 30..60;
 
-/// Every such frame, the depth is measured.
-const LOOK: usize = 10;
-
 /// The scene, with as many substeps.
 fn world(substeps: u32) -> Result<World<2>, String> {
     let overrides = vec![("time.substeps".to_string(), substeps.to_string())];
@@ -32,25 +32,6 @@ fn world(substeps: u32) -> Result<World<2>, String> {
         .map_err(|errors| errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))?;
     let AnyBlueprint::Plane(blueprint) = blueprint else { return Err("the discs are not in the plane".into()) };
     World::new(blueprint, Options::default()).map_err(|e| e.to_string())
-}
-
-/// Lets a program step through the frames: time, mean height, and how deep discs are in one another.
-fn measure<W>(
-    name: &str,
-    world: &mut W,
-    step: impl FnMut(&mut W) -> Result<(), String>,
-    place: impl Fn(&W) -> Positions<2>,
-) -> Result<Row, String> {
-    let mut deepest: f64 = 0.0;
-    let mut row = run(name, TIMED, world, step, |world, frame| {
-        let at = place(world);
-        if TIMED.contains(&frame) && (frame + 1 - TIMED.start).is_multiple_of(LOOK) {
-            deepest = deepest.max(depth(&at));
-        }
-        at
-    })?;
-    row.more.push(100.0 * deepest / (2.0 * RADIUS));
-    Ok(row)
 }
 
 fn of_rapier(own: &World<2>) -> Result<Row, String> {
@@ -93,7 +74,7 @@ fn of_rapier(own: &World<2>) -> Result<Row, String> {
         world.step();
         Ok(())
     };
-    measure("Rapier, discs, 4 steps", &mut world, step, place)
+    run_and_measure("Rapier, discs, 4 steps", TIMED, &mut world, step, place, &MEASURE)
 }
 
 /// Rapier and Opruga on the thousand discs.
@@ -103,7 +84,8 @@ pub fn compare() -> Result<Table, String> {
     for substeps in SUBSTEPS {
         let mut own = world(substeps)?;
         let step = |world: &mut World<2>| world.frame().map(|_| ()).map_err(|e| e.to_string());
-        rows.push(measure(&format!("Opruga, symplectic Euler, {substeps} steps"), &mut own, step, positions)?);
+        let name = format!("Opruga, symplectic Euler, {substeps} steps");
+        rows.push(run_and_measure(&name, TIMED, &mut own, step, positions, &MEASURE)?);
     }
     let title = format!("{} discs of 36 vertices that fill a box", own.blueprint().bodies.len());
     Ok(Table { title, more: vec!["deepest node, % of a diameter"], rows })
@@ -134,26 +116,9 @@ fn distance(p: &Point, polygon: &[Point]) -> f64 {
     sides.map(to_side).fold(f64::INFINITY, f64::min)
 }
 
-/// How deep a node of one disc is inside another one, at most [m].
-fn depth(at: &Positions<2>) -> f64 {
-    let boxes: Vec<[Point; 2]> = at
-        .iter()
-        .map(|nodes| {
-            nodes.iter().fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], |[low, high], x| {
-                [std::array::from_fn(|d| low[d].min(x[d])), std::array::from_fn(|d| high[d].max(x[d]))]
-            })
-        })
-        .collect();
-    let mut deepest: f64 = 0.0;
-    for (a, nodes) in at.iter().enumerate() {
-        for (b, other) in at.iter().enumerate().filter(|(b, _)| *b != a) {
-            let near = |x: &&Point| (0..2).all(|d| boxes[b][0][d] <= x[d] && x[d] <= boxes[b][1][d]);
-            for p in nodes.iter().filter(near).filter(|p| is_within(p, other)) {
-                deepest = deepest.max(distance(p, other));
-            }
-        }
-    }
-    deepest
+/// How deep a point is inside a polygon [m]; 0 outside.
+fn depth(p: &Point, polygon: &[Point]) -> f64 {
+    if is_within(p, polygon) { distance(p, polygon) } else { 0.0 }
 }
 
 #[cfg(test)]
@@ -162,9 +127,10 @@ mod tests {
 
     #[test]
     fn a_node_is_as_deep_as_the_nearest_side_is_away() {
-        let square = |x: f64| vec![[x, 0.0], [x + 1.0, 0.0], [x + 1.0, 1.0], [x, 1.0]];
+        let square = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         let spike = vec![[0.9, 0.5], [1.5, 0.4], [1.5, 0.6]];
-        assert!((depth(&vec![square(0.0), spike]) - 0.1).abs() < 1e-12);
-        assert_eq!(depth(&vec![square(0.0), square(1.1)]), 0.0);
+        assert!((MEASURE.deepest(&vec![square.clone(), spike]) - 0.1).abs() < 1e-12);
+        let beside = square.iter().map(|x| [x[0] + 1.1, x[1]]).collect();
+        assert_eq!(MEASURE.deepest(&vec![square, beside]), 0.0);
     }
 }

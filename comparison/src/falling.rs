@@ -57,6 +57,60 @@ pub fn run<W, const D: usize>(
     Ok(row)
 }
 
+/// The depth of a point [m] inside a body whose nodes are at these places; 0 outside.
+pub type DepthOf<'a, const D: usize> = dyn Fn(&[f64; D], &[[f64; D]]) -> f64 + 'a;
+
+/// How deep nodes of one body are inside another one.
+pub struct Depth<'a, const D: usize> {
+    pub of: &'a DepthOf<'a, D>,
+    /// The length in hundredths of which it is given [m].
+    pub unit: f64,
+}
+
+/// The frames from one look at the depth to the next one.
+const LOOK: usize = 10;
+
+impl<const D: usize> Depth<'_, D> {
+    /// The depth of the deepest node [m].
+    pub fn deepest(&self, at: &Positions<D>) -> f64 {
+        let around = |nodes: &Vec<[f64; D]>| {
+            nodes.iter().fold([[f64::INFINITY; D], [f64::NEG_INFINITY; D]], |[low, high], x| {
+                [std::array::from_fn(|d| low[d].min(x[d])), std::array::from_fn(|d| high[d].max(x[d]))]
+            })
+        };
+        let boxes: Vec<_> = at.iter().map(around).collect();
+        let mut deepest: f64 = 0.0;
+        for (a, nodes) in at.iter().enumerate() {
+            for (b, other) in at.iter().enumerate().filter(|(b, _)| *b != a) {
+                let near = |x: &&[f64; D]| (0..D).all(|d| boxes[b][0][d] <= x[d] && x[d] <= boxes[b][1][d]);
+                deepest = nodes.iter().filter(near).map(|p| (self.of)(p, other)).fold(deepest, f64::max);
+            }
+        }
+        deepest
+    }
+}
+
+/// The same as [`run`], with the largest depth in the frames that are timed as a further column.
+pub fn run_and_measure<W, const D: usize>(
+    name: &str,
+    timed: Range<usize>,
+    world: &mut W,
+    step: impl FnMut(&mut W) -> Result<(), String>,
+    place: impl Fn(&W) -> Positions<D>,
+    depth: &Depth<'_, D>,
+) -> Result<Row, String> {
+    let mut deepest: f64 = 0.0;
+    let mut row = run(name, timed.clone(), world, step, |world, frame| {
+        let at = place(world);
+        if timed.contains(&frame) && (frame + 1 - timed.start).is_multiple_of(LOOK) {
+            deepest = deepest.max(depth.deepest(&at));
+        }
+        at
+    })?;
+    row.more.push(100.0 * deepest / depth.unit);
+    Ok(row)
+}
+
 impl Row {
     fn median(&self) -> f64 {
         self.milliseconds[self.milliseconds.len() / 2]

@@ -52,7 +52,7 @@ pub struct Settings {
     /// A Python with the package `mujoco`; MuJoCo is left out without
     #[arg(long, value_name = "PYTHON")]
     mujoco: Option<String>,
-    /// Times of the cubes without their errors, for which exact steps and rests of many cells take long; of the solids without finer steps
+    /// Leave out what takes long: of the cubes exact steps and rests, of the solids finer steps
     #[arg(long)]
     times_only: bool,
     /// An object for programs

@@ -1,6 +1,6 @@
 //! Cubes of tetrahedra that fall on one another in a walled box: time, height, and how deep they are in one another.
 
-use crate::falling::{Row, Table, positions, run};
+use crate::falling::{Depth, Row, Table, positions, run_and_measure};
 use crate::rapier;
 use opruga::blueprint::AnyBlueprint;
 use opruga::io::scene;
@@ -18,9 +18,6 @@ const SUBSTEPS: [u32; 3] = [8, 12, 20];
 
 /// The frames that are timed: from 1.5 to 2.5 s.
 const TIMED: Range<usize> = 90..150;
-
-/// Every such frame, the depth is measured.
-const LOOK: usize = 10;
 
 /// What the programs share.
 struct Cubes {
@@ -54,26 +51,6 @@ fn cubes(world: &World<3>) -> Cubes {
         tetrahedra: mesh.cells.tetrahedra.clone(),
         facets: mesh.facets.clone(),
     }
-}
-
-/// Lets a program step through the frames: time, mean height, and how deep cubes are in one another.
-fn measure<W>(
-    name: &str,
-    cubes: &Cubes,
-    world: &mut W,
-    step: impl FnMut(&mut W) -> Result<(), String>,
-    place: impl Fn(&W) -> Vec<Vec<[f64; 3]>>,
-) -> Result<Row, String> {
-    let mut deepest: f64 = 0.0;
-    let mut row = run(name, TIMED, world, step, |world, frame| {
-        let at = place(world);
-        if TIMED.contains(&frame) && (frame + 1 - TIMED.start).is_multiple_of(LOOK) {
-            deepest = deepest.max(depth(cubes, &at));
-        }
-        at
-    })?;
-    row.more.push(100.0 * deepest / EDGE);
-    Ok(row)
 }
 
 fn of_rapier(cubes: &Cubes, along: usize, name: &str, solver: SoftBodySolver) -> Result<Row, String> {
@@ -124,7 +101,8 @@ fn of_rapier(cubes: &Cubes, along: usize, name: &str, solver: SoftBodySolver) ->
         world.step();
         Ok(())
     };
-    measure(name, cubes, &mut world, step, place)
+    let depth = |p: &Point, nodes: &[Point]| depth(cubes, p, nodes);
+    run_and_measure(name, TIMED, &mut world, step, place, &Depth { of: &depth, unit: EDGE })
 }
 
 /// Rapier and Opruga on so many cubes along every axis.
@@ -136,7 +114,8 @@ pub fn compare(along: usize) -> Result<Table, String> {
         let mut own = world(along, substeps)?;
         let step = |world: &mut World<3>| world.frame().map(|_| ()).map_err(|e| e.to_string());
         let name = format!("Opruga, symplectic Euler, {substeps} steps");
-        rows.push(measure(&name, &cubes, &mut own, step, positions)?);
+        let depth = |p: &Point, nodes: &[Point]| depth(&cubes, p, nodes);
+        rows.push(run_and_measure(&name, TIMED, &mut own, step, positions, &Depth { of: &depth, unit: EDGE })?);
     }
     let title = format!("{} cubes of 320 tetrahedra, E = 1e5 Pa, that fall on one another", cubes.positions.len());
     Ok(Table { title, more: vec!["deepest node, % of an edge"], rows })
@@ -188,30 +167,13 @@ fn distance(p: &Point, corners: [&Point; 3]) -> f64 {
     least
 }
 
-/// How deep a node of one cube is inside another one, at most [m].
-fn depth(cubes: &Cubes, at: &[Vec<Point>]) -> f64 {
-    let boxes: Vec<[Point; 2]> = at
-        .iter()
-        .map(|nodes| {
-            nodes.iter().fold([[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]], |[low, high], x| {
-                [std::array::from_fn(|d| low[d].min(x[d])), std::array::from_fn(|d| high[d].max(x[d]))]
-            })
-        })
-        .collect();
-    let mut deepest: f64 = 0.0;
-    for (a, nodes) in at.iter().enumerate() {
-        for (b, other) in at.iter().enumerate().filter(|(b, _)| *b != a) {
-            let near = |x: &&Point| (0..3).all(|d| boxes[b][0][d] <= x[d] && x[d] <= boxes[b][1][d]);
-            for p in nodes.iter().filter(near) {
-                let of = |k: &u32| &other[*k as usize];
-                if cubes.tetrahedra.iter().any(|cell| is_within(p, cell.each_ref().map(of))) {
-                    let out = cubes.facets.iter().map(|facet| distance(p, facet.each_ref().map(of)));
-                    deepest = deepest.max(out.fold(f64::INFINITY, f64::min));
-                }
-            }
-        }
+/// How deep a point is inside a cube whose nodes are at these places [m]; 0 outside.
+fn depth(cubes: &Cubes, p: &Point, nodes: &[Point]) -> f64 {
+    let at = |k: &u32| &nodes[*k as usize];
+    if !cubes.tetrahedra.iter().any(|cell| is_within(p, cell.each_ref().map(at))) {
+        return 0.0;
     }
-    deepest
+    cubes.facets.iter().map(|facet| distance(p, facet.each_ref().map(at))).fold(f64::INFINITY, f64::min)
 }
 
 #[cfg(test)]
@@ -224,7 +186,9 @@ mod tests {
         let cubes = cubes(&world);
         let one = positions(&world).remove(0);
         let moved = |by: f64| one.iter().map(|x| [x[0] + EDGE - by, x[1] + 0.01, x[2] + 0.013]).collect::<Vec<_>>();
-        assert_eq!(depth(&cubes, &[one.clone(), moved(-0.01)]), 0.0);
-        assert!((depth(&cubes, &[one.clone(), moved(0.03)]) - 0.03).abs() < 1e-12);
+        let depth = |p: &Point, nodes: &[Point]| depth(&cubes, p, nodes);
+        let measure = Depth { of: &depth, unit: EDGE };
+        assert_eq!(measure.deepest(&vec![one.clone(), moved(-0.01)]), 0.0);
+        assert!((measure.deepest(&vec![one.clone(), moved(0.03)]) - 0.03).abs() < 1e-12);
     }
 }

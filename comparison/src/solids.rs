@@ -105,7 +105,9 @@ pub fn compare(times_only: bool) -> Result<Table, String> {
     for substeps in if times_only { vec![1, 3] } else { vec![1, 3, 12] } {
         let mut own = world(substeps)?;
         let step = |world: &mut World<3>| world.frame().map(|_| ()).map_err(|e| e.to_string());
-        rows.push(measure(&format!("Opruga, BDF2, real time, {substeps} steps"), &mut own, step, positions)?);
+        let plural = if substeps == 1 { "" } else { "s" };
+        let name = format!("Opruga, BDF2, real time, {substeps} step{plural}");
+        rows.push(measure(&name, &mut own, step, positions)?);
     }
     let title = format!("Spot and a ring of {cells} tetrahedra, E = 6e4 Pa, that fall on a floor");
     Ok(Table { title, more: vec!["ms per frame in flight"], rows })
