@@ -12,7 +12,6 @@ use crate::implicit::balance::{Balance, Solved};
 use crate::implicit::contact_query::ContactQuery;
 use crate::implicit::convergence::report;
 use crate::implicit::direction::wanted_forces;
-use crate::implicit::friction::SlipRule;
 use crate::implicit::linear::Filter;
 use crate::implicit::stage::{evaluate, judge, look, mixture};
 use crate::implicit::workspace::Workspace;
@@ -173,13 +172,7 @@ fn one_step<const D: usize>(
             for k in 0..gone.len() {
                 workspace.reaction[k] += workspace.residual[k] - step * workspace.outer.0[k % D][k / D];
             }
-            let verdict = judge(
-                system,
-                workspace,
-                &balance,
-                &rule.settings,
-                SlipRule::AgainstSlide { tolerance: rule.settings.tolerance },
-            );
+            let verdict = judge(system, workspace, &balance, &rule.settings, rule.settings.against_slide());
             changed |= verdict.anew || verdict.unsettled;
         }
         if iteration > 0 && !changed && solved.correction <= goal {

@@ -70,10 +70,6 @@ const MOST_CHANGES: u8 = 4;
 /// Depths and slides below this part of the extent of a body do not count.
 pub(crate) const SMALL: f64 = 1e-9;
 
-/// The part of its diagonal block by which friction of a node is projected: with nodes around it that give way, a node moves against a half to the
-/// whole of it.
-const HALF: f64 = 0.5;
-
 /// A slipping contact is settled when its force changes by no more than this part of itself.
 const SETTLED: f64 = 1e-7;
 
@@ -393,7 +389,7 @@ impl<const D: usize> Contacting<D> {
                             SlipRule::Projected => {
                                 let before = contact.touch.friction * contact.normal_force;
                                 let before = contact.along(&contact.push.map(|p| before * p));
-                                projected(&slide, &before, HALF * stiffness(node), most)
+                                projected(&slide, &before, stiffness(node), most)
                             }
                         };
                         match followed {

@@ -36,12 +36,12 @@ impl Change {
     }
 
     /// Whether a step whose end is doubtful may have made energy; one of which nobody knows what it may have gained has.
-    pub(super) fn is_doubtful(change: Option<Change>) -> bool {
+    pub(super) fn may_be_gain(change: Option<Change>) -> bool {
         change.is_none_or(|change| change.is_gain(LITTLE_GAIN))
     }
 
-    /// Whether a rule has made energy.
-    pub(super) fn is_made(change: Option<Change>) -> bool {
+    /// Whether a step has made energy; one of which nobody knows that has not.
+    pub(super) fn is_known_gain(change: Option<Change>) -> bool {
         change.is_some_and(|change| change.is_gain(0.0))
     }
 }

@@ -1,13 +1,13 @@
 //! The force of friction on nodes that slip.
 //!
 //! The exact minimiser lets friction push against the slide w, t = −µ λ w/|w|, with the derivatives of that in its matrix. The
-//! real-time one keeps a matrix that knows nothing of friction, and t would flip from iteration to iteration where w is small. There
+//! real-time one keeps a matrix that knows nothing of friction, and t would flip from iteration to iteration where w is small. It projects instead:
 //!
 //! ```text
 //! t' = t − k w     sticks where |t'| ≤ µ λ, else t = µ λ t'/|t'|
 //! ```
 //!
-//! whose fixed point is Coulomb's law for every k > 0, and which converges below twice the stiffness against which a node moves by itself.
+//! The fixed point is Coulomb's law for every k > 0. The iteration converges for k below twice the stiffness against which a node moves by itself.
 //!
 //! # Source
 //! P. Alart, A. Curnier, A mixed formulation for frictional contact problems prone to Newton like solution methods, CMAME 92 (1991)
@@ -23,6 +23,10 @@ pub(crate) enum SlipRule {
     /// The force before, less the slide times a stiffness, is projected onto Coulomb's cone.
     Projected,
 }
+
+/// k as a part of the diagonal of a node's block. Neighbours give way, so a node moves against less than its block, and k has to stay below
+/// twice that. With 2 instead of 0.5, 20 of 720 steps in the test `real_time_contact` leave more than they promise, instead of 1.
+const PART_OF_DIAGONAL: f64 = 0.5;
 
 /// What friction does on a node that slips.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,9 +52,9 @@ pub(super) fn against_slide<const D: usize>(slide: &[f64; D], push: &[f64; D], s
     }
 }
 
-/// Friction by projection: of the force before [N], by a slide [m] and a stiffness [N/m], where it is `most` [N] at most.
-pub(super) fn projected<const D: usize>(slide: &[f64; D], before: &[f64; D], stiffness: f64, most: f64) -> Followed<D> {
-    let force: [f64; D] = core::array::from_fn(|d| before[d] - stiffness * slide[d]);
+/// Friction by projection: of the force before [N], by a slide [m] and the diagonal of a node's block [N/m]. It is `most` [N] at most.
+pub(super) fn projected<const D: usize>(slide: &[f64; D], before: &[f64; D], diagonal: f64, most: f64) -> Followed<D> {
+    let force: [f64; D] = core::array::from_fn(|d| before[d] - PART_OF_DIAGONAL * diagonal * slide[d]);
     let size = dot(&force, &force).sqrt();
     if size <= most {
         Followed::Sticks
@@ -69,10 +73,11 @@ mod tests {
     #[test]
     fn friction_by_projection_settles_against_the_slide_below_twice_the_stiffness() {
         for stiffness in [0.1, 1.0, 1.9] {
+            let diagonal = stiffness / PART_OF_DIAGONAL;
             let mut push = [-0.6, 0.8];
             let slide_by = |push: [f64; 2]| [0.5 + 0.3 * push[0], 0.3 * push[1]];
             for _ in 0..400 {
-                match projected(&slide_by(push), &push.map(|p| 0.3 * p), stiffness, 0.3) {
+                match projected(&slide_by(push), &push.map(|p| 0.3 * p), diagonal, 0.3) {
                     Followed::Pushes(next) => push = next,
                     other => panic!("{stiffness}: {push:?} {other:?}"),
                 }

@@ -2,7 +2,6 @@
 
 use super::balance::{Balance, Solved};
 use super::direction::{Keep, find_direction};
-use super::friction::SlipRule;
 use super::initial_guess::begin;
 use super::instability::Instability;
 use super::line_search::{Stretches, line_search, slope_along};
@@ -283,13 +282,7 @@ impl<'a> Iteration<'a> {
         if system.contacts.is_none() || self.solved.iterations >= MOST_DECISIONS {
             return false;
         }
-        let verdict = judge(
-            system,
-            workspace,
-            self.balance,
-            self.settings,
-            SlipRule::AgainstSlide { tolerance: self.settings.tolerance },
-        );
+        let verdict = judge(system, workspace, self.balance, self.settings, self.settings.against_slide());
         if verdict.anew {
             workspace.mixing.forget();
         }

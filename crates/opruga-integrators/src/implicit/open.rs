@@ -5,7 +5,6 @@ use super::contact_query::ContactQuery;
 use super::convergence::{count, finish};
 use super::direction::Keep;
 use super::ends::{Found, Ledger, Statics, commit, end, enter_end, enter_stage, open_ledger};
-use super::friction::SlipRule;
 use super::holding;
 use super::line_search::given_along;
 use super::linear::{Filter, Mixture};
@@ -226,13 +225,7 @@ impl<R: Rule<D>, const D: usize> OpenStep<D> for Open<R, D> {
             return false;
         }
         let settings = Settings { solver: Solver::Auto, ..self.settings };
-        let verdict = judge(
-            system,
-            &mut self.workspace,
-            &self.balance,
-            &settings,
-            SlipRule::AgainstSlide { tolerance: settings.tolerance },
-        );
+        let verdict = judge(system, &mut self.workspace, &self.balance, &settings, settings.against_slide());
         verdict.anew || verdict.unsettled
     }
     fn goal(&self) -> f64 {

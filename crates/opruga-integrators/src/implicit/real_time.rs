@@ -344,7 +344,8 @@ pub(super) fn iterate<const D: usize>(
         let (enough, linear) = aims(system, settings);
         let enough = if solved.iterations > 0 { (enough * first).larger(floor) } else { floor };
         if last || settled && size <= enough {
-            if mismatch > if is_loose(system) { MOST_MISMATCH_LOOSE } else { MOST_MISMATCH } {
+            let most = if is_loose(system) { MOST_MISMATCH_LOOSE } else { MOST_MISMATCH };
+            if mismatch > most && size > floor {
                 mark_stale(system);
             }
             let end = End { size, first, floor, most: settings.leaves[1], slow, remade };
@@ -369,7 +370,8 @@ pub(super) fn iterate<const D: usize>(
             return Ok((solved, Trust::None));
         }
         let missed = go(system, workspace, &task, moves, &mut solved)?;
-        mismatch = missed / size;
+        // What the matrix misses by rounding says nothing of it.
+        mismatch = if missed > floor { missed / size } else { 0.0 };
         undecided = false;
         if system.contacts.is_some() {
             let verdict = judge(system, workspace, balance, settings, SlipRule::Projected);

@@ -1,5 +1,6 @@
 //! The parameters that all implicit rules have.
 
+use super::friction::SlipRule;
 use super::slenderness::is_slender;
 use crate::refusals::{Refusal, StepHint};
 use opruga_core::error::BuildError;
@@ -208,6 +209,10 @@ impl Settings {
 }
 
 impl Settings {
+    /// How friction follows slides where the matrix knows of it.
+    pub(crate) fn against_slide(&self) -> SlipRule {
+        SlipRule::AgainstSlide { tolerance: self.tolerance }
+    }
     /// What helps a step of a rule through time that did not converge.
     pub(crate) fn hint(&self) -> StepHint {
         match (self.real_time, self.otherwise) {

@@ -225,13 +225,13 @@ impl<R: Rule<D>, const D: usize> Method<'_, R, D> {
             let calmed = rule.calmed().filter(|_| workspace.contacting.any_at_rest());
             if solved.doubtful || calmed.is_some() {
                 let change = energy::change(&mut energy, system, workspace, &balance)?;
-                if solved.doubtful && Change::is_doubtful(change) {
+                if solved.doubtful && Change::may_be_gain(change) {
                     system.work = work;
                     minimiser.discard(system);
                     minimiser = &exact;
                     continue;
                 }
-                if let Some(calmed) = calmed.filter(|_| Change::is_made(change)) {
+                if let Some(calmed) = calmed.filter(|_| Change::is_known_gain(change)) {
                     system.work = work;
                     rule = calmed;
                     continue;
