@@ -97,9 +97,9 @@ const CHORES: [Chore; 12] = [
     },
     Chore {
         word: "web-trial",
-        arguments: "[PROFILE]",
+        arguments: "[PROFILE] [--built]",
         about: "tries the page in a browser",
-        most: 1,
+        most: 2,
         work: web::trial,
     },
     Chore {

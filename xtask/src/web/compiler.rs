@@ -49,6 +49,7 @@ fn debian() -> Command {
     }
     // The standard library is built from its sources, which the compiler does only where it is told that it may.
     cargo.env("PATH", format!("{DEBIAN}:/bin")).env("RUSTC_BOOTSTRAP", "1");
-    cargo.arg("-Zbuild-std=std,panic_abort");
+    // Browsers show no backtraces: what reads debugging information stays out.
+    cargo.args(["-Zbuild-std=std,panic_abort", "-Zbuild-std-features="]);
     cargo
 }

@@ -34,14 +34,16 @@ pub(crate) fn build(arguments: &[String]) -> Result<(), String> {
     }
 }
 
-/// `cargo xtask web-trial [PROFILE]`: the page in Chromium, beside the native program that was built with this profile.
+/// `cargo xtask web-trial [PROFILE] [--built]`: the page in Chromium, beside the native program that was built with this profile. With
+/// `--built` it is the page that was built last.
 pub(crate) fn trial(arguments: &[String]) -> Result<(), String> {
-    let profile = arguments.first().map_or("debug", String::as_str);
+    let (options, rest): (Vec<_>, Vec<_>) = arguments.iter().partition(|argument| argument.starts_with("--"));
+    let profile = rest.first().map_or("debug", |profile| profile.as_str());
     let native = target()?.join(profile).join("opruga");
     if !native.is_file() {
         return Err(format!("{} is missing: `cargo build` builds it", native.display()));
     }
-    trial::run(&page()?, native)
+    trial::run(&if options.is_empty() { page()? } else { folder()? }, native)
 }
 
 /// `cargo xtask web-measure [PICTURES]`: how long pictures of the page take in Chromium.
