@@ -48,7 +48,10 @@ impl<const D: usize> Gap<D> {
         let outward = || {
             if within { unit(&facet_normal(&at)) } else { normal_around(surface, x, &corners, &weights) }
         };
-        out.point_along(&between, surface.closed[facet as usize], &p, outward);
+        // Mostly all facets around agree on the side.
+        let closed = surface.closed[facet as usize]
+            && (within || !lies_outside_of_all(surface, x, (&corners, &weights), &between));
+        out.point_along(&between, closed, &p, outward);
         out
     }
 
@@ -142,6 +145,29 @@ fn unit<const D: usize>(a: &[f64; D]) -> [f64; D] {
     out
 }
 
+/// Whether a vector from the corner or edge where the weights are not zero points to the outer side of all facets around.
+fn lies_outside_of_all<const D: usize>(
+    surface: &Surface<D>,
+    x: &[[f64; D]],
+    (corners, weights): (&[u32; D], &[f64; D]),
+    vector: &[f64; D],
+) -> bool {
+    facets_around(surface, corners, weights)
+        .all(|facet| dot(&facet_normal(&facet.map(|p| x[p as usize])), vector) > 0.0)
+}
+
+/// The facets around the corner or edge where the weights are not zero.
+fn facets_around<'a, const D: usize>(
+    surface: &'a Surface<D>,
+    corners: &'a [u32; D],
+    weights: &'a [f64; D],
+) -> impl Iterator<Item = &'a [u32; D]> {
+    let on = |k: &usize| weights[*k] > 0.0;
+    let first = (0..D).find(on).unwrap_or(0);
+    let around = surface.facets_around(corners[first]).iter().map(|number| &surface.facets[*number as usize]);
+    around.filter(move |facet| (0..D).filter(on).all(|k| facet.contains(&corners[k])))
+}
+
 /// The normals of all facets around the corner or edge where the weights are not zero, each by its angle there.
 fn normal_around<const D: usize>(
     surface: &Surface<D>,
@@ -151,14 +177,9 @@ fn normal_around<const D: usize>(
 ) -> [f64; D] {
     let on = |k: &usize| weights[*k] > 0.0;
     let first = (0..D).find(on).unwrap_or(0);
-    let shared = |facet: &[u32; D]| (0..D).filter(on).all(|k| facet.contains(&corners[k]));
     let corner = (0..D).filter(on).count() == 1;
     let mut sum = [0.0; D];
-    for number in surface.facets_around(corners[first]) {
-        let facet = &surface.facets[*number as usize];
-        if !shared(facet) {
-            continue;
-        }
+    for facet in facets_around(surface, corners, weights) {
         let at = facet.map(|p| x[p as usize]);
         let mut angle = 1.0;
         if corner && D == 3 {
