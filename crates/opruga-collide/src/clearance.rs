@@ -1,6 +1,7 @@
 //! Lower bounds of the distances of candidates, by which most of them need no look in a step.
 
 use crate::candidates::Candidates;
+use crate::reach::{MOST_WIDTHS, beyond};
 use crate::surface::Surface;
 use crate::vector::{add, length, scaled, subtract};
 use opruga_math::Lane;
@@ -142,8 +143,9 @@ impl<const D: usize> Clearance<D> {
 
     /// Whether all pairs that a body may have with itself in this step are at hand.
     pub(crate) fn covers(&self, body: usize, margin: f64) -> bool {
-        let [path, width] = self.own[body];
-        self.paths[body][1] - path + self.wanted(body, margin) <= width
+        let ([path, width], wanted) = (self.own[body], self.wanted(body, margin));
+        // After an impact, a body at rest would keep the pairs of its flight.
+        self.paths[body][1] - path + wanted <= width && width <= MOST_WIDTHS * (wanted + 0.5 * margin)
     }
 
     /// Whether this holds for all bodies.
@@ -151,8 +153,8 @@ impl<const D: usize> Clearance<D> {
         (0..self.own.len()).all(|body| self.covers(body, margin))
     }
 
-    /// Sets how far beyond the points of bodies whose pairs are looked for soon pairs of their own are looked for: half a margin [m] beyond this
-    /// step, and for fast bodies as far as they go in so many more.
+    /// Sets how far around the points of bodies pairs of their own are looked for, where that is due: as far [`beyond`] this step as the body moves
+    /// relative to itself in so many more, by a margin [m].
     pub(crate) fn widen(&mut self, margin: f64, steps: f64) {
         self.due.clear();
         for body in 0..self.own.len() {
@@ -160,7 +162,7 @@ impl<const D: usize> Clearance<D> {
             let due = !self.covers(body, 3.0 * margin);
             self.due.push(due);
             if due {
-                let more = (0.5 * margin).larger(steps * self.motions[body].largest);
+                let more = beyond(self.motions[body].largest, steps, margin);
                 self.own[body] = [self.paths[body][1], self.wanted(body, margin) + more];
             }
         }

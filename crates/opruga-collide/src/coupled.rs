@@ -1,6 +1,7 @@
 //! Bodies whose points answer impulses together: those of integrators that solve for the end of a step.
 //!
-//! An impulse on one point moves all of them, Δv = Y p. Columns of Y are asked for where contacts need them.
+//! An impulse on one point moves all of them, Δv = Y p. Columns of Y are asked for where contacts need them, and kept as long as the body answers by
+//! the same matrix.
 
 use crate::spread::Weighted;
 use crate::vector::scaled;
@@ -8,13 +9,15 @@ use core::ops::Range;
 
 /// What says how the points of a body answer impulses.
 pub trait Respond<const D: usize> {
+    /// The number of the matrix by which a body answers now: as long as it is the same, so are its answers. None where it does not answer.
+    fn matrix(&mut self, body: usize) -> Option<u64>;
     /// The mean velocities over the step that unit impulses along every axis at a point give all points of its body [1/kg]: of point q along
     /// axis i by an impulse along axis d, `out[q][d][i]`. Bodies and their points are counted in the order in which they were added. Says
     /// whether that is known.
     fn respond(&mut self, body: usize, point: usize, out: &mut [[[f64; D]; D]]) -> bool;
 }
 
-/// Such bodies, and the columns that are known in the step.
+/// Such bodies, and the columns that are known.
 #[derive(Clone, Debug, Default)]
 pub struct Coupled<const D: usize> {
     bodies: Vec<Body<D>>,
@@ -27,14 +30,17 @@ pub struct Coupled<const D: usize> {
 #[derive(Clone, Debug)]
 struct Body<const D: usize> {
     points: Range<usize>,
-    /// Which column belongs to a point; `NONE` where it is not known.
+    /// The matrix by which it answers, once it was asked in this solution; and the one whose columns are at hand.
+    matrix: Option<u64>,
+    matrix_of_columns: Option<u64>,
+    /// Which column belongs to a point; `NONE` where it is not at hand.
     column: Vec<u32>,
-    /// The points whose columns are known, in their order.
-    known: Vec<u32>,
     /// The columns, one after the other.
     values: Vec<[[f64; D]; D]>,
-    /// The impulses on the points whose columns are known [N s].
+    /// The points on which contacts act, in the order in which they were asked for, and the impulses on them [N s]; where each point stands in it.
+    known: Vec<u32>,
     impulses: Vec<[f64; D]>,
+    number: Vec<u32>,
 }
 
 const NONE: u32 = u32::MAX;
@@ -45,11 +51,14 @@ impl<const D: usize> Coupled<D> {
         self.of_point.resize(self.of_point.len().max(points.end), NONE);
         self.of_point[points.clone()].fill(self.bodies.len() as u32);
         self.bodies.push(Body {
+            matrix: None,
+            matrix_of_columns: None,
             column: vec![NONE; points.len()],
-            points,
-            known: Vec::new(),
             values: Vec::new(),
+            known: Vec::new(),
             impulses: Vec::new(),
+            number: vec![NONE; points.len()],
+            points,
         });
     }
 
@@ -80,38 +89,45 @@ impl<const D: usize> Coupled<D> {
         !self.bodies.is_empty() && (0..points.len()).any(|k| weights[k] != 0.0 && self.body_of(points[k]).is_some())
     }
 
-    /// Forgets the columns of a body, as its matrix is another one.
-    pub fn forget(&mut self, body: usize) {
-        let body = &mut self.bodies[body];
-        body.column.fill(NONE);
-        body.known.clear();
-        body.values.clear();
-        body.impulses.clear();
-    }
-
     /// Begins to add up impulses.
     pub(crate) fn begin(&mut self) {
         for body in &mut self.bodies {
-            body.impulses.fill([0.0; D]);
+            body.matrix = None;
+            body.known.drain(..).for_each(|p| body.number[p as usize - body.points.start] = NONE);
+            body.impulses.clear();
         }
     }
 
-    /// Asks for the columns of the points of a row that are not known; says whether all are known then.
+    /// Takes the points of a row in, and asks for the columns of those that are not at hand; says whether the body answers.
     pub(crate) fn need(&mut self, (points, weights): Weighted<'_>, respond: &mut dyn Respond<D>) -> bool {
         for k in (0..points.len()).filter(|k| weights[*k] != 0.0) {
             let Some(number) = self.body_of(points[k]) else { continue };
             let body = &mut self.bodies[number];
             let local = points[k] as usize - body.points.start;
-            if body.column[local] != NONE {
+            if body.number[local] != NONE {
                 continue;
             }
-            let first = body.values.len();
-            body.values.resize(first + body.points.len(), [[0.0; D]; D]);
-            if !respond.respond(number, local, &mut body.values[first..]) {
-                body.values.truncate(first);
-                return false;
+            if body.matrix.is_none() {
+                body.matrix = respond.matrix(number);
+                if body.matrix.is_none() {
+                    return false;
+                }
+                if body.matrix != body.matrix_of_columns {
+                    body.matrix_of_columns = body.matrix;
+                    body.column.fill(NONE);
+                    body.values.clear();
+                }
             }
-            body.column[local] = body.known.len() as u32;
+            if body.column[local] == NONE {
+                let first = body.values.len();
+                body.values.resize(first + body.points.len(), [[0.0; D]; D]);
+                if !respond.respond(number, local, &mut body.values[first..]) {
+                    body.values.truncate(first);
+                    return false;
+                }
+                body.column[local] = (first / body.points.len()) as u32;
+            }
+            body.number[local] = body.known.len() as u32;
             body.known.push(points[k]);
             body.impulses.push([0.0; D]);
         }
@@ -160,8 +176,8 @@ impl<const D: usize> Coupled<D> {
         let (points, weights) = weighted;
         for k in (0..points.len()).filter(|k| weights[*k] != 0.0) {
             let Some(body) = self.body_of(points[k]) else { continue };
-            let Body { points: range, column, impulses, .. } = &mut self.bodies[body];
-            let sum = &mut impulses[column[points[k] as usize - range.start] as usize];
+            let Body { points: range, number, impulses, .. } = &mut self.bodies[body];
+            let sum = &mut impulses[number[points[k] as usize - range.start] as usize];
             (0..D).for_each(|d| sum[d] += weights[k] * impulse[d]);
         }
     }
@@ -196,7 +212,13 @@ impl<const D: usize> Coupled<D> {
         }
     }
 
-    /// The points that follow those of a row, beside these.
+    /// Sets to zero what [`Coupled::add_answer`] adds to.
+    pub(crate) fn clear_answer(&self, weighted: Weighted<'_>, v: &mut [[f64; D]]) {
+        weighted.0.iter().for_each(|p| v[*p as usize] = [0.0; D]);
+        self.followers(weighted, |p| v[p as usize] = [0.0; D]);
+    }
+
+    /// The points on which contacts act that follow those of a row, beside these.
     pub(crate) fn followers(&self, (points, weights): Weighted<'_>, mut visit: impl FnMut(u32)) {
         for k in (0..points.len()).filter(|k| weights[*k] != 0.0) {
             if let Some(body) = self.body_of(points[k]) {
@@ -213,7 +235,8 @@ impl<const D: usize> Coupled<D> {
             }
             for q in body.points.clone() {
                 let mut sum = free[q];
-                for (column, impulse) in body.impulses.iter().enumerate() {
+                for (p, impulse) in body.known.iter().zip(&body.impulses) {
+                    let column = body.column[*p as usize - body.points.start] as usize;
                     let entry = &body.values[column * body.points.len() + q - body.points.start];
                     for d in 0..D {
                         for i in 0..D {

@@ -1,6 +1,7 @@
 //! Impulses on pairs in contact: projected Gauss–Seidel.
 
 use crate::coupled::Coupled;
+use crate::newton::Aim;
 use crate::row::Row;
 use crate::spread::Spread;
 use crate::subspace;
@@ -240,6 +241,8 @@ pub(crate) struct Problem<'a, const D: usize> {
     pub(crate) turns: &'a mut Turns<D>,
     /// Of bodies at rest the approach in a whole thickness [m/s]: their sweeps end with the tolerance of it, too.
     pub(crate) at_rest: Option<f64>,
+    /// Whether bodies that follow as a whole have a budget.
+    pub(crate) has_budget: bool,
     /// The body of every point.
     pub(crate) body: &'a [u32],
 }
@@ -258,6 +261,7 @@ impl<const D: usize> Problem<'_, D> {
             v: cast(self.v)?,
             turns: cast(self.turns)?,
             at_rest: self.at_rest,
+            has_budget: self.has_budget,
             body: self.body,
         })
     }
@@ -286,7 +290,7 @@ fn solve_in_space(problem: Problem<'_, 3>) -> usize {
 /// A row is passed over while nothing that it holds has changed since its last turn by more than the tolerance: so sweeps cost what is still
 /// on the move.
 fn solve<const D: usize>(problem: Problem<'_, D>) -> usize {
-    let Problem { rows, spread, inverse_mass, coupled, v, turns, at_rest, body } = problem;
+    let Problem { rows, spread, inverse_mass, coupled, v, turns, at_rest, has_budget, body } = problem;
     turns.join(rows, spread, inverse_mass, coupled);
     let Turns { stamps, heads, now, starts, approach, .. } = turns;
     let begin = *now;
@@ -296,13 +300,15 @@ fn solve<const D: usize>(problem: Problem<'_, D>) -> usize {
         let approach = approach.mean[approach.root(body[spread.points_of::<D>(&heads[0].0)[0] as usize]) as usize].0;
         let together = rows.iter().any(|row| row.coupled);
         let (most, enough) = match (together, at_rest) {
+            (true, None) if has_budget => (MOST_SWEEPS, TOLERANCE * approach),
             (true, None) => (MOST_COUPLED_SWEEPS, COUPLED_TOLERANCE * approach),
             (true, Some(whole)) => {
                 (MOST_COUPLED_SWEEPS, (TOLERANCE_AT_REST * approach).larger(COUPLED_TOLERANCE * whole))
             }
             (false, _) => (MOST_SWEEPS, TOLERANCE * approach),
         };
-        if together && let Some(turns) = working_set::solve(rows, spread, inverse_mass, coupled, v, enough) {
+        let aim = Aim { enough, sweeps: has_budget.then_some(most) };
+        if together && let Some(turns) = working_set::solve(rows, spread, inverse_mass, coupled, v, aim) {
             *now += turns as u64;
             continue;
         }

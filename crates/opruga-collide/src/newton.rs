@@ -101,6 +101,15 @@ pub(crate) fn count_of<const D: usize>(row: &Row<D>) -> usize {
     }
 }
 
+/// How near to its end a solution comes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Aim {
+    /// By how much a turn of a contact may change its velocity at the end [m/s].
+    pub(crate) enough: f64,
+    /// Whether sweeps go on alone, so many at most, where they have not ended at once; else Newton's method leads to the end.
+    pub(crate) sweeps: Option<usize>,
+}
+
 /// Goes to the impulses at which all contacts obey their laws: sweeps over all contacts, and Newton's method where these have not ended. Ends where
 /// no turn of a contact changes its velocity by more than `enough` [m/s], or where many attempts in a row have hardly changed that. Gives the
 /// number of turns.
@@ -110,7 +119,7 @@ pub(crate) fn solve<const D: usize>(
     inverse_mass: &[[f64; D]],
     coupled: &mut Coupled<D>,
     v: &mut [[f64; D]],
-    enough: f64,
+    Aim { enough, sweeps }: Aim,
 ) -> usize {
     if rows.iter().all(|row| count_of(row) == 0) {
         return 0;
@@ -127,6 +136,15 @@ pub(crate) fn solve<const D: usize>(
         in_vain = if change < 0.5 * best { 0 } else { in_vain + 1 };
         best = change.smaller(best);
         if change <= enough || in_vain > MOST_IN_VAIN {
+            break;
+        }
+        if let Some(most) = sweeps {
+            for sweep in 1..most {
+                turns += equations.contacts.len();
+                if equations.sweep(&mut impulses, &mut velocities, sweep % 2 == 1) <= enough {
+                    break;
+                }
+            }
             break;
         }
         // Where Newton's method has ended, sweeps would only disturb what it has found.
@@ -169,7 +187,6 @@ impl<const D: usize> Equations<D> {
             let row = &rows[contact.row];
             let (impulse, u) = (row.impulse(), subtract(&row.mean(spread, v), &row.carry));
             for (k, axis) in contact.axes[..contact.count].iter().enumerate() {
-                moved.fill([0.0; D]);
                 coupled.add_answer(row.on(spread), axis, inverse_mass, &mut moved);
                 let line = &mut mobility[(contact.first + k) * stride..][..size];
                 for other in &contacts {
@@ -177,6 +194,7 @@ impl<const D: usize> Equations<D> {
                     let own = &mut line[other.first..other.first + other.count];
                     own.iter_mut().zip(&other.axes).for_each(|(entry, axis)| *entry = dot(axis, &velocity));
                 }
+                coupled.clear_answer(row.on(spread), &mut moved);
                 center.push(dot(&impulse, axis));
                 diagonal.push(1.0 / contact.mass[usize::from(k > 0)]);
                 free.push(dot(&u, axis) - if k == 0 { row.target } else { 0.0 });
@@ -447,7 +465,14 @@ mod tests {
 
     fn solved(rows: &mut [Row<3>], inverse_mass: &[[f64; 3]], v: &mut [[f64; 3]]) {
         for _ in 0..3 {
-            solve(rows, &Spread::default(), inverse_mass, &mut Coupled::default(), v, 1e-12);
+            solve(
+                rows,
+                &Spread::default(),
+                inverse_mass,
+                &mut Coupled::default(),
+                v,
+                Aim { enough: 1e-12, sweeps: None },
+            );
         }
     }
 

@@ -26,7 +26,13 @@ pub(crate) struct Reach<const D: usize> {
 
 /// Boxes that are so many times as wide as they would be now are found anew: after an impact, bodies at rest would keep the candidates of their flight
 /// (`candidates_of_a_flight_are_dropped_at_rest`). Points that go straight ahead have twice the width behind them.
-const MOST_WIDTHS: f64 = 4.0;
+pub(crate) const MOST_WIDTHS: f64 = 4.0;
+
+/// How far beyond a step candidates are looked for of what moves by so much in it [m]: as far as it goes in so many more steps, but half a margin at
+/// least and a whole one at most. Long steps of fast bodies would make candidates of all that is around (of eight falling cubes, ten times as many).
+pub(crate) fn beyond(moves: f64, steps: f64, margin: f64) -> f64 {
+    (0.5 * margin).larger((steps * moves).smaller(margin))
+}
 
 /// A box in which nothing lies.
 const NOWHERE: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
@@ -62,7 +68,7 @@ impl<const D: usize> Reach<D> {
                 least = below.smaller(above).smaller(least);
                 most = below.larger(above).larger(most);
             }
-            let wide = (0.5 * margin).larger(steps * *push);
+            let wide = beyond(*push, steps, margin);
             // Numbers that are none are covered by nothing.
             let covered = least >= spare && most <= MOST_WIDTHS * wide;
             let lasting = least >= spare + 0.5 * (wide - spare);
@@ -87,8 +93,8 @@ impl<const D: usize> Reach<D> {
         self.stale.iter_mut().zip(&self.due).for_each(|(stale, due)| *stale |= due);
     }
 
-    /// Sets the boxes of stale bodies for which candidates are looked for: half a margin [m] beyond those of the step, and for fast points as far
-    /// as they go in so many more steps.
+    /// Sets the boxes of stale bodies for which candidates are looked for: those of the step, and as far [`beyond`] as points go in so many more
+    /// steps, by a margin [m].
     pub(crate) fn widen(&mut self, body: &[u32], margin: f64, steps: f64) {
         let own = self.swept.iter().zip(&self.push).zip(body);
         for (found, ((swept, push), body)) in self.found_in.iter_mut().zip(own) {
@@ -96,7 +102,7 @@ impl<const D: usize> Reach<D> {
                 continue;
             }
             *found = *swept;
-            let more = (0.5 * margin).larger(steps * push);
+            let more = beyond(*push, steps, margin);
             for d in 0..D {
                 found[0][d] -= more;
                 found[1][d] += more;

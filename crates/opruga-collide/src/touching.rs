@@ -49,6 +49,8 @@ pub struct Touching<const D: usize> {
     pub losses: Vec<[f64; 4]>,
     /// Whether overlap is taken apart by impulses, within the step, and not by positions: where bodies are at rest and have no speed.
     pub(crate) at_once: bool,
+    /// Whether bodies that follow as a whole have a budget: impulses are then found as roughly as those of bodies that do not.
+    pub has_budget: bool,
     /// How far points of bodies at rest may go at most [m]: impulses that lead them farther do not hold.
     pub farthest: f64,
     /// The impulses on points of bodies that follow as a whole which the free motion contains [N s]: those that are found are all the same the
@@ -247,6 +249,7 @@ impl<const D: usize> Touching<D> {
     ) -> Result<bool, Trouble> {
         self.changed.clear();
         self.zones.clear();
+        self.coupled.begin();
         for vectors in self.before.iter_mut().chain(&mut self.after) {
             self.surface.follow(vectors);
         }
@@ -380,10 +383,13 @@ impl<const D: usize> Touching<D> {
         let at_rest = self.at_once.then_some(self.thickest[0] / h);
         self.turns.begin(self.surface.points());
         loop {
-            let Touching { rows, spread, inverse_mass, coupled, v, turns, surface, laws, after: [_, free], .. } =
+            let Touching { rows, spread, inverse_mass, coupled, v, turns, surface, laws, after, has_budget, .. } =
                 &mut *self;
+            let [_, free] = &*after;
             turns.find_approach(rows, spread, (&surface.body, laws.class.len()), inverse_mass, free);
-            let problem = Problem { rows, spread, inverse_mass, coupled, v, turns, at_rest, body: &surface.body };
+            let body = &surface.body;
+            let problem =
+                Problem { rows, spread, inverse_mass, coupled, v, turns, at_rest, has_budget: *has_budget, body };
             self.counts.turns += problem.solve() as u64;
             self.touched.clear();
             self.touched.resize(self.surface.points(), false);

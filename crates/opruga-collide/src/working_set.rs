@@ -5,7 +5,7 @@
 //! of the set, so the last one holds those of all.
 
 use crate::coupled::Coupled;
-use crate::newton;
+use crate::newton::{self, Aim};
 use crate::row::Row;
 use crate::spread::Spread;
 use crate::vector::{dot, subtract};
@@ -13,7 +13,7 @@ use crate::vector::{dot, subtract};
 /// The most solutions. Two to five are enough in most steps; contacts that leave and join in turn have no end.
 const MOST_SOLUTIONS: usize = 40;
 
-/// Goes to the impulses at which all contacts obey their laws, to `enough` [m/s]. Gives the number of turns; none where more contacts press than
+/// Goes to the impulses at which all contacts obey their laws, as near as is aimed at. Gives the number of turns; none where more contacts press than
 /// are solved at once, or no set is the last one: impulses and velocities then belong together, and sweeps go on from there.
 pub(crate) fn solve<const D: usize>(
     rows: &mut [Row<D>],
@@ -21,7 +21,7 @@ pub(crate) fn solve<const D: usize>(
     inverse_mass: &[[f64; D]],
     coupled: &mut Coupled<D>,
     v: &mut [[f64; D]],
-    enough: f64,
+    aim: Aim,
 ) -> Option<usize> {
     let mut belongs: Vec<bool> = rows.iter().map(|row| row.normal_impulse > 0.0).collect();
     let mut turns = 0;
@@ -30,7 +30,7 @@ pub(crate) fn solve<const D: usize>(
         let mut joining: Vec<(f64, usize)> = (0..rows.len())
             .filter(|k| !belongs[*k] && rows[*k].mass[0] > 0.0)
             .map(|k| (approach(&rows[k]), k))
-            .filter(|(approach, _)| *approach > enough)
+            .filter(|(approach, _)| *approach > aim.enough)
             .collect();
         if joining.is_empty() && solution > 0 {
             return Some(turns);
@@ -58,7 +58,7 @@ pub(crate) fn solve<const D: usize>(
         }
         let numbers: Vec<usize> = (0..rows.len()).filter(|k| belongs[*k]).collect();
         let mut set: Vec<Row<D>> = numbers.iter().map(|k| rows[*k]).collect();
-        turns += rows.len() + newton::solve(&mut set, spread, inverse_mass, coupled, v, enough);
+        turns += rows.len() + newton::solve(&mut set, spread, inverse_mass, coupled, v, aim);
         numbers.iter().zip(set).for_each(|(k, row)| rows[*k] = row);
     }
     None
@@ -82,7 +82,8 @@ mod tests {
         let mut v = vec![[0.0, -1.0]; 41];
         v[0] = [0.0; 2];
         let spread = Spread::default();
-        let turns = solve(&mut rows, &spread, &inverse_mass, &mut Coupled::default(), &mut v, 1e-9);
+        let aim = Aim { enough: 1e-9, sweeps: None };
+        let turns = solve(&mut rows, &spread, &inverse_mass, &mut Coupled::default(), &mut v, aim);
         assert!(turns.is_some() && v.iter().flatten().all(|v| v.abs() < 1e-6), "{turns:?} {v:?}");
         assert!(rows[pressing..].iter().all(|row| row.normal_impulse == 0.0));
         // Each carries those above it, beside what it had.

@@ -8,6 +8,7 @@ use crate::potential::{Reading, Views};
 use crate::spec::{Spec, Values};
 use crate::system::System;
 use core::fmt::Debug;
+use core::sync::atomic::{AtomicU64, Ordering};
 use opruga_math::Lane;
 
 /// A rule that moves a system from time t to t + h.
@@ -81,21 +82,26 @@ pub trait Integrator<const D: usize>: Send + Sync + Debug {
     /// # Errors
     /// [`StepError`] where a model refuses.
     fn step(&self, system: &mut System<D>, h: f64) -> Result<(), StepError>;
+    /// Whether its steps have a fixed budget, and leave a part of what is out of balance to those that follow.
+    fn has_budget(&self) -> bool {
+        false
+    }
     /// Whether other bodies push within the step ([`System::pushes`]): so contact is part of the balance that it solves for. Else contact
     /// changes velocities after the step.
     fn takes_pushes(&self) -> bool {
         false
     }
-    /// Works out, after a step, how its end answers to pushes, for [`Integrator::answer`]; says whether it could.
+    /// Works out, after a step, how its end answers to pushes, for [`Integrator::answer`]. Gives the number of the matrix that it goes by: with
+    /// the same number come the same answers. None where it could not.
     ///
     /// # Errors
     /// [`StepError`] where a model refuses.
-    fn prepare_answer(&self, _system: &mut System<D>) -> Result<bool, StepError> {
-        Ok(false)
+    fn prepare_answer(&self, _system: &mut System<D>) -> Result<Option<u64>, StepError> {
+        Ok(None)
     }
-    /// Replaces forces on the nodes, that act throughout the step [N], by the displacements that they add to its end, to first order [m]; the
-    /// coordinates of one node after the other. Says whether it could.
-    fn answer(&self, _system: &mut System<D>, _vector: &mut [f64]) -> bool {
+    /// Replaces forces on the nodes, that act throughout the step [N], by the displacements that they add to its end, to first order [m]: in so many
+    /// vectors, one after the other, each with the coordinates of one node after the other. Says whether it could.
+    fn answer(&self, _system: &mut System<D>, _vectors: &mut [f64], _count: usize) -> bool {
         false
     }
     /// Begins a substep of h [s] whose end is searched for together with the ends of other bodies; none where the rule does not solve for
@@ -117,6 +123,12 @@ impl<const D: usize> System<D> {
             self.history = History::new(integrator.name(), &channels, self.places());
         }
     }
+}
+
+/// A number that no matrix has had before in this program, for [`Integrator::prepare_answer`].
+pub fn next_matrix_number() -> u64 {
+    static NEXT: AtomicU64 = AtomicU64::new(0);
+    NEXT.fetch_add(1, Ordering::Relaxed)
 }
 
 /// A kind of integrator that scenes can name.

@@ -80,7 +80,7 @@ impl Cholesky {
         let Some(symbolic) = &self.symbolic else { return Err(Indefinite) };
         let (values, stack) = (&self.values, &self.stack);
         self.parts.update(matrix.rows() * D, matrix.rank_one().iter(), true, right, |sides| {
-            sides.for_each(|x| solve(symbolic, values, stack, x));
+            sides.for_each(|x| solve(symbolic, values, stack, x, 1));
         })?;
         self.factored = true;
         Ok(())
@@ -99,7 +99,7 @@ impl Cholesky {
             let symbolic = symbolic.map_err(|_| Indefinite)?;
             let need = StackReq::or(
                 symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default()),
-                symbolic.solve_in_place_scratch::<f64>(1, Par::Seq),
+                symbolic.solve_in_place_scratch::<f64>(AT_ONCE, Par::Seq),
             );
             self.stack = Mutex::new(Some(MemBuffer::new(need)));
             self.values = vec![0.0; symbolic.len_val()];
@@ -124,20 +124,37 @@ impl Cholesky {
 
     /// Solves A x = b in place.
     pub fn solve(&self, x: &mut [f64]) {
-        if self.is_turned && self.factored {
-            self.turned.solve(x);
-            return self.parts.correct(x);
+        self.solve_all(x, 1);
+    }
+
+    /// Solves A x = b in place for so many right-hand sides, one after the other: three at once cost little more than one.
+    pub fn solve_all(&self, x: &mut [f64], count: usize) {
+        if !self.factored || x.is_empty() {
+            return;
         }
-        let Some(symbolic) = self.symbolic.as_ref().filter(|_| self.factored) else { return };
-        solve(symbolic, &self.values, &self.stack, x);
-        self.parts.correct(x);
+        let size = x.len() / count;
+        if self.is_turned {
+            x.chunks_exact_mut(size).for_each(|x| self.turned.solve(x));
+        } else if let Some(symbolic) = &self.symbolic {
+            x.chunks_mut(AT_ONCE * size).for_each(|x| solve(symbolic, &self.values, &self.stack, x, x.len() / size));
+        }
+        x.chunks_exact_mut(size).for_each(|x| self.parts.correct(x));
     }
 }
 
-fn solve(symbolic: &SymbolicCholesky<usize>, values: &[f64], stack: &Mutex<Option<MemBuffer>>, x: &mut [f64]) {
+/// Right-hand sides that are solved for at once.
+const AT_ONCE: usize = 3;
+
+fn solve(
+    symbolic: &SymbolicCholesky<usize>,
+    values: &[f64],
+    stack: &Mutex<Option<MemBuffer>>,
+    x: &mut [f64],
+    count: usize,
+) {
     let mut stack = stack.lock().unwrap_or_else(PoisonError::into_inner);
     let Some(stack) = &mut *stack else { return };
-    let rows = x.len();
-    let right = MatMut::from_column_major_slice_mut(x, rows, 1);
+    let rows = x.len() / count;
+    let right = MatMut::from_column_major_slice_mut(x, rows, count);
     LltRef::new(symbolic, values).solve_in_place_with_conj(Conj::No, right, Par::Seq, MemStack::new(stack));
 }

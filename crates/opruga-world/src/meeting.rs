@@ -50,13 +50,13 @@ pub(crate) struct Pushed<const D: usize> {
     pub(crate) indices: Vec<u32>,
     /// The impulses that its step was made with, by its points [N s].
     pub(crate) applied: Vec<(usize, [f64; D])>,
-    /// Whether the answer to impulses belongs to this substep.
-    pub(crate) prepared: bool,
+    /// The number of the matrix by which it answers impulses; none where it was not asked since its last step.
+    pub(crate) matrix: Option<u64>,
 }
 
 impl<const D: usize> Pushed<D> {
     pub(crate) fn new(island: usize, indices: Vec<u32>) -> Self {
-        Pushed { island, indices, applied: Vec::new(), prepared: false }
+        Pushed { island, indices, applied: Vec::new(), matrix: None }
     }
 
     /// The forces of its impulses in a substep of h [s], by index into the columns of its island [N].
@@ -143,6 +143,7 @@ impl<const D: usize> Meeting<D> {
         if at_rest {
             touching.come_to_rest();
         }
+        touching.has_budget = pushed.iter().all(|pushed| all[islands[pushed.island]].integrator.has_budget());
         // An obstacle that holds a node lets no contact lift it off within the step. Beside an edge, contacts and held nodes would contradict each
         // other: so what steps implicitly meets faces as those of bodies.
         let mut without_faces = None;

@@ -21,6 +21,7 @@ use crate::meeting::{Meeting, Pushed, Substep};
 use crate::refusals::Refusal;
 use opruga_collide::{Respond, Touching, Trouble};
 use opruga_core::error::StepError;
+use opruga_core::integrator::next_matrix_number;
 use opruga_core::stability::estimate;
 use opruga_core::system::{System, Workspace};
 use opruga_math::Lane;
@@ -89,6 +90,8 @@ struct Search<'a, 'b, const D: usize> {
     h: f64,
     /// σ of every body over the square of its highest frequency.
     part: f64,
+    /// The number of the matrices at hand.
+    matrix: u64,
 }
 
 /// Asks bodies for their answers.
@@ -96,6 +99,8 @@ struct Answers<'a, const D: usize> {
     bodies: &'a [Body<D>],
     vector: Vec<f64>,
     h: f64,
+    /// The number of the matrices of all bodies.
+    matrix: u64,
 }
 
 impl<const D: usize> Body<D> {
@@ -192,6 +197,9 @@ fn norm(of: &[f64]) -> f64 {
 }
 
 impl<const D: usize> Respond<D> for Answers<'_, D> {
+    fn matrix(&mut self, _body: usize) -> Option<u64> {
+        Some(self.matrix)
+    }
     fn respond(&mut self, body: usize, point: usize, out: &mut [[[f64; D]; D]]) -> bool {
         let body = &self.bodies[body];
         for d in 0..D {
@@ -220,8 +228,14 @@ impl<const D: usize> Meeting<D> {
         let mut workspaces: Vec<Workspace<D>> = self.pushed.iter().map(|_| Workspace::default()).collect();
         exchange(&self.pushed, islands, &mut workspaces);
         self.move_outlines(step.time);
-        let mut search =
-            Search { islands, touching: &mut self.touching, bodies: Vec::new(), h: step.plan.h, part: FIRST };
+        let mut search = Search {
+            islands,
+            touching: &mut self.touching,
+            bodies: Vec::new(),
+            h: step.plan.h,
+            part: FIRST,
+            matrix: 0,
+        };
         let outcome = search.begin(&self.pushed, &squares, step).and_then(|()| search.find_balance());
         let outcome = outcome.and_then(|iterations| search.close(iterations));
         let farthest = search.farthest();
@@ -314,8 +328,8 @@ impl<const D: usize> Search<'_, '_, D> {
 
     /// Takes forces and matrices where bodies are; says whether the matrices have factors.
     fn begin_correction(&mut self) -> Result<bool, Refused> {
-        for (number, body) in self.bodies.iter_mut().enumerate() {
-            self.touching.coupled.forget(number);
+        self.matrix = next_matrix_number();
+        for body in &mut self.bodies {
             if !body.begin_correction(&mut self.islands[body.open.island].system, self.part)? {
                 return Ok(false);
             }
@@ -326,8 +340,8 @@ impl<const D: usize> Search<'_, '_, D> {
     /// Finds the correction of all bodies, with the forces of contact at its end: how far it goes at most [m], and the part of the forces that was
     /// not foreseen. None where it cannot be gone.
     fn correct(&mut self) -> Result<Option<(f64, f64)>, Refused> {
-        let Search { islands, touching, bodies, h, .. } = &mut *self;
-        let h = *h;
+        let Search { islands, touching, bodies, h, matrix, .. } = &mut *self;
+        let (h, matrix) = (*h, *matrix);
         let Touching { before: [x0, _], after: [x1, v1], .. } = &mut **touching;
         for body in bodies.iter_mut() {
             if !body.is_short() {
@@ -341,7 +355,7 @@ impl<const D: usize> Search<'_, '_, D> {
         for ((x0, x1), v1) in x0.iter().zip(x1.iter()).zip(v1.iter_mut()) {
             *v1 = std::array::from_fn(|d| (x1[d] - x0[d]) / h);
         }
-        let mut answers = Answers { bodies, vector: Vec::new(), h };
+        let mut answers = Answers { bodies, vector: Vec::new(), h, matrix };
         if !touching.find_impulses(h, None, Some(&mut answers))? {
             return Ok(None);
         }

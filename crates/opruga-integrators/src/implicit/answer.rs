@@ -5,19 +5,58 @@ use super::linear::{Filter, Mixture};
 use super::stage::evaluate;
 use super::workspace::Workspace;
 use opruga_core::error::StepError;
+use opruga_core::integrator::next_matrix_number;
 use opruga_core::potential::Definiteness;
 use opruga_core::system::System;
 
-/// Factors the matrix of the step that was made last; says whether there is one.
+/// Factors the matrix of the step that was made last, or the one that the minimiser keeps for later steps. Gives its number; none where there is no
+/// matrix.
 ///
 /// # Errors
 /// [`StepError`] where a model refuses.
-pub(crate) fn prepare<const D: usize>(system: &mut System<D>, workspace: &mut Workspace<D>) -> Result<bool, StepError> {
-    let Some((balance, start)) = workspace.answer.last else { return Ok(false) };
+pub(crate) fn prepare<const D: usize>(
+    system: &mut System<D>,
+    workspace: &mut Workspace<D>,
+    keeps_matrix: bool,
+) -> Result<Option<u64>, StepError> {
+    let Some((balance, start)) = workspace.answer.last else { return Ok(None) };
+    if keeps_matrix && take_kept(workspace, &balance) {
+        return Ok(Some(workspace.answer.number));
+    }
+    begin(workspace, &balance);
     let end = std::mem::replace(&mut system.time, start);
     let outcome = evaluate(system, workspace, &balance, false).map(|()| factor(system, workspace, &balance));
     system.time = end;
-    outcome
+    Ok(outcome?.then_some(workspace.answer.number))
+}
+
+/// Takes the directions that are free and a number for the matrix that is made now.
+fn begin<const D: usize>(workspace: &mut Workspace<D>, balance: &Balance) {
+    let Workspace { answer, free, projectors, .. } = workspace;
+    answer.free.clone_from(free);
+    answer.projectors.clone_from(projectors);
+    answer.theta = balance.theta;
+    answer.origin = None;
+    answer.by_factors = false;
+    answer.number = next_matrix_number();
+}
+
+/// Takes the matrix that later steps share, if it is not at hand already; says whether it has a factor.
+fn take_kept<const D: usize>(workspace: &mut Workspace<D>, balance: &Balance) -> bool {
+    let Workspace { answer, reused, free, projectors, .. } = &*workspace;
+    let is_same = |node: usize| free[node] || answer.projectors[node] == projectors[node];
+    if answer.origin.is_some()
+        && (&answer.origin, answer.theta, &answer.free) == (&reused.origin, balance.theta, free)
+        && (0..free.len()).all(is_same)
+    {
+        return true;
+    }
+    begin(workspace, balance);
+    let Workspace { answer, reused, linear, free, projectors, .. } = workspace;
+    answer.linear.take(linear);
+    let has_factor = answer.linear.factor_positive(&Filter { free, projectors }).is_ok();
+    answer.origin = reused.origin.clone().filter(|_| has_factor);
+    answer.origin.is_some()
 }
 
 fn factor<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, balance: &Balance) -> bool {
@@ -34,13 +73,9 @@ fn factor<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, bala
         matrix_free: false,
     };
     let filter = Filter { free, projectors };
-    answer.free.clone_from(free);
-    answer.projectors.clone_from(projectors);
-    answer.theta = balance.theta;
     // At the end of a step the exact derivatives are those of a minimum, but for what the tolerance leaves.
     for keep in [Definiteness::Exact, Definiteness::Clamped] {
         answer.linear.assemble(&Mixture { keep, ..mixture });
-        answer.by_factors = false;
         if answer.linear.factor_positive(&filter).is_ok() {
             return true;
         }
@@ -49,17 +84,18 @@ fn factor<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, bala
     answer.linear.factor(&filter).is_ok()
 }
 
-/// Replaces forces by displacements of the end; says whether that could be done.
-pub(crate) fn displace<const D: usize>(workspace: &Workspace<D>, vector: &mut [f64]) -> bool {
+/// Replaces forces by displacements of the end, in so many vectors, one after the other; says whether that could be done.
+pub(crate) fn displace<const D: usize>(workspace: &Workspace<D>, vectors: &mut [f64], count: usize) -> bool {
     let answer = &workspace.answer;
     let filter = Filter::<D> { free: &answer.free, projectors: &answer.projectors };
-    filter.apply(vector);
+    let nodes = D * answer.free.len();
+    vectors.chunks_exact_mut(nodes).for_each(|vector| filter.apply(vector));
     if !answer.by_factors {
-        answer.linear.solve_positive(vector);
-    } else if answer.linear.solve_by_factors(vector).is_err() {
+        answer.linear.solve_positive(vectors, count);
+    } else if vectors.chunks_exact_mut(nodes).any(|vector| answer.linear.solve_by_factors(vector).is_err()) {
         return false;
     }
-    filter.apply(vector);
-    vector.iter_mut().for_each(|x| *x /= answer.theta);
-    vector.iter().all(|x| x.is_finite())
+    vectors.chunks_exact_mut(nodes).for_each(|vector| filter.apply(vector));
+    vectors.iter_mut().for_each(|x| *x /= answer.theta);
+    vectors.iter().all(|x| x.is_finite())
 }

@@ -2,6 +2,7 @@
 
 use super::balance::Balance;
 use super::linear::Linear;
+use super::reused_matrix::Origin;
 use opruga_solve::blocks::Block;
 
 /// The matrix of the last step, made for other right-hand sides.
@@ -14,6 +15,9 @@ pub(crate) struct AnswerMatrix<const D: usize> {
     pub(crate) free: Vec<bool>,
     pub(crate) projectors: Vec<Block<D>>,
     pub(crate) theta: f64,
+    /// Its number, which no other matrix has; and what it was made of, if it is a matrix that later steps share.
+    pub(crate) number: u64,
+    pub(crate) origin: Option<Origin<D>>,
     /// Whether the matrix is solved by factors that ask for no positive eigenvalues.
     pub(crate) by_factors: bool,
 }

@@ -68,6 +68,9 @@ impl<const D: usize> Minimiser<D> for RealTime {
     fn remember(&self, system: &mut System<D>, workspace: &Workspace<D>, h: f64) {
         real_time::remember(system, workspace, h);
     }
+    fn keeps_matrix(&self, system: &System<D>) -> bool {
+        real_time::keeps_matrix(system)
+    }
     /// In real time nobody waits for another setting.
     fn always_halves(&self) -> bool {
         true

@@ -223,6 +223,12 @@ impl<const D: usize> Linear<D> {
         });
     }
 
+    /// Takes the matrix of another one, with nothing taken out.
+    pub(crate) fn take(&mut self, other: &Linear<D>) {
+        self.full.copy_from(&other.full);
+        self.is_unsymmetric = other.is_unsymmetric;
+    }
+
     /// Adds a block to the diagonal of a node.
     pub(crate) fn add_block(&mut self, mixture: &Mixture<D>, node: usize, block: &Block<D>) {
         if !mixture.matrix_free {
@@ -412,9 +418,9 @@ impl<const D: usize> Linear<D> {
         self.constrain(filter);
         self.cholesky.update(&self.constrained)
     }
-    /// Solves with that factor in place.
-    pub(crate) fn solve_positive(&self, x: &mut [f64]) {
-        self.cholesky.solve(x);
+    /// Solves with that factor in place, for so many right-hand sides, one after the other.
+    pub(crate) fn solve_positive(&self, x: &mut [f64], count: usize) {
+        self.cholesky.solve_all(x, count);
     }
     /// Factors the constrained matrix whatever the signs of its eigenvalues.
     pub(crate) fn factor(&mut self, filter: &Filter<D>) -> Result<(), Indefinite> {

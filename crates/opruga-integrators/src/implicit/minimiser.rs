@@ -32,6 +32,10 @@ pub(crate) trait Minimiser<const D: usize>: core::fmt::Debug {
     fn discard(&self, _system: &mut System<D>) {}
     /// Remembers a step of h [s] that counts.
     fn remember(&self, _system: &mut System<D>, _workspace: &Workspace<D>, _h: f64) {}
+    /// Whether later steps may solve with the matrix in `workspace.linear`, too.
+    fn keeps_matrix(&self, _system: &System<D>) -> bool {
+        false
+    }
     /// Whether a step that does not converge is halved whatever the scene says.
     fn always_halves(&self) -> bool {
         false

@@ -199,7 +199,7 @@ impl<R: Rule<D>, const D: usize> OpenStep<D> for Open<R, D> {
         Filter { free: &self.workspace.free, projectors: &self.workspace.projectors }.apply(x);
     }
     fn solve(&self, x: &mut [f64]) {
-        self.workspace.linear.solve_positive(x);
+        self.workspace.linear.solve_positive(x, 1);
     }
     fn follow(&mut self, system: &System<D>, forces: &[f64], tolerance: f64, out: &mut [f64]) -> bool {
         if !self.workspace.contacting.any() {

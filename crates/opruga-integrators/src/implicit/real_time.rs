@@ -275,6 +275,11 @@ pub(super) fn mark_stale<const D: usize>(system: &mut System<D>) {
     }
 }
 
+/// Whether the matrix of the reference shape is at hand, and the next step begins with it.
+pub(super) fn keeps_matrix<const D: usize>(system: &System<D>) -> bool {
+    system.history.get(MATRIX) > 0 && !system.history.get(STALE)
+}
+
 /// Whether what few iterations lead to may count.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Trust {

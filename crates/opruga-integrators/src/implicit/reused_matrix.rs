@@ -9,16 +9,21 @@ use opruga_core::system::System;
 use opruga_solve::blocks::Block;
 use opruga_solve::{Cholesky, Indefinite, Packed};
 
-/// What the matrix at hand was made of, and what solves with it.
-#[derive(Debug)]
-pub(crate) struct ReusedMatrix<const D: usize> {
-    /// Whether there is one.
-    there: bool,
+/// What a matrix was made of.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Origin<const D: usize> {
     sigma: f64,
     beta: f64,
     /// By how much the diagonal is raised.
     raised: f64,
     reference: Columns<D>,
+}
+
+/// The matrix at hand, and what solves with it.
+#[derive(Debug)]
+pub(crate) struct ReusedMatrix<const D: usize> {
+    /// None where there is no matrix.
+    pub(crate) origin: Option<Origin<D>>,
     /// The directions that were free when it was made ready to be solved with.
     ready: bool,
     free: Vec<bool>,
@@ -36,11 +41,7 @@ pub(crate) struct ReusedMatrix<const D: usize> {
 impl<const D: usize> Default for ReusedMatrix<D> {
     fn default() -> Self {
         ReusedMatrix {
-            there: false,
-            sigma: 0.0,
-            beta: 0.0,
-            raised: 0.0,
-            reference: Columns::zeros(0),
+            origin: None,
             ready: false,
             free: Vec::new(),
             projectors: Vec::new(),
@@ -57,9 +58,10 @@ impl<const D: usize> ReusedMatrix<D> {
     /// Whether the matrix at hand is the one of a shape, of factors and of a way to keep it definite.
     pub(crate) fn is_of(&self, reference: &Columns<D>, mixture: &Mixture<D>, raised: f64) -> bool {
         let nodes = mixture.mass.len();
-        self.there
-            && (self.sigma, self.beta, self.raised) == (mixture.sigma, mixture.beta, raised)
-            && self.reference.0.iter().zip(&reference.0).all(|(a, b)| a.get(..nodes) == b.get(..nodes))
+        self.origin.as_ref().is_some_and(|own| {
+            (own.sigma, own.beta, own.raised) == (mixture.sigma, mixture.beta, raised)
+                && own.reference.0.iter().zip(&reference.0).all(|(a, b)| a.get(..nodes) == b.get(..nodes))
+        })
     }
 
     /// Makes the matrix in the shape that was evaluated last, which is `reference`; `is_new` says whether that is the shape of the iteration.
@@ -76,9 +78,11 @@ impl<const D: usize> ReusedMatrix<D> {
             linear.raise(raised);
         }
         self.packed.take(linear.full(), mixture.system.threads);
-        (self.there, self.ready, self.is_new) = (true, false, is_new);
-        (self.sigma, self.beta, self.raised) = (mixture.sigma, mixture.beta, raised);
-        for (own, column) in self.reference.0.iter_mut().zip(&reference.0) {
+        (self.ready, self.is_new) = (false, is_new);
+        let none = || Origin { sigma: 0.0, beta: 0.0, raised: 0.0, reference: Columns::zeros(0) };
+        let origin = self.origin.get_or_insert_with(none);
+        (origin.sigma, origin.beta, origin.raised) = (mixture.sigma, mixture.beta, raised);
+        for (own, column) in origin.reference.0.iter_mut().zip(&reference.0) {
             own.grow(column.len());
             own[..column.len()].copy_from_slice(column);
         }

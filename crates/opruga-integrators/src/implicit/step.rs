@@ -100,18 +100,22 @@ impl<R: Rule<D>, const D: usize> Integrator<D> for Implicit<R> {
     fn step(&self, system: &mut System<D>, h: f64) -> Result<(), StepError> {
         self.with_minimiser(|minimiser| self.step_by(minimiser, system, h))
     }
+    fn has_budget(&self) -> bool {
+        self.settings.real_time
+    }
     fn takes_pushes(&self) -> bool {
         true
     }
-    fn prepare_answer(&self, system: &mut System<D>) -> Result<bool, StepError> {
+    fn prepare_answer(&self, system: &mut System<D>) -> Result<Option<u64>, StepError> {
         let mut workspace = system.cache.take::<Workspace<D>>();
-        let outcome = answer::prepare(system, &mut workspace);
+        let keeps_matrix = self.with_minimiser(|minimiser: &dyn Minimiser<D>| minimiser.keeps_matrix(system));
+        let outcome = answer::prepare(system, &mut workspace, keeps_matrix);
         system.cache.put(workspace);
         outcome
     }
-    fn answer(&self, system: &mut System<D>, vector: &mut [f64]) -> bool {
+    fn answer(&self, system: &mut System<D>, vectors: &mut [f64], count: usize) -> bool {
         let workspace = system.cache.take::<Workspace<D>>();
-        let outcome = answer::displace(&workspace, vector);
+        let outcome = answer::displace(&workspace, vectors, count);
         system.cache.put(workspace);
         outcome
     }

@@ -1,11 +1,14 @@
 //! The real-time setting of bodies that slide, stick and tumble on obstacles.
 
 use crate::common;
-use common::{solid, text};
+use crate::contact::{contact, deepest};
+use crate::implicit_contact::{block, heavy};
+use common::{solid, text, values};
 use opruga_core::spec::Value;
 use opruga_mesh::{Cut, Mesh};
 use opruga_world::blueprint::{Blueprint, ColliderBlueprint};
-use opruga_world::{Options, World};
+
+use opruga_world::{Options, Registry, World};
 
 /// A cube of tetrahedra that is thrown across a floor of friction.
 fn thrown(friction: f64, accuracy: &str) -> Blueprint<3> {
@@ -55,5 +58,44 @@ fn what_slides_and_tumbles_on_a_floor_leaves_as_little_as_it_promises() {
         assert!(work.cut_off <= 2, "{friction}: {work:?}");
         let (exact, _) = throw(friction, "exact");
         assert!((0..3).all(|d| (x[d] - exact[d]).abs() < 0.01), "{friction}: {x:?}, exactly {exact:?}");
+    }
+}
+
+/// A tower of blocks that leans, and its top after two seconds [m].
+fn tower(rule: &str, accuracy: &str) -> (World<2>, [f64; 2]) {
+    let mut bodies: Vec<_> = (0..4u8)
+        .map(|k| block(&format!("block {k}"), [1.0, 0.6], [5, 3], [0.06 * f64::from(k), 0.7 * f64::from(k)], 1.0, 2e4))
+        .collect();
+    bodies[3].velocity = [0.0, -2.0];
+    let mut scene = heavy(rule, bodies, 1);
+    let registry = Registry::<2>::default();
+    scene.integrator = values::<2>(registry.integrator(rule).expect("a rule").spec(), &[("accuracy", text(accuracy))]);
+    scene.contact = contact::<2>(&[("friction", 0.5.into())]);
+    let fields = [("point", [0.0, -0.1].into()), ("normal", [0.0, 1.0].into()), ("friction", 0.5.into())];
+    scene.colliders.push(ColliderBlueprint::new::<2>("half_space", &fields).expect("a floor"));
+    let mut world = World::new(scene, Options::default()).expect("a world");
+    (0..60).for_each(|_| world.frame().expect("a frame"));
+    let kept = world.snapshot();
+    let mut ends = [(); 2].map(|()| {
+        world.restore(&kept).expect("its own snapshot");
+        (0..60).for_each(|_| world.frame().expect("a frame"));
+        world.frame_hash()
+    });
+    ends.sort_unstable();
+    assert_eq!(ends[0], ends[1], "{rule}, {accuracy}: after going back");
+    let nodes = world.node_count(3) as u32;
+    let mean = |d: usize| (0..nodes).map(|node| world.position(3, node)[d]).sum::<f64>() / f64::from(nodes);
+    let top = core::array::from_fn(mean);
+    (world, top)
+}
+
+/// Answers to impulses go by the matrix that is kept from step to step, and steps and contact agree to a tenth of the thickness alone.
+#[test]
+fn bodies_of_a_budget_lie_where_exact_steps_leave_them() {
+    for rule in ["backward_euler", "bdf2"] {
+        let [(roughly, top), (_, exact_top)] = ["real_time", "exact"].map(|accuracy| tower(rule, accuracy));
+        assert!((0..2).all(|d| (top[d] - exact_top[d]).abs() < 5e-3), "{rule}: {top:?}, exactly {exact_top:?}");
+        assert!(deepest(&roughly) < 1e-3, "{rule}: {} m deep", deepest(&roughly));
+        assert!(roughly.energy().closure < 0.02, "{rule}: {:?}", roughly.energy());
     }
 }

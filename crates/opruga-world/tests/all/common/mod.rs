@@ -11,7 +11,7 @@ pub(crate) fn text(value: &str) -> Value {
     Value::Text(value.into())
 }
 
-fn values<const D: usize>(spec: &'static Spec, set: &[(&str, Value)]) -> Values {
+pub(crate) fn values<const D: usize>(spec: &'static Spec, set: &[(&str, Value)]) -> Values {
     let mut values = Values::defaults(spec, D);
     for (name, value) in set {
         values.set(spec, name, value.clone(), D).expect("a field of the test's own");
