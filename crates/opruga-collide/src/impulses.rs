@@ -131,6 +131,20 @@ impl<const D: usize> Turns<D> {
         &self.order
     }
 
+    /// The velocity that sweeps leave of a row, at most [m/s].
+    pub(crate) fn enough(
+        &self,
+        row: &Row<D>,
+        spread: &Spread,
+        inverse_mass: &[[f64; D]],
+        body: &[u32],
+        exact: bool,
+    ) -> f64 {
+        let first = movable(spread, row, inverse_mass).next();
+        let tolerance = if exact { COUPLED_TOLERANCE } else { TOLERANCE };
+        first.map_or(0.0, |p| tolerance * self.approach.mean[self.approach.root(body[p as usize]) as usize].0)
+    }
+
     /// Finds the mean approaches of rows, given the bodies of all points, how many there are, and the velocities before contact [m/s].
     pub(crate) fn find_approach(
         &mut self,

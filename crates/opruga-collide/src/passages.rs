@@ -112,6 +112,7 @@ impl<const D: usize> Touching<D> {
         let mut stay = self.watched.iter().map(|row| !passes(row));
         self.heads.retain(|_| stay.next() == Some(true));
         self.watched.retain(|row| !passes(row));
+        self.inactive.retain(|row| !passes(row));
         for k in 0..self.passing.len() {
             let (id, gap) = self.passing[k];
             let (pair, with_facet) = pair_of(id);

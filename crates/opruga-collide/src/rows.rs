@@ -4,6 +4,7 @@ use crate::ccd::{edge_meets_edge, vertex_meets_facet};
 use crate::gap::Gap;
 use crate::law::PairLaw;
 use crate::row::Row;
+use crate::settle::OVERLAP;
 use crate::surface::Surface;
 use crate::touching::Touching;
 use crate::vector::{dot, subtract};
@@ -15,6 +16,7 @@ impl<const D: usize> Touching<D> {
     pub(crate) fn take_gaps(&mut self, h: f64) {
         self.rows.clear();
         self.watched.clear();
+        self.inactive.clear();
         self.heads.clear();
         self.spread.clear();
         self.close.iter_mut().for_each(Vec::clear);
@@ -60,7 +62,7 @@ impl<const D: usize> Touching<D> {
             self.take_exit(candidates, h);
         }
         self.keep_the_nearest();
-        self.take_around();
+        self.take_around(false);
     }
 
     /// Takes the gap of a candidate of two edges.
@@ -90,17 +92,27 @@ impl<const D: usize> Touching<D> {
             return;
         }
         self.push(gap, &law, h, pair, false, 0.0);
-        self.take_around();
+        self.take_around(true);
     }
 
     /// Puts rows in play, or under watch where they do not meet by themselves; those that cannot move are neither.
-    fn take_around(&mut self) {
+    ///
+    /// Pairs of edges are inactive at first unless they pressed in the step before, and so are all pairs of bodies that answer as a whole: where vertices and
+    /// facets hold surfaces, few edges press, and of what is near such bodies a fourth does. What overlaps is taken apart and so is active.
+    fn take_around(&mut self, of_edges: bool) {
+        let starts_inactive = !self.at_once && (of_edges || self.coupled.count() > 0 && !self.coupled.apart);
+        let overlap = -OVERLAP * self.thickest[0];
         for (row, meets) in self.around.drain(..).filter(|(row, _)| row.mass[0] > 0.0) {
-            if meets {
-                self.rows.push(row);
-            } else {
+            if !meets {
                 self.heads.push(row.head());
                 self.watched.push(row);
+            } else if starts_inactive
+                && row.gap >= overlap
+                && self.last.binary_search_by_key(&row.id, |(id, ..)| *id).is_err()
+            {
+                self.inactive.push(row);
+            } else {
+                self.rows.push(row);
             }
         }
     }
@@ -241,11 +253,9 @@ impl<const D: usize> Touching<D> {
                 if within && (key != others || k < j) {
                     self.keep[j] = false;
                 }
-                if own != body(row) && is_closed(row) && is_closed(other) {
-                    let other_is_nearer = b.abs() < a.abs() || b.abs() == a.abs() && k < j;
-                    if other_is_nearer && (a < 0.0 || b < 0.0) {
-                        self.keep[j] = false;
-                    }
+                let other_is_nearer = b.abs() < a.abs() || b.abs() == a.abs() && k < j;
+                if other_is_nearer && (a < 0.0 || b < 0.0) && own != body(row) && is_closed(row) && is_closed(other) {
+                    self.keep[j] = false;
                 }
             }
         }

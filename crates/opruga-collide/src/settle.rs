@@ -7,7 +7,7 @@ use opruga_math::Lane;
 
 /// The part of the thickness that pairs may lack before they are taken apart: the surfaces themselves do not overlap then, and what sweeps
 /// leave of a step is no reason to move anything.
-const OVERLAP: f64 = 0.01;
+pub(crate) const OVERLAP: f64 = 0.01;
 
 impl<const D: usize> Touching<D> {
     /// Takes the points along with their new velocities, and overlapping ones apart.

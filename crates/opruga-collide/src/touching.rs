@@ -76,6 +76,8 @@ pub struct Touching<const D: usize> {
     /// Pairs that do not meet by themselves, and their points; those that came into play leave nobody behind.
     pub(crate) watched: Vec<Row<D>>,
     pub(crate) heads: Vec<[u32; 4]>,
+    /// Pairs that meet by themselves, but are not solved for unless those that are leave them too fast.
+    pub(crate) inactive: Vec<Row<D>>,
     /// The pairs of one vertex, or of two edges, and whether they meet by themselves.
     pub(crate) around: Vec<(Row<D>, bool)>,
     /// Features and impulses of the last substep, ascending.
@@ -130,6 +132,8 @@ pub struct Counts {
     pub contacts: u64,
     /// How often one of these was solved for.
     pub turns: u64,
+    /// How often gaps were taken and solved for: once in each substep, and anew where contact pushes points beyond their boxes.
+    pub rounds: u64,
 }
 
 impl Counts {
@@ -142,6 +146,7 @@ impl Counts {
             pairs: self.pairs + other.pairs,
             contacts: self.contacts + other.contacts,
             turns: self.turns + other.turns,
+            rounds: self.rounds + other.rounds,
         }
     }
 }
@@ -268,8 +273,9 @@ impl<const D: usize> Touching<D> {
             if std::mem::take(&mut self.looks_inside) {
                 self.find_began_inside();
             }
+            self.counts.rounds += 1;
             self.take_gaps(h);
-            if !self.rows.is_empty() || !self.given.is_empty() {
+            if !self.rows.is_empty() || !self.inactive.is_empty() || !self.given.is_empty() {
                 if !self.solve(h, obstacles, respond.as_mut().map(|respond| &mut **respond as _)) {
                     return Ok(false);
                 }
@@ -281,6 +287,10 @@ impl<const D: usize> Touching<D> {
                 self.rest();
             }
             if self.grow() {
+                // The next round begins with what this one has found.
+                if !self.at_once {
+                    self.keep_impulses();
+                }
                 continue;
             }
             if !self.find_passages(h) {
@@ -395,7 +405,7 @@ impl<const D: usize> Touching<D> {
             self.touched.resize(self.surface.points(), false);
             self.coupled.finish(&self.after[1], &mut self.v, &mut self.touched);
             let known = self.rows.len();
-            if !self.call_who_was_pushed() {
+            if !self.activate() {
                 break;
             }
             self.hold_points(h, obstacles);
@@ -435,8 +445,9 @@ impl<const D: usize> Touching<D> {
         true
     }
 
-    /// Takes in what meets because one of its points was pushed, which it would not have done by itself; says whether there is any.
-    fn call_who_was_pushed(&mut self) -> bool {
+    /// Takes in what meets because one of its points was pushed, which it would not have done by itself, and inactive pairs that still approach too
+    /// fast; says whether there is any.
+    fn activate(&mut self) -> bool {
         let before = self.rows.len();
         for (head, row) in self.heads.iter_mut().zip(&self.watched) {
             let [v, free] = [&self.v, &self.after[1]];
@@ -447,6 +458,16 @@ impl<const D: usize> Touching<D> {
                 *head = Spread::NOBODY;
             }
         }
+        let Touching { rows, inactive, turns, spread, inverse_mass, surface, v, coupled, has_budget, .. } = self;
+        let exact = coupled.count() > 0 && !coupled.apart && !*has_budget;
+        inactive.retain(|row| {
+            let enough = turns.enough(row, spread, inverse_mass, &surface.body, exact);
+            let holds = dot(&subtract(&row.mean(spread, v), &row.carry), &row.normal) >= row.target - enough;
+            if !holds {
+                rows.push(*row);
+            }
+            holds
+        });
         self.rows.len() > before
     }
 

@@ -50,12 +50,13 @@ pub(crate) fn report<const D: usize>(
     let hash =
         (x.iter().flatten()).fold(0u64, |h, x| (h.rotate_left(5) ^ x.to_bits()).wrapping_mul(0x9E37_79B9_7F4A_7C15));
     println!(
-        "frames {first:4}..: contact {:8.3} ms (least {:8.3}, most {:8.3}), {:5.1} ns a vertex and step; free {:6.3} ms; searches {:.3}, candidates {:.0}, pairs {:.0}, contacts {:.0}, turns {:.0}; {hash:016x}",
+        "frames {first:4}..: contact {:8.3} ms (least {:8.3}, most {:8.3}), {:5.1} ns a vertex and step; free {:6.3} ms; rounds {:.2}, searches {:.3}, candidates {:.0}, pairs {:.0}, contacts {:.0}, turns {:.0}; {hash:016x}",
         touch[5] * 1e3,
         touch[0] * 1e3,
         touch[9] * 1e3,
         touch[5] * 1e9 / (vertices as f64 * substeps),
         free * 1e2,
+        of(counts.rounds),
         of(counts.searches),
         of(counts.candidates),
         of(counts.pairs),
