@@ -13,8 +13,11 @@ const SCENE: &str = include_str!("../../benches/scenes/falling-cubes.toml");
 /// Edge of a cube [m].
 const EDGE: f64 = 0.8;
 
-/// The substeps of Opruga in a frame: near its limit of stability, and those of the scene.
-const SUBSTEPS: [u32; 3] = [8, 12, 20];
+/// Substeps in a frame of explicit steps: near their limit of stability, and those of the scene.
+const EXPLICIT: [u32; 3] = [8, 12, 20];
+
+/// The same of implicit steps in real time.
+const IMPLICIT: [u32; 2] = [1, 2];
 
 /// The frames that are timed: from 1.5 to 2.5 s.
 const TIMED: Range<usize> = 90..150;
@@ -27,12 +30,11 @@ struct Cubes {
     facets: Vec<[u32; 3]>,
 }
 
-/// The scene, with as many cubes along every axis and as many substeps.
-fn world(along: usize, substeps: u32) -> Result<World<3>, String> {
-    let overrides = vec![
-        ("body.cube.copies.count".to_string(), format!("[{along}, {along}, {along}]")),
-        ("time.substeps".to_string(), substeps.to_string()),
-    ];
+/// The scene, with as many cubes along every axis and as many substeps, and with further settings.
+fn world(along: usize, substeps: u32, more: &[(&str, &str)]) -> Result<World<3>, String> {
+    let count = format!("[{along}, {along}, {along}]");
+    let settings = [("body.cube.copies.count", count.as_str()), ("time.substeps", &substeps.to_string())];
+    let overrides = settings.iter().chain(more).map(|(key, value)| (key.to_string(), value.to_string())).collect();
     let far = format!("[{:?}, 60.0, {:?}]", along as f64 + 0.5, along as f64 + 0.5);
     let text = SCENE.replace("max = [3.5, 20.0, 3.5]", &format!("max = {far}"));
     let reading = scene::Options { overrides, ..scene::Options::default() };
@@ -107,13 +109,16 @@ fn of_rapier(cubes: &Cubes, along: usize, name: &str, solver: SoftBodySolver) ->
 
 /// Rapier and Opruga on so many cubes along every axis.
 pub fn compare(along: usize) -> Result<Table, String> {
-    let own = world(along, SUBSTEPS[0])?;
+    let own = world(along, EXPLICIT[0], &[])?;
     let cubes = cubes(&own);
     let mut rows = vec![of_rapier(&cubes, along, "Rapier, constraints, 4 steps", SoftBodySolver::Constraints)?];
-    for substeps in SUBSTEPS {
-        let mut own = world(along, substeps)?;
+    let real_time = [("integrator.kind", "backward_euler"), ("integrator.accuracy", "real_time")];
+    let explicit = EXPLICIT.map(|substeps| (substeps, &[][..], "symplectic Euler"));
+    let implicit = IMPLICIT.map(|substeps| (substeps, &real_time[..], "backward Euler, real time"));
+    for (substeps, settings, rule) in explicit.into_iter().chain(implicit) {
+        let mut own = world(along, substeps, settings)?;
         let step = |world: &mut World<3>| world.frame().map(|_| ()).map_err(|e| e.to_string());
-        let name = format!("Opruga, symplectic Euler, {substeps} steps");
+        let name = format!("Opruga, {rule}, {substeps} {}", if substeps == 1 { "step" } else { "steps" });
         let depth = |p: &Point, nodes: &[Point]| depth(&cubes, p, nodes);
         rows.push(run_and_measure(&name, TIMED, &mut own, step, positions, &Depth { of: &depth, unit: EDGE })?);
     }
@@ -182,7 +187,7 @@ mod tests {
 
     #[test]
     fn a_node_is_as_deep_as_the_nearest_side_is_away() {
-        let world = world(1, SUBSTEPS[0]).expect("a cube");
+        let world = world(1, EXPLICIT[0], &[]).expect("a cube");
         let cubes = cubes(&world);
         let one = positions(&world).remove(0);
         let moved = |by: f64| one.iter().map(|x| [x[0] + EDGE - by, x[1] + 0.01, x[2] + 0.013]).collect::<Vec<_>>();
