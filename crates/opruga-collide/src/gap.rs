@@ -48,10 +48,10 @@ impl<const D: usize> Gap<D> {
         let outward = || {
             if within { unit(&facet_normal(&at)) } else { normal_around(surface, x, &corners, &weights) }
         };
-        // Mostly all facets around agree on the side.
-        let closed = surface.closed[facet as usize]
+        // Mostly, the point lies outside of all facets around: then their angles do not matter.
+        let may_be_inside = surface.closed[facet as usize]
             && (within || !lies_outside_of_all(surface, x, (&corners, &weights), &between));
-        out.point_along(&between, closed, &p, outward);
+        out.point_along(&between, may_be_inside, &p, outward);
         out
     }
 
@@ -108,14 +108,20 @@ impl<const D: usize> Gap<D> {
     }
 
     /// Sets gap and normal from the vector between the closest points.
-    fn point_along(&mut self, between: &[f64; D], closed: bool, origin: &[f64; D], outward: impl Fn() -> [f64; D]) {
+    fn point_along(
+        &mut self,
+        between: &[f64; D],
+        may_be_inside: bool,
+        origin: &[f64; D],
+        outward: impl Fn() -> [f64; D],
+    ) {
         let distance = length(between);
         let mut size = 0.0;
         for c in origin {
             size += c.abs();
         }
         if distance > ROUNDING * size {
-            let inside = closed && dot(between, &outward()) < 0.0;
+            let inside = may_be_inside && dot(between, &outward()) < 0.0;
             let sign = if inside { -1.0 } else { 1.0 };
             (self.gap, self.normal) = (sign * distance, scaled(between, sign / distance));
         } else {

@@ -127,7 +127,7 @@ impl Cholesky {
         self.solve_all(x, 1);
     }
 
-    /// Solves A x = b in place for so many right-hand sides, one after the other: three at once cost little more than one.
+    /// Solves A x = b in place for so many right-hand sides, which stand one after the other.
     pub fn solve_all(&self, x: &mut [f64], count: usize) {
         if !self.factored || x.is_empty() {
             return;
@@ -142,7 +142,7 @@ impl Cholesky {
     }
 }
 
-/// Right-hand sides that are solved for at once.
+/// Right-hand sides that one pass through the factor serves: those of the axes of a point.
 const AT_ONCE: usize = 3;
 
 fn solve(

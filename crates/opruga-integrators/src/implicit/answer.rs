@@ -88,14 +88,14 @@ fn factor<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, bala
 pub(crate) fn displace<const D: usize>(workspace: &Workspace<D>, vectors: &mut [f64], count: usize) -> bool {
     let answer = &workspace.answer;
     let filter = Filter::<D> { free: &answer.free, projectors: &answer.projectors };
-    let nodes = D * answer.free.len();
-    vectors.chunks_exact_mut(nodes).for_each(|vector| filter.apply(vector));
+    let size = D * answer.free.len();
+    vectors.chunks_exact_mut(size).for_each(|vector| filter.apply(vector));
     if !answer.by_factors {
         answer.linear.solve_positive(vectors, count);
-    } else if vectors.chunks_exact_mut(nodes).any(|vector| answer.linear.solve_by_factors(vector).is_err()) {
+    } else if vectors.chunks_exact_mut(size).any(|vector| answer.linear.solve_by_factors(vector).is_err()) {
         return false;
     }
-    vectors.chunks_exact_mut(nodes).for_each(|vector| filter.apply(vector));
+    vectors.chunks_exact_mut(size).for_each(|vector| filter.apply(vector));
     vectors.iter_mut().for_each(|x| *x /= answer.theta);
     vectors.iter().all(|x| x.is_finite())
 }
