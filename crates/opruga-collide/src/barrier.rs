@@ -300,17 +300,28 @@ impl<const D: usize> Barrier<D> {
 }
 
 impl<const D: usize> Touching<D> {
-    /// Takes what the barrier did in a step of h [s], for those who ask for contacts: pairs and their friction [N], where the points end.
-    pub fn take_pressed(&mut self, h: f64, pairs: impl Iterator<Item = (Pressed<D>, [f64; D])>) {
+    /// Takes what the barrier did in a step of h [s], for those who ask for contacts: pairs and their friction, both ascending, where the points end. Friction
+    /// goes by the normal forces of the round before, so it may act where nothing presses any more.
+    pub fn take_pressed(&mut self, h: f64, pressed: &[Pressed<D>], rubbing: &[Rubbing<D>], moved: &[[f64; D]]) {
         self.rows.clear();
         self.spread.clear();
-        for (pair, friction) in pairs {
-            let gap = Gap { points: pair.points, weights: pair.weights, gap: pair.gap, normal: pair.normal };
-            let mut row = Row::new(pair.id, &gap, 0.0, pair.friction);
+        let mut take = |id, gap: Gap<D>, coefficient, force: f64, friction: [f64; D]| {
+            let mut row = Row::new(id, &gap, 0.0, coefficient);
             row.put_into(&mut self.spread, &self.surface);
-            (row.normal_impulse, row.friction_impulse) = (pair.force * h, scaled(&friction, h));
+            (row.normal_impulse, row.friction_impulse) = (force * h, scaled(&friction, h));
             self.rows.push(row);
+        };
+        for pair in pressed {
+            let gap = Gap { points: pair.points, weights: pair.weights, gap: pair.gap, normal: pair.normal };
+            let rub = rubbing.binary_search_by_key(&pair.id, |rub| rub.id);
+            let friction = rub.map_or([0.0; D], |k| rubbing[k].force(&rubbing[k].slip(moved)));
+            take(pair.id, gap, pair.friction, pair.force, friction);
         }
+        for rub in rubbing.iter().filter(|rub| pressed.binary_search_by_key(&rub.id, |pair| pair.id).is_err()) {
+            let gap = Gap { points: rub.points, weights: rub.weights, gap: 0.0, normal: rub.normal };
+            take(rub.id, gap, 0.0, 0.0, rub.force(&rub.slip(moved)));
+        }
+        self.rows.sort_by_key(|row| row.id);
         self.counts.steps += 1;
         self.counts.contacts += self.rows.len() as u64;
         if self.report {

@@ -63,6 +63,8 @@ pub trait OpenStep<const D: usize>: Send {
     fn goal(&self) -> f64;
     /// The most iterations, and whether a step that has not converged then counts.
     fn most_iterations(&self) -> (u32, bool);
+    /// How often a step whose search does not end is halved at most.
+    fn most_halvings(&self) -> u32;
     /// Ends the step with the pushes of other bodies in `system.pushes`, which belong to u; counts the iterations of the search, and a step that counts though
     /// the search has not converged.
     ///

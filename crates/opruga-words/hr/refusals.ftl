@@ -286,9 +286,6 @@ modes-indefinite-Indefinite = krutost ovog stanja nema vlastitih frekvencija
 contact-implicit-RestBesideMotion = `{ $integrator }` i integrator tijela `{ $other }` ne dodiruju se: jedan nalazi stanje mirovanja, a drugi se giba
     .allowed = tijela koja sva miruju ili se sva gibaju
     .hint = uz `contact.touch = false` tijelo prolazi kroz druga
-contact-implicit-RestByBarrier = `{ $integrator }` nalazi stanje mirovanja, do kojeg barijera ne vodi
-    .allowed = `response = "constraint"`
-    .hint = uz `contact.touch = false` tijelo prolazi kroz druga
 contact-implicit-RestInParts = `{ $integrator }` uz `arc_length` ili `load_steps` stavlja teret u dijelovima, a tijela koja se dodiruju nalaze ravnotežu pod cijelim teretom
     .allowed = tijela koja se dodiruju bez `arc_length` i `load_steps`
     .hint = uz `contact.touch = false` tijelo prolazi kroz druga

@@ -1,12 +1,14 @@
 //! Bodies that a barrier keeps apart: a substep of all that solve for its end.
 //!
-//! Each begins its step, the common end is searched for ([`Search`]), and each ends its step with the forces of the others.
+//! Each begins its step, the common end is searched for ([`Search`]), and each ends its step with the forces of the others. The end of a step of statics is
+//! the common balance.
 
 use crate::barrier_search::{Kept, Opened, Refused, Search, scaled};
 use crate::island::Island;
 use crate::meeting::{Meeting, Substep};
 use crate::refusals::Refusal;
-use opruga_collide::{Pressed, Touching, Trouble};
+use crate::staying::Staying;
+use opruga_collide::{Touching, Trouble};
 use opruga_core::error::StepError;
 use opruga_core::system::{Stage, System, Workspace};
 use opruga_math::WIDTH;
@@ -43,26 +45,57 @@ impl<const D: usize> Meeting<D> {
         kept.workspaces.resize_with(self.pushed.len(), Workspace::default);
         for (pushed, workspace) in self.pushed.iter().zip(&mut kept.workspaces) {
             islands[pushed.island].system.exchange(workspace);
+            islands[pushed.island].begin_as_one(step.plan, step.number);
         }
-        let outcome = self.find_common_end(islands, step, kept);
+        let outcome = self.advance_as_one(islands, step, kept, (step.plan.h, step.time), 0);
         for (pushed, workspace) in self.pushed.iter().zip(&mut kept.workspaces) {
             islands[pushed.island].system.exchange(workspace);
         }
         outcome
     }
 
-    fn find_common_end(
+    /// Makes a step of h to a time [s], or two of half the length where its end is not found and the scene asks for that.
+    fn advance_as_one(
         &mut self,
         islands: &mut [&mut Island<D>],
         step: &Substep<'_, D>,
         kept: &mut Kept<D>,
+        (h, time): (f64, f64),
+        halvings: u32,
     ) -> Result<(), Refused> {
-        let (h, points) = (step.plan.h, self.touching.inverse_mass.len());
+        let multipliers = kept.multipliers.clone();
+        kept.most_halvings = 0;
+        match self.find_common_end(islands, kept, (h, time), step.plan.h) {
+            Err(Refused::Step(error)) if halvings < kept.most_halvings && error != StepError::BrokenOff {} => {}
+            outcome => return outcome,
+        }
+        kept.multipliers = multipliers;
+        for pushed in &self.pushed {
+            let island = &mut islands[pushed.island];
+            island.rewind();
+            let solver = &mut island.system.work.solver;
+            solver.halved += 1;
+            solver.deepest = solver.deepest.max(u64::from(halvings) + 1);
+        }
+        self.advance_as_one(islands, step, kept, (0.5 * h, time - 0.5 * h), halvings + 1)?;
+        self.pushed.iter().for_each(|pushed| islands[pushed.island].keep_path(step.plan));
+        self.set_out(islands);
+        self.advance_as_one(islands, step, kept, (0.5 * h, time), halvings + 1)
+    }
+
+    fn find_common_end(
+        &mut self,
+        islands: &mut [&mut Island<D>],
+        kept: &mut Kept<D>,
+        (h, time): (f64, f64),
+        whole: f64,
+    ) -> Result<(), Refused> {
+        let staying = self.at_rest.then(|| Staying::new(&self.pushed, islands));
+        let points = self.touching.inverse_mass.len();
         let (mut opened, mut coordinates, mut first) = (Vec::new(), vec![None; points], 0);
         for (body, pushed) in self.pushed.iter().enumerate() {
             let island = &mut islands[pushed.island];
             island.system.pushes = Some(Vec::new());
-            island.begin_as_one(step.plan, step.number);
             // Bodies whose integrator does not solve for the end of a step are refused before the run.
             let Some(begun) = island.integrator.open(&mut island.system, h) else { continue };
             for (p, index) in self.touching.coupled.points_of(body).zip(&pushed.indices) {
@@ -71,9 +104,10 @@ impl<const D: usize> Meeting<D> {
             opened.push(Opened { island: pushed.island, first, step: begun? });
             first += island.system.nodes * D;
         }
+        kept.most_halvings = opened.iter().map(|open: &Opened<D>| open.step.most_halvings()).min().unwrap_or(0);
         let mut x = self.touching.before[0].clone();
         self.touching.surface.follow(&mut x);
-        self.move_outlines(step.time);
+        self.move_outlines(time);
         let ahead = (0..points).map(|p| match self.touching.surface.is_of_obstacle(p as u32) {
             false => [0.0; D],
             true => std::array::from_fn(|d| self.touching.after[0][p][d] - x[p][d]),
@@ -95,19 +129,20 @@ impl<const D: usize> Meeting<D> {
             iterations: 0,
             converged: true,
             stretch: 1.0,
+            staying,
         };
         search.find_softness()?;
         search.find_end(std::mem::take(&mut kept.multipliers))?;
         kept.multipliers = search.multipliers();
-        search.close(h)?;
+        search.close(whole)?;
         Ok(())
     }
 }
 
 impl<const D: usize> Search<'_, '_, D> {
-    /// Ends the steps of all bodies, with the forces that they exert on one another.
+    /// Ends the steps of all bodies, with the forces that they exert on one another, as impulses of a whole substep of h [s].
     fn close(self, h: f64) -> Result<(), Refused> {
-        let (iterations, converged) = (self.iterations, self.converged);
+        let (iterations, converged, moves) = (self.iterations, self.converged, self.staying.is_none());
         let Search { islands, touching, barrier, opened, coordinates, moved, x, pressed, rubbing, .. } = self;
         let mut forces = vec![[0.0; D]; x.len()];
         let mut losses = vec![[0.0; 2]; x.len()];
@@ -123,10 +158,6 @@ impl<const D: usize> Search<'_, '_, D> {
                 });
             }
         };
-        let friction_of = |pair: &Pressed<D>| {
-            let found = rubbing.binary_search_by_key(&pair.id, |rub| rub.id);
-            found.map_or([0.0; D], |k| rubbing[k].force(&rubbing[k].slip(&moved)))
-        };
         for pair in &pressed {
             enter(&pair.points, &pair.weights, &scaled(&pair.normal, pair.force), 0);
             for (k, fading) in pair.fading.iter().enumerate() {
@@ -139,7 +170,7 @@ impl<const D: usize> Search<'_, '_, D> {
             enter(&rub.points, &rub.weights, &rub.force(&rub.slip(&moved)), 1);
         }
         touching.after[0].copy_from_slice(&x);
-        touching.take_pressed(h, pressed.iter().map(|pair| (*pair, friction_of(pair))));
+        touching.take_pressed(h, &pressed, &rubbing, &moved);
         for (body, Opened { island, first, step }) in opened.into_iter().enumerate() {
             let system = &mut islands[island].system;
             let mut pushes = Vec::new();
@@ -150,8 +181,11 @@ impl<const D: usize> Search<'_, '_, D> {
                 }
                 let node = (at - first) / D;
                 pushes.push((node, forces[p]));
-                system.work.contact[node % WIDTH] += losses[p][0];
-                system.work.friction[node % WIDTH] += losses[p][1];
+                // Statics enters all work as that of the hand that leads the bodies.
+                if moves {
+                    system.work.contact[node % WIDTH] += losses[p][0];
+                    system.work.friction[node % WIDTH] += losses[p][1];
+                }
             }
             pushes.sort_by_key(|(node, _)| *node);
             system.pushes = Some(pushes);

@@ -12,6 +12,7 @@
 
 use crate::island::Island;
 use crate::refusals::Refusal;
+use crate::staying::{BALANCED, Staying, norm};
 use opruga_collide::{Barrier, Pressed, Rubbing, Touching, Trouble};
 use opruga_core::error::StepError;
 use opruga_core::open_step::OpenStep;
@@ -38,6 +39,10 @@ const SLOPE_LEFT: f64 = 0.8;
 const STEEP: f64 = 0.3;
 const LONGEST_STRETCH: f64 = 16.0;
 
+/// Bodies at rest stay more firmly where they are after a correction of which a smaller part could be gone. Without it the corrections of a stack of three bodies
+/// lead its upper ones off the lower ones and back for ever (`stacks_come_to_their_balance`).
+const CUT_SHORT: f64 = 0.25;
+
 /// Halvings of a correction at most: a trillionth of it is none.
 const MOST_HALVINGS: u32 = 40;
 
@@ -55,6 +60,8 @@ pub(crate) struct Kept<const D: usize> {
     /// Friction of the substep before; ascending.
     pub(crate) multipliers: Vec<(u64, [f64; D])>,
     pub(crate) workspaces: Vec<Workspace<D>>,
+    /// How often a substep whose search does not end is halved at most.
+    pub(crate) most_halvings: u32,
 }
 
 impl<const D: usize> Kept<D> {
@@ -109,6 +116,8 @@ pub(crate) struct Search<'a, 'b, const D: usize> {
     pub(crate) converged: bool,
     /// By how much the next correction is lengthened.
     pub(crate) stretch: f64,
+    /// How firmly bodies at rest stay where they are within a correction; none of bodies that move.
+    pub(crate) staying: Option<Staying>,
 }
 
 /// The points of a pair and their weights.
@@ -131,6 +140,7 @@ impl<const D: usize> Search<'_, '_, D> {
     pub(crate) fn find_softness(&mut self) -> Result<(), Refused> {
         self.barrier.softness.clear();
         self.barrier.softness.resize(self.coordinates.len(), 0.0);
+        self.stay()?;
         for Opened { island, step, .. } in &mut self.opened {
             step.look(&self.islands[*island].system);
         }
@@ -144,6 +154,16 @@ impl<const D: usize> Search<'_, '_, D> {
         for (p, carrier) in self.touching.surface.carried() {
             let own = carrier.nodes.iter().zip(&carrier.weights);
             self.barrier.softness[p] = own.map(|(node, w)| w * w * self.barrier.softness[*node as usize]).sum();
+        }
+        Ok(())
+    }
+
+    /// Lets bodies at rest stay where they are now by a part of their mass.
+    fn stay(&mut self) -> Result<(), StepError> {
+        let Some(staying) = &self.staying else { return Ok(()) };
+        for (body, Opened { island, step, .. }) in self.opened.iter_mut().enumerate() {
+            step.stay(staying.sigma(body));
+            step.evaluate(&mut self.islands[*island].system, 0.0)?;
         }
         Ok(())
     }
@@ -162,21 +182,26 @@ impl<const D: usize> Search<'_, '_, D> {
 
     /// Finds the common end, friction included.
     pub(crate) fn find_end(&mut self, multipliers: Vec<(u64, [f64; D])>) -> Result<(), Refused> {
+        let mut before = Vec::new();
         self.press(true)?;
         self.rub(&multipliers);
+        // Bodies that come to rest are balanced once friction is known: what slides without it may have no balance but far away.
+        let mut precise = self.staying.is_none();
         for _ in 0..MOST_ROUNDS {
-            self.find_minimum()?;
+            self.find_minimum(precise)?;
             // The normal forces that friction goes by, and its multipliers, are those of what was found.
             let multipliers = self.multipliers();
-            let before = std::mem::take(&mut self.rubbing);
+            before = std::mem::take(&mut self.rubbing);
             self.rub(&multipliers);
-            if self.is_settled(&before) {
-                self.rubbing = before;
-                return Ok(());
+            self.converged = self.is_settled(&before);
+            if self.converged && precise {
+                break;
             }
+            precise |= self.converged;
         }
-        self.converged = false;
-        Ok(())
+        // Its forces are those with which the bodies are balanced.
+        self.rubbing = before;
+        if precise { Ok(()) } else { self.find_minimum(true) }
     }
 
     /// What friction acts against on every pair [N], by the features of the pairs.
@@ -206,8 +231,8 @@ impl<const D: usize> Search<'_, '_, D> {
         changed <= SETTLED * most
     }
 
-    /// Newton's method at given friction.
-    fn find_minimum(&mut self) -> Result<(), Refused> {
+    /// Newton's method at given friction. A precise minimum is one to the tolerance of the bodies; otherwise bodies at rest are balanced to a part of their forces.
+    fn find_minimum(&mut self, precise: bool) -> Result<(), Refused> {
         let (mut first_norm, mut counted) = (0.0, 0);
         self.stretch = 1.0;
         loop {
@@ -220,6 +245,7 @@ impl<const D: usize> Search<'_, '_, D> {
                 return self.accept_or_refuse(accepts, counted);
             }
             (counted, self.iterations) = (counted + 1, self.iterations + 1);
+            self.stay()?;
             let mut changed = false;
             for Opened { island, step, .. } in &mut self.opened {
                 let system = &self.islands[*island].system;
@@ -227,15 +253,20 @@ impl<const D: usize> Search<'_, '_, D> {
                 changed |= step.look(system);
             }
             // Exact derivatives near the minimum; where these lead nowhere, those without negative eigenvalues.
-            let mut slope = None;
+            let mut direction = None;
             for exact in [true, false] {
-                if slope.is_none() {
+                if direction.is_none() {
                     self.factor(exact)?;
-                    slope = self.find_direction(&mut first_norm);
+                    direction = self.find_direction(&mut first_norm, if precise { BALANCED } else { SETTLED });
                 }
             }
-            let Some(slope) = slope else { return Err(self.not_definite(0)) };
+            let Some((slope, balanced)) = direction else { return Err(self.not_definite(0)) };
             let part = self.go(slope)?;
+            match &mut self.staying {
+                Some(staying) if part == 1.0 => staying.loosen(),
+                Some(staying) if part < CUT_SHORT => staying.firm_up(),
+                _ => {}
+            }
             for Opened { island, step, .. } in &mut self.opened {
                 changed |= step.judge(&self.islands[*island].system);
             }
@@ -243,7 +274,7 @@ impl<const D: usize> Search<'_, '_, D> {
                 let goal = open.step.goal();
                 open.step.correction().iter().all(|c| c.abs() <= goal)
             });
-            if small && !changed {
+            if (small || !precise) && balanced && !changed {
                 return Ok(());
             }
             if part == 0.0 && !changed {
@@ -261,6 +292,17 @@ impl<const D: usize> Search<'_, '_, D> {
     fn no_end(&self, iterations: u32) -> Refused {
         let name = self.opened.first().map_or("", |open| self.islands[open.island].integrator.name());
         StepError::of(name, Refusal::NoCommonEnd { iterations }).into()
+    }
+
+    /// Whether the forces on every body at rest are balanced, however firmly it stays where it is; `gradient` is what acts between bodies, `left` what
+    /// is out of balance, and `most` the largest part of the forces that may be.
+    fn is_balance(&self, gradient: &[f64], left: &[f64], most: f64) -> bool {
+        let balances = |open: &Opened<D>| {
+            let (left, range) = (norm(&left[open.range()]), open.range());
+            let size = norm(open.step.residual()) + norm(&gradient[range]);
+            left <= most * size || left <= open.step.rounding_of_forces(&self.islands[open.island].system)
+        };
+        self.staying.is_none() || self.opened.iter().all(balances)
     }
 
     /// Adds a vector of a pair to those of its points.
@@ -328,8 +370,9 @@ impl<const D: usize> Search<'_, '_, D> {
         }
     }
 
-    /// Finds the correction of all bodies; gives the slope of the sum along it, if it leads downhill.
-    fn find_direction(&mut self, first_norm: &mut f64) -> Option<f64> {
+    /// Finds the correction of all bodies, if it leads downhill: the slope of the sum along it, and whether bodies at rest were balanced before, to a part
+    /// of their forces.
+    fn find_direction(&mut self, first_norm: &mut f64, most: f64) -> Option<(f64, bool)> {
         let gradient = self.gradient();
         let mut prescribed = vec![0.0; self.length];
         for open in &self.opened {
@@ -342,9 +385,9 @@ impl<const D: usize> Search<'_, '_, D> {
             let range = open.range();
             open.step.right_side(&self.islands[open.island].system, &forces[range.clone()], &mut right[range]);
         }
-        let norm = dot(&right, &right).sqrt();
-        *first_norm = norm.larger(*first_norm);
-        let share = if *first_norm > 0.0 { (norm / *first_norm).larger(1e-9) } else { 1.0 };
+        let (size, balanced) = (norm(&right), self.is_balance(&gradient, &right, most));
+        *first_norm = size.larger(*first_norm);
+        let share = if *first_norm > 0.0 { (size / *first_norm).larger(1e-9) } else { 1.0 };
         let mut step = self.solve(&right, (LEFT * share).larger(LEAST_LEFT))?;
         for _ in 0..MOST_ROUNDS {
             let mut whole: Vec<f64> = step.iter().zip(&prescribed).map(|(s, p)| self.stretch * s + p).collect();
@@ -374,7 +417,7 @@ impl<const D: usize> Search<'_, '_, D> {
             let Some(more) = self.solve(&whole, LEFT) else { break };
             step.iter_mut().zip(&more).for_each(|(s, more)| *s += more);
         }
-        Some(self.slope(&gradient))
+        Some((self.slope(&gradient), balanced))
     }
 
     /// Solves with the matrix of all bodies and what acts between them, by conjugate gradients; none where that leads nowhere.

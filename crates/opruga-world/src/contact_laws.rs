@@ -150,11 +150,7 @@ fn is_barrier(contact: &ContactBlueprint) -> bool {
 }
 
 /// Refuses bodies at rest that touch in a way which statics does not know.
-fn check_rest<const D: usize>(
-    scene: &Blueprint<D>,
-    contact: &ContactBlueprint,
-    own: &dyn Integrator<D>,
-) -> Result<(), BuildError> {
+fn check_rest<const D: usize>(scene: &Blueprint<D>, own: &dyn Integrator<D>) -> Result<(), BuildError> {
     let is_static =
         |body: &BodyBlueprint<D>| body.integrator.as_ref().unwrap_or(&scene.integrator).spec().has_role(Role::Statics);
     let integrator = own.name();
@@ -162,11 +158,10 @@ fn check_rest<const D: usize>(
     if let Some(other) = scene.bodies.iter().find(|body| body.touches() && is_static(body) != own.is_static()) {
         return refuse(Refusal::RestBesideMotion { integrator, other: other.name.clone() });
     }
-    match own.is_static() {
-        true if is_barrier(contact) => refuse(Refusal::RestByBarrier { integrator }),
-        true if !own.takes_pushes() => refuse(Refusal::RestInParts { integrator }),
-        _ => Ok(()),
+    if own.is_static() && !own.takes_pushes() {
+        return refuse(Refusal::RestInParts { integrator });
     }
+    Ok(())
 }
 
 /// Refuses a body that contact cannot step.
@@ -177,7 +172,7 @@ pub(crate) fn check<const D: usize>(
 ) -> Result<(), BuildError> {
     let Some(contact) = &scene.contact else { return Ok(()) };
     if body.touches() {
-        check_rest(scene, contact, integrator)?;
+        check_rest(scene, integrator)?;
     }
     if body.touches() && is_barrier(contact) && !integrator.takes_pushes() {
         return Err(BuildError::of("contact", Refusal::NoBarrier { integrator: integrator.name() }));

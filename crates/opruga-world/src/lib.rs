@@ -69,6 +69,7 @@ mod slots;
 mod snapshot;
 mod stability;
 mod start;
+mod staying;
 mod stepping;
 mod together;
 mod turned;

@@ -147,7 +147,8 @@ impl<const D: usize> Meeting<D> {
         // An obstacle that holds a node lets no contact lift it off within the step. Beside an edge, contacts and held nodes would contradict each
         // other: so what steps implicitly meets faces as those of bodies.
         let mut without_faces = None;
-        if let Some(colliders) = scene.colliders().filter(|_| !at_rest && !pushed.is_empty()) {
+        if let Some(colliders) = scene.colliders().filter(|_| (!at_rest || scene.reach.is_some()) && !pushed.is_empty())
+        {
             without_faces = Some(Arc::new(colliders.without_faces()).into_contacts());
             pushed_bodies.into_iter().for_each(|own| touching.surface.touch_faces(own));
         }

@@ -68,10 +68,6 @@ messages! {
         #[allowed("bodies that all rest, or all move")]
         #[hint("`contact.touch = false` in a body lets it pass through the others")]
         RestBesideMotion { integrator: &'static str, other: String },
-        "contact.implicit" #[error("`{integrator}` finds a state at rest, to which a barrier does not lead")]
-        #[allowed("`response = \"constraint\"`")]
-        #[hint("`contact.touch = false` in a body lets it pass through the others")]
-        RestByBarrier { integrator: &'static str },
         "contact.implicit" #[error("`{integrator}` with `arc_length` or `load_steps` puts loads on in parts, and bodies that touch find their balance under the whole load")]
         #[allowed("bodies that touch without `arc_length` and `load_steps`")]
         #[hint("`contact.touch = false` in a body lets it pass through the others")]

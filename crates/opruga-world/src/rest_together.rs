@@ -9,40 +9,26 @@
 //! lies on others is held by them within every correction. Where forces were given to bodies instead, each of which then finds its own end, errors of the
 //! forces would lead it as far as σ lets them.
 //!
-//! Far from the balance σ M keeps corrections short, where the forces at their end are not those that were foreseen; it falls as these become so
-//! (pseudo-transient continuation), and the balance is one of F and f alone. Friction opposes the slide of each correction.
+//! σ ([`Staying`]) falls as the forces at the end of corrections become those that were foreseen. Friction opposes the slide of each correction.
 //!
-//! Sources: C. T. Kelley, D. E. Keyes, Convergence analysis of pseudo-transient continuation (1998); for the contact within a correction that of
-//! implicit rules (`pushes.rs`).
+//! Source of the contact within a correction: that of implicit rules (`pushes.rs`).
 
 use crate::barrier_search::{Opened, Refused};
 use crate::island::Island;
 use crate::meeting::{Meeting, Pushed, Substep};
 use crate::refusals::Refusal;
+use crate::staying::{BALANCED, Staying, norm};
 use opruga_collide::{Respond, Touching, Trouble};
 use opruga_core::error::StepError;
 use opruga_core::integrator::next_matrix_number;
-use opruga_core::stability::estimate;
 use opruga_core::system::{System, Workspace};
 use opruga_math::Lane;
-use opruga_solve::dot;
-
-/// σ at first, relative to the square of the highest frequency of a body: the slowest vibrations of a body of ten cells are as slow.
-const FIRST: f64 = 1e-2;
 
 /// The part of the forces that act in a correction by which those at its end may differ from what was foreseen, and the one below which σ falls.
 const FORESEEN: f64 = 0.5;
 const WELL_FORESEEN: f64 = 0.1;
 
-/// By how much σ falls, and down to where: with less, the motion of a body as a whole hides its bending from the solution of contact.
-const SOFTER: f64 = 0.1;
-const LEAST: f64 = 1e-6;
-
-/// By how much it grows where a correction goes farther than the one before: contacts that come and go in turn would do so for ever
-/// (`high_stacks_come_to_their_balance` without friction).
-const FIRMER: f64 = 4.0;
-
-/// By how much it grows where a correction was not foreseen, and up to where: then nodes hardly move.
+/// By how much σ grows where a correction was not foreseen, and up to where: then nodes hardly move.
 const HARDER: f64 = 16.0;
 const MOST: f64 = 1e6;
 
@@ -52,11 +38,10 @@ const MOST_CORRECTIONS: usize = 200;
 /// The longest correction, in extents of the body.
 const LONGEST: f64 = 0.5;
 
-/// The last correction at most, relative to the thickness of surfaces, and what is out of balance then, relative to the forces on the body.
+/// The last correction at most, relative to the thickness of surfaces.
 const AT_REST: f64 = 1e-7;
-const BALANCED: f64 = 1e-8;
 
-/// The same where rounding leaves no less in so many corrections.
+/// What is out of balance in the end, relative to the forces on a body, where rounding leaves no less in so many corrections.
 const NEARLY_BALANCED: f64 = 1e-6;
 const MOST_AT_REST: usize = 10;
 
@@ -69,8 +54,7 @@ struct Body<const D: usize> {
     /// Where its points stand among the coordinates of its nodes, from the first point on.
     points: std::ops::Range<usize>,
     coordinates: Vec<usize>,
-    /// The square of its highest frequency [1/s²], and its extent [m].
-    square: f64,
+    /// Its extent [m].
     extent: f64,
     /// What is out of balance, and the size of the forces that balance [N].
     rest: f64,
@@ -88,8 +72,7 @@ struct Search<'a, 'b, const D: usize> {
     touching: &'a mut Touching<D>,
     bodies: Vec<Body<D>>,
     h: f64,
-    /// σ of every body over the square of its highest frequency.
-    part: f64,
+    staying: Staying,
     /// The number of the matrices at hand.
     matrix: u64,
 }
@@ -118,10 +101,10 @@ impl<const D: usize> Body<D> {
 
     /// Takes forces and the matrix where it is, and makes of them the correction with the forces of contact as they are; says whether the matrix has
     /// a factor.
-    fn begin_correction(&mut self, system: &mut System<D>, part: f64) -> Result<bool, StepError> {
+    fn begin_correction(&mut self, system: &mut System<D>, sigma: f64) -> Result<bool, StepError> {
         system.go_on()?;
         let step = &mut self.open.step;
-        step.stay(part * self.square);
+        step.stay(sigma);
         step.evaluate(system, 0.0)?;
         self.constraints_changed |= step.look(system);
         if !step.factor(system, true) {
@@ -192,10 +175,6 @@ impl<const D: usize> Body<D> {
     }
 }
 
-fn norm(of: &[f64]) -> f64 {
-    dot(of, of).sqrt()
-}
-
 impl<const D: usize> Respond<D> for Answers<'_, D> {
     fn matrix(&mut self, _body: usize) -> Option<u64> {
         Some(self.matrix)
@@ -224,19 +203,13 @@ impl<const D: usize> Meeting<D> {
         islands: &mut [&mut Island<D>],
         step: &Substep<'_, D>,
     ) -> Result<(), Trouble> {
-        let squares = squares_of_frequencies(&self.pushed, islands);
+        let staying = Staying::new(&self.pushed, islands);
         let mut workspaces: Vec<Workspace<D>> = self.pushed.iter().map(|_| Workspace::default()).collect();
         exchange(&self.pushed, islands, &mut workspaces);
         self.move_outlines(step.time);
-        let mut search = Search {
-            islands,
-            touching: &mut self.touching,
-            bodies: Vec::new(),
-            h: step.plan.h,
-            part: FIRST,
-            matrix: 0,
-        };
-        let outcome = search.begin(&self.pushed, &squares, step).and_then(|()| search.find_balance());
+        let mut search =
+            Search { islands, touching: &mut self.touching, bodies: Vec::new(), h: step.plan.h, staying, matrix: 0 };
+        let outcome = search.begin(&self.pushed, step).and_then(|()| search.find_balance());
         let outcome = outcome.and_then(|iterations| search.close(iterations));
         let farthest = search.farthest();
         exchange(&self.pushed, islands, &mut workspaces);
@@ -253,12 +226,12 @@ impl<const D: usize> Meeting<D> {
 
 impl<const D: usize> Search<'_, '_, D> {
     /// Begins the steps of all bodies, and takes where their points are.
-    fn begin(&mut self, pushed: &[Pushed<D>], squares: &[f64], step: &Substep<'_, D>) -> Result<(), Refused> {
+    fn begin(&mut self, pushed: &[Pushed<D>], step: &Substep<'_, D>) -> Result<(), Refused> {
         let [x0, v0] = &mut self.touching.before;
         for v in v0.iter_mut() {
             *v = [0.0; D];
         }
-        for (number, (pushed, square)) in pushed.iter().zip(squares).enumerate() {
+        for (number, pushed) in pushed.iter().enumerate() {
             let island = &mut self.islands[pushed.island];
             island.system.pushes = Some(Vec::new());
             island.begin_as_one(step.plan, step.number);
@@ -276,7 +249,6 @@ impl<const D: usize> Search<'_, '_, D> {
                 open: Opened { island: pushed.island, first: 0, step: begun? },
                 points,
                 coordinates: pushed.indices.iter().map(|index| *index as usize * D).collect(),
-                square: *square,
                 extent,
                 rest: f64::INFINITY,
                 size: 0.0,
@@ -308,15 +280,15 @@ impl<const D: usize> Search<'_, '_, D> {
                 Some((displacement, unforeseen)) if unforeseen <= FORESEEN => {
                     self.go();
                     if displacement > moved {
-                        self.part *= FIRMER;
+                        self.staying.firm_up();
                     } else if unforeseen <= WELL_FORESEEN {
-                        self.part = (self.part * SOFTER).larger(LEAST);
+                        self.staying.loosen();
                     }
                     moved = displacement;
                 }
                 _ => {
-                    self.part *= HARDER;
-                    if self.part > MOST {
+                    self.staying.part *= HARDER;
+                    if self.staying.part > MOST {
                         return Err(StepError::of("contact", Refusal::NoAgreementAtRest {}).into());
                     }
                     self.put_pushes_back();
@@ -329,8 +301,8 @@ impl<const D: usize> Search<'_, '_, D> {
     /// Takes forces and matrices where bodies are; says whether the matrices have factors.
     fn begin_correction(&mut self) -> Result<bool, Refused> {
         self.matrix = next_matrix_number();
-        for body in &mut self.bodies {
-            if !body.begin_correction(&mut self.islands[body.open.island].system, self.part)? {
+        for (number, body) in self.bodies.iter_mut().enumerate() {
+            if !body.begin_correction(&mut self.islands[body.open.island].system, self.staying.sigma(number))? {
                 return Ok(false);
             }
         }
@@ -441,16 +413,4 @@ fn exchange<const D: usize>(pushed: &[Pushed<D>], islands: &mut [&mut Island<D>]
     for (pushed, workspace) in pushed.iter().zip(lent) {
         islands[pushed.island].system.exchange(workspace);
     }
-}
-
-/// The square of the highest frequency of every body [1/s²]; that of the others where one has none.
-fn squares_of_frequencies<const D: usize>(pushed: &[Pushed<D>], islands: &[&mut Island<D>]) -> Vec<f64> {
-    let square = |island: &Island<D>| {
-        let omega = estimate(&island.system, &*island.integrator).map_or(0.0, |found| found.spectrum.omega);
-        if omega.is_finite() { omega * omega } else { 0.0 }
-    };
-    let mut squares: Vec<f64> = pushed.iter().map(|pushed| square(islands[pushed.island])).collect();
-    let most = squares.iter().fold(0.0, |most: f64, square| square.larger(most));
-    squares.iter_mut().filter(|square| **square == 0.0).for_each(|square| *square = most);
-    squares
 }

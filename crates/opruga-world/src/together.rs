@@ -131,10 +131,12 @@ impl<const D: usize> Job<'_, D> {
             let step = Substep { plan, number: substep, time, obstacles: contacts.as_deref() };
             for meeting in meetings.iter_mut() {
                 meeting.set_out(islands);
-                let stepped = if meeting.at_rest {
+                let stepped = if meeting.barrier.is_some() {
+                    meeting.step_with_barrier(islands, &step)
+                } else if meeting.at_rest {
                     meeting.come_to_balance(islands, &step)
                 } else {
-                    meeting.step_with_barrier(islands, &step)
+                    Ok(())
                 };
                 stepped.map_err(|trouble| (meeting.in_scene(trouble), time))?;
                 if meeting.is_one() {

@@ -12,6 +12,7 @@ use super::rounding::rounding_of_forces;
 use super::rule::Rule;
 use super::settings::{Otherwise, Settings, Solver};
 use super::stage::{evaluate, judge, look, mixture, potential, rounding_of_models};
+use super::step::MOST_HALVINGS;
 use super::workspace::Workspace;
 use opruga_core::error::StepError;
 use opruga_core::open_step::OpenStep;
@@ -234,6 +235,10 @@ impl<R: Rule<D>, const D: usize> OpenStep<D> for Open<R, D> {
     fn most_iterations(&self) -> (u32, bool) {
         let accepts = self.settings.real_time || self.settings.otherwise == Otherwise::Accept;
         (self.settings.iterations, accepts)
+    }
+    fn most_halvings(&self) -> u32 {
+        let halves = matches!(self.account, Account::Motion(_)) && self.settings.otherwise == Otherwise::Halve;
+        if halves { MOST_HALVINGS } else { 0 }
     }
     fn close(mut self: Box<Self>, system: &mut System<D>, iterations: u32, converged: bool) -> Result<(), StepError> {
         let Open { rule, balance, account, .. } = *self;

@@ -1,7 +1,7 @@
 //! Bodies at rest that touch one another, by `equilibrium`.
 
 use super::BASE;
-use super::pressed::{pressures_at_rest, weight};
+use super::pressed::{BARRIER, patch_at_rest_by_barrier, pressures_at_rest, weight};
 use crate::case::{Case, Check, Over, Scale};
 
 const WEIGHT: Case = Case {
@@ -29,4 +29,17 @@ pub(super) const CASES: &[Case] = &[
         ..BASE
     },
     Case { name: "weight-on-body-statics", measure: |lab, ratio| weight(lab, "equilibrium", "", ratio, 1.0), ..WEIGHT },
+    Case {
+        name: "weight-on-body-barrier-statics",
+        quantity: "force between a solid at rest and one that it stands on, by `equilibrium` with a barrier, over its weight",
+        levels: &[0.01, 1.0, 100.0],
+        measure: |lab, ratio| weight(lab, "equilibrium", "response = \"barrier\"\n", ratio, 1.0),
+        ..WEIGHT
+    },
+    Case {
+        name: "contact-patch-barrier-statics",
+        quantity: "largest difference of the pressure on a node from the one that presses two blocks of meshes that do not match, over it, by `equilibrium` with a barrier",
+        measure: patch_at_rest_by_barrier,
+        ..BARRIER
+    },
 ];

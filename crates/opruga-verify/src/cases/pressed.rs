@@ -20,7 +20,7 @@ const PATCH: Case = Case {
     ..BASE
 };
 
-const BARRIER: Case = Case {
+pub(super) const BARRIER: Case = Case {
     over: Over::Parameter("reach of the barrier [m]"),
     levels: &[2e-5, 1e-5, 5e-6],
     tolerance: 0.01,
@@ -169,6 +169,11 @@ where
 /// The same by statics.
 pub(super) fn pressures_at_rest(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     Ok(patch::<2>(lab, n, Cells::Boxes, None, "equilibrium")?.worst)
+}
+
+/// The same by statics and a barrier of a reach [m].
+pub(super) fn patch_at_rest_by_barrier(lab: &Lab, reach: f64) -> Result<f64, Trouble> {
+    Ok(patch::<2>(lab, 3.0, Cells::Linear, Some(reach), "equilibrium")?.worst)
 }
 
 /// The rule that comes to rest in steps of 0.1 s, since it damps all.

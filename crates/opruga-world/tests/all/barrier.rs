@@ -2,6 +2,7 @@
 
 use crate::contact::{ball, contact, model, scene, wall_and_dot, world};
 use crate::implicit_contact::{force_on, heavy, square_over_a_box};
+use opruga_core::spec::Value;
 use opruga_mesh::Mesh;
 use opruga_world::blueprint::*;
 use opruga_world::{Options, World, WorldError};
@@ -150,6 +151,64 @@ fn bodies_that_buckle_find_an_end() {
         world.frame().unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(world.crossed_surfaces(), [], "at {} s", world.time());
     }
+}
+
+/// Bodies at rest come to their common balance by a barrier: each is carried by its weight, where a constraint would leave it.
+#[test]
+fn stacks_come_to_their_balance() {
+    for (bodies, friction) in [(2, 0.0), (2, 0.5), (3, 0.5)] {
+        let scene = crate::rest_together::high_stack(bodies, friction);
+        let by = |response: &str| {
+            let mut scene = scene.clone();
+            scene.contact = contact::<2>(&[("response", response.into()), ("friction", friction.into())]);
+            let mut world = world(&scene);
+            world.frame().unwrap_or_else(|error| panic!("{response}, {bodies}, {friction}: {error}"));
+            assert_eq!(world.crossed_surfaces(), []);
+            world
+        };
+        let mut still = by("barrier");
+        let weights = [-9.81 * if bodies == 2 { 400.0 } else { 500.0 }, 9.81 * 400.0, 9.81 * 100.0];
+        for (body, wanted) in weights.into_iter().take(bodies).enumerate() {
+            let force = force_on(&mut still, body);
+            let wrong = ((force[1] - wanted).abs() + force[0].abs()) / wanted.abs();
+            assert!(wrong < 1e-6, "{bodies}, {friction}: {body}: {force:?} instead of {wanted}");
+        }
+        // With friction there are many balances.
+        if friction == 0.0 {
+            let change = (still.position(1, 40)[1] - by("constraint").position(1, 40)[1]).abs();
+            assert!(change < 2e-3, "{change}");
+        }
+        // Nothing changes in a second frame.
+        let before = still.position(1, 40);
+        still.frame().expect("the same balance");
+        let change = (still.position(1, 40)[1] - before[1]).abs();
+        assert!(change < 1e-5 && still.energy().closure < 1e-9, "{change} {:?}", still.energy());
+    }
+}
+
+/// A substep whose end is not found is made in halves where the scene asks for that, by all bodies of the cluster.
+#[test]
+fn substeps_without_an_end_are_halved_where_that_is_asked_for() {
+    let fall = |otherwise: &str| {
+        let below = pinned("bottom", block("below", [2.0, 0.5], [9, 3], [-0.5, -0.5], 2.0, 1e4));
+        let above = block("above", [1.0, 1.0], [4, 4], [0.03, 0.05], 1.0, 1e4);
+        let mut scene = heavy("backward_euler", vec![below, BodyBlueprint { velocity: [0.0, -10.0], ..above }], 1);
+        let fields = [("iterations", Value::Integer(8)), ("when_not_converged", otherwise.into())];
+        scene.integrator =
+            opruga_world::Registry::<2>::default().integrator_values("backward_euler", &fields).expect("a rule");
+        scene.contact = contact::<2>(&[("response", "barrier".into())]);
+        let mut world = world(&scene);
+        let outcome = (0..20).try_for_each(|_| world.frame());
+        (world, outcome)
+    };
+    let (world, outcome) = fall("error");
+    assert!(outcome.is_err(), "{:?}", world.energy());
+    let (world, outcome) = fall("halve");
+    outcome.expect("halves have an end");
+    assert_eq!(world.crossed_surfaces(), []);
+    assert!((world.time() - 20.0 / 60.0).abs() < 1e-12, "{}", world.time());
+    assert!(world.energy().closure < 1e-3, "{:?}", world.energy());
+    assert!(world.warnings().iter().any(|warning| warning.code == "step.halved"), "{:?}", world.warnings());
 }
 
 #[test]

@@ -324,16 +324,14 @@ fn what_contact_cannot_do_is_refused() {
         body.pins.push(PinBlueprint { select: Selector::Nodes(vec![0, 1]), axes: [true; 2], motion: Vec::new() });
     }
     assert!(World::new(implicit.clone(), Options::default()).is_ok());
-    // Bodies at rest beside moving ones, by a barrier, and under a load that comes in parts.
+    // Bodies at rest beside moving ones, and under a load that comes in parts.
     let registry = Registry::<2>::default();
     let rule = |name: &str, fields: &[(&str, Value)]| registry.integrator_values(name, fields).expect("a rule");
     let mut mixed = implicit.clone();
     mixed.bodies[1].integrator = Some(rule("verlet", &[]));
-    let mut kept_apart = implicit.clone();
-    kept_apart.contact = contact::<2>(&[("response", "barrier".into())]);
     let in_parts = |field: (&str, Value)| Blueprint { integrator: rule("equilibrium", &[field]), ..implicit.clone() };
     let parts = [in_parts(("load_steps", Value::Integer(2))), in_parts(("arc_length", 0.1.into()))];
-    for scene in [mixed, kept_apart].into_iter().chain(parts) {
+    for scene in [mixed].into_iter().chain(parts) {
         let error = World::new(scene, Options::default()).expect_err("refused");
         assert_eq!(error.code(), "contact.implicit");
         assert!(error.to_string().contains("body `a`") && error.in_full().contains("hint"), "{error}");

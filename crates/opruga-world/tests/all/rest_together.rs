@@ -75,7 +75,7 @@ fn a_pressed_cube_comes_to_rest_where_statics_says() {
 }
 
 /// Bodies of 5e4 Pa, each on the one before, with meshes that do not match.
-fn high_stack(bodies: usize, friction: f64) -> Blueprint<2> {
+pub(crate) fn high_stack(bodies: usize, friction: f64) -> Blueprint<2> {
     let all = [
         ("slab", [3.0, 0.5], [24, 4], [-1.5, -0.5], 200.0),
         ("cube", [1.0, 1.0], [8, 8], [-0.6, 0.01], 400.0),
