@@ -5,6 +5,7 @@ mod exploded;
 
 use crate::document::{FOR_EVER, command_table};
 use crate::exploded::Exploded;
+use crate::said::Said;
 use crate::samples::Sample;
 use crate::setting::Setting;
 use crate::shown::{BodyShown, EnergyShown, Extent, ObstacleShown, Show, Shown};
@@ -32,6 +33,28 @@ pub struct Common {
     pub volume: Option<f64>,
 }
 
+/// The state of an engine, to go back to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    /// The snapshot of its world.
+    pub world: Vec<u8>,
+    /// Side by side, the state on the right, and why that one has stopped.
+    pub right: Option<(Box<State>, Option<Said>)>,
+}
+
+impl State {
+    /// The memory that it takes [bytes].
+    pub fn bytes(&self) -> usize {
+        self.world.len() + self.right.as_ref().map_or(0, |(right, _)| right.bytes())
+    }
+}
+
+impl From<Vec<u8>> for State {
+    fn from(world: Vec<u8>) -> State {
+        State { world, right: None }
+    }
+}
+
 /// A running world.
 pub trait Engine: Send {
     /// Steps through one frame.
@@ -49,9 +72,9 @@ pub trait Engine: Send {
     /// Substeps of a frame.
     fn substeps(&self) -> u32;
     /// The whole state.
-    fn snapshot(&self) -> Vec<u8>;
+    fn snapshot(&self) -> State;
     /// Back to a state of the same past.
-    fn rewind(&mut self, bytes: &[u8]) -> Result<(), WorldError>;
+    fn rewind(&mut self, state: &State) -> Result<(), WorldError>;
     /// What attracted attention.
     fn warnings(&self) -> Vec<Warning>;
     /// Frames up to the end of the scene for the command line.
@@ -209,11 +232,11 @@ impl Engine for Living {
     fn substeps(&self) -> u32 {
         self.world.scene().time().substeps
     }
-    fn snapshot(&self) -> Vec<u8> {
-        self.world.snapshot()
+    fn snapshot(&self) -> State {
+        self.world.snapshot().into()
     }
-    fn rewind(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
-        self.world.rewind(bytes)
+    fn rewind(&mut self, state: &State) -> Result<(), WorldError> {
+        self.world.rewind(&state.world)
     }
     fn warnings(&self) -> Vec<Warning> {
         self.world.warnings().into_iter().chain(self.odd.iter().cloned()).collect()

@@ -1,9 +1,11 @@
 //! States to go back to, within a budget of memory: where they would take more, every second one goes.
 
+use crate::engine::State;
+
 /// Snapshots by frame.
 #[derive(Debug)]
 pub struct Keyframes {
-    kept: Vec<(u64, Vec<u8>)>,
+    kept: Vec<(u64, State)>,
     /// Frames between two of them.
     every: u64,
     bytes: usize,
@@ -25,27 +27,28 @@ impl Keyframes {
     }
 
     /// Keeps a state. The first one is never given up: from it everything can be computed.
-    pub fn keep(&mut self, frame: u64, state: Vec<u8>) {
-        self.bytes += state.len();
+    pub fn keep(&mut self, frame: u64, state: impl Into<State>) {
+        let state = state.into();
+        self.bytes += state.bytes();
         self.kept.push((frame, state));
         while self.bytes > self.budget && self.kept.len() > 2 {
             self.every *= 2;
             let (every, first) = (self.every, self.kept[0].0);
             self.kept.retain(|(frame, _)| *frame == first || frame.is_multiple_of(every));
-            self.bytes = self.kept.iter().map(|(_, state)| state.len()).sum();
+            self.bytes = self.kept.iter().map(|(_, state)| state.bytes()).sum();
         }
     }
 
     /// The last state at or before a frame.
-    pub fn before(&self, frame: u64) -> Option<(u64, &[u8])> {
+    pub fn before(&self, frame: u64) -> Option<(u64, &State)> {
         let place = self.kept.partition_point(|(kept, _)| *kept <= frame);
-        place.checked_sub(1).map(|place| (self.kept[place].0, &*self.kept[place].1))
+        place.checked_sub(1).map(|place| (self.kept[place].0, &self.kept[place].1))
     }
 
     /// Gives up what comes after a frame: that future is another one now.
     pub fn forget_after(&mut self, frame: u64) {
         self.kept.retain(|(kept, _)| *kept <= frame);
-        self.bytes = self.kept.iter().map(|(_, state)| state.len()).sum();
+        self.bytes = self.kept.iter().map(|(_, state)| state.bytes()).sum();
     }
 
     /// What they take [bytes].

@@ -2,7 +2,7 @@
 
 use crate::differences::{Difference, Twins, right_of};
 use crate::document::{Document, read};
-use crate::engine::{self, Common, Engine, Given};
+use crate::engine::{self, Common, Engine, Given, State};
 use crate::exploded::Exploded;
 use crate::said::Said;
 use crate::samples::Sample;
@@ -34,7 +34,7 @@ pub fn build(
     let (scene, twins) = right_of(document, differences, files, &setting.registries)?;
     let right = one(&scene)?;
     let differences = differences.to_vec();
-    Ok(Box::new(Pair { left, right, differences, twins, stopped: None, reasons: Vec::new(), behind: false }))
+    Ok(Box::new(Pair { left, right, differences, twins, stopped: None, behind: false }))
 }
 
 /// Two engines of one scene.
@@ -47,14 +47,9 @@ struct Pair {
     twins: Twins,
     /// Why the right one does not go on.
     stopped: Option<Said>,
-    /// All reasons for which it ever stopped: a snapshot names one by its English text.
-    reasons: Vec<Said>,
     /// Whether the right one has missed a command: only one that is built anew can go on then.
     behind: bool,
 }
-
-/// What the snapshot of a pair begins with.
-const MARK: &[u8; 8] = b"opruga||";
 
 impl Pair {
     /// Does to the right one what the left one has accepted.
@@ -63,7 +58,6 @@ impl Pair {
             && let Err(error) = act(&mut *self.right)
         {
             self.stopped = Some(Said::World(error));
-            self.reasons.extend(self.stopped.clone());
         }
         self.behind |= self.stopped.is_some();
     }
@@ -108,7 +102,6 @@ impl Engine for Pair {
             Err(error) => self.stopped = Some(Said::World(error)),
             Ok(()) => self.stopped = self.right.exploded().map(Said::Exploded),
         }
-        self.reasons.extend(self.stopped.clone());
         Ok(())
     }
     fn begin_what_is_due(&mut self) -> Result<(), WorldError> {
@@ -131,30 +124,15 @@ impl Engine for Pair {
     fn substeps(&self) -> u32 {
         self.left.substeps()
     }
-    fn snapshot(&self) -> Vec<u8> {
-        let (left, right) = (self.left.snapshot(), self.right.snapshot());
-        let reason = self.stopped.as_ref().map_or_else(String::new, Said::to_string);
-        let mut bytes = MARK.to_vec();
-        for part in [&left[..], reason.as_bytes()] {
-            bytes.extend((part.len() as u64).to_le_bytes());
-            bytes.extend(part);
-        }
-        bytes.extend(right);
-        bytes
+    fn snapshot(&self) -> State {
+        let right = (Box::new(self.right.snapshot()), self.stopped.clone());
+        State { right: Some(right), ..self.left.snapshot() }
     }
-    fn rewind(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
-        fn part(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
-            let (length, rest) = bytes.split_first_chunk::<8>()?;
-            rest.split_at_checked(usize::try_from(u64::from_le_bytes(*length)).ok()?)
-        }
-        let parts = bytes.strip_prefix(MARK).and_then(part).and_then(|(left, rest)| {
-            let (reason, right) = part(rest)?;
-            Some((left, std::str::from_utf8(reason).ok()?, right))
-        });
+    fn rewind(&mut self, state: &State) -> Result<(), WorldError> {
         let foreign = || WorldError::snapshot(SnapshotFault::NoPair {});
-        let (left, reason, right) = parts.ok_or_else(foreign)?;
+        let (right, stopped) = state.right.as_ref().ok_or_else(foreign)?;
         let before = self.left.snapshot();
-        self.left.rewind(left)?;
+        self.left.rewind(state)?;
         if self.behind {
             return Ok(());
         }
@@ -162,9 +140,7 @@ impl Engine for Pair {
             self.left.rewind(&before)?;
             return Err(error);
         }
-        let known = self.reasons.iter().find(|said| said.to_string() == reason);
-        let stopped = || known.cloned().unwrap_or_else(|| Said::Because(reason.into()));
-        self.stopped = (!reason.is_empty()).then(stopped);
+        self.stopped.clone_from(stopped);
         Ok(())
     }
     fn warnings(&self) -> Vec<Warning> {

@@ -52,7 +52,7 @@ impl Session {
             if frame == 0 {
                 // Where all begins, the scene inside and the states must agree: else they are of other programs.
                 let hash = session.hash();
-                session.engine.rewind(&state)?;
+                session.engine.rewind(&state.into())?;
                 if session.hash() != hash {
                     return Err(ViewError::OtherProgram {}.into());
                 }

@@ -185,7 +185,7 @@ impl Session {
         self.release();
         let mut engine = self.build(&document)?;
         let shared = frame.min(common).min(self.engine.frames().max(self.latest));
-        let state = self.keyframes.before(shared).map(|(_, state)| state.to_vec());
+        let state = self.keyframes.before(shared).map(|(_, state)| state.clone());
         // Where the start itself was changed there is no common past, and the way goes from the start.
         let common = shared > 0 && state.is_some_and(|state| engine.rewind(&state).is_ok());
         (self.document, self.engine, self.own_commands) = (document, engine, own_commands);
