@@ -27,6 +27,7 @@ pub const MESSAGES: &[&[opruga_math::message::Variant]] = &[
     fem::Simplices::VARIANTS,
     fem::Refusal::VARIANTS,
     boundary_element::Refusal::VARIANTS,
+    boundary_element::NoSolution::VARIANTS,
     boundary_element::TurnedFacets::VARIANTS,
     shape_matching::Refusal::VARIANTS,
     shape_matching::MatchingWarning::VARIANTS,

@@ -29,8 +29,12 @@ limit-memory-TooMany = granica ima { $nodes } vrhova, čije guste matrice pri na
 model-not_on_the_page-Page = stranica ne računa rubne elemente
     .hint = studio i naredbeni redak računaju ih
 run-broken_off-Ended = priprema je prekinuta
-model-singular-Singular = jednadžbe granice nemaju rješenja: „{ $reason }”
+model-singular-Singular = jednadžbe granice nemaju rješenja: { $reason }
     .hint = strane ujednačenije veličine
+part-no_solution-Singular = G je singularna
+part-no_solution-NotFinite = krutost nije konačna
+part-no_solution-NegativeOfMany = krutost ima negativnih svojstvenih vrijednosti, a vrhova je više od 1000
+part-no_solution-ManyNegative = više od dvadesetine krutosti ima negativne svojstvene vrijednosti
 mesh-turned-Turned = strane su okrenute tako da je tijelo iza svake: one granice unutar druge omeđuju šupljinu
 
 ## Shape matching

@@ -10,7 +10,7 @@
 use super::integrals::{Integrator, Sums};
 use super::kernels::{Block, Kelvin};
 use super::progress::{Part, Progress};
-use super::refusals::Refusal;
+use super::refusals::{NoSolution, Refusal};
 use super::stresses;
 use super::surface::{Source, Surface};
 use opruga_core::break_off::BreakOff;
@@ -193,7 +193,7 @@ impl Stiffness {
         progress.part(Part::Integrals)?;
         let System { rows, g, mut h } = System::assemble(surface, kelvin, exterior, &mut progress)?;
         progress.part(Part::Factors)?;
-        let factors = DenseFactors::new(rows, g).map_err(|_| Refusal::Singular { reason: "G is singular".into() })?;
+        let factors = DenseFactors::new(rows, g).map_err(|_| Refusal::Singular { reason: NoSolution::Singular })?;
         // The medium around a boundary has no rigid motion.
         let motions = if exterior { Vec::new() } else { rigid_motions(&surface.points) };
         let mut changes = Changes::default();
@@ -215,7 +215,7 @@ impl Stiffness {
         drop(factors);
         progress.part(Part::Symmetry)?;
         if h.iter().any(|x| !x.is_finite()) {
-            return Err(Refusal::Singular { reason: "G is singular".into() });
+            return Err(Refusal::Singular { reason: NoSolution::Singular });
         }
         let stresses = stresses::rows(surface, kelvin, asked, rows, &h);
         let mut k = forces_of_tractions(surface, rows, &h);
@@ -310,13 +310,13 @@ fn make_positive(
     if is_positive(size, motions, k) {
         return Ok(());
     }
-    let refused = |reason: &str| Refusal::Singular { reason: reason.into() };
+    let refused = |reason| Refusal::Singular { reason };
     if vertices > MOST_CLAMPED {
-        return Err(refused("the stiffness has negative eigenvalues, and more than 1000 vertices"));
+        return Err(refused(NoSolution::NegativeOfMany));
     }
-    changes.negative = clamp(size, k).map_err(|_| refused("the stiffness is not finite"))?;
+    changes.negative = clamp(size, k).map_err(|_| refused(NoSolution::NotFinite))?;
     if changes.negative > MOST_NEGATIVE {
-        return Err(refused("more than a twentieth of the stiffness has negative eigenvalues"));
+        return Err(refused(NoSolution::ManyNegative));
     }
     // Rounding of eigenvectors is no rigid motion.
     for _ in 0..2 {

@@ -38,7 +38,7 @@ mod surface;
 
 #[cfg(not(target_arch = "wasm32"))]
 pub use body::BoundaryElement;
-pub use refusals::{Refusal, TurnedFacets};
+pub use refusals::{NoSolution, Refusal, TurnedFacets};
 pub use spec::SPEC;
 
 use opruga_core::error::BuildError;

@@ -2,9 +2,19 @@
 
 use super::SPEC;
 use opruga_core::error::BuildError;
-use opruga_math::messages;
 use opruga_math::words::number;
+use opruga_math::{messages, terms};
 use opruga_mesh::MeshError;
+
+terms! {
+    /// Why the equations of a boundary have no solution.
+    pub enum NoSolution = "part.no_solution" {
+        Singular = "G is singular",
+        NotFinite = "the stiffness is not finite",
+        NegativeOfMany = "the stiffness has negative eigenvalues, and more than 1000 vertices",
+        ManyNegative = "more than a twentieth of the stiffness has negative eigenvalues",
+    }
+}
 
 messages! {
     /// Why `boundary_element` refuses a body or its parameters.
@@ -77,7 +87,7 @@ messages! {
         "model.singular"
         #[error("the equations of the boundary have no solution: {reason}")]
         #[hint("facets of more even size")]
-        Singular { reason: String },
+        Singular { reason: NoSolution },
     }
 }
 
