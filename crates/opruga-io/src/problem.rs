@@ -19,8 +19,8 @@ opruga_math::messages! {
     pub enum Around {
         "part.label" #[error("{count} times")]
         Times { count: usize },
-        "part.label" #[error("{text}, at byte {byte}")]
-        AtByte { text: String, byte: usize },
+        "part.label" #[error(", at byte {byte}")]
+        AtByte { byte: usize },
         "part.label" #[error("at t = {} s: {about}", number(*time))]
         #[allowed("{}", about.allowed().unwrap_or_default())] #[hint("{}", about.hint().unwrap_or_default())]
         AtTime { time: f64, about: AnyMessage },
@@ -193,7 +193,8 @@ impl SceneError {
     /// What is wrong, in the language of a translation, in English without one.
     pub fn sentence(&self, translation: Option<&Translation>) -> String {
         let text = self.sentence_alone(translation);
-        self.byte.map_or(text.clone(), |byte| in_words(translation, &Around::AtByte { text, byte }))
+        let suffix = self.byte.map_or_else(String::new, |byte| in_words(translation, &Around::AtByte { byte }));
+        text + &suffix
     }
     /// The same as [`fmt::Display`] writes it, in the language of a translation.
     pub fn text(&self, translation: Option<&Translation>) -> String {

@@ -11,7 +11,7 @@ part-label-Times = { $count } { $count ->
     }
 part-label-Nearest = misliš li `{ $word }`?
 part-label-NotStrict = bez --strict ovo je upozorenje
-part-label-AtByte = { $text }, u bajtu { $byte }
+part-label-AtByte = , u bajtu { $byte }
 part-label-AtTime = u t = { $time } s: { $about }
     .allowed = { ALLOWED($about) }
     .hint = { HINT($about) }

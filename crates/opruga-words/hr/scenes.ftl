@@ -320,11 +320,23 @@ scene-duplicate_name-TwoProbes = dvije sonde zovu se `{ $name }`{ $line ->
         [none] {""}
        *[other] , prva u retku { $line }
     }
-scene-duplicate_name-AlikeBodies = imena dvaju tijela izgledaju jednako i razlikuju se samo normalizacijom Unicodea, ovdje { $here }, ondje { $there }: `{ $name }`{ $line ->
+scene-duplicate_name-AlikeBodies = imena dvaju tijela izgledaju jednako i razlikuju se samo normalizacijom Unicodea, ovdje { $here ->
+        [none] ništa
+       *[other] { $here }
+    }, ondje { $there ->
+        [none] ništa
+       *[other] { $there }
+    }: `{ $name }`{ $line ->
         [none] {""}
        *[other] , prvo u retku { $line }
     }
-scene-duplicate_name-AlikeProbes = imena dviju sonda izgledaju jednako i razlikuju se samo normalizacijom Unicodea, ovdje { $here }, ondje { $there }: `{ $name }`{ $line ->
+scene-duplicate_name-AlikeProbes = imena dviju sonda izgledaju jednako i razlikuju se samo normalizacijom Unicodea, ovdje { $here ->
+        [none] ništa
+       *[other] { $here }
+    }, ondje { $there ->
+        [none] ništa
+       *[other] { $there }
+    }: `{ $name }`{ $line ->
         [none] {""}
        *[other] , prva u retku { $line }
     }

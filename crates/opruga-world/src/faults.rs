@@ -11,6 +11,11 @@ fn first_in(line: &Option<usize>) -> String {
     line.map_or_else(String::new, |line| format!(", first in line {line}"))
 }
 
+/// The characters that another name does not share.
+fn points(points: &Option<String>) -> &str {
+    points.as_deref().unwrap_or("nothing")
+}
+
 messages! {
     /// What is wrong with a name.
     #[derive(Clone, Debug, PartialEq)]
@@ -26,13 +31,13 @@ messages! {
         "scene.duplicate_name" #[error("two probes are called `{name}`{}", first_in(line))] #[value("{name}")]
         TwoProbes { name: String, line: Option<usize> },
         "scene.duplicate_name"
-        #[error("the names of two bodies print alike and differ by Unicode normalisation alone, {here} here and {there} there: `{name}`{}", first_in(line))]
+        #[error("the names of two bodies print alike and differ by Unicode normalisation alone, {} here and {} there: `{name}`{}", points(here), points(there), first_in(line))]
         #[value("{name}")]
-        AlikeBodies { name: String, here: String, there: String, line: Option<usize> },
+        AlikeBodies { name: String, here: Option<String>, there: Option<String>, line: Option<usize> },
         "scene.duplicate_name"
-        #[error("the names of two probes print alike and differ by Unicode normalisation alone, {here} here and {there} there: `{name}`{}", first_in(line))]
+        #[error("the names of two probes print alike and differ by Unicode normalisation alone, {} here and {} there: `{name}`{}", points(here), points(there), first_in(line))]
         #[value("{name}")]
-        AlikeProbes { name: String, here: String, there: String, line: Option<usize> },
+        AlikeProbes { name: String, here: Option<String>, there: Option<String>, line: Option<usize> },
     }
 
     /// What is wrong with the numbers of a blueprint, or with what its parts name.

@@ -45,17 +45,14 @@ impl<P> Names<P> {
     }
 }
 
-/// The characters of a name from the first to the last that another one does not share, as code points.
-fn code_points(name: &str, other: &str) -> String {
+/// The characters of a name from the first to the last that another one does not share, as code points, if there are any.
+fn code_points(name: &str, other: &str) -> Option<String> {
     let (own, others): (Vec<char>, Vec<char>) = (name.chars().collect(), other.chars().collect());
     let before = own.iter().zip(&others).take_while(|(a, b)| a == b).count();
     let left = own.len().min(others.len()) - before;
     let behind = own.iter().rev().zip(others.iter().rev()).take(left).take_while(|(a, b)| a == b).count();
     let points: Vec<String> = own[before..own.len() - behind].iter().map(|c| format!("U+{:04X}", *c as u32)).collect();
-    match points.is_empty() {
-        true => "nothing".into(),
-        false => points.join(" "),
-    }
+    (!points.is_empty()).then(|| points.join(" "))
 }
 
 #[cfg(test)]
