@@ -1,16 +1,17 @@
 //! Checkpoints of a run: what is in them, when they are written, and which older one stands in for a damaged one.
 
-use crate::errors::CallError;
+use crate::errors::{CallError, CallWarning, ResumeHint};
 use crate::failure::Failure;
 use crate::source::{Source, argument};
 use opruga::io::checkpoint::{Checkpoint, CheckpointError};
 use opruga::io::output_folder::OutputFolder;
+use opruga::io::problem::Around;
 use opruga::io::safe_write::WriteError;
 use opruga::io::scene;
-use opruga::io::tables::{NumberTable, WarningSummary};
+use opruga::io::tables::NumberTable;
 use opruga::io::{Files, SceneError};
-use opruga::math::words::number;
-use opruga::{AnyWorld, Registries};
+use opruga::math::message::AnyMessage;
+use opruga::{AnyWorld, Registries, Warning};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -120,24 +121,17 @@ pub(crate) fn open(path: &Path, registries: &Registries) -> Result<(SavedRun, So
         Ok(whole) => return Ok(whole),
         Err(error) => SceneError { file: path.display().to_string(), ..*error },
     };
-    let hint = if path.is_dir() {
-        let inside = path.join(NAME);
-        inside.is_file().then(|| format!("did you mean {}?", inside.display()))
+    let (inside, older) = (path.join(NAME), previous(path));
+    let error = if inside.is_file() {
+        error.advice(Around::Nearest { word: inside.display().to_string() })
+    } else if let Ok((run, _)) = read(&older, registries) {
+        error.advice(ResumeHint::CheckpointBefore { time: run.time, file: argument(&older.display().to_string()) })
+    } else if error.code == "read.failed" {
+        error.advice(ResumeHint::InOutput {})
     } else {
-        let older = previous(path);
-        read(&older, registries).ok().map(|(run, _)| {
-            format!(
-                "the checkpoint before it is whole, at t = {} s: --resume {}",
-                number(run.time),
-                argument(&older.display().to_string())
-            )
-        })
+        error.advice(ResumeHint::NoneBeside {})
     };
-    let otherwise = match error.code {
-        "read.failed" => "a run leaves it in the folder of its output, such as out/ball/checkpoint",
-        _ => "try an older checkpoint; there is none beside this one",
-    };
-    Err(Failure::Run(Box::new(error.hint(hint.unwrap_or_else(|| otherwise.into())))))
+    Err(Failure::Run(Box::new(error)))
 }
 
 fn previous(path: &Path) -> PathBuf {
@@ -181,7 +175,7 @@ pub(crate) struct Keeper<'a> {
     /// Whether this run has written a checkpoint.
     begun: bool,
     /// Checkpoints on the way that could not be written, and why the last one could not.
-    failed: Option<(u64, String)>,
+    failed: Option<(u64, AnyMessage)>,
 }
 
 impl<'a> Keeper<'a> {
@@ -221,7 +215,7 @@ impl<'a> Keeper<'a> {
 
     /// Writes the table so far and a checkpoint if it is time to. A failure on the way is told, counted, and no end of the
     /// run: the next one may succeed.
-    pub(crate) fn on_the_way(&mut self, world: &dyn AnyWorld, table: &NumberTable) -> Option<String> {
+    pub(crate) fn on_the_way(&mut self, world: &dyn AnyWorld, table: &NumberTable) -> Option<Warning> {
         let start = self.next.filter(|next| Instant::now() >= *next).map(|_| Instant::now())?;
         let written = self.write(world, table);
         let took = start.elapsed();
@@ -229,8 +223,9 @@ impl<'a> Keeper<'a> {
         self.next = self.every.map(|every| Instant::now() + every.max(took));
         let error = written.err()?;
         let count = self.failed.as_ref().map_or(0, |f| f.0) + 1;
-        self.failed = Some((count, format!("a checkpoint on the way could not be written: {}", error.about)));
-        Some(error.to_string())
+        self.failed = Some((count, error.about.clone()));
+        let path = error.path.display().to_string();
+        Some(Warning::new(CallWarning::NoCheckpoint { time: world.time(), path, cause: error.about }, 1))
     }
 
     /// Writes the table so far and a checkpoint; the checkpoint before it is kept under its second name. Returns the names of
@@ -271,8 +266,8 @@ impl<'a> Keeper<'a> {
     }
 
     /// What went wrong on the way, for the summary.
-    pub(crate) fn warning(&self) -> Option<WarningSummary> {
-        let (count, message) = self.failed.clone()?;
-        Some(WarningSummary { code: "checkpoint.failed".into(), message, count })
+    pub(crate) fn warning(&self) -> Option<Warning> {
+        let (count, cause) = self.failed.clone()?;
+        Some(Warning::new(CallWarning::CheckpointFailed { cause }, count))
     }
 }

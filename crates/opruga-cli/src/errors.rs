@@ -1,6 +1,7 @@
 //! What the command line refuses beside what the library refuses.
 
-use opruga::math::words::number;
+use opruga::math::message::AnyMessage;
+use opruga::math::words::{counted, number};
 
 opruga::math::messages! {
     /// Why a call is refused.
@@ -130,6 +131,8 @@ opruga::math::messages! {
     pub(crate) enum OutputError {
         "write.failed" #[error("stdout cannot be written: {reason}")]
         Stdout { reason: String },
+        "interrupted" #[error("interrupted; the files are closed")]
+        Interrupted {},
     }
     /// How two surfaces cross.
     #[derive(Clone, Debug, PartialEq)]
@@ -148,5 +151,50 @@ opruga::math::messages! {
         Crossed { time: f64, crossing: Crossing },
         "contact.crossed" #[error("at t = {} s {crossing}; {pairs} pairs of bodies in all", number(*time))]
         CrossedByPairs { time: f64, crossing: Crossing, pairs: usize },
+    }
+}
+
+opruga::math::messages! {
+    /// What is odd about a call, its machine or what it reads, and no error.
+    #[derive(Clone, Debug, PartialEq)]
+    pub(crate) enum CallWarning {
+        "threads.above_cores" #[error("{threads} threads on {}: more are no faster", counted(*cores as u64, "core", "cores"))]
+        AboveCores { threads: usize, cores: usize },
+        "simd.other" #[error("OPRUGA_SIMD=scalar: the kernels run with {used}, which every processor of this kind has")]
+        NeverScalar { used: &'static str },
+        "simd.other" #[error("OPRUGA_SIMD={asked}: this processor lacks them; the kernels run with {used}")]
+        InstructionsLacking { asked: String, used: &'static str },
+        "diagnostics.thinned"
+        #[error("diagnostics.csv would have about {megabytes} MB, and {most} MB are written unasked: one frame of {apart} has a row; --diagnostics-every 1 writes all")]
+        Thinned { megabytes: u64, most: u64, apart: u64 },
+        "checkpoint.failed" #[error("a checkpoint on the way could not be written: {cause}")]
+        CheckpointFailed { cause: AnyMessage },
+        "checkpoint.failed" #[error("no checkpoint at t = {} s: {path}: {cause}", number(*time))]
+        NoCheckpoint { time: f64, path: String, cause: AnyMessage },
+        "recording.open"
+        #[error("the recording has no end: its run was killed or still runs; {} up to t = {} s {} whole, {} behind {} no whole frame",
+            counted(*frames, "frame", "frames"), number(*until), if *frames == 1 { "is" } else { "are" },
+            counted(*lost, "byte", "bytes"), if *lost == 1 { "it is" } else { "them are" })]
+        NoEnd { frames: u64, until: f64, lost: u64 },
+        "recording.program" #[error("{program} wrote the recording; this is {now}")]
+        OtherProgram { program: String, now: &'static str },
+        "scene.changed" #[error("{file} has changed since; the recording goes by its own copy")]
+        SceneChanged { file: String },
+    }
+    /// What helps where a recording or a checkpoint cannot be used.
+    #[derive(Clone, Debug, PartialEq)]
+    pub(crate) enum ResumeHint {
+        "part.resume_hint" #[error("the frames before are whole: --to {} shows them", number(*time))]
+        FramesBefore { time: f64 },
+        "part.resume_hint" #[error("no whole frame lies before")]
+        NoFrameBefore {},
+        "part.resume_hint" #[error("the run was killed before its first frame was written")]
+        KilledAtStart {},
+        "part.resume_hint" #[error("the checkpoint before it is whole, at t = {} s: --resume {file}", number(*time))]
+        CheckpointBefore { time: f64, file: String },
+        "part.resume_hint" #[error("a run leaves it in the folder of its output, such as out/ball/checkpoint")]
+        InOutput {},
+        "part.resume_hint" #[error("try an older checkpoint; there is none beside this one")]
+        NoneBeside {},
     }
 }

@@ -107,7 +107,7 @@ impl Failure {
             Failure::Output(error) => of(error),
             Failure::Check(fault) => of(fault),
             Failure::Call(fault) => plain("call", fault.to_string(), fault.hint()),
-            Failure::Interrupted => plain("interrupted", "interrupted; the files are closed".into(), None),
+            Failure::Interrupted => of(&OutputError::Interrupted {}),
             Failure::ClosedPipe => Value::Null,
         }
     }
@@ -138,7 +138,7 @@ impl Failure {
                 let hint = own.map_or_else(|| fault.hint(), |own| own.hint(&**fault));
                 hint.map_or(Ok(()), |hint| writeln!(err, "  = {}: {hint}", in_words(own, &Label::Hint)))
             }
-            Failure::Interrupted => writeln!(err, "interrupted; the files are closed"),
+            Failure::Interrupted => writeln!(err, "{}", in_words(translation(), &OutputError::Interrupted {})),
             Failure::ClosedPipe => Ok(()),
         };
     }

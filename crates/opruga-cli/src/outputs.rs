@@ -29,7 +29,7 @@ pub(crate) struct Outputs<'a> {
     /// The time of the checkpoint that the run went on from [s].
     pub(crate) resumed_at: Option<f64>,
     /// What was odd in the call and in the scene, and went wrong on the way; all of it was told when it was found.
-    pub(crate) told: Vec<WarningSummary>,
+    pub(crate) told: Vec<Warning>,
     pub(crate) stop: &'a AtomicBool,
     /// Whether `final.csv` tells the stress at every node too.
     pub(crate) stress: bool,
@@ -222,12 +222,7 @@ impl Outputs<'_> {
 
     /// What was odd: in the call, in the scene, on the way, in the world.
     fn all_warnings(&self, world: &dyn AnyWorld) -> Vec<WarningSummary> {
-        let of_world = world.warnings_at_the_end().into_iter().map(|w| WarningSummary {
-            code: w.code,
-            message: w.message,
-            count: w.count,
-        });
-        self.told.iter().cloned().chain(of_world).collect()
+        self.told.iter().chain(&world.warnings_at_the_end()).map(WarningSummary::from).collect()
     }
 
     /// A few lines for people; warnings that were told early are not told again.

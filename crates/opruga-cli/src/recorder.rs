@@ -1,13 +1,13 @@
 //! What is kept of a run while it runs: rows of tables, and moments for pictures.
 
-use crate::errors::CallFault;
+use crate::errors::{CallFault, CallWarning};
 use crate::failure::Failure;
 use opruga::blueprint::Recorded;
 use opruga::core::spec::Role;
-use opruga::io::tables::{NumberTable, WarningSummary};
+use opruga::io::tables::NumberTable;
 use opruga::math::words::{counted, rounded};
 use opruga::pictures::{Moment, Scenery};
-use opruga::{AnyBody, AnyWorld, draw};
+use opruga::{AnyBody, AnyWorld, Warning, draw};
 use std::borrow::Cow;
 use std::time::{Duration, Instant};
 
@@ -250,15 +250,9 @@ impl Recorder {
     }
 
     /// That frames will have no row, and nobody has asked for that.
-    pub(crate) fn thinned(&self) -> Option<WarningSummary> {
-        let bytes = self.rows.too_many?;
-        let message = format!(
-            "diagnostics.csv would have about {} MB, and {} MB are written unasked: one frame of {} has a row; --diagnostics-every 1 writes all",
-            bytes / 1_000_000,
-            MOST_TABLE_BYTES / 1_000_000,
-            self.rows.apart
-        );
-        Some(WarningSummary { code: "diagnostics.thinned".into(), message, count: self.rows.left_out })
+    pub(crate) fn thinned(&self) -> Option<Warning> {
+        let [megabytes, most] = [self.rows.too_many?, MOST_TABLE_BYTES].map(|bytes| bytes / 1_000_000);
+        Some(Warning::new(CallWarning::Thinned { megabytes, most, apart: self.rows.apart }, self.rows.left_out))
     }
 }
 

@@ -1,11 +1,11 @@
 //! `opruga replay`: a recorded run seen again, exported, or computed again and compared.
 
 use crate::arguments::Replay;
-use crate::errors::{CallFault, CallRange};
+use crate::errors::{CallFault, CallRange, CallWarning, ResumeHint};
 use crate::exports::{self, Tracks};
 use crate::failure::{Failure, print_data};
 use crate::interrupt;
-use crate::outputs::Outputs;
+use crate::outputs::{Outputs, tell};
 use crate::recorder::Recorder;
 use crate::recordings;
 use crate::run::{default_folder, simd_from_environment};
@@ -21,7 +21,7 @@ use opruga::io::tables::WarningSummary;
 use opruga::io::{SceneError, scene};
 use opruga::math::words::{counted, number};
 use opruga::recordings::{Playback, TapeError};
-use opruga::{AnyWorld, Options, Registries};
+use opruga::{AnyWorld, Options, Registries, Warning};
 use serde_json::{Value, json};
 use std::fs::File;
 use std::path::PathBuf;
@@ -47,7 +47,7 @@ pub(crate) fn replay(call: &Replay, registries: &Registries) -> Result<u8, Failu
     let frames = wanted_frames(call, &recording)?;
     let told = oddities(&recording);
     if !call.json {
-        told.iter().for_each(|warning| eprintln!("warning[{}]: {}", warning.code, warning.message));
+        told.iter().for_each(tell);
     }
     let header = recording.header();
     let reading = scene::Options {
@@ -88,18 +88,15 @@ fn wanted_frames(call: &Replay, recording: &Recording<File>) -> Result<RangeIncl
         let before = last.filter(|last| call.to.is_none_or(|to| (to / length + 1e-9).floor() > *last as f64));
         if before.is_some() || last.is_none() {
             let hint = match last {
-                Some(last) => format!("the frames before are whole: --to {} shows them", number(time(last))),
-                None => "no whole frame lies before".into(),
+                Some(last) => ResumeHint::FramesBefore { time: time(last) },
+                None => ResumeHint::NoFrameBefore {},
             };
-            return Err(refused(call, SceneError::from(error).hint(hint)));
+            return Err(refused(call, SceneError::from(error).advice(hint)));
         }
     }
     let Some(last) = last else {
         let error = RecordingError::no_frame(0, &frames);
-        return Err(refused(
-            call,
-            SceneError::from(&error).hint("the run was killed before its first frame was written"),
-        ));
+        return Err(refused(call, SceneError::from(&error).advice(ResumeHint::KilledAtStart {})));
     };
     let from = call.from.map_or(frames.start, |from| (from / length - 1e-9).ceil() as u64).max(frames.start);
     let to = call.to.map_or(last, |to| (to / length + 1e-9).floor() as u64).min(last);
@@ -112,34 +109,26 @@ fn wanted_frames(call: &Replay, recording: &Recording<File>) -> Result<RangeIncl
 }
 
 /// What is odd about a recording, and no error.
-fn oddities(recording: &Recording<File>) -> Vec<WarningSummary> {
-    let mut out = Vec::new();
-    let mut tell = |code: &str, message: String| out.push(WarningSummary { code: code.into(), message, count: 1 });
+fn oddities(recording: &Recording<File>) -> Vec<Warning> {
     let header = recording.header();
-    if let Ending::Open { lost } = recording.ending() {
-        let frames = recording.frames();
-        let until = frames.end.saturating_sub(1) as f64 * header.frame;
-        tell(
-            "recording.open",
-            format!(
-                "the recording has no end: its run was killed or still runs; {} up to t = {} s {} whole, {} behind {} no whole frame",
-                counted(frames.end - frames.start, "frame", "frames"),
-                number(until),
-                if frames.end - frames.start == 1 { "is" } else { "are" },
-                counted(*lost, "byte", "bytes"),
-                if *lost == 1 { "it is" } else { "them are" },
-            ),
-        );
-    }
+    let open = match recording.ending() {
+        Ending::Open { lost } => {
+            let frames = recording.frames();
+            let until = frames.end.saturating_sub(1) as f64 * header.frame;
+            Some(CallWarning::NoEnd { frames: frames.end - frames.start, until, lost: *lost })
+        }
+        _ => None,
+    };
     let now = recordings::PROGRAM;
-    if header.program != now {
-        tell("recording.program", format!("{} wrote the recording; this is {now}", header.program));
-    }
-    if std::fs::read(&header.file).is_ok_and(|bytes| bytes != header.scene) {
-        let message = format!("{} has changed since; the recording goes by its own copy", header.file);
-        tell("scene.changed", message);
-    }
-    out
+    let program = (header.program != now).then(|| CallWarning::OtherProgram { program: header.program.clone(), now });
+    let changed = std::fs::read(&header.file).is_ok_and(|bytes| bytes != header.scene);
+    let changed = changed.then(|| CallWarning::SceneChanged { file: header.file.clone() });
+    [open, program, changed].into_iter().flatten().map(|about| Warning::new(about, 1)).collect()
+}
+
+/// Warnings as rows of a summary.
+fn summaries<'w>(warnings: impl IntoIterator<Item = &'w Warning>) -> Vec<WarningSummary> {
+    warnings.into_iter().map(WarningSummary::from).collect()
 }
 
 struct Job<'a> {
@@ -150,7 +139,7 @@ struct Job<'a> {
     /// The length of a frame [s].
     length: f64,
     frames: RangeInclusive<u64>,
-    told: Vec<WarningSummary>,
+    told: Vec<Warning>,
 }
 
 impl Job<'_> {
@@ -253,7 +242,7 @@ impl Job<'_> {
             }
             return Ok(
                 json!({"schema": 1, "scene": self.source.name, "frames": span, "compared": compared, "states": states, "pass": true,
-                       "state_hash": same, "warnings": self.told}),
+                       "state_hash": same, "warnings": summaries(&self.told)}),
             );
         };
         let time = time(frame);
@@ -267,7 +256,7 @@ impl Job<'_> {
         Ok(
             json!({"schema": 1, "scene": self.source.name, "frames": span, "compared": compared, "states": states, "pass": false,
                    "differs_at": {"frame": frame, "time": time, "recorded": hash(recorded), "computed": hash(computed)},
-                   "warnings": self.told}),
+                   "warnings": summaries(&self.told)}),
         )
     }
 
@@ -340,7 +329,7 @@ impl Job<'_> {
         recorder.finish(world);
         let thinned = recorder.thinned();
         if !call.json {
-            thinned.iter().for_each(|thinned| eprintln!("warning[{}]: {}", thinned.code, thinned.message));
+            thinned.iter().for_each(tell);
         }
         folder.write("diagnostics.csv", false, |out| recorder.table.write(out))?;
         let outputs = Outputs {
@@ -358,7 +347,7 @@ impl Job<'_> {
         }
         if call.json {
             let (from, to) = (self.time(first), self.time(last));
-            let warnings: Vec<&WarningSummary> = self.told.iter().chain(&thinned).collect();
+            let warnings = summaries(self.told.iter().chain(&thinned));
             let mut row = json!({"schema": 1, "scene": self.source.name, "warnings": warnings, "files": files,
                              "frames": {"first": first, "last": last, "from": from, "to": to},
                              "state_hash": format!("{:016x}", world.state_hash())});

@@ -2,7 +2,7 @@
 
 use crate::arguments::Run;
 use crate::checkpoints::{self, Calling, Keeper, SavedRun};
-use crate::errors::{CallFault, CallRange, CheckFault, Crossing};
+use crate::errors::{CallFault, CallRange, CallWarning, CheckFault, Crossing};
 use crate::failure::{Failure, print_data};
 use crate::forecast::{Forecast, duration};
 use crate::interrupt;
@@ -15,12 +15,12 @@ use crate::uses;
 use opruga::blueprint::AnyBlueprint;
 use opruga::io::output_folder::{Existing, OutputFolder};
 use opruga::io::outputs_apart::Use;
+use opruga::io::problem::warning_text;
 use opruga::io::safe_write::WriteError;
 use opruga::io::scene;
-use opruga::io::tables::WarningSummary;
 use opruga::math::words::{counted, number, rounded};
 use opruga::recordings::TapeHint;
-use opruga::{AnyWorld, Options, Registries, Simd};
+use opruga::{AnyWorld, Options, Registries, Simd, Warning};
 use std::collections::BTreeMap;
 use std::io::IsTerminal as _;
 use std::path::PathBuf;
@@ -71,28 +71,16 @@ pub(crate) fn run(call: &Run, registries: &Registries) -> Result<u8, Failure> {
     let world = Options { threads: call.threads.into(), simd, allow_unstable, most_bytes, ..Options::default() };
     let Whole { blueprint, notices, files } = source.read(&reading, &world)?;
     outputs_apart(call, &source, &reading, &files.keys().collect::<Vec<_>>())?;
-    let mut told: Vec<WarningSummary> = notices
-        .iter()
-        .map(|n| WarningSummary { code: n.about.code.into(), message: n.about.sentence(None), count: n.count as u64 })
-        .collect();
     if !call.json {
         notices.iter().for_each(|notice| eprintln!("{}", notice.text(translation())));
     }
-    if let Some(other) = other_simd() {
-        if !call.json {
-            eprintln!("warning[{}]: {}", other.code, other.message);
-        }
-        told.push(other);
-    }
     let cores = std::thread::available_parallelism().map_or(usize::MAX, usize::from);
-    if world.threads > cores {
-        let message =
-            format!("{} threads on {}: more are no faster", world.threads, counted(cores as u64, "core", "cores"));
-        if !call.json {
-            eprintln!("warning[threads.above_cores]: {message}");
-        }
-        told.push(WarningSummary { code: "threads.above_cores".into(), message, count: 1 });
+    let above = (world.threads > cores).then_some(CallWarning::AboveCores { threads: world.threads, cores });
+    let of_call: Vec<Warning> = other_simd().into_iter().chain(above).map(|about| Warning::new(about, 1)).collect();
+    if !call.json {
+        of_call.iter().for_each(outputs::tell);
     }
+    let told = notices.into_iter().map(Warning::from).chain(of_call).collect();
     let job = Job { call, source: &source, reading, files, world, told, resumed };
     job.run(blueprint)
 }
@@ -158,15 +146,14 @@ pub(crate) fn simd_from_environment() -> Result<Option<Simd>, Failure> {
 }
 
 /// That the kernels run with other vector instructions than `OPRUGA_SIMD` names.
-fn other_simd() -> Option<WarningSummary> {
+fn other_simd() -> Option<CallWarning> {
     let asked = std::env::var("OPRUGA_SIMD").ok()?;
     let used = Simd::named(&asked)?.name();
-    let message = match asked.as_str() {
-        same if same == used => return None,
-        "scalar" => format!("OPRUGA_SIMD=scalar: the kernels run with {used}, which every processor of this kind has"),
-        _ => format!("OPRUGA_SIMD={asked}: this processor lacks them; the kernels run with {used}"),
-    };
-    Some(WarningSummary { code: "simd.other".into(), message, count: 1 })
+    match asked.as_str() {
+        same if same == used => None,
+        "scalar" => Some(CallWarning::NeverScalar { used }),
+        _ => Some(CallWarning::InstructionsLacking { asked, used }),
+    }
 }
 
 /// That a run ends at another time than it was asked for, since frames are whole.
@@ -192,7 +179,7 @@ struct Job<'a> {
     files: BTreeMap<String, Arc<[u8]>>,
     world: Options,
     /// Warnings so far.
-    told: Vec<WarningSummary>,
+    told: Vec<Warning>,
     resumed: Option<SavedRun>,
 }
 
@@ -229,7 +216,7 @@ impl Job<'_> {
         if !call.json {
             early.iter().for_each(outputs::tell);
             whole_frames(frames, frame, seconds).iter().for_each(|said| eprintln!("{said}"));
-            recorder.thinned().iter().for_each(|thinned| eprintln!("warning[{}]: {}", thinned.code, thinned.message));
+            recorder.thinned().iter().for_each(outputs::tell);
         }
         let first = world.frames();
         let mut progress = Progress::new(frames, first, call.json);
@@ -254,8 +241,8 @@ impl Job<'_> {
             let untaped = tape.as_mut().and_then(|tape| tape.push(&mut *world).err()).map(unrecorded);
             failure = failure.or(untaped);
             looking += recorder.record(&mut *world);
-            if let Some(problem) = keeper.on_the_way(&*world, &recorder.table) {
-                progress.line(&format!("warning: no checkpoint at t = {} s: {problem}", number(world.time())));
+            if let Some(failed) = keeper.on_the_way(&*world, &recorder.table) {
+                progress.line(&warning_text(&failed, translation()));
             }
             progress.after_frame(&*world, frame);
         }

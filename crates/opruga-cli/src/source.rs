@@ -59,7 +59,7 @@ impl Source {
             let error = if absent { missing(name) } else { error };
             let beside = format!("{}.toml", name.trim_end_matches(['/', '\\']));
             let error = match path.is_dir() && Path::new(&beside).is_file() {
-                true => error.hint(format!("did you mean `{}`?", visible(&beside))),
+                true => error.advice(Around::Nearest { word: visible(&beside) }),
                 false => error,
             };
             Failure::Scene(vec![SceneError { file: file.clone(), ..error }])

@@ -284,6 +284,14 @@ impl Notice {
     }
 }
 
+/// The notice without its place in the file.
+impl From<Notice> for Warning {
+    fn from(Notice { about, count }: Notice) -> Warning {
+        let message = about.sentence(None);
+        Warning { code: about.code.into(), message, count: count as u64, about: about.about }
+    }
+}
+
 impl fmt::Display for Notice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.text(None))

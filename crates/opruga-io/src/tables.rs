@@ -1,5 +1,6 @@
 //! `final.csv`, `diagnostics.csv` and `summary.json`.
 
+use opruga_world::Warning;
 use serde::Serialize;
 use std::io::{self, Write};
 
@@ -245,6 +246,12 @@ pub struct WarningSummary {
     pub message: String,
     /// How often.
     pub count: u64,
+}
+
+impl From<&Warning> for WarningSummary {
+    fn from(warning: &Warning) -> WarningSummary {
+        WarningSummary { code: warning.code.clone(), message: warning.message.clone(), count: warning.count }
+    }
 }
 
 impl Summary {

@@ -241,11 +241,33 @@ part-picture_list-PinnedNodes = njegovi pričvršćeni čvorovi
 ## What a command meets
 
 write-failed-Stdout = stdout se ne može pisati: { $reason }
+interrupted-Interrupted = prekinuto; datoteke su zatvorene
 part-crossing-Within = strane { $first } i { $second } tijela `{ $body }` sijeku se
 part-crossing-Between = strana { $first } tijela `{ $body }` i strana { $second } tijela `{ $other }` sijeku se
 part-crossing-Inside = od tijela `{ $body }` i `{ $other }` jedno leži u drugome
 contact-crossed-Crossed = u t = { $time } s { $crossing }
 contact-crossed-CrossedByPairs = u t = { $time } s { $crossing }; parova tijela ukupno: { $pairs }
+
+## CallWarning
+
+threads-above_cores-AboveCores = dretvi: { $threads }, jezgara: { $cores }; više dretvi nije brže
+simd-other-NeverScalar = OPRUGA_SIMD=scalar: računa se s { $used }, što ima svaki procesor ove vrste
+simd-other-InstructionsLacking = OPRUGA_SIMD={ $asked }: ovaj procesor to nema; računa se s { $used }
+diagnostics-thinned-Thinned = diagnostics.csv imao bi oko { $megabytes } MB, a bez zahtjeva zapisuje se { $most } MB: redak ima jedna od { $apart } sličica; --diagnostics-every 1 zapisuje sve
+checkpoint-failed-CheckpointFailed = točka nastavka usput se nije mogla zapisati: { $cause }
+checkpoint-failed-NoCheckpoint = nema točke nastavka u t = { $time } s: { $path }: { $cause }
+recording-open-NoEnd = snimka nema kraja: računanje je prekinuto ili još traje; cijelih sličica do t = { $until } s: { $frames }, a bajtova iza njih, koji nisu cijela sličica: { $lost }
+recording-program-OtherProgram = snimku je zapisao { $program }; ovo je { $now }
+scene-changed-SceneChanged = datoteka { $file } otad se promijenila; vrijedi prizor iz snimke
+
+## ResumeHint
+
+part-resume_hint-FramesBefore = sličice prije toga su cijele: --to { $time } ih pokazuje
+part-resume_hint-NoFrameBefore = prije toga nema cijele sličice
+part-resume_hint-KilledAtStart = računanje je prekinuto prije nego što je zapisana prva sličica
+part-resume_hint-CheckpointBefore = prijašnja točka nastavka je cijela, u t = { $time } s: --resume { $file }
+part-resume_hint-InOutput = računanje je ostavlja u mapi svojeg izlaza, na primjer out/ball/checkpoint
+part-resume_hint-NoneBeside = pokušaj sa starijom točkom nastavka; pokraj ove nema nijedne
 
 ## Recorded runs in the window
 

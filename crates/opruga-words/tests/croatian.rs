@@ -27,6 +27,7 @@ fn variants() -> impl Iterator<Item = &'static Variant> {
         &[call_errors::CallError::VARIANTS, call_errors::CallRange::VARIANTS, call_errors::CallFault::VARIANTS],
         &[call_errors::OutputError::VARIANTS, call_errors::Crossing::VARIANTS, call_errors::CheckFault::VARIANTS],
         opruga::draw::MESSAGES,
+        &[call_errors::CallWarning::VARIANTS, call_errors::ResumeHint::VARIANTS],
         &[view_errors::ViewError::VARIANTS],
         &[opruga_video::VideoError::VARIANTS],
     ];

@@ -39,3 +39,22 @@ fn what_a_world_warns_of_is_told_in_croatian() {
     let all = format!("{told}{printed}");
     assert!(all.contains("upozorenje[contact.starts_inside]: tijelo `ball` počinje u prepreci 0"), "{all}");
 }
+
+#[test]
+fn what_is_odd_about_a_call_is_told_in_croatian_and_in_the_summary_in_english() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let calls = ["run", "ball", "--seconds=0.05", "--threads=256", "--no-pictures", "--language=hr", "--out=o"];
+    let told = program(folder.path(), &calls).env("OPRUGA_SIMD", "scalar").output().expect("it runs");
+    for part in
+        ["upozorenje[simd.other]: OPRUGA_SIMD=scalar: računa se s ", "upozorenje[threads.above_cores]: dretvi: 256, "]
+    {
+        assert!(cfg!(not(target_arch = "x86_64")) || said(&told).contains(part), "{part}: {}", said(&told));
+    }
+    let summary = std::fs::read_to_string(folder.path().join("o/summary.json")).expect("a summary");
+    assert!(summary.contains("256 threads on "), "{summary}");
+    let told = said(&opruga(folder.path(), &["run", "--resume", "nothing", "--language=hr"]));
+    assert!(
+        told.contains("  = savjet: računanje je ostavlja u mapi svojeg izlaza, na primjer out/ball/checkpoint"),
+        "{told}"
+    );
+}

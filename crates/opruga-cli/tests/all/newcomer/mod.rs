@@ -185,7 +185,7 @@ fn what_is_not_there_is_no_error_in_a_scene() {
     summary(folder.path(), &["run", "meine.toml", "--out", "o"]);
     let output = opruga(folder.path(), &["run", "--resume", "o"]);
     assert_eq!(code(&output), 4);
-    assert!(said(&output).contains("= hint: did you mean o/checkpoint?"), "{}", said(&output));
+    assert!(said(&output).contains("= hint: did you mean `o/checkpoint`?"), "{}", said(&output));
 }
 
 #[test]
