@@ -11,12 +11,6 @@ opruga::math::messages! {
         NoSweep { file: &'static str },
         "read.failed" #[error("the file cannot be read: {reason}")]
         FileUnreadable { reason: String },
-        "read.failed" #[error("there is no such file, and no such scene comes with the program")] #[hint("scenes that come with the program: {scenes}")]
-        NoScene { scenes: String },
-        "read.failed" #[error("there is no such file, and no such scene comes with the program")] #[hint("did you mean {closest}?")]
-        NoSceneNear { closest: String },
-        "read.failed" #[error("there is no such file, and no such scene comes with the program")] #[hint("did you mean {closest} or {last}?")]
-        NoSceneNearOf { closest: String, last: String },
         "read.not_regular_file" #[error("this is not a regular file")]
         NotARegularFile {},
         "scene.no_scene" #[error("this is the file of a shape, not a scene")]

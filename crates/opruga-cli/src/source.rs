@@ -4,7 +4,6 @@ use crate::errors::CallError;
 use crate::failure::Failure;
 use crate::preparation;
 use opruga::blueprint::AnyBlueprint;
-use opruga::core::spec::all_near;
 use opruga::io::problem::{Around, shown, visible};
 use opruga::io::refusals::{in_scene, of_command};
 use opruga::io::{Files, Notice, SceneError, scene};
@@ -56,7 +55,7 @@ impl Source {
         let file = path.display().to_string();
         let bytes = scene::bytes_of(path, &scene::Limits::default()).map_err(|error| {
             let absent = std::fs::metadata(path).is_err_and(|e| e.kind() == std::io::ErrorKind::NotFound);
-            let error = if absent { missing(name) } else { error };
+            let error = if absent { opruga::scenes::missing(name) } else { error };
             let beside = format!("{}.toml", name.trim_end_matches(['/', '\\']));
             let error = match path.is_dir() && Path::new(&beside).is_file() {
                 true => error.advice(Around::Nearest { word: visible(&beside) }),
@@ -155,35 +154,6 @@ fn timed(said: SceneError, error: &WorldError, time: f64) -> SceneError {
     let message = format!("at t = {} s: {}", number(time), said.message);
     let about = said.about.clone().map(|about| Around::AtTime { time, about }.into());
     SceneError { message, about, ..said }
-}
-
-/// Neither a file nor a scene of the program: what else could be meant.
-fn missing(name: &str) -> SceneError {
-    let path = Path::new(name);
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
-    let files: Vec<String> = std::fs::read_dir(folder.unwrap_or(Path::new(".")))
-        .into_iter()
-        .flatten()
-        .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
-        .filter(|file| file.ends_with(".toml"))
-        .map(|file| folder.map_or(file.clone(), |folder| folder.join(&file).display().to_string()))
-        .collect();
-    let with_ending = format!("{name}.toml");
-    let closest: Vec<String> = match files.iter().find(|file| **file == with_ending) {
-        Some(file) => vec![file.clone()],
-        None => {
-            let scenes = opruga::scenes::names().map(String::from);
-            let known: Vec<String> = scenes.chain(files).collect();
-            all_near(name, known.iter().map(String::as_str))
-        }
-    };
-    let scenes = || opruga::scenes::names().collect::<Vec<_>>().join(", ");
-    let quoted: Vec<String> = closest.iter().map(|name| format!("`{}`", visible(name))).collect();
-    SceneError::of(match quoted.split_last() {
-        Some((last, [])) => CallError::NoSceneNear { closest: last.clone() },
-        Some((last, others)) => CallError::NoSceneNearOf { closest: others.join(", "), last: last.clone() },
-        None => CallError::NoScene { scenes: scenes() },
-    })
 }
 
 /// The name of a file as it is typed on the command line.

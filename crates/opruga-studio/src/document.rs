@@ -38,13 +38,7 @@ pub fn read(
     // Time goes on behind the end that the scene states for a run: every command comes about here.
     let told = |code: &str| !Notice::is_asked_for(code) && code != "command.never";
     let odd = notices.into_iter().filter(|notice| told(notice.about.code));
-    let warning = |Notice { about, count }| Warning {
-        code: about.code.into(),
-        message: about.sentence(None),
-        count: count as u64,
-        about: about.about,
-    };
-    Ok((blueprint, odd.map(warning).collect()))
+    Ok((blueprint, odd.map(Warning::from).collect()))
 }
 
 /// The time of the last moment that a command without an end names [s].
@@ -54,9 +48,14 @@ impl Document {
     /// Takes a text that the reader of scenes has accepted.
     ///
     /// # Errors
-    /// A sentence of the TOML parser.
-    pub fn new(name: impl Into<String>, text: &str) -> Result<Document, String> {
-        Ok(Document { name: name.into(), text: text.parse::<DocumentMut>().map_err(|e| e.to_string())? })
+    /// [`Said::Scene`] where it is not TOML.
+    pub fn new(name: impl Into<String>, text: &str) -> Result<Document, Said> {
+        let name = name.into();
+        let text = text.parse::<DocumentMut>().map_err(|error| {
+            let bytes = error.span().unwrap_or_default();
+            Said::Scene(vec![scene::not_toml(text, &format!("{name}.toml"), error.message(), bytes)])
+        })?;
+        Ok(Document { name, text })
     }
 
     /// Takes a text that nobody has read yet: that of a file, whose lines are told, or one that was made around the file of this
@@ -78,7 +77,7 @@ impl Document {
             Some(file) => without_lines(errors, name, file),
             None => errors,
         })?;
-        Ok(Document::new(name, text)?)
+        Document::new(name, text)
     }
 
     /// The text, fit for `opruga run`.

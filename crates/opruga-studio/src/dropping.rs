@@ -3,7 +3,7 @@
 use crate::said::Said;
 use crate::session::Request;
 use crate::shape_file::Shape;
-use opruga::io::{Files, scene, shapes};
+use opruga::io::{Files, SceneError, scene, shapes};
 use std::path::Path;
 
 /// Endings of files that become bodies, with the fields of their shape.
@@ -20,10 +20,11 @@ const SHAPES: [(&str, &str, bool); 6] = [
 /// or too large to be one, is refused before it is read.
 ///
 /// # Errors
-/// A sentence for the person.
+/// Why it is refused.
 pub fn take(path: &Path) -> Result<Request, Said> {
     let file = path.file_name().map(|f| f.to_string_lossy().into_owned()).unwrap_or_default();
-    let bytes = || scene::bytes_of(path, &scene::Limits::default()).map_err(|e| Said::Because(format!("{file}: {e}")));
+    let refused = |error| Said::Scene(vec![SceneError { file: file.clone(), ..error }]);
+    let bytes = || scene::bytes_of(path, &scene::Limits::default()).map_err(refused);
     request(&file, bytes, || Files::beside(path))
 }
 

@@ -106,7 +106,7 @@ mod window {
     }
 
     fn write(path: &Path, bytes: &[u8]) -> Result<(), Said> {
-        safe_write(path, false, |file| file.write_all(bytes)).map_err(|e| e.to_string())?;
+        safe_write(path, false, |file| file.write_all(bytes))?;
         Ok(())
     }
 

@@ -63,7 +63,7 @@ fn main() -> ExitCode {
     let kept = kept.filter(|path| !path.is_empty()).map(PathBuf::from);
     let wanted = arguments.pop().unwrap_or_else(|| FIRST_SCENE.into());
     let opened = match kept.as_ref().filter(|kept| kept.exists()).map(|kept| rescue::read(kept)) {
-        Some(shared) => shared.and_then(|shared| rescue::resume(&shared, setting)).map_err(|said| said.to_string()),
+        Some(shared) => shared.and_then(|shared| rescue::resume(&shared, setting)),
         None => wanted::open(&wanted, setting),
     };
     let lost = std::env::var(watch::SAVED).ok();

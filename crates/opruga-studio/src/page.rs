@@ -296,7 +296,7 @@ impl Page {
 #[wasm_bindgen]
 pub fn hash_after(scene_or_text: &str, frames: u32) -> Result<String, String> {
     let text = opruga::scenes::find(scene_or_text).unwrap_or(scene_or_text);
-    let document = Document::new("scene", text)?;
+    let document = Document::new("scene", text).map_err(|said| said.to_string())?;
     let options = scene::Options { files: opruga::scenes::files(), ..scene::Options::default() };
     let setting = Setting::default();
     let read =

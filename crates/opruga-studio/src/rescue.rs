@@ -8,7 +8,7 @@ use crate::session::Session;
 use crate::setting::Setting;
 use crate::share::{self, Shared};
 use crate::work;
-use opruga::io::{Files, safe_write::safe_write};
+use opruga::io::{Files, SceneError, safe_write::safe_write, scene};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::Receiver;
@@ -85,7 +85,7 @@ pub fn mark_of(path: &Path) -> PathBuf {
 /// What the system refuses.
 pub fn write(path: &Path, shared: &Shared) -> Result<(), Said> {
     let packed = share::pack(shared)?;
-    safe_write(path, true, |file| file.write_all(&packed)).map_err(|e| e.to_string())?;
+    safe_write(path, true, |file| file.write_all(&packed))?;
     Ok(())
 }
 
@@ -94,7 +94,8 @@ pub fn write(path: &Path, shared: &Shared) -> Result<(), Said> {
 /// # Errors
 /// Why it cannot be read.
 pub fn read(path: &Path) -> Result<Shared, Said> {
-    share::unpack(&std::fs::read(path).map_err(|e| format!("{}: {e}", path.display()))?)
+    let refused = |error| Said::Scene(vec![SceneError { file: path.display().to_string(), ..error }]);
+    share::unpack(&scene::bytes_of(path, &scene::Limits::default()).map_err(refused)?)
 }
 
 /// The session that was lost, on its way to the moment where it was; time stands there.

@@ -3,7 +3,9 @@
 use crate::exploded::Exploded;
 use crate::view_errors::ViewError;
 use crate::words::Language;
+use opruga::draw::DrawError;
 use opruga::io::SceneError;
+use opruga::io::safe_write::WriteError;
 use opruga::{Warning, WorldError};
 
 /// A thing that was done and can be undone.
@@ -52,14 +54,20 @@ pub enum Step {
 /// What a message says.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Said {
-    /// Why something could not be done, in the English words of what refused it, such as the system.
-    Because(String),
     /// What is wrong with a scene or its files.
     Scene(Vec<SceneError>),
     /// What a world refuses.
     World(WorldError),
     /// Why a recorded run cannot be viewed.
     Recording(ViewError),
+    /// A file cannot be written.
+    NotWritten(WriteError),
+    /// A picture or a film cannot be made.
+    NotDrawn(DrawError),
+    /// This is wrong with what lies in a file of this name.
+    Inside(String, Box<Said>),
+    /// A scene cannot be compressed.
+    NotCompressed,
     /// A body has grown beyond every measure, and time stands.
     Exploded(Exploded),
     /// This was undone, and the scene is at this time \[s\].
@@ -138,12 +146,6 @@ impl core::fmt::Display for Said {
     }
 }
 
-impl From<String> for Said {
-    fn from(text: String) -> Said {
-        Said::Because(text)
-    }
-}
-
 impl From<Vec<SceneError>> for Said {
     fn from(errors: Vec<SceneError>) -> Said {
         Said::Scene(errors)
@@ -153,6 +155,18 @@ impl From<Vec<SceneError>> for Said {
 impl From<ViewError> for Said {
     fn from(error: ViewError) -> Said {
         Said::Recording(error)
+    }
+}
+
+impl From<WriteError> for Said {
+    fn from(error: WriteError) -> Said {
+        Said::NotWritten(error)
+    }
+}
+
+impl From<DrawError> for Said {
+    fn from(error: DrawError) -> Said {
+        Said::NotDrawn(error)
     }
 }
 

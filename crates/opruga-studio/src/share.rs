@@ -30,20 +30,20 @@ pub struct Shared {
 /// A scene in one piece. Files that come with the program are left out.
 ///
 /// # Errors
-/// A sentence for the person where there is no memory for it.
+/// [`Said::NotCompressed`].
 pub fn pack(scene: &Shared) -> Result<Vec<u8>, Said> {
     let known = opruga::scenes::files();
     let own = scene.files.held_files().filter(|(name, bytes)| known.held_file(name) != Some(*bytes));
     let files: Map<String, Value> = own.map(|(name, bytes)| (name.into(), base64::encode(bytes).into())).collect();
     let whole = json!({ "name": scene.name, "text": scene.text, "files": files }).to_string();
     let mut encoder = DeflateEncoder::new(Vec::new(), flate2::Compression::best());
-    Ok(encoder.write_all(whole.as_bytes()).and_then(|()| encoder.finish()).map_err(|e| e.to_string())?)
+    encoder.write_all(whole.as_bytes()).and_then(|()| encoder.finish()).map_err(|_| Said::NotCompressed)
 }
 
 /// The scene of [`pack`].
 ///
 /// # Errors
-/// A sentence for the person: the scene is not whole, or larger than 64 MiB.
+/// The scene is not whole, or larger than 64 MiB.
 pub fn unpack(packed: &[u8]) -> Result<Shared, Said> {
     let cut = || Said::AddressCut;
     let mut whole = Vec::new();
@@ -64,7 +64,7 @@ pub fn unpack(packed: &[u8]) -> Result<Shared, Said> {
 /// The part of an address behind its `#` that holds a scene. Files that come with the program are left out.
 ///
 /// # Errors
-/// A sentence for the person where the scene is too large for an address.
+/// [`Said::AddressTooLong`].
 pub fn to_fragment(scene: &Shared) -> Result<String, Said> {
     let letters = base64::encode(&pack(scene)?).trim_end_matches('=').replace('+', "-").replace('/', "_");
     if letters.len() > MOST_LETTERS {
@@ -77,7 +77,7 @@ pub fn to_fragment(scene: &Shared) -> Result<String, Said> {
 /// is empty.
 ///
 /// # Errors
-/// A sentence for the person: there is no such scene, or the address was cut off.
+/// There is no such scene, or the address was cut off.
 pub fn of_fragment(fragment: &str) -> Result<Option<Shared>, Said> {
     let fragment = fragment.trim_start_matches('#');
     let Some(letters) = fragment.strip_prefix(HEAD) else {

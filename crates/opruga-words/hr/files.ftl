@@ -104,16 +104,19 @@ write-exists-OtherQuestion = mapa sadrži niz s drugim pitanjem: { $difference }
 write-failed-RowNotWritten = redak tablice ne može se zapisati: „{ $reason }”
     .hint = prijašnji redci su sačuvani; isti poziv nastavlja niz
 
-## CallError
+## NoSuchScene
 
-read-failed-NoSweep = nema niza: nedostaje { $file }
-read-failed-FileUnreadable = datoteka se ne može pročitati: „{ $reason }”
 read-failed-NoScene = nema takve datoteke, a ni takva prizora u programu
     .hint = prizori iz programa: { $scenes }
 read-failed-NoSceneNear = nema takve datoteke, a ni takva prizora u programu
     .hint = misliš li { $closest }?
 read-failed-NoSceneNearOf = nema takve datoteke, a ni takva prizora u programu
     .hint = misliš li { $closest } ili { $last }?
+
+## CallError
+
+read-failed-NoSweep = nema niza: nedostaje { $file }
+read-failed-FileUnreadable = datoteka se ne može pročitati: „{ $reason }”
 read-not_regular_file-NotARegularFile = ovo nije obična datoteka
 scene-no_scene-ShapeFile = ovo je datoteka oblika, a ne prizor
     .hint = prizor je imenuje: shape = {"{"} kind = "{ $kind }", file = "{ $file }", … {"}"}; `opruga mesh` je pregledava

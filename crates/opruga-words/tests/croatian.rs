@@ -24,10 +24,11 @@ fn variants() -> impl Iterator<Item = &'static Variant> {
         opruga_world::warnings::MESSAGES,
         opruga::sweep::errors::MESSAGES,
         opruga::recordings::MESSAGES,
+        opruga::scenes::MESSAGES,
         &[call_errors::CallError::VARIANTS, call_errors::CallRange::VARIANTS, call_errors::CallFault::VARIANTS],
         &[call_errors::OutputError::VARIANTS, call_errors::Crossing::VARIANTS, call_errors::CheckFault::VARIANTS],
-        opruga::draw::MESSAGES,
         &[call_errors::CallWarning::VARIANTS, call_errors::ResumeHint::VARIANTS],
+        opruga::draw::MESSAGES,
         &[view_errors::ViewError::VARIANTS],
         &[opruga_video::VideoError::VARIANTS],
     ];

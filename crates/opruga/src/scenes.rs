@@ -1,6 +1,10 @@
 //! The scenes that come with the library, and the shapes in them.
 
-use crate::io::Files;
+use crate::io::problem::visible;
+use crate::io::{Files, SceneError};
+use opruga_core::spec::all_near;
+use opruga_math::message::Variant;
+use std::path::Path;
 use std::sync::Arc;
 
 macro_rules! scenes {
@@ -111,4 +115,52 @@ pub fn credit(text: &str) -> &str {
 fn line<'t>(text: &'t str, name: &str) -> &'t str {
     let value = |l: &'t str| l.strip_prefix(name)?.strip_prefix(" = \"")?.strip_suffix('"');
     text.lines().find_map(value).unwrap_or("")
+}
+
+opruga_math::messages! {
+    /// Why a name leads to no scene.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum NoSuchScene {
+        /// Nothing has a name like it.
+        "read.failed" #[error("there is no such file, and no such scene comes with the program")] #[hint("scenes that come with the program: {scenes}")]
+        NoScene { scenes: String },
+        /// One scene or file has.
+        "read.failed" #[error("there is no such file, and no such scene comes with the program")] #[hint("did you mean {closest}?")]
+        NoSceneNear { closest: String },
+        /// Several have.
+        "read.failed" #[error("there is no such file, and no such scene comes with the program")] #[hint("did you mean {closest} or {last}?")]
+        NoSceneNearOf { closest: String, last: String },
+    }
+}
+
+/// All messages of scenes by name, for catalogues.
+pub const MESSAGES: &[&[Variant]] = &[NoSuchScene::VARIANTS];
+
+/// What is wrong with a name that is neither that of a file nor that of a scene of the library, and which scenes and which
+/// files of its folder have a name like it.
+pub fn missing(name: &str) -> SceneError {
+    let path = Path::new(name);
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let files: Vec<String> = std::fs::read_dir(folder.unwrap_or(Path::new(".")))
+        .into_iter()
+        .flatten()
+        .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
+        .filter(|file| file.ends_with(".toml"))
+        .map(|file| folder.map_or(file.clone(), |folder| folder.join(&file).display().to_string()))
+        .collect();
+    let with_ending = format!("{name}.toml");
+    let closest: Vec<String> = match files.contains(&with_ending) {
+        true => vec![with_ending],
+        false => {
+            let mut known: Vec<&str> = names().collect();
+            known.extend(files.iter().map(String::as_str));
+            all_near(name, known.into_iter())
+        }
+    };
+    let quoted: Vec<String> = closest.iter().map(|name| format!("`{}`", visible(name))).collect();
+    SceneError::of(match quoted.split_last() {
+        Some((last, [])) => NoSuchScene::NoSceneNear { closest: last.clone() },
+        Some((last, others)) => NoSuchScene::NoSceneNearOf { closest: others.join(", "), last: last.clone() },
+        None => NoSuchScene::NoScene { scenes: names().collect::<Vec<_>>().join(", ") },
+    })
 }

@@ -34,7 +34,7 @@ use crate::overrides;
 use crate::problem::{Notice, SceneError, visible};
 use crate::regular_file::regular_file;
 use crate::source::Source;
-use crate::text_errors::Measured;
+use crate::text_errors::{Measured, TextError};
 use body_list::Bodies;
 pub(crate) use cost::{Cost, CostError, shown};
 pub(crate) use errors::MESSAGES;
@@ -154,6 +154,12 @@ pub fn read_file(
         options.files = Files::beside(path);
     }
     read(&bytes, &file, catalogue, &options)
+}
+
+/// What another parser of TOML says of bytes of a scene that it refuses, as an error at their place.
+pub fn not_toml(text: &str, file: &str, reason: &str, bytes: core::ops::Range<usize>) -> SceneError {
+    let error = SceneError::of(TextError::Syntax { reason: reason.into() });
+    Source { file, text }.mark(error, bytes.start, bytes.end)
 }
 
 /// The bytes of a regular file no larger than the limit.

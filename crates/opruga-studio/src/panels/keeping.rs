@@ -259,26 +259,24 @@ async fn film(what: What, copied: &Copied, show: Show, progress: &Progress) -> R
     if what == What::Picture {
         pictures.push(engine.moment(&show));
     }
-    let view = View::fit(pictures.iter()).map_err(|e| e.to_string())?;
+    let view = View::fit(pictures.iter())?;
     let dimension = pictures.first().map_or(2, |picture| picture.dimension);
     let style = Style::film(&view, dimension, if what == What::Picture { 1600 } else { 800 });
-    let image = |picture: &Picture| draw(picture, &view, &style).map_err(|e| e.to_string());
+    let image = |picture: &Picture| draw(picture, &view, &style);
     let rate = 1.0 / (every as f64 * engine.frame_seconds());
     match what {
-        What::Picture => pictures.last().map_or_else(
-            || Err(Said::NothingToDraw),
-            |picture| image(picture)?.to_png().map_err(|e| e.to_string().into()),
-        ),
+        What::Picture => pictures
+            .last()
+            .map_or_else(|| Err(Said::NothingToDraw), |picture| image(picture)?.to_png().map_err(Said::NotDrawn)),
         What::Film => {
-            let mut writer =
-                Mp4Writer::new(Vec::new(), [style.width, style.height], rate).map_err(|e| e.to_string())?;
+            let mut writer = Mp4Writer::new(Vec::new(), [style.width, style.height], rate)?;
             let count = pictures.len();
             for (number, picture) in pictures.iter().enumerate() {
                 breathe().await;
                 progress.set((count + number) as u64, 2 * count as u64);
-                writer.push(&image(picture)?).map_err(|e| e.to_string())?;
+                writer.push(&image(picture)?)?;
             }
-            writer.finish().map_err(|e| e.to_string().into())
+            writer.finish().map_err(Said::NotDrawn)
         }
         _ => {
             let step = pictures.len().div_ceil(MOST_GIF_FRAMES).max(1);
@@ -291,10 +289,10 @@ async fn film(what: What, copied: &Copied, show: Show, progress: &Progress) -> R
             }
             let samples: Vec<Image> = images.iter().step_by((images.len() / 8).max(1)).cloned().collect();
             let mut bytes = Vec::new();
-            let mut writer = GifWriter::new(&mut bytes, rate / step as f64, &samples).map_err(|e| e.to_string())?;
+            let mut writer = GifWriter::new(&mut bytes, rate / step as f64, &samples)?;
             for image in &images {
                 breathe().await;
-                writer.push(image).map_err(|e| e.to_string())?;
+                writer.push(image)?;
             }
             drop(writer);
             Ok(bytes)

@@ -65,7 +65,6 @@ impl Titles {
         let of = |name: &String| self.of(name).to_string();
         match said {
             Said::World(error) => Said::World(self.in_error(error)),
-            Said::Because(text) => Said::Because(self.in_text(&text)),
             Said::Scene(errors) => Said::Scene(errors.into_iter().map(|error| self.in_scene_error(error)).collect()),
             Said::Exploded(exploded) => Said::Exploded(Exploded { body: of(&exploded.body), ..exploded }),
             Said::AtTheEnd(time, list) => {

@@ -75,15 +75,17 @@ impl Language {
     #[expect(clippy::too_many_lines, reason = "a table: one arm for every message")]
     pub fn said(self, said: &Said) -> String {
         match said {
-            Said::Because(text) => match self {
-                Language::English => text.clone(),
-                Language::Croatian => format!("Poruka je na engleskom:\n{text}"),
-            },
             Said::Scene(errors) => {
                 errors.iter().map(|error| error.text(self.translation())).collect::<Vec<_>>().join("\n")
             }
             Said::World(error) => self.in_full(error),
             Said::Recording(error) => self.in_full(error),
+            Said::NotWritten(error) => error.text(self.translation()),
+            Said::NotDrawn(error) => self.in_full(error),
+            Said::Inside(file, said) => format!("{file}: {}", self.said(said)),
+            Said::NotCompressed => {
+                either!(self, "the scene cannot be compressed", "prizor se ne može sažeti")
+            }
             Said::Exploded(Exploded { body, integrator, unstable: true }) => {
                 let integrator = self.kind(Part::Integrator, integrator);
                 either!(
