@@ -169,6 +169,23 @@ fn what_cannot_be_viewed_says_why() {
     assert!((from..to).contains(&(place as u64)), "{from} {place} {to}");
 }
 
+/// A run that was killed before its first frame, and one behind whose frames there is something else.
+#[test]
+fn a_recording_without_frames_and_one_with_damage_behind_them_are_not_viewed() {
+    let (bytes, _) = record(1, false);
+    let chunk = |bytes: &[u8]| bytes == b"FRAM";
+    let first = bytes.windows(4).position(chunk).expect("a frame");
+    let refused = |bytes: &[u8]| view(bytes).expect_err("it is refused");
+    assert_eq!(refused(&bytes[..first]), Said::Recording(ViewError::Empty {}));
+    let last = bytes.windows(4).rposition(chunk).expect("a frame");
+    let damaged = [&bytes[..last], &[0; 48]].concat();
+    let (from, to) = (last as u64, damaged.len() as u64);
+    let cause = RecordingError::Damaged { from, to };
+    assert_eq!(refused(&damaged), Said::Recording(ViewError::DamagedBehind { frame: 89, cause }));
+    let croatian = Language::Croatian.said(&refused(&damaged));
+    assert_eq!(croatian, format!("iza sličice 89: snimka je oštećena između bajtova {from} i {to}"));
+}
+
 #[test]
 fn overrides_that_the_scene_does_not_take_are_named() {
     let text = opruga::scenes::find("ball").expect("it comes with the program");
