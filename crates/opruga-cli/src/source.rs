@@ -7,6 +7,7 @@ use opruga::blueprint::AnyBlueprint;
 use opruga::io::problem::{Around, shown, visible};
 use opruga::io::refusals::{in_scene, of_command};
 use opruga::io::{Files, Notice, SceneError, scene};
+use opruga::math::message::{Field, Message};
 use opruga::math::words::number;
 use opruga::{AnyWorld, Options, Registries, WorldError, catalogue_of};
 use std::collections::BTreeMap;
@@ -148,12 +149,20 @@ impl Source {
 
 /// An error with the time at which it came about; some say themselves when it was.
 fn timed(said: SceneError, error: &WorldError, time: f64) -> SceneError {
-    if matches!(error, WorldError::Snapshot { .. }) || said.message.contains("t = ") {
+    if matches!(error, WorldError::Snapshot { .. }) || has_time(error) {
         return said;
     }
     let message = format!("at t = {} s: {}", number(time), said.message);
     let about = said.about.clone().map(|about| Around::AtTime { time, about }.into());
     SceneError { message, about, ..said }
+}
+
+/// Whether a message, or a part of it, has the time or the time of the last good frame.
+fn has_time(message: &dyn Message) -> bool {
+    message.fields().iter().any(|(name, value)| match value {
+        Field::Message(part) => has_time(&**part),
+        _ => matches!(*name, "time" | "last"),
+    })
 }
 
 /// The name of a file as it is typed on the command line.

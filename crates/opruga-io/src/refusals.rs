@@ -128,8 +128,9 @@ impl From<&Warning> for SceneError {
     fn from(warning: &Warning) -> SceneError {
         const CODES: [&str; 4] = ["units.sag", "step.no_stable_step", "step.unstable", "contact.starts_inside"];
         let code = CODES.into_iter().find(|code| *code == warning.code).unwrap_or("world.warning");
-        let body = warning.message.strip_prefix("body `").and_then(|rest| rest.split(['`', '[']).next());
-        let path = body.map_or(String::new(), |body| format!("body.{body}"));
+        let path = warning
+            .field("body")
+            .map_or_else(String::new, |body| format!("body.{}", body.split('[').next().unwrap_or_default()));
         let error = SceneError { about: warning.about.clone(), ..SceneError::new(code, warning.message.clone()) };
         error.path(path).advice(Around::NotStrict {})
     }

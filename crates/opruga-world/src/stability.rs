@@ -87,8 +87,7 @@ impl<const D: usize> World<D> {
                         omega: stability.spectrum.omega,
                         growth,
                     };
-                    let same = format!("`{}` has", integrator.name());
-                    let known = |w: &&mut Warning| w.code == "step.no_stable_step" && w.message.starts_with(&same);
+                    let known = |w: &&mut Warning| w.is_about("step.no_stable_step", "integrator", integrator.name());
                     match warnings.iter_mut().find(known) {
                         Some(warning) => warning.count += 1,
                         None => warnings.push(Warning::new(warning, 1)),

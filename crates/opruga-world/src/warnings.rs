@@ -51,6 +51,17 @@ impl Warning {
         let about = about.into();
         Warning { code: about.code().into(), message: about.in_full(), count, about: Some(about) }
     }
+
+    /// What the field of this name says, in the same words in all languages.
+    pub fn field(&self, name: &str) -> Option<String> {
+        let fields = self.about.as_ref()?.fields();
+        fields.iter().find(|(known, _)| *known == name).map(|(_, value)| value.to_string())
+    }
+
+    /// Whether it has this code, and the field of this name says this.
+    pub fn is_about(&self, code: &str, name: &str, value: &str) -> bool {
+        self.code == code && self.field(name).as_deref() == Some(value)
+    }
 }
 
 terms! {

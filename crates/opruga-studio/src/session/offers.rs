@@ -229,8 +229,7 @@ impl Session {
 fn without_a_stable_step(shown: &Shown, name: &str) -> Option<Option<usize>> {
     let body = shown.bodies.iter().find(|body| body.name == name)?;
     let values = body.integrator.as_ref().or(shown.integrator.as_ref())?;
-    let begins = format!("`{}` has", values.kind());
-    let warned = |w: &opruga::Warning| w.code == "step.no_stable_step" && w.message.starts_with(&begins);
+    let warned = |w: &opruga::Warning| w.is_about("step.no_stable_step", "integrator", values.kind());
     shown.warnings.iter().any(warned).then(|| body.integrator.is_some().then_some(body.number))
 }
 
