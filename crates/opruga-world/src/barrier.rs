@@ -90,7 +90,7 @@ impl<const D: usize> Meeting<D> {
         (h, time): (f64, f64),
         whole: f64,
     ) -> Result<(), Refused> {
-        let staying = self.at_rest.then(|| Staying::new(&self.pushed, islands));
+        let staying = self.at_rest.then(|| Staying::new(self.pushed.iter().map(|pushed| &*islands[pushed.island])));
         let points = self.touching.inverse_mass.len();
         let (mut opened, mut coordinates, mut first) = (Vec::new(), vec![None; points], 0);
         for (body, pushed) in self.pushed.iter().enumerate() {

@@ -203,7 +203,7 @@ impl<const D: usize> Meeting<D> {
         islands: &mut [&mut Island<D>],
         step: &Substep<'_, D>,
     ) -> Result<(), Trouble> {
-        let staying = Staying::new(&self.pushed, islands);
+        let staying = Staying::new(self.pushed.iter().map(|pushed| &*islands[pushed.island]));
         let mut workspaces: Vec<Workspace<D>> = self.pushed.iter().map(|_| Workspace::default()).collect();
         exchange(&self.pushed, islands, &mut workspaces);
         self.move_outlines(step.time);

@@ -9,7 +9,6 @@
 //! Source: C. T. Kelley, D. E. Keyes, Convergence analysis of pseudo-transient continuation (1998).
 
 use crate::island::Island;
-use crate::meeting::Pushed;
 use opruga_core::stability::estimate;
 use opruga_math::Lane;
 use opruga_solve::dot;
@@ -38,12 +37,12 @@ pub(crate) struct Staying {
 
 impl Staying {
     /// That of a search which begins. A body without a frequency of its own has the highest one of the others.
-    pub(crate) fn new<const D: usize>(pushed: &[Pushed<D>], islands: &[&mut Island<D>]) -> Self {
+    pub(crate) fn new<'a, const D: usize>(bodies: impl Iterator<Item = &'a Island<D>>) -> Self {
         let square = |island: &Island<D>| {
             let omega = estimate(&island.system, &*island.integrator).map_or(0.0, |found| found.spectrum.omega);
             if omega.is_finite() { omega * omega } else { 0.0 }
         };
-        let mut squares: Vec<f64> = pushed.iter().map(|pushed| square(islands[pushed.island])).collect();
+        let mut squares: Vec<f64> = bodies.map(square).collect();
         let most = squares.iter().fold(0.0, |most: f64, square| square.larger(most));
         squares.iter_mut().filter(|square| **square == 0.0).for_each(|square| *square = most);
         Staying { part: FIRST, squares }

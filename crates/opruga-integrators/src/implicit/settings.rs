@@ -54,6 +54,9 @@ pub(crate) enum Otherwise {
     Accept,
 }
 
+/// Halvings of a step at most.
+pub(crate) const MOST_HALVINGS: u32 = 8;
+
 /// The number of Newton's iterations.
 pub(crate) const ITERATIONS: Field = Field::new(
     "iterations",

@@ -30,7 +30,7 @@ use super::minimiser::Minimiser;
 use super::newton::Newton;
 use super::open;
 use super::rule::Rule;
-use super::settings::{Otherwise, Settings};
+use super::settings::{MOST_HALVINGS, Otherwise, Settings};
 use super::workspace::Workspace;
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::history::Channel;
@@ -142,9 +142,6 @@ impl<R> Implicit<R> {
         outcome
     }
 }
-
-/// Halvings of a step at most.
-pub(crate) const MOST_HALVINGS: u32 = 8;
 
 /// What makes a step: a rule, and the minimiser that finds its stage.
 #[derive(Clone, Copy, Debug)]
