@@ -9,40 +9,32 @@ use opruga_core::potential::Account;
 use opruga_core::system::{Pin, Stage, System};
 use opruga_solve::blocks::nodes;
 
-/// Gains of energy below this part of it are rounding.
-const NO_GAIN: f64 = 1e-9;
-
-/// The part of its energy of motion that a body may gain in a step in real time.
-const LITTLE_GAIN: f64 = 1e-3;
-
 /// What a step did to the energy of a body.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Change {
-    /// The energy before the step, that of its end where that is known, and of that the part of motion [J].
+    /// The energy before the step, that of its end where that is known, and the rounding of both [J].
     before: f64,
     after: Option<f64>,
-    kinetic: f64,
+    rounding: f64,
 }
 
 impl Change {
-    /// Whether the body has more energy than before, and than a part of that of its motion.
-    fn is_gain(&self, part: f64) -> bool {
-        let Change { before, after, kinetic } = *self;
-        // What cannot be told is a gain where some is allowed for.
-        let Some(after) = after else { return part > 0.0 };
+    /// Whether the body has more energy than before; none where that cannot be told.
+    fn is_gain(&self) -> Option<bool> {
+        let after = self.after?;
         // Written so that what is no number is a gain.
-        let within = after - before <= NO_GAIN * (after.abs() + before.abs() + kinetic) + part * kinetic;
-        !within
+        let within = after - self.before <= self.rounding;
+        Some(!within)
     }
 
     /// Whether a step whose end is doubtful may have made energy; one of which nobody knows what it may have gained has.
     pub(super) fn may_be_gain(change: Option<Change>) -> bool {
-        change.is_none_or(|change| change.is_gain(LITTLE_GAIN))
+        change.and_then(|change| change.is_gain()).unwrap_or(true)
     }
 
     /// Whether a step has made energy; one of which nobody knows that has not.
     pub(super) fn is_known_gain(change: Option<Change>) -> bool {
-        change.is_some_and(|change| change.is_gain(0.0))
+        change.and_then(|change| change.is_gain()).unwrap_or(false)
     }
 }
 
@@ -92,6 +84,7 @@ pub(super) fn change<const D: usize>(
         kinetic += 0.5 * inertia.square::<D>(&workspace.v1);
     }
     let after = system.potential_energy(Workspace::<D>::STAGE, h).map(|stored| stored + kinetic);
+    let rounding = stage::rounding_of_models(system);
     stage::evaluate(system, workspace, balance, false)?;
-    Ok(Some(Change { before, after, kinetic }))
+    Ok(Some(Change { before, after, rounding }))
 }

@@ -11,9 +11,6 @@ use opruga_core::error::StepError;
 use opruga_core::history::Channel;
 use opruga_core::system::System;
 
-/// A potential that has risen by this part of its parts has risen: rounding, and what obstacles push back, are less.
-const RISE: f64 = 1e-6;
-
 /// How many iterations steps get that few led astray.
 const MOST_ITERATIONS: u32 = 50;
 
@@ -104,7 +101,7 @@ fn has_risen<const D: usize>(
     workspace: &mut Workspace<D>,
     balance: &Balance,
 ) -> Result<bool, StepError> {
-    let Some((after, size)) = potential(system, workspace, balance, false) else { return Ok(true) };
+    let Some((after, _)) = potential(system, workspace, balance, false) else { return Ok(true) };
     if !after.is_finite() {
         return Ok(true);
     }
@@ -117,5 +114,5 @@ fn has_risen<const D: usize>(
         Err(_) => None,
     };
     evaluate(system, workspace, balance, false)?;
-    Ok(!before.is_some_and(|(before, parts)| after - before <= RISE * (size + parts) + rounding_of_models(system)))
+    Ok(!before.is_some_and(|(before, _)| after - before <= rounding_of_models(system)))
 }

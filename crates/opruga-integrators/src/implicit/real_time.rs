@@ -15,7 +15,7 @@ use super::direction::wanted_forces;
 use super::friction::SlipRule;
 use super::linear::{Filter, Mixture};
 use super::rigid_balance::settles;
-use super::settings::Settings;
+use super::settings::{ENOUGH, Settings};
 use super::slenderness::has_dense;
 use super::stage::{evaluate, judge, look};
 use super::workspace::Workspace;
@@ -45,9 +45,6 @@ const NOTHING: f64 = 1e-9;
 /// Products with the matrix in an iteration at most.
 const PRODUCTS: u32 = 1000;
 
-/// Corrections below this part of the extent are those of a body that is whole.
-const SHORT: f64 = 0.1;
-
 /// Iterations that take more products than this are counted as cut off: a body on which news travels so slowly is ill-conditioned,
 /// and the residual, in which stiff motions count most, says little of the slow ones, such as the bending of a slender body.
 const MANY_PRODUCTS: u32 = 120;
@@ -61,23 +58,9 @@ const CONTACT_FORCE: PerNode = PerNode::new("real_time.contact_force");
 const VELOCITY: PerNode = PerNode::new("real_time.velocity");
 const STEP: PerBody<f64> = PerBody::new("real_time.step");
 
-/// Which matrix it is: none, that of elements without negative eigenvalues ([`CLAMPED`]), or above it one with a raised diagonal; and
-/// whether the next step makes it anew.
-const MATRIX: PerBody<u64> = PerBody::new("real_time.matrix");
+/// Whether there is a matrix, and whether the next step makes it anew.
+const MATRIX: PerBody<bool> = PerBody::new("real_time.matrix");
 const STALE: PerBody<bool> = PerBody::new("real_time.stale");
-
-/// The values of `MATRIX`.
-const CLAMPED: u64 = 1;
-const MOST_RAISED: u64 = 5;
-
-/// By how much the diagonal is raised.
-fn raised(matrix: u64) -> f64 {
-    let mut part = 0.0;
-    for k in CLAMPED..matrix {
-        part = if k == CLAMPED { 1e-8 } else { 100.0 * part };
-    }
-    part
-}
 
 /// Whether nothing holds a body, or obstacles may be near. What is left out of balance would push and turn it, and the acceleration of an
 /// impact leads nowhere.
@@ -163,13 +146,13 @@ impl Task<'_> {
         let Some(reference) = system.history.vectors(REFERENCE) else { return };
         let Workspace { reused, linear, mass, .. } = workspace;
         let mixture = self.mixture(system, mass);
-        reused.make(linear, &mixture, raised(system.history.get(MATRIX)), reference, is_new);
+        reused.make(linear, &mixture, reference, is_new);
     }
 
     /// Makes the matrix of the present shape, which becomes the reference.
-    fn make_here<const D: usize>(&self, system: &mut System<D>, workspace: &mut Workspace<D>, matrix: u64) {
+    fn make_here<const D: usize>(&self, system: &mut System<D>, workspace: &mut Workspace<D>) {
         let System { history, state, nodes, .. } = system;
-        history.set(MATRIX, matrix);
+        history.set(MATRIX, true);
         history.set(STALE, false);
         let Some(reference) = history.vectors_mut(REFERENCE) else { return };
         for (own, column) in reference.0.iter_mut().zip(&state.work[0][0].0) {
@@ -180,13 +163,12 @@ impl Task<'_> {
 
     /// Makes the matrix of the reference shape that the state remembers, if it is not at hand; none where there is none.
     fn recall<const D: usize>(&self, system: &mut System<D>, workspace: &mut Workspace<D>) -> Result<bool, StepError> {
-        let matrix = system.history.get(MATRIX);
-        if matrix == 0 || system.history.get(STALE) || !system.hessian_is_of_positions() {
+        if !keeps_matrix(system) || !system.hessian_is_of_positions() {
             return Ok(false);
         }
         let Some(reference) = system.history.vectors(REFERENCE) else { return Ok(false) };
         let mixture = self.mixture(system, &workspace.mass);
-        if !workspace.reused.is_of(reference, &mixture, raised(matrix)) {
+        if !workspace.reused.is_of(reference, &mixture) {
             let (nodes, places) = (system.nodes, system.places());
             let System { history, state, .. } = system;
             let Some(reference) = history.vectors(REFERENCE) else { return Ok(false) };
@@ -206,7 +188,7 @@ impl Task<'_> {
         let recalled = self.recall(system, workspace)?;
         evaluate(system, workspace, self.balance, false)?;
         if !recalled {
-            self.make_here(system, workspace, CLAMPED);
+            self.make_here(system, workspace);
         }
         Ok(())
     }
@@ -231,53 +213,33 @@ impl Task<'_> {
         Ok(reused.begin(system, right))
     }
 
-    /// Solves for the step of an iteration, if need be with another matrix; gives the products, and whether that worked.
+    /// Solves for the step of an iteration; gives the products, and whether that worked.
     fn direction<const D: usize>(
         &self,
         system: &mut System<D>,
         workspace: &mut Workspace<D>,
-        moves: bool,
         goal: f64,
-    ) -> (u32, bool) {
-        let mut spent = 0;
-        loop {
-            let Workspace { reused, right, step, .. } = &mut *workspace;
-            match reused.solve(system, right, self.direct, goal, PRODUCTS, step) {
-                Ok((products, indefinite)) => {
-                    if indefinite {
-                        // What was found leads downhill; the next matrix is another one.
-                        mark_stale(system);
-                    }
-                    return (spent + products, true);
-                }
-                Err(Indefinite) => {
-                    spent += 1;
-                    // Directions without any stiffness, or a gas that pushes.
-                    let matrix = system.history.get(MATRIX);
-                    if matrix >= MOST_RAISED {
-                        return (spent, false);
-                    }
-                    self.make_here(system, workspace, matrix + 1);
-                    if self.out_of_balance(system, workspace, moves).is_err() {
-                        workspace.reused.forget_right_hand_side();
-                    }
-                }
-            }
+    ) -> Result<u32, Indefinite> {
+        let Workspace { reused, right, step, .. } = &mut *workspace;
+        let (products, indefinite) = reused.solve(system, right, self.direct, goal, PRODUCTS, step)?;
+        if indefinite {
+            // What was found leads downhill; the next matrix is another one.
+            mark_stale(system);
         }
+        Ok(products)
     }
 }
 
 /// Lets the next step make its matrix anew.
 pub(super) fn mark_stale<const D: usize>(system: &mut System<D>) {
-    if system.history.get(MATRIX) > 0 {
-        system.history.set(MATRIX, CLAMPED);
+    if system.history.get(MATRIX) {
         system.history.set(STALE, true);
     }
 }
 
 /// Whether the matrix of the reference shape is at hand, and the next step begins with it.
 pub(super) fn keeps_matrix<const D: usize>(system: &System<D>) -> bool {
-    system.history.get(MATRIX) > 0 && !system.history.get(STALE)
+    system.history.get(MATRIX) && !system.history.get(STALE)
 }
 
 /// Whether what few iterations lead to may count.
@@ -305,8 +267,7 @@ fn is_direct<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, s
 
 /// The parts of what is out of balance that an iteration is good enough with, and that the linear solver may leave.
 fn aims<const D: usize>(system: &System<D>, settings: &Settings) -> (f64, f64) {
-    let aim = settings.leaves[0];
-    if is_loose(system) { (LOOSE * LOOSE, LOOSE) } else { (aim, LINEAR.smaller(0.5 * aim)) }
+    if is_loose(system) { (LOOSE * LOOSE, LOOSE) } else { (settings.aim, LINEAR.smaller(0.5 * settings.aim)) }
 }
 
 /// Three iterations, or as many as the scene says, and whether what they leave may count.
@@ -353,13 +314,13 @@ pub(super) fn iterate<const D: usize>(
             if mismatch > most && size > floor {
                 mark_stale(system);
             }
-            let end = End { size, first, floor, most: settings.leaves[1], slow, remade };
+            let end = End { size, first, floor, slow, remade };
             return conclude(system, workspace, balance, settings, solved, &end);
         }
         if mismatch > MOST_MISMATCH {
             // The matrix of another shape does not lead there.
             remade = true;
-            task.make_here(system, workspace, CLAMPED);
+            task.make_here(system, workspace);
             size = task.out_of_balance(system, workspace, moves).unwrap_or(f64::NAN);
         }
         if size.is_nan() {
@@ -367,13 +328,13 @@ pub(super) fn iterate<const D: usize>(
         }
         solved.iterations += 1;
         let goal = if is_loose(system) { (linear * size).larger(enough) } else { (linear * first).larger(floor) };
-        let (products, found) = task.direction(system, workspace, moves, goal);
-        solved.products += products;
-        slow |= products > MANY_PRODUCTS;
-        if !found {
+        // A gas that pushes: the step is solved exactly.
+        let Ok(products) = task.direction(system, workspace, goal) else {
             solved.converged = false;
             return Ok((solved, Trust::None));
-        }
+        };
+        solved.products += products;
+        slow |= products > MANY_PRODUCTS;
         let missed = go(system, workspace, &task, moves, &mut solved)?;
         // What the matrix misses by rounding says nothing of it.
         mismatch = if missed > floor { missed / size } else { 0.0 };
@@ -392,8 +353,6 @@ struct End {
     size: f64,
     first: f64,
     floor: f64,
-    /// The part of it that may be left.
-    most: f64,
     /// Whether an iteration took many products, and whether the matrix was made anew.
     slow: bool,
     remade: bool,
@@ -408,20 +367,17 @@ fn conclude<const D: usize>(
     mut solved: Solved,
     end: &End,
 ) -> Result<(Solved, Trust), StepError> {
-    let End { size, first, floor, most, slow, remade } = *end;
-    let as_promised = size <= (most * first).larger(floor);
+    let End { size, first, floor, slow, remade } = *end;
+    let as_promised = size <= (ENOUGH * first).larger(floor);
     if slow || !as_promised {
         let left = size / workspace.reused.stiffness().sqrt();
         let work = &mut system.work.solver;
         work.cut_off += 1;
         work.left = left.larger(work.left);
     }
-    // A part of what was torn at first is still torn; what is no number is not short.
-    let short = solved.correction <= SHORT * workspace.extent;
     let trust = match (is_loose(system), as_promised) {
-        (true, _) if !short => Trust::None,
         (true, _) if workspace.contacting.any() => Trust::IfNoGain,
-        (false, true) if !remade && short => Trust::Always,
+        (false, true) if !remade => Trust::Always,
         _ => Trust::IfDownhill,
     };
     // What moves no node against the stiffness of the others may move them all together.

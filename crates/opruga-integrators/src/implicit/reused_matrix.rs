@@ -14,8 +14,6 @@ use opruga_solve::{Cholesky, Indefinite, Packed};
 pub(crate) struct Origin<const D: usize> {
     sigma: f64,
     beta: f64,
-    /// By how much the diagonal is raised.
-    raised: f64,
     reference: Columns<D>,
 }
 
@@ -55,33 +53,23 @@ impl<const D: usize> Default for ReusedMatrix<D> {
 }
 
 impl<const D: usize> ReusedMatrix<D> {
-    /// Whether the matrix at hand is the one of a shape, of factors and of a way to keep it definite.
-    pub(crate) fn is_of(&self, reference: &Columns<D>, mixture: &Mixture<D>, raised: f64) -> bool {
+    /// Whether the matrix at hand is the one of a shape and of factors.
+    pub(crate) fn is_of(&self, reference: &Columns<D>, mixture: &Mixture<D>) -> bool {
         let nodes = mixture.mass.len();
         self.origin.as_ref().is_some_and(|own| {
-            (own.sigma, own.beta, own.raised) == (mixture.sigma, mixture.beta, raised)
+            (own.sigma, own.beta) == (mixture.sigma, mixture.beta)
                 && own.reference.0.iter().zip(&reference.0).all(|(a, b)| a.get(..nodes) == b.get(..nodes))
         })
     }
 
     /// Makes the matrix in the shape that was evaluated last, which is `reference`; `is_new` says whether that is the shape of the iteration.
-    pub(crate) fn make(
-        &mut self,
-        linear: &mut Linear<D>,
-        mixture: &Mixture<D>,
-        raised: f64,
-        reference: &Columns<D>,
-        is_new: bool,
-    ) {
+    pub(crate) fn make(&mut self, linear: &mut Linear<D>, mixture: &Mixture<D>, reference: &Columns<D>, is_new: bool) {
         linear.assemble(mixture);
-        if raised > 0.0 {
-            linear.raise(raised);
-        }
         self.packed.take(linear.full(), mixture.system.threads);
         (self.ready, self.is_new) = (false, is_new);
-        let none = || Origin { sigma: 0.0, beta: 0.0, raised: 0.0, reference: Columns::zeros(0) };
+        let none = || Origin { sigma: 0.0, beta: 0.0, reference: Columns::zeros(0) };
         let origin = self.origin.get_or_insert_with(none);
-        (origin.sigma, origin.beta, origin.raised) = (mixture.sigma, mixture.beta, raised);
+        (origin.sigma, origin.beta) = (mixture.sigma, mixture.beta);
         for (own, column) in origin.reference.0.iter_mut().zip(&reference.0) {
             own.grow(column.len());
             own[..column.len()].copy_from_slice(column);
