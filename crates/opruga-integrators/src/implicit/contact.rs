@@ -70,9 +70,6 @@ const MOST_CHANGES: u8 = 4;
 /// Depths and slides below this part of the extent of a body do not count.
 pub(crate) const SMALL: f64 = 1e-9;
 
-/// A slipping contact is settled when its force changes by no more than this part of itself.
-const SETTLED: f64 = 1e-7;
-
 pub(super) fn dot<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
     let mut sum = 0.0;
     for d in 0..D {
@@ -400,15 +397,13 @@ impl<const D: usize> Contacting<D> {
                             }
                             Followed::Pushes(push) => {
                                 let turn: f64 = (0..D).map(|d| (push[d] - contact.push[d]).abs()).sum();
-                                verdict.unsettled |= turn > SETTLED && turn * most > moves(node);
+                                verdict.unsettled |= turn * most > moves(node);
                                 (contact.push, contact.turn) = (push, turn);
                             }
                             Followed::Sticks | Followed::Rests => {}
                         }
                         let change = (normal_force - contact.normal_force).abs();
-                        let settled =
-                            change <= SETTLED * normal_force || contact.touch.friction * change <= moves(node);
-                        verdict.unsettled |= !settled;
+                        verdict.unsettled |= contact.touch.friction * change > moves(node);
                     }
                 }
                 contact.normal_force = normal_force;

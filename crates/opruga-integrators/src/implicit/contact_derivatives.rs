@@ -13,11 +13,8 @@ const SLIDING: f64 = 1e-4;
 /// How far from a node its surface is looked at, in extents of the body.
 const BESIDE: f64 = 1e-5;
 
-/// Normals that turn by more than this within that distance belong to an edge.
-const EDGE: f64 = 1e-2;
-
 impl<const D: usize> ContactQuery<'_, D> {
-    /// ∂n/∂x along the surface, by differences; nothing at edges.
+    /// ∂n/∂x along the surface, by differences.
     fn turn_of_normal(&self, contact: &Contact<D>) -> Option<Block<D>> {
         let obstacles = self.system.contacts.as_ref()?;
         let (at, step) = (contact.node * D, BESIDE * self.extent);
@@ -36,9 +33,6 @@ impl<const D: usize> ContactQuery<'_, D> {
             });
             let beside = beside?;
             let difference: [f64; D] = core::array::from_fn(|d| beside[d] - contact.touch.normal[d]);
-            if dot(&difference, &difference) > EDGE * EDGE {
-                return None;
-            }
             // Row by row: the derivative along the axis, of what lies along the surface.
             turn[axis] = contact.along(&difference.map(|x| x / step));
         }

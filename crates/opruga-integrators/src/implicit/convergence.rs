@@ -8,9 +8,6 @@ use opruga_core::error::StepError;
 use opruga_core::system::{Stage, System};
 use opruga_math::Lane;
 
-/// Forces and corrections within so many roundings were lost in these, as is a body that its rounding would throw farther than its extent.
-const LOST: f64 = 10.0;
-
 /// Enters how the search for a balance of statics went, and refuses what has not converged.
 pub(crate) fn report<const D: usize>(
     integrator: &'static str,
@@ -82,8 +79,8 @@ pub(super) fn refusal<const D: usize>(
     let [of_positions, of_forces, displacement] = solved.floor;
     // Iterations that were too few say nothing of rounding.
     let is_stuck = solved.iterations < settings.iterations;
-    let is_lost =
-        solved.correction <= LOST * of_positions || residual <= LOST * of_forces || displacement > workspace.extent;
+    // Forces and corrections below their rounding are lost in it, as is a body that rounding would throw farther than its extent.
+    let is_lost = solved.correction <= of_positions || residual <= of_forces || displacement > workspace.extent;
     let is_rounding = is_stuck && is_lost;
     StepError::NotConverged {
         integrator,

@@ -23,9 +23,6 @@ const SLOW: f64 = 0.03;
 /// From this iteration on contacts stay as they are: those that still change differ by little.
 const MOST_DECISIONS: u32 = 30;
 
-/// From this iteration on forces that are as small as their rounding are a balance, whether it carries the loads or not.
-const MOST_AT_ROUNDING: u32 = 50;
-
 /// Newton's method: exact, to the tolerance of its settings.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Newton(pub(crate) Settings);
@@ -301,7 +298,7 @@ impl<'a> Iteration<'a> {
             self.solved.converged = true;
             return Ok(true);
         }
-        let last = self.solved.iterations >= MOST_AT_ROUNDING.min(settings.iterations);
+        let last = self.solved.iterations == settings.iterations;
         if (last || !correction.nears)
             && at_rounding(system, workspace, balance, settings, size)
             && (last || carries(system, workspace, balance))

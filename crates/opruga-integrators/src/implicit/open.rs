@@ -36,9 +36,6 @@ enum Account {
     Rest(Box<Statics>),
 }
 
-/// What a matrix is made of, one after the other until it is positive definite.
-const KEEPS: [Keep; 5] = [Keep::Exact, Keep::Clamped, Keep::Raised(1e-8), Keep::Raised(1e-4), Keep::Raised(1e-2)];
-
 /// Begins a step of h [s] with nothing moved.
 ///
 /// # Errors
@@ -153,16 +150,13 @@ impl<R: Rule<D>, const D: usize> OpenStep<D> for Open<R, D> {
     fn factor(&mut self, system: &System<D>, exact: bool) -> bool {
         let mut linear = std::mem::take(&mut self.workspace.linear);
         let mut factored = false;
-        for keep in KEEPS.into_iter().skip(usize::from(!exact)) {
+        for keep in [Keep::Exact, Keep::Clamped].into_iter().skip(usize::from(!exact)) {
             let mixture = self.mixture(system, keep.definiteness());
             linear.assemble(&mixture);
             let Workspace { contacting, x0, u, extent, free, projectors, .. } = &*self.workspace;
             let query = ContactQuery::new(system, &self.balance, x0, u, *extent);
             contacting
                 .derivatives(&query, keep != Keep::Exact, &mut |node, block| linear.add_block(&mixture, node, &block));
-            if let Keep::Raised(part) = keep {
-                linear.raise(part);
-            }
             factored = linear.factor_positive(&Filter { free, projectors }).is_ok();
             if factored {
                 break;

@@ -25,9 +25,6 @@ use opruga_core::system::{Member, System};
 use opruga_solve::blocks::{Block, times};
 use opruga_solve::dense::inverse;
 
-/// Resistance of the whole below this part of what it is the sum of is rounding, as of sums over many cells.
-const NO_RESISTANCE: f64 = 1e-13;
-
 /// Motions of the whole in space.
 const MOST: usize = 6;
 
@@ -103,7 +100,7 @@ impl<const D: usize> Rigid<D> {
             factor: 1.0,
             owner: &owner,
             displacements: &displacements,
-            of: vec![[[[0.0; 2]; MOST]; MOST]; self.pieces.len()],
+            of: vec![[[0.0; MOST]; MOST]; self.pieces.len()],
         };
         let (system, view) = (mixture.system, mixture.system.view(mixture.stage, mixture.system.time + mixture.time));
         for (_, member) in self.outer(system) {
@@ -121,9 +118,7 @@ impl<const D: usize> Rigid<D> {
             let mut matrix = vec![0.0; n * n];
             for p in 0..n {
                 for q in 0..n {
-                    let [found, parts] = resistance[p][q];
-                    let found = if found.abs() > NO_RESISTANCE * parts { found } else { 0.0 };
-                    matrix[p * n + q] = found + if p == q { mixture.sigma } else { 0.0 };
+                    matrix[p * n + q] = resistance[p][q] + if p == q { mixture.sigma } else { 0.0 };
                 }
             }
             piece.inverse = inverse(&matrix, n).unwrap_or_else(|| {
@@ -328,43 +323,36 @@ impl<const D: usize> Piece<D> {
     }
 }
 
-/// Adds up φᵀ K φ of every piece, and the sizes of its parts.
+/// Adds up φᵀ K φ of every piece.
 struct Resistance<'a, const D: usize> {
     factor: f64,
     owner: &'a [usize],
     displacements: &'a [[f64; D]],
-    of: Vec<[[[f64; 2]; MOST]; MOST]>,
+    of: Vec<[[f64; MOST]; MOST]>,
 }
 
 impl<const D: usize> Sink<D> for Resistance<'_, D> {
     fn block(&mut self, a: usize, b: usize, value: Block<D>) {
         let out = &mut self.of[self.owner[a]];
         for q in 0..MOST {
-            let displacement = &self.displacements[b * MOST + q];
-            let pulled = times(&value, displacement);
-            let most: [f64; D] = core::array::from_fn(|i| (0..D).map(|j| (value[i][j] * displacement[j]).abs()).sum());
+            let pulled = times(&value, &self.displacements[b * MOST + q]);
             for p in 0..MOST {
-                let displacement = &self.displacements[a * MOST + p];
-                out[p][q][0] += self.factor * along(displacement, &pulled);
-                out[p][q][1] += self.factor * (0..D).map(|i| displacement[i].abs() * most[i]).sum::<f64>();
+                out[p][q] += self.factor * along(&self.displacements[a * MOST + p], &pulled);
             }
         }
     }
     fn low_rank(&mut self, c: f64, u: &[(usize, [f64; D])]) {
         let Some((first, _)) = u.first() else { return };
         let out = &mut self.of[self.owner[*first]];
-        let (mut sums, mut sizes) = ([0.0; MOST], [0.0; MOST]);
+        let mut sums = [0.0; MOST];
         for (place, entry) in u {
             for p in 0..MOST {
-                let part = along(entry, &self.displacements[place * MOST + p]);
-                sums[p] += part;
-                sizes[p] += part.abs();
+                sums[p] += along(entry, &self.displacements[place * MOST + p]);
             }
         }
         for p in 0..MOST {
             for q in 0..MOST {
-                out[p][q][0] += self.factor * c * sums[p] * sums[q];
-                out[p][q][1] += self.factor * (c * sizes[p] * sizes[q]).abs();
+                out[p][q] += self.factor * c * sums[p] * sums[q];
             }
         }
     }
@@ -375,10 +363,7 @@ impl<const D: usize> Sink<D> for Resistance<'_, D> {
             let pulled = part.product(|index| self.displacements[index * MOST + q]);
             for (index, pulled) in part.indices.iter().zip(&pulled) {
                 for p in 0..MOST {
-                    let displacement = &self.displacements[*index as usize * MOST + p];
-                    out[p][q][0] += self.factor * along(displacement, pulled);
-                    let size: f64 = (0..D).map(|d| (displacement[d] * pulled[d]).abs()).sum();
-                    out[p][q][1] += self.factor.abs() * size;
+                    out[p][q] += self.factor * along(&self.displacements[*index as usize * MOST + p], pulled);
                 }
             }
         }
