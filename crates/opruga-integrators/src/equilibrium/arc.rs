@@ -27,9 +27,8 @@ const MOST_HALVINGS: u32 = 10;
 /// The cosine of the angle by which the curve may turn from step to step and within one.
 const LEAST_COSINE: f64 = 0.5;
 
-/// Iterations of a step at most, alone and on obstacles, whose friction follows slowly: more mean that the way is too long.
+/// Iterations of a step at most: more mean that the way is too long.
 const ITERATIONS: u32 = 25;
-const ITERATIONS_ON_OBSTACLES: u32 = 60;
 
 /// Goes a way along the curve from the state at the start of the step and `load`; `workspace.u` is then the displacement. Gives
 /// the load, which is 1 where the end was reached.
@@ -113,7 +112,7 @@ fn one_step<const D: usize>(
     workspace.contacting.clear(system.nodes);
     // Whether the step ends at the whole load, and not after its way.
     let mut ends = false;
-    for iteration in 0..if system.contacts.is_some() { ITERATIONS_ON_OBSTACLES } else { ITERATIONS } {
+    for iteration in 0..ITERATIONS {
         solved.iterations += 1;
         let balance = Balance { sigma: 0.0, beta: 0.0, theta: 1.0, time: h, h, load: now, impulse: 1.0, echo: 0.0 };
         if evaluate(system, workspace, &balance, false).is_err() {

@@ -44,7 +44,7 @@ mod slack;
 mod tests;
 
 use self::among_others::AmongOthers;
-use crate::implicit::balance::{Balance, Solved};
+use crate::implicit::balance::Balance;
 use crate::implicit::convergence::report;
 use crate::implicit::ends::Statics;
 use crate::implicit::linear::has_symmetric_matrix;
@@ -108,9 +108,6 @@ pub struct Equilibrium {
     arc_length: Option<f64>,
     settings: Settings,
 }
-
-/// After so many iterations it is asked whether obstacles hold the body at all.
-const EARLY: u32 = 25;
 
 /// The part of the load that is on, whether it has reached the whole, and the last displacement along the curve of equilibria [m].
 const LOAD: PerBody<f64> = PerBody::new("equilibrium.load");
@@ -223,22 +220,10 @@ impl Equilibrium {
         workspace.hold(system, at.held, h);
         let balance =
             Balance { sigma: 0.0, beta: 0.0, theta: 1.0, time: at.time, h, load: at.load, impulse: 1.0, echo: 0.0 };
-        let mut solved = Solved::default();
+        let mut solved = Newton(self.settings).minimise(system, workspace, &balance)?;
         // A body that lies on obstacles may still be free to slide or to roll, which no iteration ends, or at any place.
-        let loose = system.contacts.is_some() && rigid::is_loose(system);
-        let all = self.settings.iterations;
-        for most in if loose { [EARLY.min(all), all] } else { [all, all] } {
-            if most == solved.iterations || solved.converged {
-                continue;
-            }
-            let before = solved;
-            let settings = Settings { iterations: most - before.iterations, ..self.settings };
-            solved = Newton(settings).minimise(system, workspace, &balance)?;
-            solved.iterations += before.iterations;
-            solved.products += before.products;
-            if loose {
-                self.refuse_what_is_free(system, workspace)?;
-            }
+        if system.contacts.is_some() && rigid::is_loose(system) {
+            self.refuse_what_is_free(system, workspace)?;
         }
         solved.converged &= !leaves_nodes_inside(system, workspace, h);
         report(SPEC.kind, &self.settings, system, workspace, &solved)

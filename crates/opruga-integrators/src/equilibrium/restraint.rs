@@ -81,13 +81,10 @@ pub(super) fn outer<const D: usize>(system: &System<D>) -> Vec<&Member<D>> {
     system.members.iter().filter(acts).collect()
 }
 
-/// The stiffness of a model against motions of the whole below which it has none, as a part of its largest; forces of a body that was
-/// turned, and those that were turned with it, are the same if they differ by less than this part.
+/// The stiffness of a model against motions of the whole below which it has none, as a part of its largest.
 const NO_TIE: f64 = 1e-9;
-const ALIKE: f64 = 1e-6;
 
-/// Whether a model resists motions of a body as a whole: forces between nodes do not, since they move and turn with these. A turn is
-/// looked at twice: the forces of a linear law do not follow a large one, and derivatives that leave something out resist a small one.
+/// Whether a model resists motions of a body as a whole: forces between nodes do not, since they move and turn with these.
 fn ties_to_space<const D: usize>(system: &System<D>, member: &Member<D>) -> bool {
     let properties = member.potential.properties();
     if let Some(between) = properties.acts_between_nodes {
@@ -115,7 +112,7 @@ fn ties_to_space<const D: usize>(system: &System<D>, member: &Member<D>) -> bool
             let turned = turned(motion, force);
             found += (0..D).map(|d| shapes[p][node * D + d] * turned[d]).sum::<f64>();
         }
-        found.abs() > NO_TIE * projection.largest && (!motion.turns() || is_left_behind(system, member, motion, &force))
+        found.abs() > NO_TIE * projection.largest
     })
 }
 
@@ -151,35 +148,6 @@ pub(crate) fn acts_between_nodes<const D: usize>(system: &System<D>, member: &Me
     };
     // What does not change with positions knows no places of nodes.
     stiffness.largest > 0.0 && !(0..shapes.len()).any(brakes) && !(0..D).any(pushes)
-}
-
-/// Whether the forces of a model do not turn with a body that is turned by a motion.
-fn is_left_behind<const D: usize>(
-    system: &System<D>,
-    member: &Member<D>,
-    motion: &Motion<D>,
-    force: &[[f64; D]],
-) -> bool {
-    let (all, rest) = (whole(system), Columns::zeros(system.places()));
-    let x = pose(&system.state.x, &all, motion, &center(&system.state.x, &all));
-    let view = View { x: x.slices(), v: rest.slices(), ..system.view(Stage::Current, system.time) };
-    let Some(scratch) = prepared(system, member, &view) else { return false };
-    let mut there = vec![[0.0; D]; system.nodes];
-    add_forces_of(system, member, &scratch, &view, &mut there);
-    let speed = motion.rotation.iter().map(|r| r * r).sum::<f64>().sqrt();
-    let unit = Motion { translation: [0.0; D], rotation: motion.rotation.iter().map(|r| r / speed).collect() };
-    let (sine, cosine) = libm::sincos(TURN);
-    let (mut apart, mut size) = (0.0, 0.0);
-    for (force, there) in force.iter().zip(&there) {
-        let first = turned(&unit, force);
-        let second = turned(&unit, &first);
-        for d in 0..D {
-            let carried = force[d] + sine * first[d] + (1.0 - cosine) * second[d];
-            apart += (there[d] - carried).abs();
-            size += there[d].abs() + carried.abs();
-        }
-    }
-    apart > ALIKE * size
 }
 
 /// What a model works out in a state before it is asked; none where it has no meaning there.
