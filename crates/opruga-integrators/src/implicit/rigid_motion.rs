@@ -156,3 +156,34 @@ pub(super) fn unheld<const D: usize>(
     }
     out
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use opruga_solve::blocks::isotropic;
+
+    /// Nodes of a plane body that all slide along one straight guide: the body may slide and nothing else, however many they are. What
+    /// rounding makes of their directions is no direction of its own.
+    #[test]
+    fn nodes_that_a_guide_holds_leave_one_motion() {
+        let normal = [0.6, 0.8];
+        let mut projector = isotropic::<2>(1.0);
+        for i in 0..2 {
+            for j in 0..2 {
+                projector[i][j] -= normal[i] * normal[j];
+            }
+        }
+        let unit = |d: usize| core::array::from_fn(|k| if k == d { 1.0 } else { 0.0 });
+        let mut all: Vec<Motion<2>> = (0..2).map(|d| Motion { translation: unit(d), rotation: [0.0; 3] }).collect();
+        all.push(Motion { translation: [0.0; 2], rotation: [0.0, 0.0, 1.0] });
+        let nodes: Vec<usize> = (0..7).collect();
+        let (free, projectors) = ([false; 7], [projector; 7]);
+        let along_the_guide = |node: usize| [-0.8 * 0.1 * node as f64, 0.6 * 0.1 * node as f64];
+        let left = unheld(&all, &nodes, &Filter { free: &free, projectors: &projectors }, along_the_guide);
+        assert_eq!(left.len(), 1, "{left:?}");
+        assert!(along(&left[0].translation, &normal).abs() < 1e-14 && left[0].rotation[2].abs() < 1e-14, "{left:?}");
+        // One node of them is held along one direction: two motions are left.
+        let one = unheld(&all, &nodes[3..4], &Filter { free: &free, projectors: &projectors }, along_the_guide);
+        assert_eq!(one.len(), 2, "{one:?}");
+    }
+}
