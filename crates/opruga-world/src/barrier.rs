@@ -83,6 +83,7 @@ impl<const D: usize> Meeting<D> {
         self.advance_as_one(islands, step, kept, (0.5 * h, time), halvings + 1)
     }
 
+    /// Makes a step of h to a time [s], a part of a whole substep [s].
     fn find_common_end(
         &mut self,
         islands: &mut [&mut Island<D>],

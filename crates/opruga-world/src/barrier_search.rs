@@ -188,20 +188,26 @@ impl<const D: usize> Search<'_, '_, D> {
         // Bodies that come to rest are balanced once friction is known: what slides without it may have no balance but far away.
         let mut precise = self.staying.is_none();
         for _ in 0..MOST_ROUNDS {
+            self.converged = true;
             self.find_minimum(precise)?;
             // The normal forces that friction goes by, and its multipliers, are those of what was found.
             let multipliers = self.multipliers();
             before = std::mem::take(&mut self.rubbing);
             self.rub(&multipliers);
-            self.converged = self.is_settled(&before);
-            if self.converged && precise {
-                break;
+            let settled = self.is_settled(&before);
+            if settled && precise {
+                self.rubbing = before;
+                return Ok(());
             }
-            precise |= self.converged;
+            precise |= settled;
         }
         // Its forces are those with which the bodies are balanced.
         self.rubbing = before;
-        if precise { Ok(()) } else { self.find_minimum(true) }
+        if self.staying.is_some() {
+            self.find_minimum(true)?;
+        }
+        self.converged = false;
+        Ok(())
     }
 
     /// What friction acts against on every pair [N], by the features of the pairs.
