@@ -84,7 +84,8 @@ pub(super) fn change<const D: usize>(
         kinetic += 0.5 * inertia.square::<D>(&workspace.v1);
     }
     let after = system.potential_energy(Workspace::<D>::STAGE, h).map(|stored| stored + kinetic);
-    let rounding = stage::rounding_of_models(system);
+    let size = before.abs() + after.map_or(0.0, f64::abs) + kinetic;
+    let rounding = stage::rounding_of_models(system) + stage::CANCELLATION * size;
     stage::evaluate(system, workspace, balance, false)?;
     Ok(Some(Change { before, after, rounding }))
 }

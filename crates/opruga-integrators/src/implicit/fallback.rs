@@ -5,7 +5,7 @@ use super::minimiser::Minimiser;
 use super::newton::Newton;
 use super::real_time::{self, Trust, iterate, mark_stale};
 use super::settings::Settings;
-use super::stage::{evaluate, potential, rounding_of_models};
+use super::stage::{CANCELLATION, evaluate, potential, rounding_of_models};
 use super::workspace::Workspace;
 use opruga_core::error::StepError;
 use opruga_core::history::Channel;
@@ -101,7 +101,7 @@ fn has_risen<const D: usize>(
     workspace: &mut Workspace<D>,
     balance: &Balance,
 ) -> Result<bool, StepError> {
-    let Some((after, _)) = potential(system, workspace, balance, false) else { return Ok(true) };
+    let Some((after, size)) = potential(system, workspace, balance, false) else { return Ok(true) };
     if !after.is_finite() {
         return Ok(true);
     }
@@ -114,5 +114,6 @@ fn has_risen<const D: usize>(
         Err(_) => None,
     };
     evaluate(system, workspace, balance, false)?;
-    Ok(!before.is_some_and(|(before, _)| after - before <= rounding_of_models(system)))
+    let rounding = |parts: f64| rounding_of_models(system) + CANCELLATION * (size + parts);
+    Ok(!before.is_some_and(|(before, parts)| after - before <= rounding(parts)))
 }

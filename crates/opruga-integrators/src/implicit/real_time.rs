@@ -15,7 +15,7 @@ use super::direction::wanted_forces;
 use super::friction::SlipRule;
 use super::linear::{Filter, Mixture};
 use super::rigid_balance::settles;
-use super::settings::{ENOUGH, Settings};
+use super::settings::Settings;
 use super::slenderness::has_dense;
 use super::stage::{evaluate, judge, look};
 use super::workspace::Workspace;
@@ -267,7 +267,8 @@ fn is_direct<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, s
 
 /// The parts of what is out of balance that an iteration is good enough with, and that the linear solver may leave.
 fn aims<const D: usize>(system: &System<D>, settings: &Settings) -> (f64, f64) {
-    if is_loose(system) { (LOOSE * LOOSE, LOOSE) } else { (settings.aim, LINEAR.smaller(0.5 * settings.aim)) }
+    let aim = settings.leaves[0];
+    if is_loose(system) { (LOOSE * LOOSE, LOOSE) } else { (aim, LINEAR.smaller(0.5 * aim)) }
 }
 
 /// Three iterations, or as many as the scene says, and whether what they leave may count.
@@ -314,7 +315,7 @@ pub(super) fn iterate<const D: usize>(
             if mismatch > most && size > floor {
                 mark_stale(system);
             }
-            let end = End { size, first, floor, slow, remade };
+            let end = End { size, first, floor, most: settings.leaves[1], slow, remade };
             return conclude(system, workspace, balance, settings, solved, &end);
         }
         if mismatch > MOST_MISMATCH {
@@ -353,6 +354,8 @@ struct End {
     size: f64,
     first: f64,
     floor: f64,
+    /// The part of it that may be left.
+    most: f64,
     /// Whether an iteration took many products, and whether the matrix was made anew.
     slow: bool,
     remade: bool,
@@ -367,8 +370,8 @@ fn conclude<const D: usize>(
     mut solved: Solved,
     end: &End,
 ) -> Result<(Solved, Trust), StepError> {
-    let End { size, first, floor, slow, remade } = *end;
-    let as_promised = size <= (ENOUGH * first).larger(floor);
+    let End { size, first, floor, most, slow, remade } = *end;
+    let as_promised = size <= (most * first).larger(floor);
     if slow || !as_promised {
         let left = size / workspace.reused.stiffness().sqrt();
         let work = &mut system.work.solver;

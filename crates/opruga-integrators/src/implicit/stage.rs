@@ -15,7 +15,7 @@ use opruga_math::Lane;
 
 /// The rounding of an energy as a part of the terms whose difference it is in its models: of a law that takes the energy at rest away,
 /// a stiff body has more of it than energy.
-const CANCELLATION: f64 = 1e-15;
+pub(super) const CANCELLATION: f64 = 1e-15;
 
 /// The longest way of a node.
 pub(crate) fn longest(step: &[f64], dimension: usize) -> f64 {
