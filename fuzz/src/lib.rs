@@ -60,7 +60,7 @@ pub fn shape_files(bytes: &[u8]) {
     let limits = Limits { nodes: 20_000, memory_bytes: 64 << 20, ..Limits::default() };
     let beside = [("a.node", NODES), ("a.ele", CELLS)].into_iter().filter(|(file, _)| *file != name);
     let files = beside.chain([(name, bytes)]).map(|(file, bytes)| (file.to_string(), Arc::from(bytes)));
-    let files = Files::held(files);
+    let files = Files::in_memory(files);
     if let Err(errors) =
         read(text.as_bytes(), "fuzz.toml", &catalogue, &Options { limits, files, ..Options::default() })
     {

@@ -27,7 +27,7 @@ impl Size {
 }
 
 /// `cargo xtask tokens [BASE] [--long]`.
-pub(crate) fn tell(arguments: &[String]) -> Result<(), String> {
+pub(crate) fn report(arguments: &[String]) -> Result<(), String> {
     let words: Vec<&String> = arguments.iter().filter(|word| *word != "--long").collect();
     if words.len() > 1 {
         return Err(format!("`{}` says nothing here: one commit is compared", words[1]));

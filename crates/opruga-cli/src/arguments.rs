@@ -243,7 +243,7 @@ pub(crate) struct Pictures {
 
 impl Pictures {
     /// Whether the call says anything of them.
-    fn said(&self) -> bool {
+    fn is_given(&self) -> bool {
         self.fps.is_some() || self.no_pictures || self.gif || self.arrows || self.springs
     }
 
@@ -444,7 +444,7 @@ impl Replay {
     /// Whether the call says what is to be written.
     pub(crate) fn writes(&self) -> bool {
         let formats = [self.vtk, self.vtu, self.obj, self.ply, self.gltf, self.pc2, self.mdd];
-        self.out.is_some() || self.pictures.said() || formats.contains(&true)
+        self.out.is_some() || self.pictures.is_given() || formats.contains(&true)
     }
 
     /// What shall be seen.

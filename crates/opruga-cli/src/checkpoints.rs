@@ -146,7 +146,7 @@ fn read(path: &Path, registries: &Registries) -> Result<(SavedRun, Source), Box<
     let checkpoint = Checkpoint::read(&bytes).map_err(|e: CheckpointError| SceneError::from(&e))?;
     let run = SavedRun::read(&checkpoint.payload).ok_or_else(|| SceneError::of(CallError::OtherVersion {}))?;
     let file = format!("scene {} (in {})", run.name, path.display());
-    let files = Files::held(run.calling.files.clone());
+    let files = Files::in_memory(run.calling.files.clone());
     let (name, bytes, registries) = (run.name.clone(), checkpoint.scene.into_bytes(), registries.clone());
     let source = Source { name, file, path: None, bytes, files, registries };
     Ok((run, source))
@@ -215,7 +215,7 @@ impl<'a> Keeper<'a> {
 
     /// Writes the table so far and a checkpoint if it is time to. A failure on the way is told, counted, and no end of the
     /// run: the next one may succeed.
-    pub(crate) fn on_the_way(&mut self, world: &dyn AnyWorld, table: &NumberTable) -> Option<Warning> {
+    pub(crate) fn write_if_due(&mut self, world: &dyn AnyWorld, table: &NumberTable) -> Option<Warning> {
         let start = self.next.filter(|next| Instant::now() >= *next).map(|_| Instant::now())?;
         let written = self.write(world, table);
         let took = start.elapsed();

@@ -64,12 +64,12 @@ pub(crate) fn mesh(call: &Call) -> Result<u8, Failure> {
         let made = body::<2>(&shape, &files, &Limits::default(), &mut named);
         let (mesh, notices) = made.map_err(|e| refused(call, name, e))?;
         apart(&named)?;
-        finish(call, mesh, &told(call, name, notices), out)
+        finish(call, mesh, &file_notices(call, name, notices), out)
     } else {
         let made = body::<3>(&shape, &files, &Limits::default(), &mut named);
         let (mesh, notices) = made.map_err(|e| refused(call, name, e))?;
         apart(&named)?;
-        finish(call, mesh, &told(call, name, notices), out)
+        finish(call, mesh, &file_notices(call, name, notices), out)
     }
 }
 
@@ -167,12 +167,12 @@ fn refused(call: &Call, name: &str, problem: Problem) -> Failure {
 }
 
 /// What is odd about the file.
-fn told(call: &Call, name: &str, notices: Vec<SceneError>) -> Vec<Notice> {
-    let said = |about: SceneError| {
+fn file_notices(call: &Call, name: &str, notices: Vec<SceneError>) -> Vec<Notice> {
+    let notice = |about: SceneError| {
         let quotes = !is_of_shapes(&about);
         Notice { about: in_words_of_the_call(call, name, about, quotes), count: 1 }
     };
-    notices.into_iter().map(said).collect()
+    notices.into_iter().map(notice).collect()
 }
 
 /// Whether an error is about the shape that the call asks for, and not about the text of its file.
@@ -203,7 +203,7 @@ const WORDS: [(&str, &str); 6] = [
 /// A text in which fields of scenes, alone or with a value, are options of the call: `` `weld = 0.1` `` becomes `--set weld=0.1`.
 fn options(text: &str) -> String {
     let mut out = String::new();
-    for (place, piece) in text.split('`').enumerate() {
+    for (index, piece) in text.split('`').enumerate() {
         let (field, value) = piece.split_once(" = ").map_or((piece, None), |(field, value)| (field, Some(value)));
         let option = match field {
             "spacing" => "--size".to_string(),
@@ -212,7 +212,7 @@ fn options(text: &str) -> String {
         };
         let between = if option.starts_with("--set") { "=" } else { " " };
         let known = field != "kind" && shapes::all().iter().any(|spec| spec.fields.iter().any(|f| f.name == field));
-        match (place % 2 == 1, known, value) {
+        match (index % 2 == 1, known, value) {
             (true, true, Some(value)) => out += &format!("{option}{between}{}", value.trim_matches('"')),
             (true, true, None) if between == "=" => out += &format!("{option}=…"),
             (true, true, None) => out += &option,
@@ -227,9 +227,9 @@ fn options(text: &str) -> String {
 fn in_words_of_the_call(call: &Call, name: &str, error: SceneError, quotes: bool) -> SceneError {
     let error = if call.json { error } else { error.translated(translation()) };
     let replaced = |text: String| WORDS.iter().fold(text, |text, (scene, call)| text.replace(scene, call));
-    let said = |text: String| options(&replaced(text));
+    let reworded = |text: String| options(&replaced(text));
     // What only scenes have is said of them.
-    let hint = error.hint.filter(|_| !error.code.starts_with("read.")).map(said).map(|hint| {
+    let hint = error.hint.filter(|_| !error.code.starts_with("read.")).map(reworded).map(|hint| {
         let (here, in_scenes): (Vec<&str>, Vec<&str>) = hint.split("; ").partition(|part| !part.contains('`'));
         match in_scenes.is_empty() {
             true => hint,
@@ -240,7 +240,7 @@ fn in_words_of_the_call(call: &Call, name: &str, error: SceneError, quotes: bool
     let file = placed(call, name, &error.file);
     let (message, allowed) = match quotes {
         true => (replaced(error.message), error.allowed.map(replaced)),
-        false => (said(error.message), error.allowed.map(said)),
+        false => (reworded(error.message), error.allowed.map(reworded)),
     };
     SceneError { file, message, allowed, hint, path: String::new(), ..error }
 }
@@ -359,8 +359,8 @@ fn print<const D: usize>(
         }
     }
     for what in left_out {
-        let told = NotInFormat::LeftOutOfFormat { what: what.clone() };
-        text += &format!("{}\n", in_words(translation(), &told));
+        let note = NotInFormat::LeftOutOfFormat { what: what.clone() };
+        text += &format!("{}\n", in_words(translation(), &note));
     }
     for file in files {
         text += &format!("written: {file}\n");

@@ -191,8 +191,8 @@ fn draw_shapes(
         let most = mode.shape.iter().map(|v| v.iter().map(|c| c * c).sum::<f64>()).fold(0.0, f64::max).sqrt();
         let factor = if most > 0.0 { AMPLITUDE * extent / most } else { 0.0 };
         for (node, (x, shape)) in start.iter().zip(&mode.shape).enumerate() {
-            let place = core::array::from_fn(|d| x[d] + factor * shape[d]);
-            world.place_node(body, node as u32, place, [0.0; 3]).map_err(Failure::call)?;
+            let position = core::array::from_fn(|d| x[d] + factor * shape[d]);
+            world.set_node(body, node as u32, position, [0.0; 3]).map_err(Failure::call)?;
         }
         let mut picture = scenery.picture(&scenery.capture(world, false));
         let legend = picture.legend.take().unwrap_or_default();
@@ -235,7 +235,7 @@ fn draw_shapes(
 /// How far every point of a body has gone, over the farthest.
 fn moved(rest: &draw::BodyPicture, body: &draw::BodyPicture) -> Vec<f64> {
     let apart = |(a, b): (&[f64; 3], &[f64; 3])| (0..3).map(|d| (a[d] - b[d]).powi(2)).sum::<f64>().sqrt();
-    let ways: Vec<f64> = rest.positions.iter().zip(&body.positions).map(apart).collect();
-    let most = ways.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-    ways.into_iter().map(|way| way / most).collect()
+    let displacements: Vec<f64> = rest.positions.iter().zip(&body.positions).map(apart).collect();
+    let most = displacements.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+    displacements.into_iter().map(|displacement| displacement / most).collect()
 }

@@ -28,8 +28,8 @@ pub(crate) struct Outputs<'a> {
     pub(crate) steps: u64,
     /// The time of the checkpoint that the run went on from [s].
     pub(crate) resumed_at: Option<f64>,
-    /// What was odd in the call and in the scene, and went wrong on the way; all of it was told when it was found.
-    pub(crate) told: Vec<Warning>,
+    /// What was odd in the call and in the scene, and went wrong on the way; all of it was reported when it was found.
+    pub(crate) reported: Vec<Warning>,
     pub(crate) stop: &'a AtomicBool,
     /// Whether `final.csv` tells the stress at every node too.
     pub(crate) stress: bool,
@@ -222,10 +222,10 @@ impl Outputs<'_> {
 
     /// What was odd: in the call, in the scene, on the way, in the world.
     fn all_warnings(&self, world: &dyn AnyWorld) -> Vec<WarningSummary> {
-        self.told.iter().chain(&world.warnings_at_the_end()).map(WarningSummary::from).collect()
+        self.reported.iter().chain(&world.warnings_at_the_end()).map(WarningSummary::from).collect()
     }
 
-    /// A few lines for people; warnings that were told early are not told again.
+    /// A few lines for people; warnings that were reported early are not reported again.
     pub(crate) fn talk(&self, world: &dyn AnyWorld, early: &[Warning]) {
         let e = world.energy();
         let nodes: usize = world.bodies().into_iter().map(|body| world.node_count(body)).sum();
@@ -258,12 +258,12 @@ impl Outputs<'_> {
             .warnings_at_the_end()
             .into_iter()
             .filter(|warning| !early.contains(warning))
-            .for_each(|warning| tell(&warning));
-        self.say_where();
+            .for_each(|warning| print_warning(&warning));
+        self.print_paths();
     }
 
     /// Where the output lies, and what of it is for the eye.
-    pub(crate) fn say_where(&self) {
+    pub(crate) fn print_paths(&self) {
         eprintln!("written to {}", self.folder.path("").display());
         let pictures = ["video.mp4", "video.gif", "strip.png", "plots.svg"];
         let there: Vec<&str> = pictures.into_iter().filter(|name| self.folder.path(name).is_file()).collect();
@@ -295,7 +295,7 @@ fn solver_summary(world: &dyn AnyWorld) -> Option<SolverSummary> {
         cut_off: work.cut_off,
         largest_left: work.left,
         disturbed: work.disturbed,
-        odd_rests: work.odd_rests,
+        stayed_degenerate: work.stayed_degenerate,
     })
 }
 
@@ -321,6 +321,6 @@ pub(crate) fn cells(world: &dyn AnyWorld) -> Vec<CellSummary> {
 }
 
 /// A warning for people.
-pub(crate) fn tell(warning: &Warning) {
+pub(crate) fn print_warning(warning: &Warning) {
     eprintln!("{}", opruga::io::problem::warning_text(warning, crate::language::translation()));
 }

@@ -44,7 +44,7 @@ pub(crate) fn of_run(table: &NumberTable, columns: &Columns, name: &str) -> Resu
     ];
     // The thesis calls something volume and pressure that is neither.
     for published in [false, true] {
-        let say = |what: &str| if published { format!("{what} as published") } else { what.to_string() };
+        let panel_title = |what: &str| if published { format!("{what} as published") } else { what.to_string() };
         let (what, power) = if columns.dimension == 2 && !published { ("area", "²") } else { ("volume", "³") };
         let power = if published { "²" } else { power };
         let pressure = match (published, metres) {
@@ -52,8 +52,8 @@ pub(crate) fn of_run(table: &NumberTable, columns: &Columns, name: &str) -> Resu
             (false, true) => "Pa".into(),
             (false, false) => format!("kg/({length} s²)"),
         };
-        panels.push(panel(&say(what), &format!("{length}{power}"), run.readings("volume", published)));
-        panels.push(panel(&say("pressure"), &pressure, run.readings("pressure", published)));
+        panels.push(panel(&panel_title(what), &format!("{length}{power}"), run.readings("volume", published)));
+        panels.push(panel(&panel_title("pressure"), &pressure, run.readings("pressure", published)));
     }
     for (what, label, unit) in [
         (Recorded::Position, "position", length.clone()),
@@ -75,28 +75,28 @@ pub(crate) fn of_run(table: &NumberTable, columns: &Columns, name: &str) -> Resu
 
 impl Run<'_> {
     /// The line of a column.
-    fn line(&self, place: usize, name: &str) -> Line {
-        let points = self.table.rows().map(|row| [row[0], row[place]]).collect();
+    fn line(&self, index: usize, name: &str) -> Line {
+        let points = self.table.rows().map(|row| [row[0], row[index]]).collect();
         Line { name: name.replace('_', " "), points, ..Line::default() }
     }
 
-    /// The place of a column.
-    fn place(&self, name: &str) -> Option<usize> {
+    /// The index of a column.
+    fn index_of(&self, name: &str) -> Option<usize> {
         self.table.columns().iter().position(|column| column == name)
     }
 
     /// The lines of columns in which something happened: the others say nothing.
     fn named(&self, names: &[&str]) -> Vec<Line> {
-        let places = names.iter().filter_map(|name| Some((self.place(name)?, name)));
-        places
-            .filter(|(place, _)| self.table.rows().any(|row| row[*place] != 0.0))
-            .map(|(place, name)| self.line(place, name))
+        let indices = names.iter().filter_map(|name| Some((self.index_of(name)?, name)));
+        indices
+            .filter(|(index, _)| self.table.rows().any(|row| row[*index] != 0.0))
+            .map(|(index, name)| self.line(index, name))
             .collect()
     }
 
     /// The largest number of a column.
-    fn largest(&self, place: usize) -> f64 {
-        self.table.rows().map(|row| row[place]).fold(0.0, f64::max)
+    fn largest(&self, index: usize) -> f64 {
+        self.table.rows().map(|row| row[index]).fold(0.0, f64::max)
     }
 
     /// The energies. One that hardly changes beside its own size is drawn from its start on: its zero says nothing,
@@ -121,10 +121,10 @@ impl Run<'_> {
         let axes = ["x", if self.columns.y_down { "y (downwards)" } else { "y" }, "z"];
         let mut lines = Vec::new();
         for (axis, name) in ["x", "y", "z"].iter().zip(axes) {
-            lines.extend(self.place(&format!("momentum.{axis}")).map(|place| self.line(place, name)));
+            lines.extend(self.index_of(&format!("momentum.{axis}")).map(|index| self.line(index, name)));
         }
         // What rounding leaves where forces cancel is no momentum: beside √(2 E) it is nothing.
-        let kinetic = self.place("kinetic").map_or(0.0, |place| self.largest(place));
+        let kinetic = self.index_of("kinetic").map_or(0.0, |index| self.largest(index));
         lines.retain(|line| line.points.iter().any(|point| point[1].abs() > 1e-9 * (2.0 * kinetic).sqrt()));
         lines
     }
@@ -135,14 +135,14 @@ impl Run<'_> {
         for (name, thickness, _) in self.columns.bodies.iter().filter(|body| body.2 == published) {
             // A body of several chambers says more by each of them than by their mean.
             let chambers = (1..).map_while(|n| {
-                self.place(&format!("{name}.chamber{n}.{what}")).map(|place| (place, format!("{name}, chamber {n}")))
+                self.index_of(&format!("{name}.chamber{n}.{what}")).map(|index| (index, format!("{name}, chamber {n}")))
             });
-            let mut places: Vec<(usize, String)> = chambers.collect();
-            if places.is_empty() {
-                places.extend(self.place(&format!("{name}.{what}")).map(|place| (place, name.clone())));
+            let mut indices: Vec<(usize, String)> = chambers.collect();
+            if indices.is_empty() {
+                indices.extend(self.index_of(&format!("{name}.{what}")).map(|index| (index, name.clone())));
             }
-            for (place, name) in places {
-                let mut line = Line { name, ..self.line(place, "") };
+            for (index, name) in indices {
+                let mut line = Line { name, ..self.line(index, "") };
                 if what == "volume" && self.columns.dimension == 2 && !published {
                     line.points.iter_mut().for_each(|point| point[1] /= thickness);
                 }
@@ -171,11 +171,11 @@ impl Run<'_> {
 /// The mean of many lines over the same places, with the band between the lowest and the highest.
 fn mean_and_range(lines: &[Line]) -> Line {
     let mut mean = Line { name: format!("mean of {} bodies, and their range", lines.len()), ..Line::default() };
-    for place in 0..lines[0].points.len() {
-        let values = || lines.iter().map(|line| line.points[place][1]).filter(|value| value.is_finite());
+    for index in 0..lines[0].points.len() {
+        let values = || lines.iter().map(|line| line.points[index][1]).filter(|value| value.is_finite());
         let (sum, count) = values().fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
         let (low, high) = values().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
-        let x = lines[0].points[place][0];
+        let x = lines[0].points[index][0];
         mean.points.push([x, sum / count]);
         if count > 0.0 {
             mean.band.push([x, low, high]);

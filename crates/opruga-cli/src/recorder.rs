@@ -180,9 +180,9 @@ impl Recorder {
             return Err(Failure::call(CallFault::FilmRate { rate, fps, frame }));
         }
         if every == wanted
-            && let Some(said) = asked.and_then(|asked| other_rate(asked, every, frame)).filter(|_| notes)
+            && let Some(note) = asked.and_then(|asked| other_rate(asked, every, frame)).filter(|_| notes)
         {
-            eprintln!("{said}");
+            eprintln!("{note}");
         }
         let mut scenery = drawn.then(|| Scenery::new(world));
         if springs {

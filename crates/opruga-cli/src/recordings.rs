@@ -50,8 +50,8 @@ pub(crate) fn open(path: &Path, registries: &Registries) -> Result<(Recording<Fi
     let recording = Recording::open(file).map_err(|error| refuse(SceneError::from(&error)))?;
     let header = recording.header();
     let file = format!("scene {} (in {})", header.name, path.display());
-    let held = header.assets.iter().map(|asset| (asset.name.clone(), asset.bytes.as_slice().into()));
-    let (name, bytes, files) = (header.name.clone(), header.scene.clone(), Files::held(held));
+    let assets = header.assets.iter().map(|asset| (asset.name.clone(), asset.bytes.as_slice().into()));
+    let (name, bytes, files) = (header.name.clone(), header.scene.clone(), Files::in_memory(assets));
     let source = Source { name, file, path: None, bytes, files, registries: registries.clone() };
     Ok((recording, source))
 }

@@ -5,7 +5,7 @@ use crate::errors::{CallFault, CallRange, CallWarning, ResumeHint};
 use crate::exports::{self, Tracks};
 use crate::failure::{Failure, print_data};
 use crate::interrupt;
-use crate::outputs::{Outputs, tell};
+use crate::outputs::{Outputs, print_warning};
 use crate::recorder::Recorder;
 use crate::recordings;
 use crate::run::{default_folder, simd_from_environment};
@@ -45,9 +45,9 @@ pub(crate) fn replay(call: &Replay, registries: &Registries) -> Result<u8, Failu
         uses::apart(&uses)?;
     }
     let frames = wanted_frames(call, &recording)?;
-    let told = oddities(&recording);
+    let reported = oddities(&recording);
     if !call.json {
-        told.iter().for_each(tell);
+        reported.iter().for_each(print_warning);
     }
     let header = recording.header();
     let reading = scene::Options {
@@ -65,7 +65,7 @@ pub(crate) fn replay(call: &Replay, registries: &Registries) -> Result<u8, Failu
     };
     let blueprint = source.read(&reading, &options)?.blueprint;
     let length = header.frame;
-    let job = Job { call, source: &source, reading, options, length, frames, told };
+    let job = Job { call, source: &source, reading, options, length, frames, reported };
     job.run(recording, blueprint)
 }
 
@@ -139,7 +139,7 @@ struct Job<'a> {
     /// The length of a frame [s].
     length: f64,
     frames: RangeInclusive<u64>,
-    told: Vec<Warning>,
+    reported: Vec<Warning>,
 }
 
 impl Job<'_> {
@@ -242,7 +242,7 @@ impl Job<'_> {
             }
             return Ok(
                 json!({"schema": 1, "scene": self.source.name, "frames": span, "compared": compared, "states": states, "pass": true,
-                       "state_hash": same, "warnings": summaries(&self.told)}),
+                       "state_hash": same, "warnings": summaries(&self.reported)}),
             );
         };
         let time = time(frame);
@@ -256,7 +256,7 @@ impl Job<'_> {
         Ok(
             json!({"schema": 1, "scene": self.source.name, "frames": span, "compared": compared, "states": states, "pass": false,
                    "differs_at": {"frame": frame, "time": time, "recorded": hash(recorded), "computed": hash(computed)},
-                   "warnings": summaries(&self.told)}),
+                   "warnings": summaries(&self.reported)}),
         )
     }
 
@@ -329,7 +329,7 @@ impl Job<'_> {
         recorder.finish(world);
         let thinned = recorder.thinned();
         if !call.json {
-            thinned.iter().for_each(tell);
+            thinned.iter().for_each(print_warning);
         }
         folder.write("diagnostics.csv", false, |out| recorder.table.write(out))?;
         let outputs = Outputs {
@@ -338,7 +338,7 @@ impl Job<'_> {
             wall: 0.0,
             steps: 0,
             resumed_at: None,
-            told: Vec::new(),
+            reported: Vec::new(),
             stop,
             stress: false,
         };
@@ -347,7 +347,7 @@ impl Job<'_> {
         }
         if call.json {
             let (from, to) = (self.time(first), self.time(last));
-            let warnings = summaries(self.told.iter().chain(&thinned));
+            let warnings = summaries(self.reported.iter().chain(&thinned));
             let mut row = json!({"schema": 1, "scene": self.source.name, "warnings": warnings, "files": files,
                              "frames": {"first": first, "last": last, "from": from, "to": to},
                              "state_hash": format!("{:016x}", world.state_hash())});
@@ -356,7 +356,7 @@ impl Job<'_> {
             }
             print_data(&format!("{row}\n"))?;
         } else {
-            outputs.say_where();
+            outputs.print_paths();
         }
         Ok(0)
     }

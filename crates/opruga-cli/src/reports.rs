@@ -170,11 +170,11 @@ fn listed(as_json: bool, registries: &Registries) -> String {
         ("colliders", kinds(&catalogue.colliders)),
     ];
     let pairs = registries.plane.pairs();
-    let told = |name| {
+    let described = |name| {
         let text = opruga::scenes::find(name).unwrap_or("");
         (name, opruga::scenes::title(text), opruga::scenes::credit(text))
     };
-    let scenes: Vec<(&str, &str, &str)> = opruga::scenes::names().map(told).collect();
+    let scenes: Vec<(&str, &str, &str)> = opruga::scenes::names().map(described).collect();
     if as_json {
         let row = |k: &Kind| json!({"kind": k.kind, "summary": k.summary, "dimensions": k.dimensions});
         let mut object = serde_json::Map::new();

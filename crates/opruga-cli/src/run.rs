@@ -78,10 +78,10 @@ pub(crate) fn run(call: &Run, registries: &Registries) -> Result<u8, Failure> {
     let above = (world.threads > cores).then_some(CallWarning::AboveCores { threads: world.threads, cores });
     let of_call: Vec<Warning> = other_simd().into_iter().chain(above).map(|about| Warning::new(about, 1)).collect();
     if !call.json {
-        of_call.iter().for_each(outputs::tell);
+        of_call.iter().for_each(outputs::print_warning);
     }
-    let told = notices.into_iter().map(Warning::from).chain(of_call).collect();
-    let job = Job { call, source: &source, reading, files, world, told, resumed };
+    let reported = notices.into_iter().map(Warning::from).chain(of_call).collect();
+    let job = Job { call, source: &source, reading, files, world, reported, resumed };
     job.run(blueprint)
 }
 
@@ -179,7 +179,7 @@ struct Job<'a> {
     files: BTreeMap<String, Arc<[u8]>>,
     world: Options,
     /// Warnings so far.
-    told: Vec<Warning>,
+    reported: Vec<Warning>,
     resumed: Option<SavedRun>,
 }
 
@@ -214,9 +214,9 @@ impl Job<'_> {
         // What is odd from the start is told before the run, the rest behind it.
         let early = world.warnings();
         if !call.json {
-            early.iter().for_each(outputs::tell);
-            whole_frames(frames, frame, seconds).iter().for_each(|said| eprintln!("{said}"));
-            recorder.thinned().iter().for_each(outputs::tell);
+            early.iter().for_each(outputs::print_warning);
+            whole_frames(frames, frame, seconds).iter().for_each(|note| eprintln!("{note}"));
+            recorder.thinned().iter().for_each(outputs::print_warning);
         }
         let first = world.frames();
         let mut progress = Progress::new(frames, first, call.json);
@@ -241,7 +241,7 @@ impl Job<'_> {
             let untaped = tape.as_mut().and_then(|tape| tape.push(&mut *world).err()).map(unrecorded);
             failure = failure.or(untaped);
             looking += recorder.record(&mut *world);
-            if let Some(failed) = keeper.on_the_way(&*world, &recorder.table) {
+            if let Some(failed) = keeper.write_if_due(&*world, &recorder.table) {
                 progress.line(&warning_text(&failed, translation()));
             }
             progress.after_frame(&*world, frame);
@@ -257,7 +257,7 @@ impl Job<'_> {
             wall,
             steps: (world.frames() - first) * u64::from(time.substeps),
             resumed_at: self.resumed.as_ref().map(|saved| saved.time),
-            told: self.told.into_iter().chain(keeper.warning()).chain(recorder.thinned()).collect(),
+            reported: self.reported.into_iter().chain(keeper.warning()).chain(recorder.thinned()).collect(),
             stop,
             stress: call.stress,
         };
@@ -265,7 +265,7 @@ impl Job<'_> {
         let summary = outputs.write(&*world, recorder, &mut keeper)?;
         if let Some(failure) = failure {
             if !call.json {
-                outputs.say_where();
+                outputs.print_paths();
             }
             return Err(failure);
         }

@@ -94,15 +94,15 @@ impl Source {
         // Statics refuses bodies that nothing holds: where that may be missing by another error, it would be a false one.
         let known = reading.knows_what_holds();
         let refusals = refusals.iter().filter(|refusal| known || !refusal.code().starts_with("static."));
-        let placed: Vec<SceneError> = refusals.map(|refusal| self.place(refusal, options)).collect();
+        let located: Vec<SceneError> = refusals.map(|refusal| self.locate(refusal, options)).collect();
         let mut errors = reading.errors;
-        errors.extend(placed);
+        errors.extend(located);
         // What is counted only comes last.
         errors.sort_by_key(|e| (e.code == "scene.more", e.line.unwrap_or(0), e.column.unwrap_or(0)));
         Failure::Scene(shown(errors))
     }
 
-    fn place(&self, error: &WorldError, options: &scene::Options) -> SceneError {
+    fn locate(&self, error: &WorldError, options: &scene::Options) -> SceneError {
         in_scene(SceneError::from(error), self.text(), &self.file, &options.overrides)
     }
 
@@ -122,7 +122,7 @@ impl Source {
             let reading = self.survey(options);
             match self.refused(reading, options, world) {
                 Failure::Scene(all) if !all.is_empty() => Failure::Scene(all),
-                _ => Failure::Scene(vec![self.place(&first, options)]),
+                _ => Failure::Scene(vec![self.locate(&first, options)]),
             }
         })?;
         let warnings = built.warnings();
@@ -135,26 +135,26 @@ impl Source {
 
     /// An error that ends a run at a time; it is not the fault of a line.
     pub(crate) fn run_error(&self, error: &WorldError, time: f64) -> Failure {
-        let said = SceneError { file: self.file.clone(), ..SceneError::from(error) };
-        Failure::Run(Box::new(timed(said, error, time)))
+        let scene_error = SceneError { file: self.file.clone(), ..SceneError::from(error) };
+        Failure::Run(Box::new(timed(scene_error, error, time)))
     }
 
     /// An error that ends a run with a frame: that of a command has its line.
     pub(crate) fn frame_error(&self, error: &WorldError, world: &dyn AnyWorld, options: &scene::Options) -> Failure {
         let Some(command) = world.refused_command() else { return self.run_error(error, world.time()) };
-        let said = of_command(error, &command, (self.text(), self.file.as_str()), &options.overrides);
-        Failure::Run(Box::new(timed(said, error, world.time())))
+        let scene_error = of_command(error, &command, (self.text(), self.file.as_str()), &options.overrides);
+        Failure::Run(Box::new(timed(scene_error, error, world.time())))
     }
 }
 
 /// An error with the time at which it came about; some say themselves when it was.
-fn timed(said: SceneError, error: &WorldError, time: f64) -> SceneError {
+fn timed(scene_error: SceneError, error: &WorldError, time: f64) -> SceneError {
     if matches!(error, WorldError::Snapshot { .. }) || has_time(error) {
-        return said;
+        return scene_error;
     }
-    let message = format!("at t = {} s: {}", number(time), said.message);
-    let about = said.about.clone().map(|about| Around::AtTime { time, about }.into());
-    SceneError { message, about, ..said }
+    let message = format!("at t = {} s: {}", number(time), scene_error.message);
+    let about = scene_error.about.clone().map(|about| Around::AtTime { time, about }.into());
+    SceneError { message, about, ..scene_error }
 }
 
 /// Whether a message, or a part of it, has the time or the time of the last good frame.

@@ -41,9 +41,9 @@ pub(crate) fn sweep(call: &Call, registries: &Registries) -> Result<u8, Failure>
     let known = known_rows(&folder, &sweep, &points)?;
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let threads = call.threads.map_or(cores.min(256), usize::from);
-    let Said { length_unit, credit, ends } = said_of(&sweep);
+    let SceneInfo { length_unit, credit, ends } = scene_info(&sweep);
     if !call.json {
-        ends.iter().for_each(|said| eprintln!("{said}"));
+        ends.iter().for_each(|note| eprintln!("{note}"));
     }
     let work = Work { sweep: &sweep, points: &points, folder: &folder, threads, simd };
     let start = Instant::now();
@@ -91,7 +91,7 @@ fn exit_code(rows: &[Row]) -> u8 {
 }
 
 /// What the scene of a sweep says about all of its runs.
-struct Said {
+struct SceneInfo {
     /// What it calls its unit of length.
     length_unit: String,
     /// Whose drawings it shows.
@@ -100,7 +100,7 @@ struct Said {
     ends: Option<String>,
 }
 
-fn said_of(sweep: &Sweep) -> Said {
+fn scene_info(sweep: &Sweep) -> SceneInfo {
     let options = opruga::io::scene::Options {
         lenient: sweep.lenient,
         overrides: sweep.fixed.clone(),
@@ -118,9 +118,9 @@ fn said_of(sweep: &Sweep) -> Said {
             let time = scene.time();
             let varies = sweep.axes.iter().any(|axis| axis.path.starts_with("time."));
             let ends = crate::run::whole_frames(time.frames(), time.frame, time.seconds).filter(|_| !varies);
-            Said { length_unit: scene.length_unit().into(), credit: scene.credit().into(), ends }
+            SceneInfo { length_unit: scene.length_unit().into(), credit: scene.credit().into(), ends }
         }
-        Err(_) => Said { length_unit: "m".into(), credit: String::new(), ends: None },
+        Err(_) => SceneInfo { length_unit: "m".into(), credit: String::new(), ends: None },
     }
 }
 

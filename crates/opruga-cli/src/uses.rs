@@ -7,14 +7,14 @@ use opruga::io::outputs_apart::{Use, Uses};
 use std::path::Path;
 
 /// The scene and the files that it names, as inputs.
-pub(crate) fn of_scene<'n>(source: &Source, places: &Files, names: impl Iterator<Item = &'n String>) -> Uses {
+pub(crate) fn of_scene<'n>(source: &Source, files: &Files, names: impl Iterator<Item = &'n String>) -> Uses {
     let mut uses = Uses::default();
     // The scene of a checkpoint or of a recording is inside.
     if let Some(path) = &source.path {
         uses.input(Use::Scene { path: path.display().to_string() }, path);
     }
     for name in names {
-        if let Some(path) = places.path_of(name) {
+        if let Some(path) = files.path_of(name) {
             uses.input(Use::NamedByScene { name: name.clone() }, &path);
         }
     }

@@ -40,10 +40,10 @@ pub(crate) fn verify(call: &Verify, registries: &Registries) -> Result<u8, Failu
     let threads = call.threads.map_or(cores, usize::from);
     let bar = progress_bar(cases.len());
     // Errors of a call with --json are JSON: nothing else is said beside it.
-    let tell = !call.json && !std::io::stderr().is_terminal();
+    let verbose = !call.json && !std::io::stderr().is_terminal();
     let rows = opruga_verify::run_all(&cases, &lab, threads, stop, &|row: &Row| {
         bar.inc(1);
-        if tell {
+        if verbose {
             let verdict = if row.pass { "pass" } else { "FAIL" };
             eprintln!("{verdict}  {} ({:.2} s)", row.case.name, row.seconds);
         }

@@ -101,10 +101,10 @@ fn again_and_again(
 fn named_files(scene: &str, registries: &Registries, outside: bool) -> (Vec<PathBuf>, Vec<Option<Stamp>>) {
     let mut files = vec![PathBuf::from(scene)];
     if let Ok(source) = Source::find(scene, registries) {
-        let places = source.files.clone().allow_outside(outside);
-        let options = scene::Options { lenient: true, files: places.clone(), ..scene::Options::default() };
+        let scene_files = source.files.clone().allow_outside(outside);
+        let options = scene::Options { lenient: true, files: scene_files.clone(), ..scene::Options::default() };
         let reading = source.survey(&options);
-        files.extend(reading.files.keys().chain(&reading.unread).filter_map(|name| places.path_of(name)));
+        files.extend(reading.files.keys().chain(&reading.unread).filter_map(|name| scene_files.path_of(name)));
     }
     let stamps = files.iter().map(|file| Stamp::of(file)).collect();
     (files, stamps)

@@ -39,7 +39,7 @@ fn time(simd: Simd, list: &[Values], height: f64, v: [f64; 2]) -> f64 {
                     let range = tile * TILE..(tile + 1) * TILE;
                     let mut moved = Moved {
                         range: range.clone(),
-                        places_used: NODES,
+                        padding_start: NODES,
                         before: core::array::from_fn(|d| &before.0[d][range.clone()]),
                         x: &mut x,
                         v: &mut v,
@@ -67,14 +67,14 @@ fn time(simd: Simd, list: &[Values], height: f64, v: [f64; 2]) -> f64 {
 fn main() {
     let floor = |mu: f64| values::<2>("half_space", &[("normal", vector(&[0.0, 1.0])), ("friction", number(mu))]);
     let far = values::<2>("ball", &[("center", vector(&[9.0, 0.0])), ("radius", number(1.0))]);
-    let room = values::<2>(
+    let container = values::<2>(
         "box",
         &[("min", vector(&[-9.0; 2])), ("max", vector(&[9.0; 2])), ("inside", Value::Boolean(true))],
     );
-    let near_ball = values::<2>("ball", &[("center", vector(&[0.5, 0.0])), ("radius", number(0.5))]);
-    let near_box =
+    let close_ball = values::<2>("ball", &[("center", vector(&[0.5, 0.0])), ("radius", number(0.5))]);
+    let close_box =
         values::<2>("box", &[("min", vector(&[0.2, -1.0])), ("max", vector(&[0.8, 0.5])), ("rotation", number(0.001))]);
-    let near_capsule =
+    let close_capsule =
         values::<2>("capsule", &[("a", vector(&[0.2, 0.0])), ("b", vector(&[0.8, 0.0])), ("radius", number(0.5))]);
     let line = values::<2>(
         "polyline",
@@ -84,10 +84,10 @@ fn main() {
         println!("{simd:?}, ns per node:");
         for (name, list, height) in [
             ("floor, nothing touches", vec![floor(0.0)], 0.51),
-            ("room and a ball, nothing near", vec![room.clone(), far.clone()], 0.51),
-            ("ball, box overlaps, nothing touches", vec![near_ball.clone()], 0.501),
-            ("box, same", vec![near_box.clone()], 0.5005),
-            ("capsule, same", vec![near_capsule.clone()], 0.501),
+            ("room and a ball, nothing near", vec![container.clone(), far.clone()], 0.51),
+            ("ball, box overlaps, nothing touches", vec![close_ball.clone()], 0.501),
+            ("box, same", vec![close_box.clone()], 0.5005),
+            ("capsule, same", vec![close_capsule.clone()], 0.501),
             ("floor, all touch, friction 0", vec![floor(0.0)], -0.001),
             ("floor, all touch, friction 0.3", vec![floor(0.3)], -0.001),
             ("polyline, box overlaps, nothing touches", vec![line.clone()], 0.55),

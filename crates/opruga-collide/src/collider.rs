@@ -186,8 +186,8 @@ impl<const D: usize> Collider<D> {
                 rate += 0.5 * dot(row, row);
             }
             let (angle, radius) = (rate.sqrt() * h, self.radius());
-            let way = length(&subtract(&space[1], &space[0])) + angle * radius;
-            reach.bend = angle * way + angle * angle * radius;
+            let travel = length(&subtract(&space[1], &space[0])) + angle * radius;
+            reach.bend = angle * travel + angle * angle * radius;
         }
         reach
     }

@@ -1,13 +1,13 @@
 //! All colliders against the nodes of a tile.
 
+use crate::active_nodes::{ActiveNodes, Meets};
 use crate::bounds::Bounds;
 use crate::collider::{Collider, Part};
 use crate::facet_contacts::{Placed, hold_back_by_facets};
-use crate::held::{Held, Meets};
 use crate::motion::Frame;
 use crate::pass::Pass;
 use crate::picture::{Picture, picture};
-use crate::touch::{Faces, Way};
+use crate::touch::{Faces, NodePath};
 use core::any::Any;
 use opruga_core::contacts::{Contacts, Moved, Touch};
 use opruga_core::error::BuildError;
@@ -141,32 +141,32 @@ impl<const D: usize> Contacts<D> for Colliders<D> {
             low[d] -= reach.abs();
             high[d] += reach.abs();
         }
-        let near = |collider: &Collider<D>| {
+        let in_reach = |collider: &Collider<D>| {
             let sweep = collider.sweep(time, h, &[low, high]);
             self.holds(collider) && collider.parts.iter().any(|part| collider.may_touch(part, &sweep, &low, &high))
         };
-        let mut way = Way { from, to, kept: *to, faces: Faces::NONE, time, h, reach };
+        let mut path = NodePath { from, to, kept: *to, faces: Faces::NONE, time, h, reach };
         if self.has_seams() {
-            self.all.iter().filter(|collider| near(collider)).for_each(|collider| way.keep(collider));
+            self.all.iter().filter(|collider| in_reach(collider)).for_each(|collider| path.keep(collider));
         }
         let mut first = 0;
         for collider in self.all.iter() {
             let numbers = first..first + collider.parts.len();
             first = numbers.end;
-            if near(collider) {
-                way.touch(collider, numbers, visit);
+            if in_reach(collider) {
+                path.touch(collider, numbers, visit);
             }
         }
     }
     fn resolve(&self, simd: Simd, moved: &mut Moved<D>) -> u8 {
-        let used = moved.places_used.min(moved.range.end).saturating_sub(moved.range.start);
+        let used = moved.padding_start.min(moved.range.end).saturating_sub(moved.range.start);
         if used == 0 {
             return 0;
         }
         // The box around the nodes, by which colliders far away are passed over.
         let simple = self.is_simple();
         let mut space = if simple { None } else { Some(simd.run(Bounds { moved, used })) };
-        let (mut held, mut ever) = (Held([0; TILE / WIDTH]), false);
+        let (mut active, mut ever) = (ActiveNodes([0; TILE / WIDTH]), false);
         // First what nodes lay on: a node that slides from one solid onto another is held by the first one until it is on the
         // second, and does not run into the side of that. Then more than once, since one collider may push a node into another.
         let seams = self.has_seams() && space.as_ref().is_some_and(|space| self.has_seams_in(moved, space));
@@ -185,7 +185,7 @@ impl<const D: usize> Contacts<D> for Colliders<D> {
                         Some(frame) => frame,
                         None => frame.get_or_insert_with(|| Frame::new(&collider.motion, moved.time, moved.h)),
                     };
-                    if hold_back(simd, part, collider, frame, moved, &mut held, used, meets) {
+                    if hold_back(simd, part, collider, frame, moved, &mut active, used, meets) {
                         touched = true;
                         // A node may have been pushed out of the box.
                         if !simple {
@@ -199,7 +199,7 @@ impl<const D: usize> Contacts<D> for Colliders<D> {
                 break;
             }
         }
-        if ever { held.0.iter().fold(0, |all, bits| all | bits) } else { 0 }
+        if ever { active.0.iter().fold(0, |all, bits| all | bits) } else { 0 }
     }
 }
 
@@ -214,22 +214,26 @@ fn hold_back<const D: usize>(
     collider: &Collider<D>,
     frame: &Frame<D>,
     moved: &mut Moved<D>,
-    held: &mut Held,
+    active: &mut ActiveNodes,
     used: usize,
     meets: Meets,
 ) -> bool {
     let (law, Frame { pose, carry }) = (&collider.law, frame);
     match part {
         Part::HalfSpace(shape) => {
-            simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, held, used, meets })
+            simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, active, used, meets })
         }
         // What is round pushes nowhere but away.
         Part::Ball(_) | Part::Capsule(_) if meets == Meets::WhatItLiesOn => false,
-        Part::Ball(shape) => simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, held, used, meets }),
-        Part::Capsule(shape) => simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, held, used, meets }),
-        Part::Cuboid(shape) => simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, held, used, meets }),
+        Part::Ball(shape) => simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, active, used, meets }),
+        Part::Capsule(shape) => {
+            simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, active, used, meets })
+        }
+        Part::Cuboid(shape) => {
+            simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, active, used, meets })
+        }
         Part::Facets(facets) => {
-            hold_back_by_facets(&Placed { facets, pose, margin: law.thickness }, law, carry, moved, held, used, meets)
+            hold_back_by_facets(&Placed { facets, pose, margin: law.thickness }, law, carry, moved, active, used, meets)
         }
     }
 }

@@ -36,31 +36,31 @@ pub(crate) fn arrays<R: Register, const D: usize>(registers: &[R; D]) -> [[f64; 
     out
 }
 
-/// The nodes of a register on their ways.
-pub(crate) struct Ways<const D: usize> {
+/// The paths of the nodes of a register.
+pub(crate) struct NodePaths<const D: usize> {
     /// Where they began, carried along with the shape, and where they are [m].
     pub(crate) ends: [[[f64; WIDTH]; D]; 2],
-    /// Whether a node is looked at, and whether something has held it already in this step: above 0.
+    /// Whether a node is looked at, and whether another contact is already active at it in this step: above 0.
     pub(crate) asked: [f64; WIDTH],
-    pub(crate) held: [f64; WIDTH],
+    pub(crate) active: [f64; WIDTH],
     /// What counts as rounding there [m].
     pub(crate) small: [f64; WIDTH],
 }
 
-impl<const D: usize> Ways<D> {
-    /// The ends of the way of a node.
+impl<const D: usize> NodePaths<D> {
+    /// The ends of the path of a node.
     fn of(&self, lane: usize) -> [[f64; D]; 2] {
         self.ends.each_ref().map(|end| lanes!(f64, d => end[d][lane]))
     }
 
-    /// Finds whether nodes came into a shape on their way, and where; what is found of the others stays.
+    /// Finds whether nodes came into a shape on their paths, and where; what is found of the others stays.
     #[inline(never)]
     pub(crate) fn look_for_entries<T: Shape<D>>(&self, shape: &T, margin: f64, found: &mut Found<D>) {
         for l in (0..WIDTH).filter(|l| self.asked[*l] != 0.0) {
             let [a, b] = self.of(l);
             // What something else keeps on the surface passes edges, on which no face is in its way. What lies exactly where
             // two solids meet, and is kept by nothing, is in both of them.
-            let kept = T::FACES && self.held[l] > 0.0 && found.gap[l] >= -self.small[l];
+            let kept = T::FACES && self.active[l] > 0.0 && found.gap[l] >= -self.small[l];
             if kept && is_on_edge(shape, margin, &b) {
                 found.set(l, (f64::INFINITY, [0.0; D]));
             } else if !kept && let Some(entered) = entry(shape, margin, &a, &b) {
@@ -76,7 +76,7 @@ impl<const D: usize> Ways<D> {
             let [a, b] = self.of(l);
             let asked = self.asked[l] != 0.0;
             let supported =
-                if asked { support(shape, margin, self.small[l], [&a, &b], self.held[l] > 0.0) } else { None };
+                if asked { support(shape, margin, self.small[l], [&a, &b], self.active[l] > 0.0) } else { None };
             found.set(l, supported.unwrap_or((f64::INFINITY, [0.0; D])));
         }
     }

@@ -1,8 +1,8 @@
 //! Nodes against obstacles of many facets: one node after the other, by a tree.
 
+use crate::active_nodes::{ActiveNodes, Meets};
 use crate::collider::Law;
 use crate::facets::Facets;
-use crate::held::{Held, Meets};
 use crate::motion::{Carry, Pose};
 use crate::response::{Face, Meeting, Surface, largest_rounding, meets, respond, rounding};
 use crate::shape::{entry, is_on_edge, support};
@@ -19,7 +19,7 @@ pub(crate) struct Placed<'a, const D: usize> {
 
 impl<const D: usize> Surface<f64, D> for Placed<'_, D> {
     fn find(&self, x: &[f64; D], before: &[f64; D], reach: f64) -> (f64, [f64; D]) {
-        let (x, before) = (self.pose.unplace(x), self.pose.unplace(before));
+        let (x, before) = (self.pose.inverse_transform(x), self.pose.inverse_transform(before));
         let (gap, normal) = self.facets.touch(&x, &before, self.margin, reach);
         (gap, self.pose.direct(&normal))
     }
@@ -31,7 +31,7 @@ pub(crate) fn hold_back_by_facets<const D: usize>(
     law: &Law,
     carry: &Carry<D>,
     moved: &mut Moved<D>,
-    held: &mut Held,
+    active: &mut ActiveNodes,
     used: usize,
     asked: Meets,
 ) -> bool {
@@ -41,25 +41,25 @@ pub(crate) fn hold_back_by_facets<const D: usize>(
     }
     let mut touched = false;
     for k in 0..used {
-        let place = moved.range.start + k;
+        let index = moved.range.start + k;
         let start: [f64; D] = lanes!(f64, d => moved.before[d][k]);
         let before: [f64; D] = carry.along(&start);
-        let from = surface.pose.unplace(&before);
+        let from = surface.pose.inverse_transform(&before);
         let force = lanes!(f64, d => moved.force[d][k]);
-        let mass = moved.mass.at(place);
-        let (lane, bit) = (place % WIDTH, 1u8 << (k % WIDTH));
-        let is_held = |held: &Held| held.0.get(k / WIDTH).is_some_and(|bits| bits & bit != 0);
+        let mass = moved.mass.at(index);
+        let (lane, bit) = (index % WIDTH, 1u8 << (k % WIDTH));
+        let is_active = |active: &ActiveNodes| active.0.get(k / WIDTH).is_some_and(|bits| bits & bit != 0);
         // What one facet of a thin surface pushes out may be pushed through another one, which pushes then.
         let mut through = false;
         for _ in 0..if surface.facets.solid { 1 } else { PUSHES } {
-            let (x, v) = (moved.x.at(place), moved.v.at(place));
-            let to = surface.pose.unplace(&x);
+            let (x, v) = (moved.x.at(index), moved.v.at(index));
+            let to = surface.pose.inverse_transform(&x);
             let finite = dot(&from, &from).is_finite() && dot(&to, &to).is_finite() && dot(&v, &v).is_finite();
-            if !finite || !surface.facets.near(&from, &to, surface.margin + largest_rounding(law)) {
+            if !finite || !surface.facets.passes_bounds(&from, &to, surface.margin + largest_rounding(law)) {
                 break;
             }
             let (mut gap, mut normal) = if lies {
-                match support(surface.facets, surface.margin, rounding(law, &before), [&from, &to], is_held(held)) {
+                match support(surface.facets, surface.margin, rounding(law, &before), [&from, &to], is_active(active)) {
                     Some((gap, normal)) => (gap, surface.pose.direct(&normal)),
                     None => break,
                 }
@@ -73,7 +73,7 @@ pub(crate) fn hold_back_by_facets<const D: usize>(
             // As of other solids: what something else keeps on the surface passes edges, and what lies exactly where two solids
             // meet, and is kept by nothing, is in both of them.
             if surface.facets.solid && !lies && gap.abs() <= surface.facets.grain().larger(rounding(law, &x)) {
-                if !is_held(held) {
+                if !is_active(active) {
                     if let Some((behind, face)) = entry(surface.facets, surface.margin, &from, &to) {
                         (gap, normal) = (behind, surface.pose.direct(&face));
                     }
@@ -81,14 +81,25 @@ pub(crate) fn hold_back_by_facets<const D: usize>(
                     break;
                 }
             }
-            let was_held = f64::from(u8::from(is_held(held)));
-            let meeting =
-                Meeting { x, v, before, from: start, force, mass, gap, normal, obstacle, held: was_held, h: moved.h };
+            let was_active = f64::from(u8::from(is_active(active)));
+            let meeting = Meeting {
+                x,
+                v,
+                before,
+                from: start,
+                force,
+                mass,
+                gap,
+                normal,
+                obstacle,
+                active: was_active,
+                h: moved.h,
+            };
             if !meets(law, &meeting) {
                 break;
             }
             touched = true;
-            if let Some(bits) = held.0.get_mut(k / WIDTH) {
+            if let Some(bits) = active.0.get_mut(k / WIDTH) {
                 *bits |= bit;
             }
             let parting = if surface.facets.solid {
@@ -96,24 +107,24 @@ pub(crate) fn hold_back_by_facets<const D: usize>(
             } else {
                 respond(surface, law, true, &meeting)
             };
-            moved.x.set(place, parting.x);
-            moved.v.set(place, parting.v);
+            moved.x.set(index, parting.x);
+            moved.v.set(index, parting.v);
             moved.loss_contact[lane] += parting.loss_contact;
             moved.loss_friction[lane] += parting.loss_friction;
             moved.work_colliders[lane] += parting.work;
             moved.work_correction[lane] += parting.correction;
-            through =
-                !surface.facets.solid && surface.facets.crossed(&from, &surface.pose.unplace(&parting.x)).is_some();
+            through = !surface.facets.solid
+                && surface.facets.crossed(&from, &surface.pose.inverse_transform(&parting.x)).is_some();
             if !through {
                 break;
             }
         }
         // Where facets leave no way out, the node stays where it was, and goes with the obstacle.
         if through {
-            let (x, v, obstacle) = (moved.x.at(place), moved.v.at(place), surface.pose.velocity_at(&before));
+            let (x, v, obstacle) = (moved.x.at(index), moved.v.at(index), surface.pose.velocity_at(&before));
             let stopped = subtract(&v, &obstacle);
-            moved.x.set(place, before);
-            moved.v.set(place, obstacle);
+            moved.x.set(index, before);
+            moved.v.set(index, obstacle);
             moved.loss_contact[lane] += 0.5 * mass * dot(&stopped, &stopped);
             moved.work_colliders[lane] -= mass * dot(&stopped, &obstacle);
             moved.work_correction[lane] += dot(&force, &subtract(&x, &before));

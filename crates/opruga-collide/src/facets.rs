@@ -160,7 +160,7 @@ impl<const D: usize> Facets<D> {
         self.grain
     }
     /// Whether a segment passes the bounds, widened by a margin. The coordinates must be finite.
-    pub(crate) fn near(&self, a: &[f64; D], b: &[f64; D], margin: f64) -> bool {
+    pub(crate) fn passes_bounds(&self, a: &[f64; D], b: &[f64; D], margin: f64) -> bool {
         for d in 0..D {
             if a[d].smaller(b[d]) > self.high[d] + margin || a[d].larger(b[d]) < self.low[d] - margin {
                 return false;
@@ -179,11 +179,11 @@ impl<const D: usize> Facets<D> {
         }
     }
     fn touch_solid(&self, x: &[f64; D], before: &[f64; D], margin: f64, reach: f64) -> (f64, [f64; D]) {
-        let way = subtract(x, before);
+        let displacement = subtract(x, before);
         let far = 0.5 * self.half_width;
         let (gap, normal) = self.gap_and_normal(x);
         // The face by which it came in, which need not be the nearest one.
-        if (gap - margin < -self.grain || dot(&way, &way) > far * far)
+        if (gap - margin < -self.grain || dot(&displacement, &displacement) > far * far)
             && let Some(found) = entry(self, margin, before, x)
         {
             return found;

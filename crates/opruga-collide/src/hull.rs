@@ -33,15 +33,15 @@ fn polygon<const D: usize>(points: &[[f64; D]]) -> Option<Vec<[usize; 3]>> {
     order.sort_by(|&a, &b| {
         points[a][0].total_cmp(&points[b][0]).then(points[a][1].total_cmp(&points[b][1])).then(a.cmp(&b))
     });
-    // Whether b lies to the right of the way from a to c by more than rounding: then it is a corner.
+    // Whether b lies to the right of the line from a to c by more than rounding: then it is a corner.
     let is_corner = |a: usize, b: usize, c: usize| {
         let (u, w) = (subtract(&points[c], &points[a]), subtract(&points[b], &points[a]));
         u[1] * w[0] - u[0] * w[1] > tolerance * length(&u)
     };
     let mut chain: Vec<usize> = Vec::new();
-    for (pass, way) in [order.clone(), order.iter().rev().copied().collect()].iter().enumerate() {
+    for (pass, sweep) in [order.clone(), order.iter().rev().copied().collect()].iter().enumerate() {
         let floor = if pass == 0 { 0 } else { chain.len() - 1 };
-        for &p in way {
+        for &p in sweep {
             while chain.len() >= floor + 2 && !is_corner(chain[chain.len() - 2], chain[chain.len() - 1], p) {
                 chain.pop();
             }

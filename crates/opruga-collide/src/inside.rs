@@ -23,7 +23,7 @@ pub struct Buried<const D: usize> {
 const INSTANT: f64 = 1e-9;
 /// How often a body is pushed out along the normal of its deepest node.
 const PUSHES: usize = 32;
-/// How often the way along an axis is doubled, and then halved.
+/// How often the offset along an axis is doubled, and then halved.
 const DOUBLINGS: usize = 12;
 const HALVINGS: usize = 20;
 
@@ -69,11 +69,11 @@ impl<const D: usize> Colliders<D> {
         None
     }
 
-    /// The shortest way out along a coordinate axis.
+    /// The shortest shift out along a coordinate axis.
     fn along_an_axis(&self, points: &[[f64; D]], slack: f64) -> Option<[f64; D]> {
-        let free = |axis: usize, way: f64| {
+        let free = |axis: usize, offset: f64| {
             let mut shift = [0.0; D];
-            shift[axis] = way;
+            shift[axis] = offset;
             self.deepest(points, &shift, slack).is_none()
         };
         let mut best: Option<(usize, f64)> = None;
@@ -93,13 +93,13 @@ impl<const D: usize> Colliders<D> {
                 let middle = 0.5 * (inside + out);
                 if free(axis, sign * middle) { out = middle } else { inside = middle }
             }
-            if best.is_none_or(|(_, way)| out < way.abs()) {
+            if best.is_none_or(|(_, offset)| out < offset.abs()) {
                 best = Some((axis, sign * out));
             }
         }
-        best.map(|(axis, way)| {
+        best.map(|(axis, offset)| {
             let mut shift = [0.0; D];
-            shift[axis] = way;
+            shift[axis] = offset;
             shift
         })
     }

@@ -58,6 +58,7 @@
 // Units stand in brackets, [m], which rustdoc takes for links.
 #![allow(rustdoc::broken_intra_doc_links)]
 
+mod active_nodes;
 mod barrier;
 mod began_inside;
 mod bounds;
@@ -75,7 +76,6 @@ mod facet_contacts;
 mod facets;
 mod gap;
 mod grid;
-mod held;
 mod hull;
 mod impulses;
 mod inside;

@@ -98,7 +98,7 @@ impl<const D: usize> Motion<D> {
 
 impl<const D: usize> Pose<D> {
     /// A point of the shape at rest, where it is now.
-    pub(crate) fn place(&self, x: &[f64; D]) -> [f64; D] {
+    pub(crate) fn transform(&self, x: &[f64; D]) -> [f64; D] {
         if self.upright {
             add(x, &self.shift)
         } else {
@@ -109,8 +109,8 @@ impl<const D: usize> Pose<D> {
     pub(crate) fn direct(&self, n: &[f64; D]) -> [f64; D] {
         if self.upright { *n } else { turned(&self.turn, n) }
     }
-    /// The inverse of [`Pose::place`].
-    pub(crate) fn unplace(&self, x: &[f64; D]) -> [f64; D] {
+    /// The inverse of [`Pose::transform`].
+    pub(crate) fn inverse_transform(&self, x: &[f64; D]) -> [f64; D] {
         if self.upright {
             subtract(x, &self.shift)
         } else {

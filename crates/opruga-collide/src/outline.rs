@@ -45,7 +45,7 @@ impl<const D: usize> Colliders<D> {
     pub fn move_points(&self, collider: usize, time: f64, points: &[[f64; D]], [x, v]: [&mut [[f64; D]]; 2]) {
         let pose = self.collider(collider).motion.pose(time);
         for ((point, x), v) in points.iter().zip(x).zip(v) {
-            *x = pose.place(point);
+            *x = pose.transform(point);
             *v = pose.velocity_at(x);
         }
     }

@@ -1,8 +1,8 @@
 //! One shape against the nodes of a tile.
 
+use crate::active_nodes::{ActiveNodes, Meets};
 use crate::collider::Law;
-use crate::entries::{Found, Ways, arrays, numbers};
-use crate::held::{Held, Meets};
+use crate::entries::{Found, NodePaths, arrays, numbers};
 use crate::motion::{Carry, Pose};
 use crate::response::{Face, Meeting, Surface, largest_rounding, meets, respond, rounding};
 use crate::shape::{Shape, close_to};
@@ -31,7 +31,7 @@ pub(crate) struct Pass<'a, 'm, T, const D: usize> {
     pub(crate) pose: &'a Pose<D>,
     pub(crate) carry: &'a Carry<D>,
     pub(crate) moved: &'a mut Moved<'m, D>,
-    pub(crate) held: &'a mut Held,
+    pub(crate) active: &'a mut ActiveNodes,
     pub(crate) used: usize,
     pub(crate) meets: Meets,
 }
@@ -81,33 +81,33 @@ impl<T: Shape<D>, const D: usize> Work for Pass<'_, '_, T, D> {
         let look = Look {
             shape,
             carry: self.carry,
-            near: P::splat(law.thickness + largest_rounding(law)),
+            threshold: P::splat(law.thickness + largest_rounding(law)),
             far: P::splat(far),
             has_far_side,
         };
         let lies = self.meets == Meets::WhatItLiesOn;
         let mut k = 0;
         // Who lay on the surface may be beside it now.
-        let mut near = lies;
-        while k + 4 * WIDTH <= used && !near {
-            near = look.any_near::<4>(&tile, k, P::first(WIDTH));
+        let mut has_candidates = lies;
+        while k + 4 * WIDTH <= used && !has_candidates {
+            has_candidates = look.any_candidate::<4>(&tile, k, P::first(WIDTH));
             k += 4 * WIDTH;
         }
-        while k < used && !near {
-            near = look.any_near::<1>(&tile, k, P::first(used - k));
+        while k < used && !has_candidates {
+            has_candidates = look.any_candidate::<1>(&tile, k, P::first(used - k));
             k += WIDTH;
         }
-        if !near {
+        if !has_candidates {
             return false;
         }
 
-        // The few that are near, register by register: more values at a time than there are registers.
+        // The few candidates, register by register: more values at a time than there are registers.
         let second = SecondLook { shape, law, pose: self.pose, carry: self.carry, h: *h, far, has_far_side, lies };
         let mut taken = Taken { loss_contact, loss_friction, work: work_colliders, correction: work_correction };
         let mut touched = false;
         for k in (0..used).step_by(WIDTH) {
             for part in 0..P::PARTS {
-                touched |= second.hold_back::<P, P::Part>(&mut tile, k, part, used - k, self.held, &mut taken);
+                touched |= second.hold_back::<P, P::Part>(&mut tile, k, part, used - k, self.active, &mut taken);
             }
         }
         touched
@@ -118,26 +118,27 @@ impl<T: Shape<D>, const D: usize> Work for Pass<'_, '_, T, D> {
 struct Look<'a, P, T, const D: usize> {
     shape: &'a T,
     carry: &'a Carry<D>,
-    near: P,
+    /// The gap below which a node is a candidate [m].
+    threshold: P,
     far: P,
     has_far_side: bool,
 }
 
 impl<P: Pack, T: Shape<D>, const D: usize> Look<'_, P, T, D> {
-    /// Whether any node of `N` packs deserves a second look: near the shape, or fast.
+    /// Whether any node of `N` packs is a candidate, which deserves a second look: close to the shape, or fast.
     #[inline(always)]
-    fn any_near<const N: usize>(&self, tile: &Tile<D>, start: usize, nodes: P::Mask) -> bool {
+    fn any_candidate<const N: usize>(&self, tile: &Tile<D>, start: usize, nodes: P::Mask) -> bool {
         let (mut least, mut most) = (P::splat(f64::INFINITY), P::zero());
         for n in 0..N {
             let k = start + n * WIDTH;
             let x = lanes!(P, d => tile.x.load::<P>(d, k));
             least = self.shape.gap(&x).smaller(least);
             if self.has_far_side {
-                let way = subtract(&x, &self.carry.along(&lanes!(P, d => tile.before.load::<P>(d, k))));
-                most = dot(&way, &way).larger(most);
+                let displacement = subtract(&x, &self.carry.along(&lanes!(P, d => tile.before.load::<P>(d, k))));
+                most = dot(&displacement, &displacement).larger(most);
             }
         }
-        P::any(P::both(least.less(self.near), nodes))
+        P::any(P::both(least.less(self.threshold), nodes))
             || (self.has_far_side && P::any(P::both(self.far.less(most), nodes)))
     }
 }
@@ -165,7 +166,7 @@ struct SecondLook<'a, T, const D: usize> {
     carry: &'a Carry<D>,
     /// The substep [s].
     h: f64,
-    /// The square of how far a node may go without a look at its way [m²], and whether there is such a limit.
+    /// The square of how far a node may go without a look at its path [m²], and whether there is such a limit.
     far: f64,
     has_far_side: bool,
     /// Whether only what lay on the shape is met.
@@ -182,7 +183,7 @@ impl<T: Shape<D>, const D: usize> SecondLook<'_, T, D> {
         k: usize,
         part: usize,
         count: usize,
-        held: &mut Held,
+        active: &mut ActiveNodes,
         taken: &mut Taken,
     ) -> bool {
         let SecondLook { shape, law, lies, .. } = *self;
@@ -194,9 +195,9 @@ impl<T: Shape<D>, const D: usize> SecondLook<'_, T, D> {
         let close = R::both((shape.gap(&x) - thickness).less(R::splat(largest_rounding(law))), nodes);
         let from = lanes!(R, d => tile.before.load_part::<P>(d, k, part));
         let before = self.carry.along(&from);
-        let way = subtract(&x, &before);
+        let displacement = subtract(&x, &before);
         // Who goes far may come out elsewhere, and who came in by a face may be nearer to another one.
-        let fast = R::both(R::splat(self.far).less(dot(&way, &way)), nodes);
+        let fast = R::both(R::splat(self.far).less(dot(&displacement, &displacement)), nodes);
         let mut asked = R::select(fast, R::one(), R::zero());
         if lies {
             let lay = R::splat(close_to(shape, law.thickness)).larger(rounding(law, &before));
@@ -212,19 +213,19 @@ impl<T: Shape<D>, const D: usize> SecondLook<'_, T, D> {
         }
         let (mut gap, mut normal) = shape.gap_and_normal(&x);
         gap -= thickness;
-        let held_before = held.numbers(k, offset);
+        let active_before = active.numbers(k, offset);
         if any_asked {
             let mut found = Found { gap: numbers(gap), normal: arrays(&normal) };
-            let ways = Ways {
+            let paths = NodePaths {
                 ends: [arrays(&before), arrays(&x)],
                 asked: numbers(asked),
-                held: held_before,
+                active: active_before,
                 small: numbers(rounding(law, if lies { &before } else { &x })),
             };
             if lies {
-                ways.look_for_supports(shape, law.thickness, &mut found);
+                paths.look_for_supports(shape, law.thickness, &mut found);
             } else {
-                ways.look_for_entries(shape, law.thickness, &mut found);
+                paths.look_for_entries(shape, law.thickness, &mut found);
             }
             gap = R::load(&found.gap);
             normal = lanes!(R, d => R::load(&found.normal[d]));
@@ -233,13 +234,13 @@ impl<T: Shape<D>, const D: usize> SecondLook<'_, T, D> {
         let mass = tile.mass.load_part::<P>(k, part);
         let obstacle = self.pose.velocity_at(&x);
         let force = lanes!(R, d => tile.force.load_part::<P>(d, k, part));
-        let (held_before, h) = (R::load(&held_before), R::splat(self.h));
-        let meeting = Meeting { x, v, before, from, force, mass, gap, normal, obstacle, held: held_before, h };
+        let (active_before, h) = (R::load(&active_before), R::splat(self.h));
+        let meeting = Meeting { x, v, before, from, force, mass, gap, normal, obstacle, active: active_before, h };
         let hit = R::both(meets(law, &meeting), nodes);
         if !R::any(hit) {
             return false;
         }
-        held.note(k, offset, R::select(hit, R::one(), R::zero()));
+        active.note(k, offset, R::select(hit, R::one(), R::zero()));
         let parting = if T::FACES {
             respond(&Face { x, gap, normal }, law, hit, &meeting)
         } else {

@@ -82,19 +82,21 @@ impl<const D: usize> Picture<D> {
 /// A collider at a time.
 pub(crate) fn picture<const D: usize>(collider: &Collider<D>, time: f64) -> Picture<D> {
     let pose = collider.motion.pose(time);
-    let all = |points: &[[f64; D]]| points.iter().map(|p| pose.place(p)).collect();
+    let all = |points: &[[f64; D]]| points.iter().map(|p| pose.transform(p)).collect();
     match &collider.form {
         Form::HalfSpace { point, normal } => {
-            Picture::HalfSpace { point: pose.place(point), normal: pose.direct(normal) }
+            Picture::HalfSpace { point: pose.transform(point), normal: pose.direct(normal) }
         }
         Form::Box { shape, inside } => {
             let shape = shape.posed(&pose);
             Picture::Box { corners: (0..1 << D).map(|bits| shape.corner(bits)).collect(), inside: *inside }
         }
         Form::Ball { center, radius, inside } => {
-            Picture::Ball { center: pose.place(center), radius: *radius, inside: *inside }
+            Picture::Ball { center: pose.transform(center), radius: *radius, inside: *inside }
         }
-        Form::Capsule { a, b, radius } => Picture::Capsule { a: pose.place(a), b: pose.place(b), radius: *radius },
+        Form::Capsule { a, b, radius } => {
+            Picture::Capsule { a: pose.transform(a), b: pose.transform(b), radius: *radius }
+        }
         Form::Polygon { points } => Picture::Polygon { points: all(points) },
         Form::Polyline { points, closed } => Picture::Polyline { points: all(points), closed: *closed },
         Form::Triangles { points, triangles, solid } => {

@@ -46,8 +46,8 @@ pub(crate) struct Meeting<S, const D: usize> {
     pub(crate) normal: [S; D],
     /// Velocity of the collider at the node [m/s].
     pub(crate) obstacle: [S; D],
-    /// Whether another contact has already acted in this step: above 0.
-    pub(crate) held: S,
+    /// Whether another contact is already active at the node in this step: above 0.
+    pub(crate) active: S,
     /// The substep [s].
     pub(crate) h: S,
 }
@@ -124,7 +124,7 @@ pub(crate) fn respond<S: Lane, T: Surface<S, D>, const D: usize>(
     // the speed of rest, is no impact: what it has was given to it within the step, by weight or by the body behind it.
     let small = rounding(law, &node.before);
     // Where another contact has acted before in this step, that has counted what the force has given.
-    let weighs = S::both(zero.less(node.mass), node.held.less_or_equal(zero));
+    let weighs = S::both(zero.less(node.mass), node.active.less_or_equal(zero));
     let (mut e, mut met) = (zero, speed);
     if law.restitution > 0.0 {
         let mut bounces = S::splat(law.rest_speed).less(speed);
@@ -166,10 +166,10 @@ pub(crate) fn respond<S: Lane, T: Surface<S, D>, const D: usize>(
         // the node where it is, only what this one takes from the velocity is undone.
         let stopped = scaled(&subtract(&slide_after, &slide), node.h);
         let fresh = add(&node.before, &scaled(&slide_after, node.h));
-        let path = choose(zero.less(node.held), &add(&x, &stopped), &fresh);
-        let near = node.h * (speed + speed) + small;
-        let (gap, normal) = surface.find(&path, &node.before, near);
-        let onto = choose(gap.less(near), &subtract(&path, &scaled(&normal, gap)), &path);
+        let path = choose(zero.less(node.active), &add(&x, &stopped), &fresh);
+        let close = node.h * (speed + speed) + small;
+        let (gap, normal) = surface.find(&path, &node.before, close);
+        let onto = choose(gap.less(close), &subtract(&path, &scaled(&normal, gap)), &path);
         let rests = S::both(closing, e.less_or_equal(zero));
         x = choose(rests, &onto, &x);
     }
@@ -179,7 +179,7 @@ pub(crate) fn respond<S: Lane, T: Surface<S, D>, const D: usize>(
     // The mean of the velocities before and after the step.
     let mean = subtract(&scaled(&add(&node.v, &v), half), &given);
     let moved =
-        choose(zero.less(node.held), &subtract(&node.x, &x), &add(&subtract(&node.from, &x), &scaled(&mean, node.h)));
+        choose(zero.less(node.active), &subtract(&node.x, &x), &add(&subtract(&node.from, &x), &scaled(&mean, node.h)));
     Parting {
         x,
         v,

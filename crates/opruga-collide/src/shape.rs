@@ -19,27 +19,27 @@ pub(crate) trait Shape<const D: usize>: Sized {
     fn visit_faces(&self, _x: &[f64; D], _grain: f64, _visit: &mut dyn FnMut(f64, [f64; D])) {}
 }
 
-/// A face that a node on its way comes upon: of several, that against which its way runs most.
+/// A face that a node on its path comes upon: of several, that against which its displacement runs most.
 pub(crate) struct Met<const D: usize> {
     /// How high over the face the node is [m].
     pub(crate) height: f64,
     pub(crate) normal: [f64; D],
-    /// How far the end of the way lies behind that face, of all on which the node is, of which it lies least behind [m].
+    /// How far the end of the path lies behind that face, of all on which the node is, of which it lies least behind [m].
     pub(crate) behind: f64,
     /// On how many faces the node is.
     pub(crate) faces: usize,
-    /// Behind how many of these its way leads.
+    /// Behind how many of these its path leads.
     pub(crate) entered: usize,
 }
 
 impl<const D: usize> Met<D> {
-    /// What a node meets on its way from `x`, which keeps the distance `margin` from a shape to within `close`.
-    fn of<T: Shape<D>>(shape: &T, margin: f64, x: &[f64; D], way: &[f64; D], close: f64) -> Met<D> {
+    /// What a node meets on its path from `x`, which keeps the distance `margin` from a shape to within `close`.
+    fn of<T: Shape<D>>(shape: &T, margin: f64, x: &[f64; D], displacement: &[f64; D], close: f64) -> Met<D> {
         let (height, normal) = shape.gap_and_normal(x);
         let nearest = Met { height: height - margin, normal, behind: f64::INFINITY, faces: 0, entered: 0 };
         let (mut met, mut most) = (nearest, f64::INFINITY);
         let mut add = |height: f64, normal: [f64; D]| {
-            let along = dot(way, &normal);
+            let along = dot(displacement, &normal);
             if along < most {
                 (most, met.height, met.normal) = (along, height - margin, normal);
             }
@@ -52,7 +52,7 @@ impl<const D: usize> Met<D> {
             shape.visit_faces(x, 2.0 * close, &mut add);
         }
         if met.faces == 0 {
-            met.behind = -met.height - dot(way, &met.normal);
+            met.behind = -met.height - dot(displacement, &met.normal);
             (met.faces, met.entered) = (1, 1);
         }
         met
@@ -117,7 +117,7 @@ impl<const D: usize> HalfSpace<D> {
         if pose.upright {
             return HalfSpace { normal: self.normal, offset: self.offset + dot(&pose.shift, &self.normal) };
         }
-        HalfSpace::through(&pose.place(&scaled(&self.normal, self.offset)), pose.direct(&self.normal))
+        HalfSpace::through(&pose.transform(&scaled(&self.normal, self.offset)), pose.direct(&self.normal))
     }
     /// The least signed distance within a box of space.
     pub(crate) fn least_gap(&self, low: &[f64; D], high: &[f64; D]) -> f64 {
@@ -145,7 +145,7 @@ impl<const D: usize> Shape<D> for HalfSpace<D> {
 
 impl<const D: usize> Ball<D> {
     pub(crate) fn posed(&self, pose: &Pose<D>) -> Self {
-        Ball { center: pose.place(&self.center), ..*self }
+        Ball { center: pose.transform(&self.center), ..*self }
     }
 }
 
@@ -168,7 +168,7 @@ impl<const D: usize> Shape<D> for Ball<D> {
 impl<const D: usize> Capsule<D> {
     pub(crate) fn posed(&self, pose: &Pose<D>) -> Self {
         Capsule {
-            start: pose.place(&self.start),
+            start: pose.transform(&self.start),
             along: pose.direct(&self.along),
             aside: pose.direct(&self.aside),
             ..*self
@@ -204,7 +204,7 @@ impl<const D: usize> Cuboid<D> {
         for axis in &mut axes {
             *axis = pose.direct(axis);
         }
-        Cuboid { center: pose.place(&self.center), axes, half: self.half }
+        Cuboid { center: pose.transform(&self.center), axes, half: self.half }
     }
     /// The corner with the sides to which the bits of a number point.
     pub(crate) fn corner(&self, bits: usize) -> [f64; D] {
@@ -291,25 +291,25 @@ pub(crate) fn is_on_edge<T: Shape<D>, const D: usize>(shape: &T, margin: f64, x:
     Met::of(shape, margin, x, &[0.0; D], close_to(shape, margin)).faces > 1
 }
 
-/// What a node that lay on a surface at `a`, to within `small` [m], is held by on its way to `b`: the distance of `b` behind the
+/// What a node that lay on a surface at `a`, to within `small` [m], is held by on its path to `b`: the distance of `b` behind the
 /// tangent plane (negative) and the normal. None if it lay elsewhere or does not come in; nor on an edge, if more than one face
-/// is in its way, or if something else, which has `held` it already, leads it along one of the faces.
+/// is in its way, or if another contact, already `active`, leads it along one of the faces.
 #[inline(never)]
 pub(crate) fn support<T: Shape<D>, const D: usize>(
     shape: &T,
     margin: f64,
     small: f64,
     [a, b]: [&[f64; D]; 2],
-    held: bool,
+    active: bool,
 ) -> Option<(f64, [f64; D])> {
     let close = close_to(shape, margin).larger(small);
     let gap = shape.gap(a) - margin;
-    let way = subtract(b, a);
+    let displacement = subtract(b, a);
     if gap.abs() <= close {
-        let Met { height, normal, behind, entered, .. } = Met::of(shape, margin, a, &way, close);
-        let left = height + dot(&way, &normal);
-        let clear = if held { behind > close } else { entered == 1 };
-        return (clear && dot(&way, &normal) < 0.0 && left < 0.0).then_some((left, normal));
+        let Met { height, normal, behind, entered, .. } = Met::of(shape, margin, a, &displacement, close);
+        let left = height + dot(&displacement, &normal);
+        let clear = if active { behind > close } else { entered == 1 };
+        return (clear && dot(&displacement, &normal) < 0.0 && left < 0.0).then_some((left, normal));
     }
     None
 }
@@ -325,8 +325,8 @@ pub(crate) fn entry<T: Shape<D>, const D: usize>(
     a: &[f64; D],
     b: &[f64; D],
 ) -> Option<(f64, [f64; D])> {
-    let way = subtract(b, a);
-    let far = length(&way);
+    let displacement = subtract(b, a);
+    let far = length(&displacement);
     let close = close_to(shape, margin);
     let mut gone = 0.0;
     if shape.gap(a) - margin < -close {
@@ -334,13 +334,13 @@ pub(crate) fn entry<T: Shape<D>, const D: usize>(
     }
     for _ in 0..64 {
         let s = gone / far;
-        let x: [f64; D] = lanes!(f64, d => a[d] + s * way[d]);
+        let x: [f64; D] = lanes!(f64, d => a[d] + s * displacement[d]);
         let gap = shape.gap(&x) - margin;
         if gap <= close {
             let left: [f64; D] = subtract(b, &x);
             let Met { height, normal, .. } = Met::of(shape, margin, &x, &left, close);
             let behind = dot(&left, &normal) + height;
-            return (dot(&way, &normal) < 0.0 && behind < 0.0).then_some((behind, normal));
+            return (dot(&displacement, &normal) < 0.0 && behind < 0.0).then_some((behind, normal));
         }
         gone += gap;
         if gone.is_nan() || gone > far {

@@ -10,8 +10,8 @@ use core::ops::Range;
 use opruga_core::contacts::Touch;
 use opruga_math::Lane;
 
-/// A node on its way through a step.
-pub(crate) struct Way<'a, const D: usize> {
+/// The path of a node through a step.
+pub(crate) struct NodePath<'a, const D: usize> {
     pub(crate) from: &'a [f64; D],
     pub(crate) to: &'a [f64; D],
     /// Where it would come to if what it lay on kept it out: that says by which face it meets another solid.
@@ -53,7 +53,7 @@ impl<const D: usize> Faces<D> {
     }
 }
 
-/// What the way looks like from a collider.
+/// What the path looks like from a collider.
 struct Seen<'a, const D: usize> {
     to: &'a [f64; D],
     kept: &'a [f64; D],
@@ -64,36 +64,36 @@ struct Seen<'a, const D: usize> {
     reach: f64,
 }
 
-impl<const D: usize> Way<'_, D> {
+impl<const D: usize> NodePath<'_, D> {
     /// Lets a collider on which the node lay at the beginning keep it out.
     pub(crate) fn keep(&mut self, collider: &Collider<D>) {
         let frame = collider.still.unwrap_or_else(|| Frame::new(&collider.motion, self.time, self.h));
         let Frame { pose, carry } = &frame;
         let (margin, carried) = (collider.law.thickness, Carry::along(carry, self.from));
         let small = rounding(&collider.law, &carried);
-        let near = rounding(&collider.law, self.to);
-        let Way { to, kept, faces, .. } = self;
+        let close = rounding(&collider.law, self.to);
+        let NodePath { to, kept, faces, .. } = self;
         for part in &collider.parts {
-            let held = *kept != **to;
+            let active = *kept != **to;
             let found = match part {
-                Part::HalfSpace(shape) => support(&shape.posed(pose), margin, small, [&carried, kept], held),
+                Part::HalfSpace(shape) => support(&shape.posed(pose), margin, small, [&carried, kept], active),
                 Part::Cuboid(shape) => {
                     let shape = shape.posed(pose);
-                    if margin <= near {
+                    if margin <= close {
                         let gap = shape.gap(to);
-                        if gap.abs() <= near {
-                            shape.visit_faces(to, near, &mut |_, normal| faces.add(normal));
+                        if gap.abs() <= close {
+                            shape.visit_faces(to, close, &mut |_, normal| faces.add(normal));
                         }
                     }
-                    support(&shape, margin, small, [&carried, kept], held)
+                    support(&shape, margin, small, [&carried, kept], active)
                 }
                 Part::Facets(facets) if facets.solid => {
-                    let (end, grain) = (pose.unplace(to), facets.grain().larger(near));
+                    let (end, grain) = (pose.inverse_transform(to), facets.grain().larger(close));
                     if margin <= grain && facets.gap(&end).abs() <= grain {
                         facets.visit_faces(&end, grain, &mut |_, normal| faces.add(pose.direct(&normal)));
                     }
-                    let way = [&pose.unplace(&carried), &pose.unplace(kept)];
-                    support(facets, margin, small, way, held).map(|(gap, normal)| (gap, pose.direct(&normal)))
+                    let segment = [&pose.inverse_transform(&carried), &pose.inverse_transform(kept)];
+                    support(facets, margin, small, segment, active).map(|(gap, normal)| (gap, pose.direct(&normal)))
                 }
                 Part::Ball(_) | Part::Capsule(_) | Part::Facets(_) => None,
             };
@@ -134,7 +134,7 @@ impl<const D: usize> Way<'_, D> {
                     let (mut gap, mut normal) = placed.find(to, &seen.carried, self.reach);
                     if facets.solid && seen.faces.any_covered() {
                         let direct = |normal: [f64; D]| pose.direct(&normal);
-                        let (from, to) = (pose.unplace(&seen.carried), pose.unplace(to));
+                        let (from, to) = (pose.inverse_transform(&seen.carried), pose.inverse_transform(to));
                         let entered =
                             entry(facets, placed.margin, &from, &to).map(|(gap, normal)| (gap, direct(normal)));
                         if let Some(met) = entered.or_else(|| seen.open_face(facets, &to, facets.grain(), &direct)) {
@@ -170,14 +170,14 @@ impl<const D: usize> Seen<'_, D> {
     fn solid<T: Shape<D>>(&self, shape: &T) -> Option<(f64, f64, [f64; D])> {
         let (gap, normal) = shape.gap_and_normal(self.kept);
         let mut found = (gap - self.law.thickness, normal);
-        let way = subtract(self.kept, &self.carried);
+        let displacement = subtract(self.kept, &self.carried);
         let far = 0.5 * shape.half_width();
         // The face by which it came in, which need not be the nearest one.
         let small = rounding(self.law, self.kept);
         let margin = self.law.thickness;
         // What lies exactly where two solids meet is in both of them.
         let covered = T::FACES && found.0 <= small && self.faces.any_covered();
-        if (covered || T::FACES && found.0 < -small || far < dot(&way, &way).sqrt())
+        if (covered || T::FACES && found.0 < -small || far < dot(&displacement, &displacement).sqrt())
             && let Some(entered) = entry(shape, margin, &self.carried, self.kept)
         {
             found = entered;
@@ -189,7 +189,7 @@ impl<const D: usize> Seen<'_, D> {
         (found.0 <= self.reach).then_some((found.0, before, found.1))
     }
 
-    /// Where solids meet: of the faces at a point that no other solid lies against, the height above the one which the way runs
+    /// Where solids meet: of the faces at a point that no other solid lies against, the height above the one which the path runs
     /// against most, and its normal.
     fn open_face<T: Shape<D>>(
         &self,
@@ -198,11 +198,11 @@ impl<const D: usize> Seen<'_, D> {
         grain: f64,
         direct: &dyn Fn([f64; D]) -> [f64; D],
     ) -> Option<(f64, [f64; D])> {
-        let way = subtract(self.kept, &self.carried);
+        let displacement = subtract(self.kept, &self.carried);
         let mut most: Option<(f64, (f64, [f64; D]))> = None;
         shape.visit_faces(x, grain, &mut |height, normal| {
             let normal = direct(normal);
-            let along = dot(&way, &normal);
+            let along = dot(&displacement, &normal);
             if !self.faces.covers(&normal) && most.is_none_or(|(other, _)| along < other) {
                 most = Some((along, (height - self.law.thickness, normal)));
             }

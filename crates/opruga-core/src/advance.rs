@@ -26,19 +26,19 @@ impl<const D: usize> System<D> {
         update: &U,
     ) -> Result<(), StepError> {
         let now = self.time + time;
-        self.make_room();
+        self.ensure_workspace();
         self.prepare(evaluate, now)?;
         if self.stages > 0 && evaluate == Stage::Current {
             self.step_work = Default::default();
         }
         let pinned = !self.pins.is_empty();
         if pinned && step.is_some() {
-            self.take_held_motion(0..self.places());
+            self.take_pinned_motion(0..self.index_count());
         }
         let hindered = self.contacts.is_some() || self.stabilisers.largest_velocity.is_some();
         // Of several stages no single force is what has moved the nodes.
         let several = step.is_some() && evaluate != Stage::Current && self.contacts.is_some();
-        let mut held = 0;
+        let mut contact_lanes = 0;
         for tile in 0..self.plan.len() {
             self.add_forces(evaluate, now, weight, tile);
             for k in 0..self.plan.released_after(tile).len() {
@@ -57,16 +57,16 @@ impl<const D: usize> System<D> {
                     if several {
                         self.take_mean_force(done, h);
                     }
-                    held |= self.collide(done, h);
+                    contact_lanes |= self.collide(done, h);
                 }
             }
         }
         if let Some(h) = step
-            && held != 0
+            && contact_lanes != 0
             && several
         {
             // Side by side, every lane is a body.
-            let lanes = if self.layout == Layout::Batch { held } else { u8::MAX };
+            let lanes = if self.layout == Layout::Batch { contact_lanes } else { u8::MAX };
             let [damping, user] = self.step_work;
             damping.count_by_start(h, lanes, &mut self.work.damping);
             user.count_by_start(h, lanes, &mut self.work.user);
@@ -74,7 +74,7 @@ impl<const D: usize> System<D> {
         if pinned {
             self.hold_pins(update.writes(), self.time + update.time());
             if step.is_some() {
-                self.give_held_motion(0..self.places());
+                self.give_pinned_motion(0..self.index_count());
             }
         }
         Ok(())
@@ -125,8 +125,8 @@ impl<const D: usize> System<D> {
             }
         }
         // A pin balances the forces of the models, whatever the stabiliser leaves of them.
-        let force_on = |d: usize, place: usize| force[d][place - range.start];
-        self.held.add_work_against(&range, weight, force_on, view.v, &mut self.work.user);
+        let force_on = |d: usize, index: usize| force[d][index - range.start];
+        self.pinned_nodes.add_work_against(&range, weight, force_on, view.v, &mut self.work.user);
         if let Some(limit) = self.stabilisers.largest_force {
             let is_node = |k: usize| is_node(self.layout, self.nodes, self.bodies, range.start + k);
             self.work.limited_forces += limit_lengths(&mut force, range.len(), limit, is_node);
@@ -170,16 +170,16 @@ impl<const D: usize> System<D> {
         if self.contacts.is_none() {
             return 0;
         }
-        // What an obstacle takes of the motion of a held node its pin gives back.
-        self.give_held_motion(range.clone());
-        let held = self.resolve_contacts(tile, h);
-        self.take_held_motion(range);
-        held
+        // What an obstacle takes of the motion of a pinned node its pin gives back.
+        self.give_pinned_motion(range.clone());
+        let contact_lanes = self.resolve_contacts(tile, h);
+        self.take_pinned_motion(range);
+        contact_lanes
     }
 
     /// Shortens the velocities that are above the limit, of all nodes.
     pub(crate) fn limit_velocities(&mut self) {
-        self.limit_velocities_of(0..self.places());
+        self.limit_velocities_of(0..self.index_count());
     }
 
     #[inline]
@@ -198,7 +198,7 @@ impl<const D: usize> System<D> {
             self.simd,
             &mut Moved {
                 range: range.clone(),
-                places_used: self.nodes * self.layout.stride(),
+                padding_start: self.nodes * self.layout.stride(),
                 before: self.before.each_ref().map(|b| &**b),
                 x: &mut self.state.x,
                 v: &mut self.state.v,
@@ -259,11 +259,11 @@ impl<const D: usize> Work for MeanForce<'_, D> {
     }
 }
 
-/// Whether a place holds a node of a body; the others fill packs up.
-fn is_node(layout: Layout, nodes: usize, bodies: usize, place: usize) -> bool {
+/// Whether an index holds a node of a body; the others fill packs up.
+fn is_node(layout: Layout, nodes: usize, bodies: usize, index: usize) -> bool {
     match layout {
-        Layout::Single => place < nodes,
-        Layout::Batch => place % WIDTH < bodies && place / WIDTH < nodes,
+        Layout::Single => index < nodes,
+        Layout::Batch => index % WIDTH < bodies && index / WIDTH < nodes,
     }
 }
 

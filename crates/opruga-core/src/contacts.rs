@@ -8,15 +8,15 @@ use opruga_math::{Simd, WIDTH};
 /// Nodes of a tile, just moved freely, that obstacles may hold back.
 #[derive(Debug)]
 pub struct Moved<'a, const D: usize> {
-    /// The places of the tile.
+    /// The indices of the tile.
     pub range: Range<usize>,
-    /// Places below this one belong to nodes; those from here to the end of the last pack are padding.
-    pub places_used: usize,
+    /// Indices below this one belong to nodes; those from here to the end of the last pack are padding.
+    pub padding_start: usize,
     /// Positions before the step: `before[d][p - range.start]` [m].
     pub before: [&'a [f64]; D],
-    /// Positions after it [m]; indexed by place.
+    /// Positions after it [m]; by index.
     pub x: &'a mut Columns<D>,
-    /// Velocities after it [m/s]; indexed by place.
+    /// Velocities after it [m/s]; by index.
     pub v: &'a mut Columns<D>,
     /// Mean force of the step on each node, m Δv/h: `force[d][p - range.start]` [N].
     pub force: [&'a [f64]; D],
@@ -67,7 +67,7 @@ pub struct Touch<const D: usize> {
 /// The obstacles that a block of bodies may meet within a frame.
 pub trait Contacts<const D: usize>: Send + Sync + Debug {
     /// Holds back the nodes of a tile: non-penetration, restitution, friction. Gives the lanes in which it held any, a bit
-    /// each: lane l has the places with number l modulo eight.
+    /// each: lane l has the indices with number l modulo eight.
     fn resolve(&self, simd: Simd, moved: &mut Moved<D>) -> u8;
     /// Calls back with every surface that a node has come to that goes from `from` to `to` [m] in the step of `h` that
     /// ends at `time` [s]: those whose gap at the end is at most `reach` [m], or that it has crossed.

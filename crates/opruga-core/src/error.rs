@@ -81,7 +81,7 @@ messages! {
     #[derive(Clone, Debug, PartialEq)]
     pub enum StepError {
         /// A position or velocity is not finite any more, or a position is so far from the origin that it is mostly rounding: the body by
-        /// its place in the island, the node, the time at the start of the substep \[s\], and how far from the origin along an axis positions
+        /// its index in the island, the node, the time at the start of the substep \[s\], and how far from the origin along an axis positions
         /// keep their digits \[m\], where the node went beyond that.
         "part.step" #[error("node {node} of body {body} left {} at t = {} s", what_was_left(*range), number(*time))]
         Diverged { body: usize, node: u32, time: f64, range: Option<f64> },

@@ -58,7 +58,7 @@ pub enum Content<const D: usize> {
     Count(u64),
     /// A truth.
     Flag(bool),
-    /// A vector per node, in the order of the places.
+    /// A vector per node, in the order of the indices.
     Vectors(Columns<D>),
 }
 
@@ -101,12 +101,12 @@ per_body!(f64 => Number, u64 => Count, bool => Flag);
 
 impl<const D: usize> Content<D> {
     /// The content at the start: zero.
-    fn initial(holds: Type, places: usize) -> Content<D> {
+    fn initial(holds: Type, index_count: usize) -> Content<D> {
         match holds {
             Type::Number => Content::Number(0.0),
             Type::Count => Content::Count(0),
             Type::Flag => Content::Flag(false),
-            Type::Vectors => Content::Vectors(Columns::zeros(places)),
+            Type::Vectors => Content::Vectors(Columns::zeros(index_count)),
         }
     }
     /// Its type.
@@ -140,17 +140,17 @@ pub struct History<const D: usize> {
 }
 
 impl<const D: usize> History<D> {
-    /// Channels of an owner, such as an integrator, for so many places; all begin at zero.
-    pub fn new(owner: &'static str, channels: &[Channel], places: usize) -> History<D> {
+    /// Channels of an owner, such as an integrator, for so many indices; all begin at zero.
+    pub fn new(owner: &'static str, channels: &[Channel], index_count: usize) -> History<D> {
         let mut history = History { owner, channels: Vec::new() };
-        history.add(channels, places);
+        history.add(channels, index_count);
         history
     }
     /// Adds channels, which begin at zero; one that is there stays as it is.
-    pub fn add(&mut self, channels: &[Channel], places: usize) {
+    pub fn add(&mut self, channels: &[Channel], index_count: usize) {
         for channel in channels {
             if self.find(channel.name).is_none() {
-                self.channels.push((*channel, Content::initial(channel.holds, places)));
+                self.channels.push((*channel, Content::initial(channel.holds, index_count)));
             }
         }
     }

@@ -17,7 +17,7 @@ impl<const D: usize> System<D> {
     /// # Errors
     /// [`StepError`] where a model refuses the state.
     pub fn evaluate(&mut self, stage: Stage, time: f64, weight: f64, out: &mut Columns<D>) -> Result<(), StepError> {
-        self.make_room();
+        self.ensure_workspace();
         self.prepare(stage, self.time + time)?;
         self.gather_forces(stage, time, weight, out);
         Ok(())
@@ -110,12 +110,12 @@ impl<const D: usize> System<D> {
             sum += sum_in_fixed_order(&member.potential.energy(self.simd, &view, &member.scratch));
         }
         let mut parts = [0.0; WIDTH];
-        for place in 0..self.nodes {
+        for node in 0..self.nodes {
             let mut height = 0.0;
             for d in 0..D {
-                height += self.gravity[d] * view.x[d][place];
+                height += self.gravity[d] * view.x[d][node];
             }
-            parts[place % WIDTH] -= self.weighing().at(place) * height;
+            parts[node % WIDTH] -= self.weighing().at(node) * height;
         }
         sum + sum_in_fixed_order(&parts)
     }
@@ -123,10 +123,10 @@ impl<const D: usize> System<D> {
     /// The kinetic energy [J].
     pub fn kinetic_energy(&self) -> f64 {
         let mut parts = [0.0; WIDTH];
-        for place in 0..self.nodes {
+        for node in 0..self.nodes {
             for d in 0..D {
-                let v = self.state.v.0[d][place];
-                parts[place % WIDTH] += 0.5 * self.mass.at(place) * v * v;
+                let v = self.state.v.0[d][node];
+                parts[node % WIDTH] += 0.5 * self.mass.at(node) * v * v;
             }
         }
         let coupled = self.inertia.as_ref().map(|inertia| 0.5 * inertia.square::<D>(&self.node_by_node(&self.state.v)));
@@ -194,32 +194,32 @@ impl<const D: usize> System<D> {
         self.members.iter().any(|member| member.potential.properties().views.damping)
     }
 
-    /// Calls back with every held axis of a node, once: place, axis.
-    pub fn held_axes(&self, visit: &mut dyn FnMut(usize, usize)) {
-        for (place, d) in self.held.within(&(0..self.places())) {
-            visit(place, d);
+    /// Calls back with every pinned axis of a node, once: index, axis.
+    pub fn pinned_axes(&self, visit: &mut dyn FnMut(usize, usize)) {
+        for (index, d) in self.pinned_nodes.within(&(0..self.index_count())) {
+            visit(index, d);
         }
     }
 
-    /// Begins an implicit step: makes room, and takes the motion of held nodes that the step finds from the ledger.
+    /// Begins an implicit step: makes room, and takes the motion of pinned nodes that the step finds from the ledger.
     pub fn begin_implicit(&mut self) {
-        self.make_room();
-        self.take_held_motion(0..self.places());
+        self.ensure_workspace();
+        self.take_pinned_motion(0..self.index_count());
     }
 
-    /// Puts held nodes of a state where they have to be, at a time after the start of the step.
+    /// Puts pinned nodes of a state where they have to be, at a time after the start of the step.
     pub fn hold(&mut self, stage: Stage, time: f64) {
         if !self.pins.is_empty() {
             self.hold_pins(stage, self.time + time);
         }
     }
 
-    /// Ends an implicit step of `h` whose end is in the current state: held nodes are where they have to be, speeds are
+    /// Ends an implicit step of `h` whose end is in the current state: pinned nodes are where they have to be, speeds are
     /// limited, models move their memory on, time passes.
     pub fn end_implicit(&mut self, h: f64) {
         self.hold(Stage::Current, h);
         self.limit_velocities();
-        self.give_held_motion(0..self.places());
+        self.give_pinned_motion(0..self.index_count());
         self.finish_step(h);
     }
 }

@@ -120,7 +120,7 @@ impl<const D: usize> System<D> {
         self.plan(integrator.work_columns());
         let channels = integrator.history();
         if !self.history.is_of(integrator.name(), &channels) {
-            self.history = History::new(integrator.name(), &channels, self.places());
+            self.history = History::new(integrator.name(), &channels, self.index_count());
         }
     }
 }

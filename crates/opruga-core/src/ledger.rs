@@ -97,7 +97,7 @@ pub struct SolverWork {
     /// How often a body that rested in a degenerate shape was displaced at random.
     pub disturbed: u64,
     /// How often that was in vain.
-    pub odd_rests: u64,
+    pub stayed_degenerate: u64,
 }
 
 impl SolverWork {
@@ -117,6 +117,6 @@ impl SolverWork {
         self.conditioned += other.conditioned;
         self.conditioning = other.conditioning.larger(self.conditioning);
         self.disturbed += other.disturbed;
-        self.odd_rests += other.odd_rests;
+        self.stayed_degenerate += other.stayed_degenerate;
     }
 }

@@ -7,7 +7,7 @@ use opruga_math::WIDTH;
 impl<const D: usize> Workspace<D> {
     /// Grows to what the steps of a system need.
     pub fn fit(&mut self, system: &System<D>) {
-        self.make_room(system.plan.buffer_places(), system.stages, system.places());
+        self.grow(system.plan.buffer_length(), system.stages, system.index_count());
     }
 }
 
@@ -19,14 +19,14 @@ impl<const D: usize> System<D> {
         std::mem::swap(&mut self.velocity_before, &mut workspace.velocity_before);
         std::mem::swap(&mut self.state.work, &mut workspace.stages);
     }
-    /// Makes room for a step where nobody has lent any.
-    pub(crate) fn make_room(&mut self) {
-        let (buffers, stages, places) = (self.plan.buffer_places(), self.stages, self.places());
-        let own = self.state.work.iter().take(stages).flatten().all(|c| c.0[0].len() >= places + WIDTH);
+    /// Makes a workspace for a step where nobody has lent one.
+    pub(crate) fn ensure_workspace(&mut self) {
+        let (buffers, stages, index_count) = (self.plan.buffer_length(), self.stages, self.index_count());
+        let own = self.state.work.iter().take(stages).flatten().all(|c| c.0[0].len() >= index_count + WIDTH);
         if self.forces[0].len() < buffers + WIDTH || self.state.work.len() < stages || !own {
             let mut workspace = Workspace::default();
             self.exchange(&mut workspace);
-            workspace.make_room(buffers, stages, places);
+            workspace.grow(buffers, stages, index_count);
             self.exchange(&mut workspace);
         }
     }

@@ -7,10 +7,10 @@ use opruga_math::WIDTH;
 impl<const D: usize> System<D> {
     /// Tells the ledger how far pins move in the step of `h` that comes.
     pub fn lead_pins(&mut self, h: f64) {
-        self.held.learn(&self.pins, self.time, h);
+        self.pinned_nodes.learn(&self.pins, self.time, h);
     }
 
-    /// Gives held nodes the velocity of their path at the start of a frame, where they have another: at the start of a run, or where a
+    /// Gives pinned nodes the velocity of their path at the start of a frame, where they have another: at the start of a run, or where a
     /// command has just taken hold of them. Dampers between them and their neighbours would act for a step by a motion that ended with
     /// the hold, which costs every rule its order. What that changes of the kinetic energy is work of the pins. Where a mass matrix
     /// couples nodes it is an impulse on others too, and is left to the rule.
@@ -21,16 +21,16 @@ impl<const D: usize> System<D> {
         for pin in &self.pins {
             let (_, velocity) = pin.target(self.time);
             for d in (0..D).filter(|d| pin.axes[*d]) {
-                let before = core::mem::replace(&mut self.state.v.0[d][pin.place], velocity[d]);
+                let before = core::mem::replace(&mut self.state.v.0[d][pin.index], velocity[d]);
                 if before != velocity[d] {
-                    let change = 0.5 * self.mass.at(pin.place) * (velocity[d] * velocity[d] - before * before);
-                    self.work.user[pin.place % WIDTH] += change;
+                    let change = 0.5 * self.mass.at(pin.index) * (velocity[d] * velocity[d] - before * before);
+                    self.work.user[pin.index % WIDTH] += change;
                 }
             }
         }
     }
 
-    /// Puts held nodes where they are prescribed to be, at the velocity of their path there; where a mass matrix couples them
+    /// Puts pinned nodes where they are prescribed to be, at the velocity of their path there; where a mass matrix couples them
     /// to others they keep the one that the step has given them, since a change of it is an impulse on those too.
     pub(crate) fn hold_pins(&mut self, stage: Stage, time: f64) {
         let (x, v) = match stage {
@@ -44,33 +44,33 @@ impl<const D: usize> System<D> {
             let (position, velocity) = pin.target(time);
             for d in 0..D {
                 if pin.axes[d] {
-                    x.0[d][pin.place] = position[d];
+                    x.0[d][pin.index] = position[d];
                     if self.inertia.is_none() {
-                        v.0[d][pin.place] = velocity[d];
+                        v.0[d][pin.index] = velocity[d];
                     }
                 }
             }
         }
     }
 
-    /// Takes the kinetic energy along held axes from the work of the pins: what they find.
-    pub(crate) fn take_held_motion(&mut self, range: Range<usize>) {
-        self.add_held_motion(range, -0.5);
+    /// Takes the kinetic energy along pinned axes from the work of the pins: what they find.
+    pub(crate) fn take_pinned_motion(&mut self, range: Range<usize>) {
+        self.add_pinned_motion(range, -0.5);
     }
 
-    /// Adds the kinetic energy along held axes to the work of the pins: what they leave.
-    pub(crate) fn give_held_motion(&mut self, range: Range<usize>) {
-        self.add_held_motion(range, 0.5);
+    /// Adds the kinetic energy along pinned axes to the work of the pins: what they leave.
+    pub(crate) fn give_pinned_motion(&mut self, range: Range<usize>) {
+        self.add_pinned_motion(range, 0.5);
     }
 
     #[inline]
-    fn add_held_motion(&mut self, range: Range<usize>, factor: f64) {
+    fn add_pinned_motion(&mut self, range: Range<usize>, factor: f64) {
         if self.pins.is_empty() {
             return;
         }
-        for (place, d) in self.held.within(&range) {
-            let velocity = self.state.v.0[d][place];
-            self.work.user[place % WIDTH] += factor * self.mass.at(place) * velocity * velocity;
+        for (index, d) in self.pinned_nodes.within(&range) {
+            let velocity = self.state.v.0[d][index];
+            self.work.user[index % WIDTH] += factor * self.mass.at(index) * velocity * velocity;
         }
     }
 }

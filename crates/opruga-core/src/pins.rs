@@ -3,14 +3,14 @@
 use core::ops::Range;
 use opruga_math::WIDTH;
 
-/// A node held in some axes.
+/// A node pinned along some axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pin<const D: usize> {
     /// Where the node lies in the columns.
-    pub place: usize,
-    /// Which axes are held.
+    pub index: usize,
+    /// Which axes are pinned.
     pub axes: [bool; D],
-    /// Where it is held [m].
+    /// Where it is pinned [m].
     pub anchor: [f64; D],
     /// Displacement from there over time, rows `[t, dx, dy(, dz)]`; empty: none.
     pub motion: std::sync::Arc<Vec<Vec<f64>>>,
@@ -56,39 +56,39 @@ pub fn along_path<const D: usize>(path: &[Vec<f64>], time: f64) -> ([f64; D], [f
     (point(last), [0.0; D])
 }
 
-/// What the pins hold: every place once with its held axes, by place.
+/// What the pins hold: every node once with its pinned axes, by index.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Held<const D: usize>(Vec<HeldNode<D>>);
+pub(crate) struct PinnedNodes<const D: usize>(Vec<PinnedNode<D>>);
 
-/// A held node.
+/// A pinned node.
 #[derive(Clone, Debug, PartialEq)]
-struct HeldNode<const D: usize> {
-    place: usize,
+struct PinnedNode<const D: usize> {
+    index: usize,
     axes: [bool; D],
     /// Its mean velocity within the step, where that is known [m/s]: a motion may begin or end within a step.
     mean: Option<[f64; D]>,
 }
 
-impl<const D: usize> Held<D> {
-    /// What these pins hold; a place held twice is held once.
-    pub(crate) fn of(pins: &[Pin<D>]) -> Held<D> {
-        let mut held: Vec<HeldNode<D>> =
-            pins.iter().map(|pin| HeldNode { place: pin.place, axes: pin.axes, mean: None }).collect();
-        held.sort_by_key(|node| node.place);
-        held.dedup_by(|next, kept| {
-            let same = next.place == kept.place;
+impl<const D: usize> PinnedNodes<D> {
+    /// What these pins hold; a node pinned twice is listed once.
+    pub(crate) fn of(pins: &[Pin<D>]) -> PinnedNodes<D> {
+        let mut nodes: Vec<PinnedNode<D>> =
+            pins.iter().map(|pin| PinnedNode { index: pin.index, axes: pin.axes, mean: None }).collect();
+        nodes.sort_by_key(|node| node.index);
+        nodes.dedup_by(|next, kept| {
+            let same = next.index == kept.index;
             if same {
                 (0..D).for_each(|d| kept.axes[d] |= next.axes[d]);
             }
             same
         });
-        Held(held)
+        PinnedNodes(nodes)
     }
     /// Learns how far pins move in the step to come.
     pub(crate) fn learn(&mut self, pins: &[Pin<D>], time: f64, h: f64) {
         for pin in pins.iter().filter(|pin| !pin.motion.is_empty()) {
             let (from, to) = (pin.target(time).0, pin.target(time + h).0);
-            if let Ok(k) = self.0.binary_search_by_key(&pin.place, |node| node.place) {
+            if let Ok(k) = self.0.binary_search_by_key(&pin.index, |node| node.index) {
                 let node = &mut self.0[k];
                 let mean = node.mean.get_or_insert([0.0; D]);
                 for d in (0..D).filter(|d| pin.axes[*d]) {
@@ -97,13 +97,13 @@ impl<const D: usize> Held<D> {
             }
         }
     }
-    /// Held places within a range, and their held axes.
+    /// Pinned indices within a range, and their pinned axes.
     pub(crate) fn within(&self, range: &Range<usize>) -> impl Iterator<Item = (usize, usize)> {
-        self.nodes(range).flat_map(|node| (0..D).filter(|d| node.axes[*d]).map(|d| (node.place, d)))
+        self.nodes(range).flat_map(|node| (0..D).filter(|d| node.axes[*d]).map(|d| (node.index, d)))
     }
-    fn nodes(&self, range: &Range<usize>) -> impl Iterator<Item = &HeldNode<D>> {
-        let first = self.0.partition_point(|node| node.place < range.start);
-        let last = self.0.partition_point(|node| node.place < range.end);
+    fn nodes(&self, range: &Range<usize>) -> impl Iterator<Item = &PinnedNode<D>> {
+        let first = self.0.partition_point(|node| node.index < range.start);
+        let last = self.0.partition_point(|node| node.index < range.end);
         self.0[first..last].iter()
     }
     /// Adds the work −F·v dt that pins do against the forces of the models.
@@ -121,8 +121,8 @@ impl<const D: usize> Held<D> {
         }
         for node in self.nodes(range) {
             for d in (0..D).filter(|d| node.axes[*d]) {
-                let rate = node.mean.map_or(velocity[d][node.place], |mean| mean[d]);
-                work[node.place % WIDTH] -= weight * force(d, node.place) * rate;
+                let rate = node.mean.map_or(velocity[d][node.index], |mean| mean[d]);
+                work[node.index % WIDTH] -= weight * force(d, node.index) * rate;
             }
         }
     }

@@ -75,17 +75,17 @@ pub struct StencilPack<'a> {
     pub nodes: usize,
     /// How many stencils there are; lanes from there on mean nothing.
     pub count: usize,
-    /// Places of the nodes, `[node][lane]`.
-    pub places: &'a [u32],
+    /// Indices of the nodes, `[node][lane]`.
+    pub indices: &'a [u32],
     /// Blocks K_ab row by row, `[a][b][row][column][lane]`; those with a > b are not looked at.
     pub blocks: &'a [f64],
 }
 
 impl StencilPack<'_> {
-    /// The place of a node of a stencil.
+    /// The index of a node of a stencil.
     #[inline(always)]
-    pub fn place(&self, node: usize, lane: usize) -> usize {
-        self.places[node * WIDTH + lane] as usize
+    pub fn index(&self, node: usize, lane: usize) -> usize {
+        self.indices[node * WIDTH + lane] as usize
     }
     /// The block K_ab of a stencil.
     #[inline(always)]
@@ -109,17 +109,17 @@ pub trait StencilPacks<const D: usize>: Sync {
     fn nodes(&self) -> usize;
     /// How many stencils there are; all packs but the last are full.
     fn stencils(&self) -> usize;
-    /// Whether these are the places of all packs, one pack after the other as in [`StencilPack::places`].
-    fn are_at(&self, places: &[u32]) -> bool;
-    /// Delivers the packs with a place in `rows` in their order, each with its number among all.
+    /// Whether these are the indices of all packs, one pack after the other as in [`StencilPack::indices`].
+    fn are_at(&self, indices: &[u32]) -> bool;
+    /// Delivers the packs with an index in `rows` in their order, each with its number among all.
     fn deliver(&self, rows: &Range<usize>, to: &mut dyn FnMut(usize, &StencilPack<'_>));
 }
 
 /// Where a model delivers its Hessian.
 pub trait Sink<const D: usize> {
-    /// Adds the block ∂²U/∂xₐ∂x_b for two places of the same body.
+    /// Adds the block ∂²U/∂xₐ∂x_b for two indices of the same body.
     fn block(&mut self, a: usize, b: usize, value: [[f64; D]; D]);
-    /// Adds c·u uᵀ, where u is given by its entries at some places: never written out as a dense matrix.
+    /// Adds c·u uᵀ, where u is given by its entries at some indices: never written out as a dense matrix.
     fn low_rank(&mut self, c: f64, u: &[(usize, [f64; D])]);
     /// Adds a dense matrix that turns with its body. A sink that keeps a sparse matrix keeps this part beside it, as it is; one that looks
     /// at entries alone sees them block by block.
@@ -138,7 +138,7 @@ pub trait Sink<const D: usize> {
         for lane in 0..pack.count {
             for a in 0..pack.nodes {
                 for b in 0..pack.nodes {
-                    self.block(pack.place(a, lane), pack.place(b, lane), pack.block(a, b, lane));
+                    self.block(pack.index(a, lane), pack.index(b, lane), pack.block(a, b, lane));
                 }
             }
         }
@@ -248,7 +248,7 @@ pub trait Potential<const D: usize>: Observe<D> + Send + Sync + Debug {
     fn hessian(&self, _view: &View<D>, _scratch: &[f64], _keep: Definiteness, _sink: &mut dyn Sink<D>) {}
     /// Delivers −∂F/∂v, the matrix of damping, after `prepare` in the same state.
     fn damping_matrix(&self, _view: &View<D>, _scratch: &[f64], _sink: &mut dyn Sink<D>) {}
-    /// Adds ∂²U/∂x∂x · direction; places outside of the bodies are left alone.
+    /// Adds ∂²U/∂x∂x · direction; indices outside of the bodies are left alone.
     fn add_hessian_product(&self, view: &View<D>, scratch: &[f64], direction: &[&[f64]; D], out: &mut [&mut [f64]; D]) {
         let mut product = ProductSink { direction, out };
         self.hessian(view, scratch, Definiteness::Exact, &mut product);
@@ -352,14 +352,14 @@ impl<const D: usize> Sink<D> for ProductSink<'_, '_, D> {
     }
     fn low_rank(&mut self, c: f64, u: &[(usize, [f64; D])]) {
         let mut dot = 0.0;
-        for (place, entry) in u {
+        for (index, entry) in u {
             for d in 0..D {
-                dot += entry[d] * self.direction[d][*place];
+                dot += entry[d] * self.direction[d][*index];
             }
         }
-        for (place, entry) in u {
+        for (index, entry) in u {
             for d in 0..D {
-                self.out[d][*place] += c * dot * entry[d];
+                self.out[d][*index] += c * dot * entry[d];
             }
         }
     }

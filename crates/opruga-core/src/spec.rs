@@ -10,7 +10,7 @@ mod names;
 
 pub use allowed::{AllowedValues, ChoiceError, ValueError, quoted};
 pub use condition::{Alternatives, Condition, ConditionText};
-pub use names::{all_near, nearest};
+pub use names::{close_matches, nearest};
 
 use crate::error::BuildError;
 

@@ -87,7 +87,7 @@ pub struct Stability {
 
 /// Estimates the spectra of a system in its present state, and the largest stable step of an integrator.
 ///
-/// About 30 evaluations of all forces, 100 with damping; the system is left as it is. Held nodes and axes do not count.
+/// About 30 evaluations of all forces, 100 with damping; the system is left as it is. Pinned nodes and axes do not count.
 ///
 /// # Errors
 /// [`StepError`] where a model refuses the state or its forces are not finite.
@@ -250,15 +250,15 @@ struct Probe<'a, const D: usize> {
 
 impl<'a, const D: usize> Probe<'a, D> {
     fn new(system: &'a System<D>) -> Self {
-        let places = system.places();
-        let mut weights = Columns::zeros(places);
+        let index_count = system.index_count();
+        let mut weights = Columns::zeros(index_count);
         let (mut low, mut high) = ([f64::INFINITY; D], [f64::NEG_INFINITY; D]);
         for node in 0..system.nodes {
             for body in 0..if system.layout == Layout::Batch { system.bodies } else { 1 } {
-                let place = system.layout.place(node, body);
-                let inverse = system.inverse_mass.at(place);
-                weights.set(place, [if inverse > 0.0 { inverse.sqrt() } else { 0.0 }; D]);
-                let x = system.state.x.at(place);
+                let index = system.layout.index(node, body);
+                let inverse = system.inverse_mass.at(index);
+                weights.set(index, [if inverse > 0.0 { inverse.sqrt() } else { 0.0 }; D]);
+                let x = system.state.x.at(index);
                 for d in 0..D {
                     low[d] = low[d].smaller(x[d]);
                     high[d] = high[d].larger(x[d]);
@@ -268,7 +268,7 @@ impl<'a, const D: usize> Probe<'a, D> {
         for pin in &system.pins {
             for d in 0..D {
                 if pin.axes[d] {
-                    weights.0[d][pin.place] = 0.0;
+                    weights.0[d][pin.index] = 0.0;
                 }
             }
         }
@@ -278,11 +278,11 @@ impl<'a, const D: usize> Probe<'a, D> {
         }
         Probe {
             x: system.state.x.clone(),
-            v: Columns::zeros(places),
+            v: Columns::zeros(index_count),
             scratch: system.members.iter().map(|m| Column::zeros(m.potential.properties().scratch_len)).collect(),
             slots: Column::default(),
-            force: Columns::zeros(places),
-            at_rest: Columns::zeros(places),
+            force: Columns::zeros(index_count),
+            at_rest: Columns::zeros(index_count),
             small: DISPLACEMENT * if extent > 0.0 && extent.is_finite() { extent } else { 1.0 },
             weights,
             system,
@@ -292,7 +292,7 @@ impl<'a, const D: usize> Probe<'a, D> {
     /// The forces of all models, or of the damped ones, in the state to be evaluated.
     fn evaluate(&mut self, damped_only: bool) -> Result<(), StepError> {
         let system = self.system;
-        let places = system.places();
+        let index_count = system.index_count();
         let view = View {
             x: self.x.slices(),
             v: self.v.slices(),
@@ -311,7 +311,8 @@ impl<'a, const D: usize> Probe<'a, D> {
             }
             member.potential.prepare(system.simd, &view, &member.memory, scratch)?;
             let force = self.force.0.each_mut().map(|f| &mut **f);
-            let mut tile = Tile { range: 0..places, force, power: &mut power, weight: None, slots: &mut self.slots };
+            let mut tile =
+                Tile { range: 0..index_count, force, power: &mut power, weight: None, slots: &mut self.slots };
             member.potential.add_force(system.simd, &view, scratch, &mut tile);
         }
         Ok(())
@@ -344,7 +345,7 @@ impl<'a, const D: usize> Probe<'a, D> {
     /// Remembers the forces of damped models without velocities.
     fn start_damping(&mut self) -> Result<(), StepError> {
         self.x = self.system.state.x.clone();
-        self.v = Columns::zeros(self.system.places());
+        self.v = Columns::zeros(self.system.index_count());
         self.evaluate(true)?;
         self.at_rest = self.force.clone();
         Ok(())

@@ -4,11 +4,11 @@ use opruga_math::{Column, Pack, Register, RepeatStrip, StripMut, WIDTH, lanes};
 
 /// How the nodes of a block lie in its columns.
 ///
-/// A *place* is an index into a column. Every loop of physics runs over places, eight at a time:
+/// Every loop of physics runs over the indices of a column, eight at a time:
 ///
 /// ```text
-/// Single: node i of the one body        at place i           (a pack = 8 neighbouring nodes)
-/// Batch:  node i of body l (of eight)   at place 8 i + l     (a pack = the same node of 8 bodies)
+/// Single: node i of the one body        at index i           (a pack = 8 neighbouring nodes)
+/// Batch:  node i of body l (of eight)   at index 8 i + l     (a pack = the same node of 8 bodies)
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layout {
@@ -27,13 +27,13 @@ impl Layout {
             Layout::Batch => WIDTH,
         }
     }
-    /// The number of places of so many nodes, padded to whole packs.
-    pub fn places(self, nodes: usize) -> usize {
+    /// The number of indices that so many nodes take, padded to whole packs.
+    pub fn index_count(self, nodes: usize) -> usize {
         (nodes * self.stride()).next_multiple_of(WIDTH)
     }
-    /// The place of a node of a body.
+    /// The index of a node of a body.
     #[inline(always)]
-    pub fn place(self, node: usize, body: usize) -> usize {
+    pub fn index(self, node: usize, body: usize) -> usize {
         match self {
             Layout::Single => node,
             Layout::Batch => node * WIDTH + body,
@@ -46,25 +46,25 @@ impl Layout {
 pub struct Columns<const D: usize>(pub [Column; D]);
 
 impl<const D: usize> Columns<D> {
-    /// Zeros, with room for a whole pack behind the last place.
-    pub fn zeros(places: usize) -> Columns<D> {
-        Columns(core::array::from_fn(|_| Column::zeros(places + WIDTH)))
+    /// Zeros, with room for a whole pack behind the last index.
+    pub fn zeros(index_count: usize) -> Columns<D> {
+        Columns(core::array::from_fn(|_| Column::zeros(index_count + WIDTH)))
     }
     /// The columns as slices.
     #[inline(always)]
     pub fn slices(&self) -> [&[f64]; D] {
         core::array::from_fn(|d| &*self.0[d])
     }
-    /// Eight places at once.
+    /// Eight indices at once.
     #[inline(always)]
-    pub fn load<P: Pack>(&self, place: usize) -> [P; D] {
-        lanes!(P, d => P::load(&self.0[d][place..]))
+    pub fn load<P: Pack>(&self, index: usize) -> [P; D] {
+        lanes!(P, d => P::load(&self.0[d][index..]))
     }
-    /// Writes eight places at once.
+    /// Writes eight indices at once.
     #[inline(always)]
-    pub fn store<P: Pack>(&mut self, place: usize, value: [P; D]) {
+    pub fn store<P: Pack>(&mut self, index: usize, value: [P; D]) {
         for d in 0..D {
-            value[d].store(&mut self.0[d][place..]);
+            value[d].store(&mut self.0[d][index..]);
         }
     }
     /// A piece of every column for a loop over packs.
@@ -72,27 +72,27 @@ impl<const D: usize> Columns<D> {
     pub fn strip_mut(&mut self, start: usize, length: usize) -> StripMut<'_, D> {
         StripMut::new(self.0.each_mut().map(|c| &mut **c), start, length)
     }
-    /// The vector at one place.
+    /// The vector at one index.
     #[inline(always)]
-    pub fn at(&self, place: usize) -> [f64; D] {
-        core::array::from_fn(|d| self.0[d][place])
+    pub fn at(&self, index: usize) -> [f64; D] {
+        core::array::from_fn(|d| self.0[d][index])
     }
-    /// Writes the vector at one place.
+    /// Writes the vector at one index.
     #[inline(always)]
-    pub fn set(&mut self, place: usize, value: [f64; D]) {
+    pub fn set(&mut self, index: usize, value: [f64; D]) {
         for d in 0..D {
-            self.0[d][place] = value[d];
+            self.0[d][index] = value[d];
         }
     }
 }
 
-/// Loads eight places of every coordinate.
+/// Loads eight indices of every coordinate.
 #[inline(always)]
-pub fn load<P: Pack, const D: usize>(columns: &[&[f64]; D], place: usize) -> [P; D] {
-    lanes!(P, d => P::load(&columns[d][place..]))
+pub fn load<P: Pack, const D: usize>(columns: &[&[f64]; D], index: usize) -> [P; D] {
+    lanes!(P, d => P::load(&columns[d][index..]))
 }
 
-/// A number per place that is often the same everywhere: then eight values stand for the whole column.
+/// A number per index that is often the same everywhere: then eight values stand for the whole column.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameter(Numbers);
 
@@ -100,7 +100,7 @@ pub struct Parameter(Numbers);
 enum Numbers {
     /// The same eight numbers all along.
     Repeated(Eight),
-    /// One number per place.
+    /// One number per index.
     Each(Column),
 }
 
@@ -121,7 +121,7 @@ impl Parameter {
     pub fn by_body(values: [f64; WIDTH]) -> Parameter {
         Parameter(Numbers::Repeated(Eight(values)))
     }
-    /// A number for every place; stored once if they are all the same to the bit.
+    /// A number for every index; stored once if they are all the same to the bit.
     pub fn column(values: Vec<f64>) -> Parameter {
         let first = values.first().copied().unwrap_or(0.0);
         if values.iter().all(|v| v.to_bits() == first.to_bits()) {
@@ -136,7 +136,7 @@ impl Parameter {
         let mut values = vec![0.0; items * layout.stride()];
         for item in 0..items {
             for body in 0..layout.stride() {
-                values[layout.place(item, body)] = number(item, body);
+                values[layout.index(item, body)] = number(item, body);
             }
         }
         let repeats = layout == Layout::Batch && values.chunks(WIDTH).all(|c| c == &values[..WIDTH]);
@@ -147,12 +147,12 @@ impl Parameter {
         }
         Parameter::column(values)
     }
-    /// The numbers of eight places.
+    /// The numbers of eight indices.
     #[inline(always)]
-    pub fn load<P: Pack>(&self, place: usize) -> P {
+    pub fn load<P: Pack>(&self, index: usize) -> P {
         match &self.0 {
             Numbers::Repeated(eight) => P::load(&eight.0),
-            Numbers::Each(column) => P::load(&column[place..]),
+            Numbers::Each(column) => P::load(&column[index..]),
         }
     }
     /// A piece of the column for a loop over packs.
@@ -167,10 +167,10 @@ impl Parameter {
     #[inline(always)]
     pub fn load_at<P: Pack>(&self, items: At) -> P {
         match items {
-            At::Run(place) => self.load(place),
-            At::Each(places) => match &self.0 {
+            At::Run(index) => self.load(index),
+            At::Each(indices) => match &self.0 {
                 Numbers::Repeated(eight) => P::load(&eight.0),
-                Numbers::Each(column) => P::gather(column, places),
+                Numbers::Each(column) => P::gather(column, indices),
             },
         }
     }
@@ -179,16 +179,16 @@ impl Parameter {
     pub fn load_part<R: Register>(&self, items: At, offset: usize) -> R {
         match (&self.0, items) {
             (Numbers::Repeated(eight), _) => R::load(&eight.0[offset..]),
-            (Numbers::Each(column), At::Run(place)) => R::load(&column[place + offset..]),
-            (Numbers::Each(column), At::Each(places)) => R::gather(column, &places[offset..]),
+            (Numbers::Each(column), At::Run(index)) => R::load(&column[index + offset..]),
+            (Numbers::Each(column), At::Each(indices)) => R::gather(column, &indices[offset..]),
         }
     }
-    /// The number at one place.
+    /// The number at one index.
     #[inline(always)]
-    pub fn at(&self, place: usize) -> f64 {
+    pub fn at(&self, index: usize) -> f64 {
         match &self.0 {
-            Numbers::Repeated(eight) => eight.0[place % WIDTH],
-            Numbers::Each(column) => column[place],
+            Numbers::Repeated(eight) => eight.0[index % WIDTH],
+            Numbers::Each(column) => column[index],
         }
     }
     /// Whether eight values stand for the whole column.
@@ -213,12 +213,12 @@ impl Parameter {
     }
 }
 
-/// Eight items of a column: neighbours from a place on, or each at a place of its own.
+/// Eight items of a column: neighbours from an index on, or each at an index of its own.
 #[derive(Clone, Copy, Debug)]
 pub enum At<'a> {
-    /// From this place on.
+    /// From this index on.
     Run(usize),
-    /// One place each; eight of them.
+    /// One index each; eight of them.
     Each(&'a [u32]),
 }
 
@@ -240,21 +240,21 @@ pub struct View<'a, const D: usize> {
 }
 
 impl<const D: usize> View<'_, D> {
-    /// The position at a place [m].
+    /// The position at an index [m].
     #[inline(always)]
-    pub fn position(&self, place: usize) -> [f64; D] {
-        core::array::from_fn(|d| self.x[d][place])
+    pub fn position(&self, index: usize) -> [f64; D] {
+        core::array::from_fn(|d| self.x[d][index])
     }
-    /// The velocity at a place [m/s].
+    /// The velocity at an index [m/s].
     #[inline(always)]
-    pub fn velocity(&self, place: usize) -> [f64; D] {
-        core::array::from_fn(|d| self.v[d][place])
+    pub fn velocity(&self, index: usize) -> [f64; D] {
+        core::array::from_fn(|d| self.v[d][index])
     }
 }
 
 /// A sum over items whose bits do not depend on the layout: eight partial sums by item number modulo eight.
 ///
-/// With one body the eight partial sums are the eight places of one pack. With eight bodies side by side they are eight
+/// With one body the eight partial sums are the eight indices of one pack. With eight bodies side by side they are eight
 /// packs. Both are added up in the same order.
 #[derive(Clone, Copy)]
 pub struct OrderedSum<P: Pack> {
@@ -271,13 +271,13 @@ impl<P: Pack> OrderedSum<P> {
     pub fn new(layout: Layout) -> Self {
         OrderedSum { layout, lanes: P::zero(), packs: [P::zero(); WIDTH] }
     }
-    /// Adds the values of a pack that starts at place `place` of a run of `end` places.
+    /// Adds the values of a pack that starts at `index` of a run of `end` indices.
     #[inline(always)]
-    pub fn add(&mut self, place: usize, end: usize, value: P) {
+    pub fn add(&mut self, index: usize, end: usize, value: P) {
         match self.layout {
-            Layout::Single if place + WIDTH <= end => self.lanes += value,
-            Layout::Single => self.lanes += P::select(P::first(end - place), value, P::zero()),
-            Layout::Batch => self.packs[(place / WIDTH) % WIDTH] += value,
+            Layout::Single if index + WIDTH <= end => self.lanes += value,
+            Layout::Single => self.lanes += P::select(P::first(end - index), value, P::zero()),
+            Layout::Batch => self.packs[(index / WIDTH) % WIDTH] += value,
         }
     }
     /// Adds the values of a pack whose number modulo eight is `slot`, of bodies side by side.

@@ -38,7 +38,7 @@ pub struct Stencils<L, const N: usize, const K: usize> {
     elements: Vec<[u32; N]>,
     parameters: [Parameter; K],
     damped: bool,
-    /// Where the elements of each block of [`TILE`] places begin in `list`, and where the last ends.
+    /// Where the elements of each block of [`TILE`] indices begin in `list`, and where the last ends.
     blocks: Vec<u32>,
     /// Elements that touch a block, ascending; for one body filled up to whole packs with its last element.
     list: Vec<u32>,
@@ -46,11 +46,11 @@ pub struct Stencils<L, const N: usize, const K: usize> {
     straight: Vec<bool>,
     /// Where the slots of each node begin in `share`, and where the last ends.
     share_start: Vec<u32>,
-    /// The slots that a node adds up: local node (upper bits) and place in the list of its block (lower bits).
+    /// The slots that a node adds up: local node (upper bits) and index in the list of its block (lower bits).
     share: Vec<u32>,
 }
 
-/// Bits of a share that hold the place in the list.
+/// Bits of a share that hold the index in the list.
 const SHARE_BITS: u32 = 28;
 
 impl<L, const N: usize, const K: usize> Stencils<L, N, K> {
@@ -208,24 +208,24 @@ impl<L, const N: usize, const K: usize> Stencils<L, N, K> {
         let end = ((block + 1) * TILE).min(tile.range.end).div_ceil(stride).min(self.nodes);
         for node in start..end {
             let shares = &self.share[self.share_start[node] as usize..self.share_start[node + 1] as usize];
-            let place = node * stride - tile.range.start;
+            let first = node * stride - tile.range.start;
             for d in 0..D {
                 match self.layout {
                     Layout::Single => {
-                        let mut sum = tile.force[d][place];
+                        let mut sum = tile.force[d][first];
                         for &share in shares {
                             let (local, k) = split(share);
                             sum += slots[(local * D + d) * count + k];
                         }
-                        tile.force[d][place] = sum;
+                        tile.force[d][first] = sum;
                     }
                     Layout::Batch => {
-                        let mut sum = P::load(&tile.force[d][place..]);
+                        let mut sum = P::load(&tile.force[d][first..]);
                         for &share in shares {
                             let (local, k) = split(share);
                             sum += P::load(&slots[((local * D + d) * count + k) * WIDTH..]);
                         }
-                        sum.store(&mut tile.force[d][place..]);
+                        sum.store(&mut tile.force[d][first..]);
                     }
                 }
             }
@@ -286,7 +286,7 @@ struct Eight<'a, const N: usize> {
     nodes: Nodes<N>,
 }
 
-/// The places of their nodes: the first of eight neighbours, or each.
+/// The indices of their nodes: the first of eight neighbours, or each.
 enum Nodes<const N: usize> {
     InARow([usize; N]),
     Scattered([[u32; WIDTH]; N]),
@@ -314,10 +314,10 @@ impl<const N: usize> Eight<'_, N> {
                     }
                 }
             }
-            Nodes::Scattered(places) => {
+            Nodes::Scattered(indices) => {
                 for a in 0..N {
                     for d in 0..D {
-                        out[a][d] = R::gather(columns[d], &places[a][offset..]);
+                        out[a][d] = R::gather(columns[d], &indices[a][offset..]);
                     }
                 }
             }
@@ -326,7 +326,7 @@ impl<const N: usize> Eight<'_, N> {
     }
 }
 
-/// Local node and place in the list of the block.
+/// Local node and index in the list of the block.
 #[inline(always)]
 fn split(share: u32) -> (usize, usize) {
     ((share >> SHARE_BITS) as usize, (share & ((1 << SHARE_BITS) - 1)) as usize)
@@ -347,24 +347,24 @@ impl<L: Kernel<D, N, K>, const D: usize, const N: usize, const K: usize> Potenti
     }
     fn hessian(&self, view: &View<D>, _scratch: &[f64], keep: Definiteness, sink: &mut dyn Sink<D>) {
         let bodies = self.layout.stride();
-        let places =
-            |item: usize| self.elements[item / bodies].map(|node| self.layout.place(node as usize, item % bodies));
+        let indices =
+            |item: usize| self.elements[item / bodies].map(|node| self.layout.index(node as usize, item % bodies));
         let (mut first, all) = (0, self.elements.len() * bodies);
         let mut matrices = Vec::with_capacity(WIDTH);
         while first < all {
             matrices.clear();
             for item in first..(first + WIDTH).min(all) {
                 let parameters = self.parameters.each_ref().map(|p| p.at(item));
-                matrices.push(L::hessian(&parameters, &places(item).map(|p| view.position(p))));
+                matrices.push(L::hessian(&parameters, &indices(item).map(|p| view.position(p))));
             }
             if keep == Definiteness::Clamped {
                 clamp(&mut matrices);
             }
             for (k, blocks) in matrices.iter().enumerate() {
-                let places = places(first + k);
+                let indices = indices(first + k);
                 for a in 0..N {
                     for b in 0..N {
-                        sink.block(places[a], places[b], blocks[a][b]);
+                        sink.block(indices[a], indices[b], blocks[a][b]);
                     }
                 }
             }
@@ -377,12 +377,12 @@ impl<L: Kernel<D, N, K>, const D: usize, const N: usize, const K: usize> Potenti
         }
         for (number, nodes) in self.elements.iter().enumerate() {
             for body in 0..self.layout.stride() {
-                let parameters = self.parameters.each_ref().map(|p| p.at(self.layout.place(number, body)));
-                let places = nodes.map(|n| self.layout.place(n as usize, body));
-                let blocks = L::damping_matrix(&parameters, &places.map(|p| view.position(p)));
+                let parameters = self.parameters.each_ref().map(|p| p.at(self.layout.index(number, body)));
+                let indices = nodes.map(|n| self.layout.index(n as usize, body));
+                let blocks = L::damping_matrix(&parameters, &indices.map(|p| view.position(p)));
                 for a in 0..N {
                     for b in 0..N {
-                        sink.block(places[a], places[b], blocks[a][b]);
+                        sink.block(indices[a], indices[b], blocks[a][b]);
                     }
                 }
             }

@@ -5,7 +5,7 @@ use crate::error::StepError;
 use crate::history::History;
 use crate::inertia::Inertia;
 use crate::ledger::StepWork;
-use crate::pins::Held;
+use crate::pins::PinnedNodes;
 use crate::potential::{Account, Potential, Properties};
 use crate::state::{Columns, Layout, Parameter, View};
 use crate::tile::{TILE, Tile, TilePlan};
@@ -51,7 +51,7 @@ pub trait Update<const D: usize> {
     fn writes(&self) -> Stage;
     /// The time of the written state after the start of the step [s].
     fn time(&self) -> f64;
-    /// Moves the nodes of a tile; `force[d][p - range.start]` [N] belongs to place p.
+    /// Moves the nodes of a tile; `force[d][p - range.start]` [N] belongs to index p.
     fn tile<P: Pack>(&self, range: Range<usize>, force: &[&[f64]; D], inverse_mass: &Parameter, state: &mut State<D>);
 }
 
@@ -101,11 +101,11 @@ pub struct System<const D: usize> {
     pub gravity: [f64; D],
     /// The models.
     pub members: Vec<Member<D>>,
-    /// Held nodes, by place.
+    /// Pinned nodes, by index.
     pub pins: Vec<Pin<D>>,
     /// What the nodes may collide with in this frame.
     pub contacts: Option<std::sync::Arc<dyn Contacts<D>>>,
-    /// Forces with which other bodies push nodes throughout the step, by place [N]; none: it touches nobody. Implicit integrators take
+    /// Forces with which other bodies push nodes throughout the step, by index [N]; none: it touches nobody. Implicit integrators take
     /// them into the balance, explicit ones do not look at them.
     pub pushes: Option<Vec<(usize, [f64; D])>>,
     /// The thesis's limits.
@@ -118,7 +118,7 @@ pub struct System<const D: usize> {
     pub cache: Cache,
     pub(crate) plan: TilePlan,
     /// What the pins hold.
-    pub(crate) held: Held<D>,
+    pub(crate) pinned_nodes: PinnedNodes<D>,
     /// Work of damping and of loads in the step that is made, where that has several stages.
     pub(crate) step_work: [StepWork; 2],
     /// Pairs of columns that the integrator uses within a step.
@@ -140,9 +140,9 @@ impl<const D: usize> System<D> {
         v: Columns<D>,
         mass: Parameter,
     ) -> Self {
-        let places = layout.places(nodes);
+        let index_count = layout.index_count(nodes);
         let inverse = Parameter::column(
-            (0..places)
+            (0..index_count)
                 .map(|p| if p < nodes * layout.stride() && mass.at(p) > 0.0 { 1.0 / mass.at(p) } else { 0.0 })
                 .collect(),
         );
@@ -169,8 +169,8 @@ impl<const D: usize> System<D> {
             work: Work8::default(),
             history: History::default(),
             cache: Cache::default(),
-            plan: TilePlan::new(places, std::iter::empty()),
-            held: Held::default(),
+            plan: TilePlan::new(index_count, std::iter::empty()),
+            pinned_nodes: PinnedNodes::default(),
             step_work: Default::default(),
             stages: 0,
             forces: core::array::from_fn(|_| Column::default()),
@@ -202,7 +202,7 @@ impl<const D: usize> System<D> {
             // Row sums, so that a body falls as one: M a = M 1 g.
             self.weighing = Some(Parameter::from_items(self.layout, self.nodes, |node, body| {
                 let more: f64 = inertia.row(node).map(|(_, mass)| mass).sum();
-                self.mass.at(self.layout.place(node, body)) + more
+                self.mass.at(self.layout.index(node, body)) + more
             }));
             self.inertia = Some(inertia);
         }
@@ -214,7 +214,7 @@ impl<const D: usize> System<D> {
     }
     /// Lays out tiles and buffers after the models, the pins or the integrator changed.
     pub fn plan(&mut self, work_columns: usize) {
-        let places = self.layout.places(self.nodes);
+        let index_count = self.layout.index_count(self.nodes);
         let stride = self.layout.stride();
         let mut spans = Vec::new();
         let mut last = (usize::MAX, usize::MAX);
@@ -231,13 +231,13 @@ impl<const D: usize> System<D> {
                 }
             });
         }
-        self.plan = TilePlan::new(places, spans.into_iter());
+        self.plan = TilePlan::new(index_count, spans.into_iter());
         self.stages = work_columns;
-        self.held = Held::of(&self.pins);
+        self.pinned_nodes = PinnedNodes::of(&self.pins);
     }
-    /// The number of places.
-    pub fn places(&self) -> usize {
-        self.layout.places(self.nodes)
+    /// The number of indices.
+    pub fn index_count(&self) -> usize {
+        self.layout.index_count(self.nodes)
     }
     /// The state of a stage at a time.
     pub fn view(&self, stage: Stage, time: f64) -> View<'_, D> {
@@ -277,8 +277,8 @@ impl<const D: usize> System<D> {
     /// # Errors
     /// [`StepError`] where a model refuses the state.
     pub fn forces_of(&mut self, account: Account) -> Result<Columns<D>, StepError> {
-        let mut out = Columns::zeros(self.places());
-        self.make_room();
+        let mut out = Columns::zeros(self.index_count());
+        self.ensure_workspace();
         self.prepare(Stage::Current, self.time)?;
         let view = view(&self.state, self.nodes, self.layout, Stage::Current, self.time, self.threads);
         for tile in 0..self.plan.len() {
@@ -307,11 +307,11 @@ impl<const D: usize> System<D> {
     /// # Errors
     /// [`StepError`] where a model refuses the state.
     pub fn forces(&mut self, velocities: bool) -> Result<Columns<D>, StepError> {
-        let mut out = Columns::zeros(self.places());
-        self.make_room();
+        let mut out = Columns::zeros(self.index_count());
+        self.ensure_workspace();
         let saved = self.work;
-        let rest =
-            (!velocities).then(|| std::mem::replace(&mut self.state.v, Columns::zeros(self.layout.places(self.nodes))));
+        let rest = (!velocities)
+            .then(|| std::mem::replace(&mut self.state.v, Columns::zeros(self.layout.index_count(self.nodes))));
         let outcome = self.prepare(Stage::Current, self.time);
         if outcome.is_ok() {
             for tile in 0..self.plan.len() {

@@ -77,7 +77,7 @@ pub fn each_with<T: Send, U: Send>(
     }
 }
 
-/// Does the work on parts of a slice that begin at the given places, which rise from 0 on.
+/// Does the work on parts of a slice that begin at the given indices, which rise from 0 on.
 pub fn each_part<T: Send>(threads: usize, slice: &mut [T], starts: &[usize], work: impl Fn(usize, &mut [T]) + Sync) {
     match team_for(threads, starts.len()) {
         Some(team) => team.each_part(slice, starts, work),

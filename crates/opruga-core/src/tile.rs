@@ -4,15 +4,15 @@ use crate::state::Parameter;
 use core::ops::Range;
 use opruga_math::{Column, Pack, Simd, StripMut, WIDTH, Work, lanes};
 
-/// Places of a tile.
+/// Indices of a tile.
 pub const TILE: usize = 512;
 
 /// The forces on the nodes of one tile, while models add to them.
 #[derive(Debug)]
 pub struct Tile<'a, const D: usize> {
-    /// The places of the tile; both ends are multiples of eight.
+    /// The indices of the tile; both ends are multiples of eight.
     pub range: Range<usize>,
-    /// Force [N]: `force[d][p - range.start]` belongs to place p.
+    /// Force [N]: `force[d][p - range.start]` belongs to index p.
     pub force: [&'a mut [f64]; D],
     /// Power that the model takes from (dissipation) or gives to (loads) the bodies [W], eight partial sums.
     pub power: &'a mut [f64; WIDTH],
@@ -84,10 +84,10 @@ pub struct TilePlan {
 }
 
 impl TilePlan {
-    /// The plan of so many places, given every pair (first, last) of places that a stencil spans.
-    pub fn new(places: usize, spans: impl Iterator<Item = (usize, usize)>) -> TilePlan {
-        let count = places.div_ceil(TILE);
-        let tiles: Vec<_> = (0..count).map(|t| t * TILE..((t + 1) * TILE).min(places)).collect();
+    /// The plan of so many indices, given every pair (first, last) of indices that a stencil spans.
+    pub fn new(index_count: usize, spans: impl Iterator<Item = (usize, usize)>) -> TilePlan {
+        let count = index_count.div_ceil(TILE);
+        let tiles: Vec<_> = (0..count).map(|t| t * TILE..((t + 1) * TILE).min(index_count)).collect();
         // The last tile whose forces read a tile.
         let mut last_reader: Vec<usize> = (0..count).collect();
         for (first, last) in spans {
@@ -125,7 +125,7 @@ impl TilePlan {
     pub fn is_empty(&self) -> bool {
         self.tiles.is_empty()
     }
-    /// The places of a tile.
+    /// The indices of a tile.
     #[inline(always)]
     pub fn range(&self, tile: usize) -> Range<usize> {
         self.tiles[tile].clone()
@@ -140,8 +140,8 @@ impl TilePlan {
     pub fn released_after(&self, tile: usize) -> &[u32] {
         &self.release[self.release_start[tile] as usize..self.release_start[tile + 1] as usize]
     }
-    /// Places of all buffers together.
-    pub fn buffer_places(&self) -> usize {
+    /// Indices of all buffers together.
+    pub fn buffer_length(&self) -> usize {
         self.buffers * TILE
     }
 }

@@ -42,7 +42,7 @@ impl<const D: usize> Default for Workspace<D> {
 }
 
 impl<const D: usize> Workspace<D> {
-    pub(crate) fn make_room(&mut self, buffers: usize, stages: usize, places: usize) {
+    pub(crate) fn grow(&mut self, buffers: usize, stages: usize, index_count: usize) {
         if self.forces[0].len() < buffers + WIDTH || self.before[0].is_empty() {
             self.forces.iter_mut().for_each(|column| column.grow(buffers + WIDTH));
             self.before.iter_mut().chain(&mut self.velocity_before).for_each(|column| column.grow(TILE + WIDTH));
@@ -51,8 +51,8 @@ impl<const D: usize> Workspace<D> {
             self.stages.resize_with(stages, || [Columns::zeros(0), Columns::zeros(0)]);
         }
         for column in self.stages[..stages].iter_mut().flatten().flat_map(|columns| &mut columns.0) {
-            if column.len() < places + WIDTH {
-                column.grow(places + WIDTH);
+            if column.len() < index_count + WIDTH {
+                column.grow(index_count + WIDTH);
             }
         }
     }

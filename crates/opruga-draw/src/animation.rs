@@ -115,9 +115,9 @@ impl<W: Write> GifWriter<W> {
 /// Left, top, right and bottom of what differs; one pixel if nothing does.
 fn changed(a: &[u8], b: &[u8], width: usize) -> [usize; 4] {
     let mut bounds = [width, a.len() / width, 0, 0];
-    for (place, (x, y)) in a.iter().zip(b).enumerate() {
+    for (index, (x, y)) in a.iter().zip(b).enumerate() {
         if x != y {
-            let (column, row) = (place % width, place / width);
+            let (column, row) = (index % width, index / width);
             bounds = [bounds[0].min(column), bounds[1].min(row), bounds[2].max(column + 1), bounds[3].max(row + 1)];
         }
     }

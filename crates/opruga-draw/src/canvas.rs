@@ -181,8 +181,8 @@ impl<'a> Canvas<'a> {
             let id = scaled.glyph_id(sign);
             let space = advance(sign, size);
             let inset = 0.5 * (space - scaled.h_advance(id));
-            let place = ab_glyph::point(x + inset, point[1].round());
-            let glyph = id.with_scale_and_position(size * font_scale(), place);
+            let origin = ab_glyph::point(x + inset, point[1].round());
+            let glyph = id.with_scale_and_position(size * font_scale(), origin);
             if let Some(outline) = font.outline_glyph(glyph) {
                 let bounds = outline.px_bounds();
                 outline.draw(|column, row, coverage| {
@@ -199,12 +199,12 @@ impl<'a> Canvas<'a> {
         if x < 0 || y < 0 || x >= width || y >= height {
             return;
         }
-        let place = 4 * (y as usize * width as usize + x as usize);
+        let offset = 4 * (y as usize * width as usize + x as usize);
         let bytes = self.pixmap.data_mut();
         for channel in 0..3 {
-            let under = f32::from(bytes[place + channel]);
+            let under = f32::from(bytes[offset + channel]);
             let over = f32::from(colour[channel]);
-            bytes[place + channel] = (under + (over - under) * coverage.clamp(0.0, 1.0)).round() as u8;
+            bytes[offset + channel] = (under + (over - under) * coverage.clamp(0.0, 1.0)).round() as u8;
         }
     }
 }

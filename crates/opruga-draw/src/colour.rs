@@ -121,8 +121,8 @@ impl ColourMap {
         self == ColourMap::Embers
     }
 
-    /// The colour at a place from 0 (low) to 1 (high); values outside take the nearest end.
-    pub fn colour(self, place: f64) -> [u8; 3] {
+    /// The colour at a fraction of the map from 0 (low) to 1 (high); values outside take the nearest end.
+    pub fn colour(self, fraction: f64) -> [u8; 3] {
         let stops: &[[u8; 3]] = match self {
             ColourMap::Viridis => &VIRIDIS,
             ColourMap::Cividis => &CIVIDIS,
@@ -130,10 +130,10 @@ impl ColourMap {
             ColourMap::Grey => &GREY,
             ColourMap::Diverging => &DIVERGING,
         };
-        if place.is_nan() {
+        if fraction.is_nan() {
             return [128; 3];
         }
-        let position = place.clamp(0.0, 1.0) * (stops.len() - 1) as f64;
+        let position = fraction.clamp(0.0, 1.0) * (stops.len() - 1) as f64;
         let index = (position as usize).min(stops.len() - 2);
         mix(stops[index], stops[index + 1], position - index as f64)
     }
@@ -167,8 +167,8 @@ mod tests {
     #[test]
     fn maps_from_low_to_high_grow_or_fall_in_lightness() {
         for map in [ColourMap::Viridis, ColourMap::Cividis, ColourMap::Grey, ColourMap::Embers] {
-            let light = |place: f64| {
-                let [red, green, blue] = map.colour(place).map(f64::from);
+            let light = |fraction: f64| {
+                let [red, green, blue] = map.colour(fraction).map(f64::from);
                 let light = 0.2126 * red + 0.7152 * green + 0.0722 * blue;
                 if map.is_light_below() { -light } else { light }
             };

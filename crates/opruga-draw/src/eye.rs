@@ -62,14 +62,14 @@ impl Lens {
     /// The pixel of a point and its distance along the axis of the camera [m]; none behind the camera.
     pub fn see(&self, point: [f64; 3]) -> Option<([f64; 2], f64)> {
         let seen = self.0.see(point)?;
-        Some((seen.pixel.map(f64::from), 1.0 / f64::from(seen.near)))
+        Some((seen.pixel.map(f64::from), 1.0 / f64::from(seen.inverse_distance)))
     }
 
     /// The point behind a pixel at a distance along the axis of the camera [m].
     pub fn point(&self, pixel: [f64; 2], distance: f64) -> [f64; 3] {
         let [right, up, forward] = self.0.axes;
         let share = [0, 1].map(|axis| (pixel[axis] - self.0.middle[axis]) / self.0.focus * distance);
-        along(along(along(self.0.place, forward, distance), right, share[0]), up, -share[1])
+        along(along(along(self.0.position, forward, distance), right, share[0]), up, -share[1])
     }
 }
 

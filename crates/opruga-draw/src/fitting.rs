@@ -189,9 +189,9 @@ impl Fitting {
         // An odd distance does not meet the same nodes of every body.
         let every = (all / SAMPLE) | 1;
         let scalars = picture.bodies.iter().flat_map(|body| &body.scalar).copied();
-        for (place, scalar) in scalars.filter(|scalar| scalar.is_finite()).enumerate() {
+        for (index, scalar) in scalars.filter(|scalar| scalar.is_finite()).enumerate() {
             self.ends = [self.ends[0].min(scalar), self.ends[1].max(scalar)];
-            if place % every == 0 {
+            if index % every == 0 {
                 self.scalars.push(scalar);
             }
         }
@@ -268,8 +268,8 @@ impl Fitting {
 /// The value which a share of the values does not exceed; 0 of none.
 fn quantile(values: &mut [f64], share: f64) -> f64 {
     values.sort_by(f64::total_cmp);
-    let place = (share * values.len().saturating_sub(1) as f64).round() as usize;
-    values.get(place).copied().unwrap_or(0.0)
+    let index = (share * values.len().saturating_sub(1) as f64).round() as usize;
+    values.get(index).copied().unwrap_or(0.0)
 }
 
 /// The range of the colours of scalars, and whether some are left out below and above.

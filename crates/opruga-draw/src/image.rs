@@ -52,11 +52,11 @@ impl Image {
         if x >= self.width || y >= self.height {
             return [0; 3];
         }
-        let place = 4 * (y as usize * self.width as usize + x as usize);
-        [self.pixels[place], self.pixels[place + 1], self.pixels[place + 2]]
+        let offset = 4 * (y as usize * self.width as usize + x as usize);
+        [self.pixels[offset], self.pixels[offset + 1], self.pixels[offset + 2]]
     }
 
-    /// Copies another image to a place; what sticks out is left away.
+    /// Copies another image to a position; what sticks out is left away.
     pub fn paste(&mut self, other: &Image, x: u32, y: u32) {
         let columns = other.width.min(self.width.saturating_sub(x)) as usize;
         let rows = other.height.min(self.height.saturating_sub(y)) as usize;

@@ -44,7 +44,7 @@ impl Style {
     }
 }
 
-/// The place of each part of an image, in pixels.
+/// The position of each part of an image, in pixels.
 pub(crate) struct Layout {
     /// The left, the top, the width and the height of the scene.
     pub(crate) scene: [u32; 4],
@@ -72,9 +72,9 @@ impl Layout {
     }
 
     /// Writes whose drawings are seen, on a line of its own, smaller where it would not fit.
-    pub(crate) fn credit(&self, canvas: &mut Canvas, credit: &str, [left, base]: [f32; 2], room: f32) {
+    pub(crate) fn credit(&self, canvas: &mut Canvas, credit: &str, [left, base]: [f32; 2], space: f32) {
         let size = 11.5 * self.unit;
-        let fits = (room / text_width(credit, size).max(1.0)).min(1.0);
+        let fits = (space / text_width(credit, size).max(1.0)).min(1.0);
         canvas.text(credit, [left, base], size * fits, Anchor::Start, SOFT_INK);
     }
 
@@ -100,9 +100,9 @@ impl Layout {
             let base = top - 12.0 * unit;
             let time = time_text(picture.time);
             canvas.text(&time, [left + width, base], 15.0 * unit, Anchor::End, INK);
-            let room = width - text_width(&time, 15.0 * unit) - 20.0 * unit;
+            let space = width - text_width(&time, 15.0 * unit) - 20.0 * unit;
             let wish = 15.0 * unit;
-            let size = wish * (room / text_width(&picture.title, wish).max(1.0)).clamp(0.5, 1.0);
+            let size = wish * (space / text_width(&picture.title, wish).max(1.0)).clamp(0.5, 1.0);
             canvas.text(&picture.title, [left, base], size, Anchor::Start, INK);
         }
         if style.footer {
@@ -146,7 +146,7 @@ impl Layout {
         self.arrow_scales(canvas, pictures, view, [end + 24.0 * self.unit, left + width], base, f64::from(scale));
     }
 
-    /// Draws a bar of a round length, and gives the place where its text ends.
+    /// Draws a bar of a round length, and gives the position where its text ends.
     fn scale_bar(&self, canvas: &mut Canvas, [left, base]: [f32; 2], most: f64, scale: f64, length_unit: &str) -> f32 {
         let unit = self.unit;
         let length = nice_length(most / scale);
@@ -162,7 +162,7 @@ impl Layout {
         left + bar + 8.0 * unit + text_width(&text, 14.0 * unit)
     }
 
-    /// Writes how large the squares of a floor in three dimensions are, and gives the place where the text ends.
+    /// Writes how large the squares of a floor in three dimensions are, and gives the position where the text ends.
     fn squares(&self, canvas: &mut Canvas, [left, base]: [f32; 2], picture: &Picture, view: &View) -> f32 {
         let size = 14.0 * self.unit;
         let text = format!("squares of {}", length_text(view.square(), &picture.length_unit));
@@ -205,10 +205,11 @@ impl Layout {
             view.longest.iter().rev().filter_map(entry).collect()
         };
         let gap = 20.0 * unit;
-        let room = |entries: &[(ArrowKind, String, f32, f32)]| entries.iter().map(|(.., wide)| wide + gap).sum::<f32>();
+        let total_width =
+            |entries: &[(ArrowKind, String, f32, f32)]| entries.iter().map(|(.., wide)| wide + gap).sum::<f32>();
         // As long as there is room for all of them.
         let lengths = [70.0, 45.0, 30.0, 20.0].map(|most| most * unit);
-        let whole = lengths.into_iter().map(entries).find(|entries| room(entries) - gap <= to - from);
+        let whole = lengths.into_iter().map(entries).find(|entries| total_width(entries) - gap <= to - from);
         let mut end = to;
         for (kind, text, long, wide) in whole.unwrap_or_else(|| entries(lengths[3])) {
             let start = end - wide;
@@ -217,8 +218,8 @@ impl Layout {
             }
             canvas.text(&text, [end, base], size, Anchor::End, INK);
             let middle = base - 4.5 * unit;
-            let way = [[start, middle], [start + long, middle]];
-            crate::marks::arrow(canvas, way, 1.8 * unit, arrow_colour(kind), false);
+            let ends = [[start, middle], [start + long, middle]];
+            crate::marks::arrow(canvas, ends, 1.8 * unit, arrow_colour(kind), false);
             end = start - gap;
         }
     }
@@ -239,22 +240,22 @@ impl Layout {
         let bar = [start, bar_top, (14.0 * unit).round(), (top + height - bar_top).min(300.0 * unit).round()];
         let rows = bar[3] as u32;
         for row in 0..rows {
-            let place = 1.0 - (f64::from(row) + 0.5) / f64::from(rows);
-            canvas.rectangle([bar[0], bar[1] + row as f32, bar[2], 1.0], legend.map.colour(place), 1.0);
+            let fraction = 1.0 - (f64::from(row) + 0.5) / f64::from(rows);
+            canvas.rectangle([bar[0], bar[1] + row as f32, bar[2], 1.0], legend.map.colour(fraction), 1.0);
         }
         if legend.range.is_none() {
             // A point at an end says that a few scalars lie beyond it.
             let ends = [(bar[1] + bar[3], 1.0, 0.0), (bar[1], -1.0, 1.0)];
-            for (&(end, outwards, place), _) in ends.iter().zip(view.strays).filter(|(_, strays)| *strays) {
+            for (&(end, outwards, fraction), _) in ends.iter().zip(view.strays).filter(|(_, strays)| *strays) {
                 let tip = [bar[0] + 0.5 * bar[2], end + outwards * 7.0 * unit];
                 let corners = [[bar[0], end], [bar[0] + bar[2], end], tip];
-                canvas.polygon(&corners, legend.map.colour(place), 1.0);
+                canvas.polygon(&corners, legend.map.colour(fraction), 1.0);
             }
         }
         let ticks = nice_ticks(range[0], range[1], 5);
         let step = if ticks.len() > 1 { ticks[1] - ticks[0] } else { range[0].abs() };
         for tick in ticks {
-            let y = (bar[1] + bar[3] * (1.0 - View::place(range, tick) as f32)).clamp(bar[1], bar[1] + bar[3] - 1.0);
+            let y = (bar[1] + bar[3] * (1.0 - View::fraction(range, tick) as f32)).clamp(bar[1], bar[1] + bar[3] - 1.0);
             canvas.rectangle([bar[0] + bar[2], y.round(), (4.0 * unit).round(), 1.0], SOFT_INK, 1.0);
             let point = [bar[0] + bar[2] + 7.0 * unit, y + 4.5 * unit];
             canvas.text(&format_tick(tick, step), point, 12.0 * unit, Anchor::Start, INK);

@@ -9,7 +9,7 @@ use tiny_skia::PathBuilder;
 /// The number of pins of a body up to which each may be drawn as a support.
 const SUPPORTS: usize = 40;
 /// How far apart neighbours must be for that, in units of lines.
-const SUPPORT_ROOM: f32 = 17.0;
+const SUPPORT_SPACING: f32 = 17.0;
 
 /// The number of arrows above which they are drawn thinner.
 const CROWD: usize = 50;
@@ -66,11 +66,11 @@ pub(crate) fn draw_marks(
     in_sight: &dyn Fn([f64; 3]) -> bool,
 ) {
     for body in &picture.bodies {
-        let places = body.pinned.iter().map(|node| body.positions[*node as usize]);
-        let points: Vec<[f32; 2]> = places.filter(|place| in_sight(*place)).filter_map(project).collect();
+        let pins = body.pinned.iter().map(|node| body.positions[*node as usize]);
+        let points: Vec<[f32; 2]> = pins.filter(|position| in_sight(*position)).filter_map(project).collect();
         // Marks that would lie on one another are one, and where supports would stand in a row there are dots.
         let supports = marks_apart(&points, 12.0 * unit);
-        let row = marks_apart(&supports, SUPPORT_ROOM * unit).len() < supports.len();
+        let row = marks_apart(&supports, SUPPORT_SPACING * unit).len() < supports.len();
         if body.pinned.len() <= SUPPORTS && !row {
             supports.into_iter().for_each(|point| support(canvas, point, unit));
         } else {
@@ -89,10 +89,10 @@ pub(crate) fn draw_marks(
 
 /// Those of some points that lie so far from all before them.
 fn marks_apart(points: &[[f32; 2]], apart: f32) -> Vec<[f32; 2]> {
-    let near = |a: [f32; 2], b: [f32; 2]| (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2) < apart * apart;
+    let close = |a: [f32; 2], b: [f32; 2]| (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2) < apart * apart;
     let mut marked: Vec<[f32; 2]> = Vec::new();
     for &point in points {
-        if !marked.iter().any(|other| near(*other, point)) {
+        if !marked.iter().any(|other| close(*other, point)) {
             marked.push(point);
         }
     }
@@ -162,20 +162,20 @@ fn labels(
             all.push(Label { text: &body.label, low, high });
         }
     }
-    let place = |label: &Label<'_>, side: Side| label.place(side, scene, unit);
+    let rect = |label: &Label<'_>, side: Side| label.rect(side, scene, unit);
     let covered = |canvas: &Canvas, side: Side| -> usize {
-        all.iter().map(|label| canvas.differing(place(label, side), background)).sum()
+        all.iter().map(|label| canvas.differing(rect(label, side), background)).sum()
     };
     // Above unless much more is covered there: names do not jump from picture to picture.
-    let area: f32 = all.iter().map(|label| place(label, Side::Above)).map(|[.., wide, tall]| wide * tall).sum();
+    let area: f32 = all.iter().map(|label| rect(label, Side::Above)).map(|[.., wide, tall]| wide * tall).sum();
     let much = covered(canvas, Side::Below) + (0.15 * area) as usize;
     let side = if much < covered(canvas, Side::Above) { Side::Below } else { Side::Above };
     for label in &all {
-        let own = place(label, side);
+        let own = rect(label, side);
         // A corner of something else under it is no reason to leave the row.
         let enough = (0.1 * own[2] * own[3]) as usize;
-        let free = [Side::Right, Side::Left].map(|side| place(label, side));
-        let free = free.into_iter().find(|place| canvas.differing(*place, background) == 0);
+        let free = [Side::Right, Side::Left].map(|side| rect(label, side));
+        let free = free.into_iter().find(|rect| canvas.differing(*rect, background) == 0);
         let at = match free {
             Some(free) if canvas.differing(own, background) > enough => free,
             _ => own,
@@ -193,7 +193,7 @@ const LABEL: f32 = 12.0;
 
 impl Label<'_> {
     /// Left, top, width and height of the name at a side of its body, within the scene.
-    fn place(&self, side: Side, scene: [f32; 2], unit: f32) -> [f32; 4] {
+    fn rect(&self, side: Side, scene: [f32; 2], unit: f32) -> [f32; 4] {
         let size = LABEL * unit;
         let (wide, tall, gap) = (text_width(self.text, size) + 4.0 * unit, 1.15 * size, 4.0 * unit);
         let middle = [0.5 * (self.low[0] + self.high[0]), 0.5 * (self.low[1] + self.high[1])];

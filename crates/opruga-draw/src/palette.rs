@@ -63,8 +63,8 @@ impl Palette {
 
     /// The number of the nearest colour for a pixel.
     pub(crate) fn nearest(&mut self, pixel: &[u8]) -> u8 {
-        let place = coarse(pixel);
-        if let Some(number) = self.nearest[place] {
+        let index = coarse(pixel);
+        if let Some(number) = self.nearest[index] {
             return number;
         }
         // All colours of a coarse one have the same, so that a still picture stays as it is: that of its middle.
@@ -72,7 +72,7 @@ impl Palette {
         let distance = |colour: &[u8]| -> i32 { (0..3).map(|c| (middle[c] - i32::from(colour[c])).pow(2)).sum() };
         let numbers = self.colours.chunks_exact(3).map(distance).enumerate();
         let number = numbers.min_by_key(|(_, far)| *far).map_or(0, |(number, _)| number) as u8;
-        self.nearest[place] = Some(number);
+        self.nearest[index] = Some(number);
         number
     }
 }
@@ -97,8 +97,8 @@ mod tests {
         let mut image = Image::new(size[0], size[1], [0; 3]).expect("an image");
         for y in 0..size[1] {
             for x in 0..size[0] {
-                let place = 4 * (y * size[0] + x) as usize;
-                image.pixels_mut()[place..place + 3].copy_from_slice(&colour(x, y));
+                let offset = 4 * (y * size[0] + x) as usize;
+                image.pixels_mut()[offset..offset + 3].copy_from_slice(&colour(x, y));
             }
         }
         image

@@ -36,9 +36,9 @@ const TALLEST: f32 = 560.0;
 pub fn spread<T>(pictures: &[T], count: usize) -> Vec<&T> {
     let kept = count.min(pictures.len());
     (0..kept)
-        .map(|place| {
+        .map(|index| {
             let last = pictures.len() - 1;
-            &pictures[if kept == 1 { last } else { (place * last + (kept - 1) / 2) / (kept - 1) }]
+            &pictures[if kept == 1 { last } else { (index * last + (kept - 1) / 2) / (kept - 1) }]
         })
         .collect()
 }
@@ -63,13 +63,13 @@ struct Grid {
 
 impl Grid {
     /// The grid of so many panels in so many columns within a width.
-    fn new(count: usize, columns: usize, aspect: f32, room: f32, unit: f32) -> Grid {
+    fn new(count: usize, columns: usize, aspect: f32, available_width: f32, unit: f32) -> Grid {
         let columns = columns.clamp(1, count.max(1));
         let rows = count.div_ceil(columns);
         // No row is shorter than it must be.
         let columns = count.div_ceil(rows.max(1)).max(1);
         let gap = (10.0 * unit).round();
-        let wide = ((room - gap * (columns as f32 - 1.0)) / columns as f32).floor();
+        let wide = ((available_width - gap * (columns as f32 - 1.0)) / columns as f32).floor();
         // Few panels are not larger than can be seen at once.
         let wide = wide.min((TALLEST * unit / aspect).floor());
         Grid { columns, rows, panel: [wide, (wide * aspect).round()], gap, line: (26.0 * unit).round() }
@@ -84,25 +84,26 @@ impl Grid {
 
     /// How far the grid is from the best: a strip of a good shape without empty places, whose bodies are large enough; `body`
     /// is how much of the width of a panel a body takes.
-    fn fault(&self, count: usize, room: f32, body: f32) -> f32 {
+    fn fault(&self, count: usize, available_width: f32, body: f32) -> f32 {
         let [wide, tall] = self.size();
         let empty = (self.columns * self.rows - count) as f32;
         let shape = (tall / (BEST_SHAPE * wide)).ln();
         let small = if body > 0.0 { (LARGE_ENOUGH / (body * self.panel[0]).max(1.0)).log2().max(0.0) } else { 0.0 };
         // A page is turned up and down: what is tall is read more easily than what is wide and low, but for towers.
         let shape = shape.max(-2.0 * shape) * 0.5 + 1.5 * (shape - 0.8).max(0.0);
-        shape + (room / wide).ln() + 0.2 * empty + SMALL_BODIES * small
+        shape + (available_width / wide).ln() + 0.2 * empty + SMALL_BODIES * small
     }
 
     /// The best grid of so many panels.
-    fn best(count: usize, aspect: f32, room: f32, unit: f32, body: f32) -> Grid {
-        let grids = (1..=6).map(|columns| Grid::new(count, columns, aspect, room, unit));
-        let best = grids.min_by(|a, b| a.fault(count, room, body).total_cmp(&b.fault(count, room, body)));
-        best.unwrap_or(Grid::new(count, 1, aspect, room, unit))
+    fn best(count: usize, aspect: f32, available_width: f32, unit: f32, body: f32) -> Grid {
+        let grids = (1..=6).map(|columns| Grid::new(count, columns, aspect, available_width, unit));
+        let best = grids
+            .min_by(|a, b| a.fault(count, available_width, body).total_cmp(&b.fault(count, available_width, body)));
+        best.unwrap_or(Grid::new(count, 1, aspect, available_width, unit))
     }
 
     /// The left and upper corner of a panel.
-    fn place(&self, index: usize, [left, top]: [f32; 2]) -> [f32; 2] {
+    fn corner(&self, index: usize, [left, top]: [f32; 2]) -> [f32; 2] {
         let (row, column) = (index / self.columns, index % self.columns);
         let down = row as f32 * (self.panel[1] + self.line + 0.4 * self.gap);
         [left + column as f32 * (self.panel[0] + self.gap), (top + down).round()]
@@ -121,12 +122,12 @@ const MISSED: f32 = 0.12;
 /// bodies would be too small to be looked at.
 pub fn best_count(view: &View, dimension: u8, most: usize) -> usize {
     let style = StripStyle::default();
-    let (aspect, room) = (view.aspect(dimension) as f32, style.width as f32);
+    let (aspect, available_width) = (view.aspect(dimension) as f32, style.width as f32);
     let body = view.share_of_body(dimension) as f32;
     let fault = |count: usize| {
         // Moments that are not shown are missed; more than nine are not.
         let missed = MISSED * 9_usize.saturating_sub(count) as f32;
-        Grid::best(count, aspect, room, 1.0, body).fault(count, room, body) + missed
+        Grid::best(count, aspect, available_width, 1.0, body).fault(count, available_width, body) + missed
     };
     (4..=12.min(most)).min_by(|a, b| fault(*a).total_cmp(&fault(*b))).unwrap_or(most)
 }
@@ -155,11 +156,11 @@ pub fn captioned_strip(
     let head = if first.title.is_empty() { margin } else { 44.0 * unit };
     let foot = 44.0 * unit + Layout::credit_space(&first.credit, unit);
     let legend = Layout::legend_space(first, view, unit, style.legend);
-    let room = style.width as f32 - 2.0 * margin - legend;
+    let available_width = style.width as f32 - 2.0 * margin - legend;
     let aspect = style.aspect.unwrap_or_else(|| view.aspect(first.dimension)) as f32;
     let grid = match style.columns {
-        Some(columns) => Grid::new(pictures.len(), columns, aspect, room, unit),
-        None => Grid::best(pictures.len(), aspect, room, unit, view.share_of_body(first.dimension) as f32),
+        Some(columns) => Grid::new(pictures.len(), columns, aspect, available_width, unit),
+        None => Grid::best(pictures.len(), aspect, available_width, unit, view.share_of_body(first.dimension) as f32),
     };
     // Captions that are longer than their panels are wide take several lines.
     let (mut grid, size, line) = (grid, 15.0 * unit, 18.0 * unit);
@@ -178,13 +179,13 @@ pub fn captioned_strip(
     let mut scale = 1.0;
     for (index, picture) in pictures.iter().enumerate() {
         let (scene, found) = crate::scene(picture, view, style.background, [panel as u32, tall as u32], 0.9 * unit)?;
-        let [left, top] = grid.place(index, [margin, head]);
+        let [left, top] = grid.corner(index, [margin, head]);
         image.paste(&scene, left as u32, top as u32);
         scale = found;
     }
     let mut canvas = Canvas::new(&mut image);
     for (index, lines) in captions.iter().enumerate() {
-        let [left, top] = grid.place(index, [margin, head]);
+        let [left, top] = grid.corner(index, [margin, head]);
         canvas.frame([left - 1.0, top - 1.0, panel + 2.0, tall + 2.0], crate::colour::FRAME);
         for (number, text) in lines.iter().enumerate() {
             let point = [left + 0.5 * panel, top + tall + 19.0 * unit + line * number as f32];

@@ -135,8 +135,8 @@ fn grouped(text: &str) -> String {
     let (sign, rest) = text.strip_prefix('-').map_or(("", text), |rest| ("-", rest));
     let (whole, fraction) = rest.split_once('.').map_or((rest, None), |(whole, fraction)| (whole, Some(fraction)));
     let mut out = String::from(sign);
-    for (place, digit) in whole.chars().enumerate() {
-        if whole.len() >= 5 && place > 0 && (whole.len() - place) % 3 == 0 {
+    for (index, digit) in whole.chars().enumerate() {
+        if whole.len() >= 5 && index > 0 && (whole.len() - index) % 3 == 0 {
             out.push('\u{a0}');
         }
         out.push(digit);

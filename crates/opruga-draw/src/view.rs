@@ -64,8 +64,8 @@ impl View {
         crate::ticks::nice_length(0.3 * self.extent())
     }
 
-    /// The place of a scalar from 0 to 1 between the ends of a range.
-    pub(crate) fn place(range: [f64; 2], scalar: f64) -> f64 {
+    /// The fraction from 0 to 1 at which a scalar lies between the ends of a range.
+    pub(crate) fn fraction(range: [f64; 2], scalar: f64) -> f64 {
         if range[1] > range[0] || scalar.is_nan() { (scalar - range[0]) / (range[1] - range[0]) } else { 0.5 }
     }
 

@@ -42,8 +42,8 @@ pub(crate) fn fields(kind: &[&'static Spec]) -> Vec<(&'static Field, Vec<&'stati
                 Some((_, of)) => of.push(spec),
                 None => {
                     // Beside the field of the same name, if another dimension has one.
-                    let place = fields.iter().rposition(|(known, _)| known.name == field.name);
-                    fields.insert(place.map_or(fields.len(), |place| place + 1), (field, vec![spec]));
+                    let index = fields.iter().rposition(|(known, _)| known.name == field.name);
+                    fields.insert(index.map_or(fields.len(), |index| index + 1), (field, vec![spec]));
                 }
             }
         }

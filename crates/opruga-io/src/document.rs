@@ -11,17 +11,17 @@ use toml::de::{DeTable, DeValue};
 
 /// Where a value was written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Place {
+pub(crate) enum Location {
     /// From byte to byte of the scene.
     Bytes(usize, usize),
     /// In the override of this number.
     Override(usize),
 }
 
-/// A value and its place.
+/// A value and its location.
 #[derive(Clone, Debug)]
 pub(crate) struct Node {
-    pub(crate) place: Place,
+    pub(crate) location: Location,
     pub(crate) data: Data,
 }
 
@@ -43,7 +43,7 @@ pub(crate) enum Data {
 #[derive(Clone, Debug)]
 pub(crate) struct Entry {
     pub(crate) key: String,
-    pub(crate) place: Place,
+    pub(crate) location: Location,
     pub(crate) value: Node,
 }
 
@@ -98,31 +98,31 @@ impl Node {
 pub(crate) fn parse(source: &Source<'_>) -> (Option<Node>, Vec<SceneError>) {
     let (table, problems) = DeTable::parse_recoverable(source.text);
     let end = table.span().end;
-    let root = table_node(table.into_inner(), Place::Bytes(0, end.min(1)));
+    let root = table_node(table.into_inner(), Location::Bytes(0, end.min(1)));
     let mut errors: Vec<SceneError> = Vec::new();
     let (mut broken, mut broken_line) = (false, None);
     let mut problems: Vec<_> = problems.iter().collect();
     problems.sort_by_key(|problem| problem.span().map_or(0, |span| span.start));
-    let (open, mut told) = (if problems.is_empty() { None } else { unclosed(source.text) }, false);
+    let (open, mut reported) = (if problems.is_empty() { None } else { unclosed(source.text) }, false);
     let count = problems.len();
     for problem in problems.into_iter().take(MOST_SHOWN) {
         let span = problem.span().unwrap_or(0..0);
         // All that is read as part of a list that is never closed makes no sense: that is one slip.
         if let Some(open) = open.filter(|open| span.start >= open.open) {
-            if !std::mem::replace(&mut told, true) {
+            if !std::mem::replace(&mut reported, true) {
                 let (line, until) = (source.position(open.open).0, source.position(open.until).0);
                 let about = match open.wanted {
                     ']' => TextError::OpenList { line },
                     _ => TextError::OpenTable { line },
                 };
                 // The parser stumbles first where the bracket is missing, or where what follows begins.
-                let place = if span.start < open.until { span.start } else { open.open };
+                let location = if span.start < open.until { span.start } else { open.open };
                 let bracket = open.wanted;
-                let hint = match place == open.open {
+                let hint = match location == open.open {
                     true => TextHint::BracketBefore { bracket, line: until },
                     false => TextHint::BracketHere { bracket },
                 };
-                errors.push(source.mark(SceneError::of(about).advice(hint), place, place + 1));
+                errors.push(source.mark(SceneError::of(about).advice(hint), location, location + 1));
             }
             broken = true;
             continue;
@@ -169,7 +169,7 @@ fn with_unit(value: &str) -> Option<TextHint> {
     known.then(|| TextHint::Unit { bare: number.into() })
 }
 
-/// The error for a key that was written a second time, naming the first place.
+/// The error for a key that was written a second time, naming the first location.
 fn duplicate(source: &Source<'_>, root: &Node, start: usize, end: usize) -> SceneError {
     let word = source.text.get(start..end).unwrap_or("").trim_matches(['"', '\'']);
     let mut first = None;
@@ -183,12 +183,12 @@ fn duplicate(source: &Source<'_>, root: &Node, start: usize, end: usize) -> Scen
     source.mark(error.path(word), start, end)
 }
 
-/// The last place before a byte where a key of this name stands.
+/// The last location before a byte where a key of this name stands.
 fn last_before(node: &Node, word: &str, before: usize, best: &mut Option<usize>) {
     match &node.data {
         Data::Table(entries) => {
             for entry in entries {
-                if let Place::Bytes(at, _) = entry.place
+                if let Location::Bytes(at, _) = entry.location
                     && entry.key == word
                     && at < before
                     && best.is_none_or(|b| at > b)
@@ -203,22 +203,26 @@ fn last_before(node: &Node, word: &str, before: usize, best: &mut Option<usize>)
     }
 }
 
-fn table_node(table: DeTable<'_>, place: Place) -> Node {
+fn table_node(table: DeTable<'_>, location: Location) -> Node {
     let entries = table
         .into_iter()
         .map(|(key, value)| {
             let span = key.span();
-            Entry { key: key.into_inner().into_owned(), place: Place::Bytes(span.start, span.end), value: node(value) }
+            Entry {
+                key: key.into_inner().into_owned(),
+                location: Location::Bytes(span.start, span.end),
+                value: node(value),
+            }
         })
         .collect();
-    Node { place, data: Data::Table(entries) }
+    Node { location, data: Data::Table(entries) }
 }
 
 fn node(value: Spanned<DeValue<'_>>) -> Node {
     let span = value.span();
-    let place = Place::Bytes(span.start, span.end);
+    let location = Location::Bytes(span.start, span.end);
     let data = match value.into_inner() {
-        DeValue::Table(table) => return table_node(table, place),
+        DeValue::Table(table) => return table_node(table, location),
         DeValue::Array(items) => Data::Array(items.into_iter().map(node).collect()),
         DeValue::String(text) => Data::Text(text.into_owned()),
         DeValue::Integer(x) => {
@@ -241,13 +245,13 @@ fn node(value: Spanned<DeValue<'_>>) -> Node {
         DeValue::Boolean(x) => Data::Boolean(x),
         DeValue::Datetime(x) => Data::Date(x.to_string()),
     };
-    Node { place, data }
+    Node { location, data }
 }
 
 /// The value of an override: a TOML value, or a bare word. It may be as deep and as large as one in a scene.
 ///
 /// # Errors
-/// `set.value`, `scene.depth` or `scene.too_large`, without a place.
+/// `set.value`, `scene.depth` or `scene.too_large`, without a location.
 pub(crate) fn parse_value(text: &str, number: usize) -> Result<Node, SceneError> {
     let trimmed = text.trim();
     Source::check_value(trimmed, &Limits::default())?;
@@ -258,23 +262,23 @@ pub(crate) fn parse_value(text: &str, number: usize) -> Result<Node, SceneError>
         && trimmed.chars().all(|c| c.is_alphanumeric() || "_-./[]".contains(c))
         && trimmed.starts_with(char::is_alphabetic)
     {
-        Node { place: Place::Override(number), data: Data::Text(trimmed.to_string()) }
+        Node { location: Location::Override(number), data: Data::Text(trimmed.to_string()) }
     } else {
         let reason = errors.first().map(|e| e.message().to_string()).unwrap_or_default();
         return Err(SceneError::of(OverrideError::Value { reason }));
     };
-    set_place(&mut value, Place::Override(number));
+    set_location(&mut value, Location::Override(number));
     Ok(value)
 }
 
-fn set_place(node: &mut Node, place: Place) {
-    node.place = place;
+fn set_location(node: &mut Node, location: Location) {
+    node.location = location;
     match &mut node.data {
         Data::Table(entries) => entries.iter_mut().for_each(|e| {
-            e.place = place;
-            set_place(&mut e.value, place);
+            e.location = location;
+            set_location(&mut e.value, location);
         }),
-        Data::Array(items) => items.iter_mut().for_each(|item| set_place(item, place)),
+        Data::Array(items) => items.iter_mut().for_each(|item| set_location(item, location)),
         _ => {}
     }
 }

@@ -11,7 +11,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Files {
     /// Files by the name that the scene uses, such as those that come with the program.
-    held: BTreeMap<String, Arc<[u8]>>,
+    in_memory: BTreeMap<String, Arc<[u8]>>,
     /// The folder of the scene.
     folder: Option<PathBuf>,
     /// Whether files may lie outside of that folder.
@@ -31,25 +31,25 @@ impl Files {
     }
 
     /// Files that are held in memory, by the name that the scene uses.
-    pub fn held(files: impl IntoIterator<Item = (String, Arc<[u8]>)>) -> Files {
-        Files { held: files.into_iter().collect(), ..Files::default() }
+    pub fn in_memory(files: impl IntoIterator<Item = (String, Arc<[u8]>)>) -> Files {
+        Files { in_memory: files.into_iter().collect(), ..Files::default() }
     }
 
-    /// The same with more files that are held in memory; one of the same name takes the place of that before.
+    /// The same with more files that are held in memory; one of the same name replaces that before.
     #[must_use]
     pub fn with(mut self, files: impl IntoIterator<Item = (String, Arc<[u8]>)>) -> Files {
-        self.held.extend(files);
+        self.in_memory.extend(files);
         self
     }
 
     /// The files that are held in memory, in the order of their names.
-    pub fn held_files(&self) -> impl Iterator<Item = (&str, &Arc<[u8]>)> {
-        self.held.iter().map(|(name, bytes)| (name.as_str(), bytes))
+    pub fn files_in_memory(&self) -> impl Iterator<Item = (&str, &Arc<[u8]>)> {
+        self.in_memory.iter().map(|(name, bytes)| (name.as_str(), bytes))
     }
 
     /// A file that is held in memory.
-    pub fn held_file(&self, name: &str) -> Option<&Arc<[u8]>> {
-        self.held.get(name)
+    pub fn file_in_memory(&self, name: &str) -> Option<&Arc<[u8]>> {
+        self.in_memory.get(name)
     }
 
     /// The same, but files may lie anywhere.
@@ -61,8 +61,8 @@ impl Files {
 
     /// Where a file lies that a scene names; none where it is held in memory or may not be read.
     pub fn path_of(&self, name: &str) -> Option<PathBuf> {
-        let path = self.folder.as_ref().filter(|_| !self.held.contains_key(name))?.join(name);
-        self.check_place(self.folder.as_ref()?, &path, name).is_ok().then_some(path)
+        let path = self.folder.as_ref().filter(|_| !self.in_memory.contains_key(name))?.join(name);
+        self.check_location(self.folder.as_ref()?, &path, name).is_ok().then_some(path)
     }
 
     /// The bytes of a file that a scene names.
@@ -71,28 +71,28 @@ impl Files {
     /// `shape.outside` for a name that leads out of the folder of the scene; `read.failed` with the nearest name; `read.not_regular_file`;
     /// `shape.too_large`, before anything is read.
     pub(crate) fn read(&self, name: &str, most_bytes: u64) -> Result<Arc<[u8]>, SceneError> {
-        if let Some(bytes) = self.held.get(name) {
+        if let Some(bytes) = self.in_memory.get(name) {
             return Ok(Arc::clone(bytes));
         }
         let Some(folder) = &self.folder else {
-            let (name_shown, near) = (visible(name), nearest(name, self.held.keys().map(String::as_str)));
-            let about = match self.held.len() {
+            let (name_shown, suggestion) = (visible(name), nearest(name, self.in_memory.keys().map(String::as_str)));
+            let about = match self.in_memory.len() {
                 0 => FileError::NoFolder { name: name_shown },
                 _ => {
-                    let known = self.held.keys().cloned().collect::<Vec<_>>().join(", ");
+                    let known = self.in_memory.keys().cloned().collect::<Vec<_>>().join(", ");
                     FileError::NotHeld { name: name_shown, known }
                 }
             };
-            return Err(SceneError::of(about).nearest(near));
+            return Err(SceneError::of(about).nearest(suggestion));
         };
         let path = folder.join(name);
-        self.check_place(folder, &path, name)?;
+        self.check_location(folder, &path, name)?;
         crate::regular_file::regular_file(&path, most_bytes, "shape.too_large", Measured::File)
             .map_err(|error| if path.exists() { error.value(visible(name)) } else { self.missing(folder, name) })
     }
 
     /// Refuses names that lead out of the folder, by words or by links.
-    fn check_place(&self, folder: &Path, path: &Path, name: &str) -> Result<(), SceneError> {
+    fn check_location(&self, folder: &Path, path: &Path, name: &str) -> Result<(), SceneError> {
         if self.outside {
             return Ok(());
         }
@@ -115,8 +115,8 @@ impl Files {
         let entries = std::fs::read_dir(folder.join(before)).into_iter().flatten().flatten();
         let mut names: Vec<String> = entries.take(10_000).filter_map(|e| e.file_name().into_string().ok()).collect();
         names.sort();
-        let near = nearest(last, names.iter().map(String::as_str));
-        let whole = near.map(|n| if before.is_empty() { n } else { format!("{before}/{n}") });
+        let suggestion = nearest(last, names.iter().map(String::as_str));
+        let whole = suggestion.map(|n| if before.is_empty() { n } else { format!("{before}/{n}") });
         let folder = visible(&folder.display().to_string());
         SceneError::of(FileError::NotThere { name: visible(name), folder }).nearest(whole)
     }

@@ -3,7 +3,7 @@
 //! A path is the way through the file: `time.substeps`, `world.gravity`, `integrator.kind`, `body.ball.mass`,
 //! `body.0.models.mass_spring.stiffness`, `seed`. In a list an entry is named by its number, its `name` or its `kind`.
 
-use crate::document::{self, Data, Entry, Node, Place};
+use crate::document::{self, Data, Entry, Location, Node};
 use crate::problem::{SceneError, visible};
 use crate::text_errors::{OverrideError, TextHint};
 use opruga_core::spec::nearest;
@@ -19,7 +19,7 @@ pub fn split(argument: &str) -> Result<(String, String), SceneError> {
     }
 }
 
-/// An override as the place of an error.
+/// An override as the location of an error.
 pub(crate) fn named(path: &str, value: &str) -> String {
     format!("--set {}={}", visible(path), visible(value))
 }
@@ -70,10 +70,10 @@ fn set(node: &mut Node, parts: &[&str], walked: &str, value: Node, number: usize
     let shown = visible(&here);
     match &mut node.data {
         Data::Table(entries) => {
-            let place = Place::Override(number);
+            let location = Location::Override(number);
             let k = entries.iter().position(|e| e.key == *head).unwrap_or_else(|| {
-                let empty = Node { place, data: Data::Table(Vec::new()) };
-                entries.push(Entry { key: (*head).to_string(), place, value: empty });
+                let empty = Node { location, data: Data::Table(Vec::new()) };
+                entries.push(Entry { key: (*head).to_string(), location, value: empty });
                 entries.len() - 1
             });
             set(&mut entries[k].value, rest, &here, value, number)

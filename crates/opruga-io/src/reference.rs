@@ -67,8 +67,8 @@ fn table(out: &mut String, level: &str, section: &Section, tag: Option<&str>) {
 
 /// A section for each kind, under a heading that no other chapter has; a field that differs between the dimensions has a
 /// row for each.
-fn kinds(out: &mut String, title: &str, place: &str, specs: &[&'static Spec]) {
-    let _ = writeln!(out, "## {title}: `{place}`\n");
+fn kinds(out: &mut String, title: &str, path: &str, specs: &[&'static Spec]) {
+    let _ = writeln!(out, "## {title}: `{path}`\n");
     for kind in catalogue::by_kind(specs) {
         let dimensions = catalogue::dimensions(&kind);
         let one = title.strip_suffix('s').unwrap_or(title);

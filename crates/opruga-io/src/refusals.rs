@@ -1,13 +1,13 @@
-//! What a world refuses, said as errors of the scene: with the place of the part that is meant.
+//! What a world refuses, said as errors of the scene: with the location of the part that is meant.
 
-use crate::document::{self, Data, Entry, Node, Place};
+use crate::document::{self, Data, Entry, Location, Node};
 use crate::overrides;
 use crate::problem::{Around, SceneError};
 use crate::source::Source;
 use opruga_math::message::AnyMessage;
 use opruga_math::messages;
 use opruga_math::words::number;
-use opruga_world::error::Place as Part;
+use opruga_world::error::Part;
 use opruga_world::schema::{self, MOST_SUBSTEPS};
 use opruga_world::{RefusedCommand, Warning, WorldError};
 
@@ -44,29 +44,29 @@ messages! {
 pub(crate) const MESSAGES: &[&[opruga_math::message::Variant]] = &[RefusalHint::VARIANTS, CommandRefusal::VARIANTS];
 
 impl From<&WorldError> for SceneError {
-    /// The same in the words of a scene: what is wrong, what is allowed, what would help. The place is that of the path;
+    /// The same in the words of a scene: what is wrong, what is allowed, what would help. The location is that of the path;
     /// [`in_scene`] finds its line.
     fn from(error: &WorldError) -> SceneError {
-        let said = SceneError { code: error.code(), ..SceneError::of(error.clone()) }.path(path_of(error));
+        let scene_error = SceneError { code: error.code(), ..SceneError::of(error.clone()) }.path(path_of(error));
         match error {
             WorldError::UnstableStep { h, substeps, .. } => {
-                let said = said.value(number(*h));
+                let scene_error = scene_error.value(number(*h));
                 match *substeps {
-                    ..=MOST_SUBSTEPS => said.advice(RefusalHint::Substeps { substeps: *substeps }),
-                    _ => said,
+                    ..=MOST_SUBSTEPS => scene_error.advice(RefusalHint::Substeps { substeps: *substeps }),
+                    _ => scene_error,
                 }
             }
-            WorldError::Diverged { time, .. } => said.value(time.to_string()),
-            WorldError::Build { place, source } if *place != (Part::Collider {}) => {
+            WorldError::Diverged { time, .. } => scene_error.value(time.to_string()),
+            WorldError::Build { part, source } if *part != (Part::Collider {}) => {
                 match named_value(&source.about.to_string()) {
                     Some((field, value)) => {
-                        let path = format!("{}.{field}", said.path);
-                        said.path(path).value(value)
+                        let path = format!("{}.{field}", scene_error.path);
+                        scene_error.path(path).value(value)
                     }
-                    None => said,
+                    None => scene_error,
                 }
             }
-            _ => said,
+            _ => scene_error,
         }
     }
 }
@@ -97,18 +97,18 @@ fn is_field_of_body(kind: &str) -> bool {
 fn path_of(error: &WorldError) -> String {
     let body = |name: &str| format!("body.{}", name.split('[').next().unwrap_or(name));
     match error {
-        WorldError::Build { place: Part::IntegratorOf { name }, .. } => format!("{}.integrator", body(name)),
-        WorldError::Build { place: Part::Body { name }, source } => match source.kind.as_str() {
+        WorldError::Build { part: Part::IntegratorOf { name }, .. } => format!("{}.integrator", body(name)),
+        WorldError::Build { part: Part::Body { name }, source } => match source.kind.as_str() {
             // Where a body lies, what holds it, and how it is stepped or swings is no matter of one model.
             kind if is_field_of_body(kind) => format!("{}.{kind}", body(name)),
             "stability" | "modes" | "memory" | "mass" => body(name),
             _ if source.code().starts_with("static.") => body(name),
             kind => format!("{}.models.{kind}", body(name)),
         },
-        WorldError::Build { place: Part::Collider {}, source } => {
+        WorldError::Build { part: Part::Collider {}, source } => {
             format!("collider.{}", source.kind.split(' ').nth(1).unwrap_or("0"))
         }
-        WorldError::Build { place, .. } => place.to_string(),
+        WorldError::Build { part, .. } => part.to_string(),
         WorldError::UnstableStep { .. } => "time.substeps".into(),
         WorldError::Step { body: name, .. }
         | WorldError::Diverged { body: name, .. }
@@ -160,9 +160,9 @@ pub fn in_scene(error: SceneError, text: &str, file: &str, overrides: &[(String,
         return SceneError { file: mesh.into(), ..error };
     }
     let fields: Vec<&str> = error.message.split('`').skip(1).step_by(2).collect();
-    match place(&root, &error.path, &fields) {
-        Some(Place::Bytes(start, end)) => source.mark(error, start, end),
-        Some(Place::Override(number)) => match overrides.get(number) {
+    match location(&root, &error.path, &fields) {
+        Some(Location::Bytes(start, end)) => source.mark(error, start, end),
+        Some(Location::Override(number)) => match overrides.get(number) {
             Some((path, value)) => SceneError { file: overrides::named(path, value), ..error },
             None => error,
         },
@@ -170,7 +170,7 @@ pub fn in_scene(error: SceneError, text: &str, file: &str, overrides: &[(String,
     }
 }
 
-/// What a command of a scene was refused for while it ran, with the place of the command and what would help there.
+/// What a command of a scene was refused for while it ran, with the location of the command and what would help there.
 #[must_use]
 pub fn of_command(
     error: &WorldError,
@@ -178,10 +178,10 @@ pub fn of_command(
     (text, file): (&str, &str),
     overrides: &[(String, String)],
 ) -> SceneError {
-    let said = SceneError::from(error);
-    let about = said.about.clone().map(|about| CommandRefusal::Command { word: command.word, about }.into());
-    let message = about.as_ref().map_or_else(|| said.message.clone(), AnyMessage::to_string);
-    let mut said = SceneError { about, message, file: file.to_string(), path: "command".into(), ..said };
+    let scene_error = SceneError::from(error);
+    let about = scene_error.about.clone().map(|about| CommandRefusal::Command { word: command.word, about }.into());
+    let message = about.as_ref().map_or_else(|| scene_error.message.clone(), AnyMessage::to_string);
+    let mut scene_error = SceneError { about, message, file: file.to_string(), path: "command".into(), ..scene_error };
     let sets = command.sets.is_some();
     if let WorldError::UnstableStep { substeps, .. } = error {
         // What an override sets lasts until a command sets it.
@@ -196,19 +196,19 @@ pub fn of_command(
             }),
             _ => sets.then_some(RefusalHint::OtherValue { most: MOST_SUBSTEPS }),
         };
-        said = hint.map_or(said.clone(), |hint| said.advice(hint));
+        scene_error = hint.map_or(scene_error.clone(), |hint| scene_error.advice(hint));
     }
     let source = Source { file, text: text.strip_prefix('\u{feff}').unwrap_or(text) };
-    let Some(mut root) = document::parse(&source).0 else { return said };
+    let Some(mut root) = document::parse(&source).0 else { return scene_error };
     let _ = overrides::apply_all(&mut root, overrides);
-    let Some((number, node)) = written(&root, command) else { return said };
+    let Some((number, node)) = written(&root, command) else { return scene_error };
     let key = if sets { "value" } else { "do" };
-    said.path = format!("command.{number}.{key}");
-    match node.get(key).map_or(node.place, |value| value.place) {
-        Place::Bytes(start, end) => source.mark(said, start, end),
-        Place::Override(number) => match overrides.get(number) {
-            Some((path, value)) => SceneError { file: overrides::named(path, value), ..said },
-            None => said,
+    scene_error.path = format!("command.{number}.{key}");
+    match node.get(key).map_or(node.location, |value| value.location) {
+        Location::Bytes(start, end) => source.mark(scene_error, start, end),
+        Location::Override(number) => match overrides.get(number) {
+            Some((path, value)) => SceneError { file: overrides::named(path, value), ..scene_error },
+            None => scene_error,
         },
     }
 }
@@ -238,32 +238,33 @@ fn mesh_file<'n>(root: &'n Node, path: &str) -> Option<&'n str> {
     body.get("shape")?.get("file")?.text()
 }
 
-/// The place of the last part of a path that is written, or of a field in it; none where nothing of it is.
-fn place(root: &Node, path: &str, fields: &[&str]) -> Option<Place> {
-    let (mut node, mut place) = (root, None);
+/// The location of the last part of a path that is written, or of a field in it; none where nothing of it is.
+fn location(root: &Node, path: &str, fields: &[&str]) -> Option<Location> {
+    let (mut node, mut location) = (root, None);
     for part in path.split('.') {
         let next = match &node.data {
             Data::Table(_) => node.entry(part).map(|entry| (&entry.value, shown_at(entry))),
             Data::Array(items) => {
                 let named = |n: &&Node| ["name", "kind"].iter().any(|k| n.get(k).and_then(Node::text) == Some(part));
                 let found = part.parse::<usize>().ok().and_then(|k| items.get(k)).or_else(|| items.iter().find(named));
-                found.map(|n| (n, n.place))
+                found.map(|n| (n, n.location))
             }
             _ => None,
         };
         let Some((next, at)) = next else { break };
-        (node, place) = (next, Some(at));
+        (node, location) = (next, Some(at));
     }
     let named = fields.iter().find_map(|field| node.entry(field)).map(shown_at);
     // A part of which an override has changed something is as that has made it.
-    let changed = || node.entries().iter().map(|entry| entry.value.place).rfind(|at| matches!(at, Place::Override(_)));
-    named.or_else(changed).or(place)
+    let changed =
+        || node.entries().iter().map(|entry| entry.value.location).rfind(|at| matches!(at, Location::Override(_)));
+    named.or_else(changed).or(location)
 }
 
 /// A table is shown by its key, a value by itself.
-fn shown_at(entry: &Entry) -> Place {
+fn shown_at(entry: &Entry) -> Location {
     match entry.value.data {
-        Data::Table(_) | Data::Array(_) => entry.place,
-        _ => entry.value.place,
+        Data::Table(_) | Data::Array(_) => entry.location,
+        _ => entry.value.location,
     }
 }

@@ -23,8 +23,8 @@ opruga_math::messages! {
     }
 }
 
-/// Rounding above this part of the distance of neighbouring nodes is told: strains and angles are off by as much.
-const TOLD: f64 = 1e-3;
+/// Rounding above this part of the distance of neighbouring nodes is reported: strains and angles are off by as much.
+const WARNED: f64 = 1e-3;
 /// Above this part it is refused: the shape is another one.
 const REFUSED: f64 = 0.1;
 
@@ -75,17 +75,17 @@ impl Stored {
         if other.part() > self.part() { other } else { self }
     }
 
-    /// What to tell of it, if anything.
+    /// What to warn of, if anything.
     ///
     /// # Errors
     /// `mesh.rounded` where the shape is another one.
-    pub(crate) fn told(&self) -> Result<Option<SceneError>, SceneError> {
+    pub(crate) fn warning(&self) -> Result<Option<SceneError>, SceneError> {
         let part = self.part();
-        if part <= TOLD {
+        if part <= WARNED {
             return Ok(None);
         }
         let (rounding, percent) = (rounded(self.rounding, 2), rounded(100.0 * part, 2));
-        let (farthest, warned, refused) = (rounded(self.farthest, 3), 100.0 * TOLD, 100.0 * REFUSED);
+        let (farthest, warned, refused) = (rounded(self.farthest, 3), 100.0 * WARNED, 100.0 * REFUSED);
         let value = rounded(part, 2);
         let error = SceneError::of(match self.single {
             true => Rounded::Single { rounding, percent, farthest, part: value, warned, refused },

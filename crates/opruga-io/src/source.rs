@@ -65,7 +65,7 @@ impl<'a> Source<'a> {
     /// Checks a value that stands outside of a scene, as on the command line: the same depth and the same size.
     ///
     /// # Errors
-    /// `scene.depth` or `scene.too_large`, without a place.
+    /// `scene.depth` or `scene.too_large`, without a location.
     pub(crate) fn check_value(text: &str, limits: &Limits) -> Result<(), SceneError> {
         Source { file: "", text }.check_nesting(limits, true).map_err(|error| SceneError {
             line: None,

@@ -225,7 +225,8 @@ pub struct SolverSummary {
     /// How often a body that rested in a degenerate shape was displaced at random (`[world] unfold = true`).
     pub disturbed: u64,
     /// How often that was in vain.
-    pub odd_rests: u64,
+    #[serde(rename = "odd_rests")]
+    pub stayed_degenerate: u64,
 }
 
 /// Momentum at the end.

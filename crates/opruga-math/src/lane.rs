@@ -156,8 +156,8 @@ pub trait Register: Lane {
     }
     /// Reads numbers of single precision from the start of a slice.
     fn load_single(from: &[f32]) -> Self;
-    /// Reads the numbers from so many places of a slice.
-    fn gather(from: &[f64], places: &[u32]) -> Self;
+    /// Reads the numbers from so many indices of a slice.
+    fn gather(from: &[f64], indices: &[u32]) -> Self;
     /// Reads so many rows of [`ROW`] numbers; the first register has the first numbers of all rows.
     ///
     /// Four times faster than gathering column by column, where positions are copied to rows first.
@@ -198,8 +198,8 @@ pub trait Pack: Lane {
     /// There must be room for eight numbers.
     #[allow(unsafe_code)]
     unsafe fn write(self, to: *mut f64);
-    /// Reads eight numbers from eight places of a slice.
-    fn gather(from: &[f64], places: &[u32]) -> Self;
+    /// Reads eight numbers from eight indices of a slice.
+    fn gather(from: &[f64], indices: &[u32]) -> Self;
     /// The eight numbers in order.
     fn to_array(self) -> [f64; WIDTH];
     /// Eight numbers in order.

@@ -25,8 +25,9 @@ pub(crate) fn logarithm_of_parts<S: Lane>(mantissa: S, exponent: S) -> S {
     let s = f / (S::splat(2.0) + f);
     let z = s * s;
     let w = z * z;
-    let even = w * (c(1) + w * (c(3) + w * c(5)));
-    let odd = z * (c(0) + w * (c(2) + w * (c(4) + w * c(6))));
-    let r = odd + even;
+    // Two halves of the series, with the names of fdlibm.
+    let t1 = w * (c(1) + w * (c(3) + w * c(5)));
+    let t2 = z * (c(0) + w * (c(2) + w * (c(4) + w * c(6))));
+    let r = t2 + t1;
     s * (half + r) + exponent * S::splat(LN_2[1]) - half + f + exponent * S::splat(LN_2[0])
 }

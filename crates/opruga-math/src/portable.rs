@@ -23,8 +23,8 @@ impl Register for f64 {
         f64::from(from[0])
     }
     #[inline(always)]
-    fn gather(from: &[f64], places: &[u32]) -> f64 {
-        from[places[0] as usize]
+    fn gather(from: &[f64], indices: &[u32]) -> f64 {
+        from[indices[0] as usize]
     }
     #[inline(always)]
     fn gather_rows(from: &[f64], rows: &[u32]) -> [f64; ROW] {

@@ -161,9 +161,9 @@ impl<R: Register, const N: usize> Pack for Registers<R, N> {
         }
     }
     #[inline(always)]
-    fn gather(from: &[f64], places: &[u32]) -> Self {
-        let places = &places[..WIDTH];
-        each!(r => R::gather(from, &places[r * R::NUMBERS..(r + 1) * R::NUMBERS]))
+    fn gather(from: &[f64], indices: &[u32]) -> Self {
+        let indices = &indices[..WIDTH];
+        each!(r => R::gather(from, &indices[r * R::NUMBERS..(r + 1) * R::NUMBERS]))
     }
     #[inline(always)]
     fn to_array(self) -> [f64; WIDTH] {

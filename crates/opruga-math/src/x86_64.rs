@@ -83,13 +83,13 @@ macro_rules! register {
             fn ln(self) -> Self {
                 let least = <$type as Lane>::splat(f64::MIN_POSITIVE);
                 let most = <$type as Lane>::splat(f64::MAX);
-                let odd = <$type as Lane>::select(
+                let special = <$type as Lane>::select(
                     <$type as Lane>::both(least.less_or_equal(self), self.less_or_equal(most)),
                     <$type as Lane>::zero(),
                     <$type as Lane>::one(),
                 );
                 // What is not positive and normal is rare and goes the long way.
-                if <$type as Lane>::any(<$type as Lane>::zero().less(odd)) {
+                if <$type as Lane>::any(<$type as Lane>::zero().less(special)) {
                     return self.each_number(<f64 as Lane>::ln);
                 }
                 let (mantissa, exponent) = unsafe { $split(self.0) };
@@ -123,7 +123,7 @@ macro_rules! register {
             #[inline(always)]
             fn load_single(from: &[f32]) -> Self { $type(unsafe { $single(from[..$count].as_ptr()) }) }
             #[inline(always)]
-            fn gather(from: &[f64], places: &[u32]) -> Self { $type(unsafe { $gather(from, &places[..$count]) }) }
+            fn gather(from: &[f64], indices: &[u32]) -> Self { $type(unsafe { $gather(from, &indices[..$count]) }) }
             #[inline(always)]
             fn gather_rows(from: &[f64], rows: &[u32]) -> [Self; ROW] {
                 let rows = &rows[..$count];
@@ -158,8 +158,8 @@ fn few(count: usize) -> f64 {
     f64::from(count.min(8) as i32)
 }
 
-/// 0, 1, 2, 3: compared with a count, they tell its first places.
-const PLACES: [f64; 4] = [0.0, 1.0, 2.0, 3.0];
+/// 0, 1, 2, 3: compared with a count, they give the mask of its first lanes.
+const LANE_INDICES: [f64; 4] = [0.0, 1.0, 2.0, 3.0];
 
 register! {
     /// Two numbers in a register of SSE2, which every x86-64 has.
@@ -170,7 +170,7 @@ register! {
     select |m, yes, no| _mm_or_pd(_mm_and_pd(m, yes), _mm_andnot_pd(m, no)),
     both |a, b| _mm_and_pd(a, b), any |m| _mm_movemask_pd(m) != 0,
     after |a, before| _mm_shuffle_pd::<0b01>(before, a),
-    first |count| _mm_cmplt_pd(_mm_loadu_pd(PLACES.as_ptr()), _mm_set1_pd(few(count))),
+    first |count| _mm_cmplt_pd(_mm_loadu_pd(LANE_INDICES.as_ptr()), _mm_set1_pd(few(count))),
     single |from: *const f32| _mm_cvtps_pd(_mm_castsi128_ps(_mm_loadl_epi64(from.cast()))),
     gather |from: &[f64], at: &[u32]| _mm_setr_pd(from[at[0] as usize], from[at[1] as usize]),
     split |x: __m128d| {
@@ -226,16 +226,16 @@ register! {
     split |x| split_avx512(x), rows |at| rows_avx512(at), to_rows |a, b, c, d, to| to_rows_avx512(a, b, c, d, to)
 }
 
-/// A mask of the first places. A function: what is longer than a call is not inlined as a closure.
+/// A mask of the first lanes. A function: what is longer than a call is not inlined as a closure.
 ///
 /// # Safety
 /// The processor must have AVX2.
 #[inline]
 #[target_feature(enable = "avx,avx2")]
 unsafe fn first_avx2(count: usize) -> __m256d {
-    // SAFETY: there are four places.
-    let places = unsafe { _mm256_loadu_pd(PLACES.as_ptr()) };
-    _mm256_cmp_pd::<_CMP_LT_OQ>(places, _mm256_set1_pd(few(count)))
+    // SAFETY: there are four indices.
+    let indices = unsafe { _mm256_loadu_pd(LANE_INDICES.as_ptr()) };
+    _mm256_cmp_pd::<_CMP_LT_OQ>(indices, _mm256_set1_pd(few(count)))
 }
 
 /// Mantissas from √½ to √2 and exponents of positive, normal numbers.
@@ -363,17 +363,17 @@ unsafe fn to_rows_avx512(a: __m512d, b: __m512d, c: __m512d, d: __m512d, to: *mu
     }
 }
 
-/// Eight numbers from eight places of a slice.
+/// Eight numbers from eight indices of a slice.
 ///
 /// # Safety
 /// The processor must have AVX-512.
 #[inline]
 #[target_feature(enable = "avx,avx2,avx512f,avx512dq,avx512vl")]
-unsafe fn gather_avx512(from: &[f64], places: &[u32]) -> __m512d {
-    assert!(from.len() <= i32::MAX as usize && places.len() == 8);
-    // SAFETY: eight places were given, and all of them lie in the slice.
+unsafe fn gather_avx512(from: &[f64], indices: &[u32]) -> __m512d {
+    assert!(from.len() <= i32::MAX as usize && indices.len() == 8);
+    // SAFETY: eight indices were given, and all of them lie in the slice.
     unsafe {
-        let index = _mm256_loadu_si256(places.as_ptr().cast());
+        let index = _mm256_loadu_si256(indices.as_ptr().cast());
         let inside = _mm256_cmplt_epu32_mask(index, _mm256_set1_epi32(from.len() as i32));
         assert!(inside == 0xff, "gather outside of the column");
         _mm512_i32gather_pd::<8>(index, from.as_ptr())

@@ -65,8 +65,8 @@ impl<const D: usize> Mesh<D> {
                     tetrahedron_parts(&nodes).for_each(|[a, b, c]| push([a, b, c, c]));
                 }
                 _ => {
-                    for (place, &a) in cell.iter().enumerate() {
-                        let b = cell[(place + 1) % cell.len()];
+                    for (corner, &a) in cell.iter().enumerate() {
+                        let b = cell[(corner + 1) % cell.len()];
                         push([a, b, b, b]);
                     }
                 }
@@ -143,13 +143,13 @@ impl<const D: usize> Mesh<D> {
             }
         }
         let alike = cut == Cut::Five || self.are_cut_alike();
-        let odd = if cut == Cut::Five { self.odd_nodes()? } else { Vec::new() };
+        let parities = if cut == Cut::Five { self.node_parities()? } else { Vec::new() };
         for cell in std::mem::take(&mut self.cells.hexahedra) {
             match cut {
                 Cut::Six if !alike => self.cells.tetrahedra.extend(from_the_least(&cell)),
                 Cut::Six => self.cells.tetrahedra.extend(KUHN.map(|corners| corners.map(|corner| cell[corner]))),
                 Cut::Five => {
-                    let parts = INSCRIBED[usize::from(odd[cell[0] as usize])];
+                    let parts = INSCRIBED[usize::from(parities[cell[0] as usize])];
                     self.cells.tetrahedra.extend(parts.map(|corners| corners.map(|corner| cell[corner])));
                 }
             }
@@ -177,27 +177,27 @@ impl<const D: usize> Mesh<D> {
 
     /// Which nodes are an odd number of edges of hexahedra away from the first of their piece, so that every diagonal of a
     /// face joins nodes that are alike.
-    fn odd_nodes(&self) -> Result<Vec<bool>, MeshError> {
+    fn node_parities(&self) -> Result<Vec<bool>, MeshError> {
         let mut edges: Vec<[u32; 2]> = Vec::with_capacity(24 * self.cells.hexahedra.len());
         for cell in &self.cells.hexahedra {
             edges.extend(HEXAHEDRON_EDGES.iter().flat_map(|&[i, j]| [[cell[i], cell[j]], [cell[j], cell[i]]]));
         }
         edges.sort_unstable();
         edges.dedup();
-        let mut odd: Vec<Option<bool>> = vec![None; self.positions.len()];
+        let mut parities: Vec<Option<bool>> = vec![None; self.positions.len()];
         let mut open: Vec<u32> = Vec::new();
         for [first, _] in &edges {
-            if odd[*first as usize].is_none() {
-                odd[*first as usize] = Some(false);
+            if parities[*first as usize].is_none() {
+                parities[*first as usize] = Some(false);
                 open.push(*first);
             }
             while let Some(node) = open.pop() {
-                let own = odd[node as usize] == Some(true);
+                let own = parities[node as usize] == Some(true);
                 let start = edges.partition_point(|edge| edge[0] < node);
                 for [_, other] in edges[start..].iter().take_while(|edge| edge[0] == node) {
-                    match odd[*other as usize] {
+                    match parities[*other as usize] {
                         None => {
-                            odd[*other as usize] = Some(!own);
+                            parities[*other as usize] = Some(!own);
                             open.push(*other);
                         }
                         Some(parity) if parity == own => {
@@ -208,7 +208,7 @@ impl<const D: usize> Mesh<D> {
                 }
             }
         }
-        Ok(odd.into_iter().map(|parity| parity == Some(true)).collect())
+        Ok(parities.into_iter().map(|parity| parity == Some(true)).collect())
     }
 }
 
@@ -229,7 +229,7 @@ fn from_the_least(cell: &[u32; 8]) -> impl Iterator<Item = [u32; 4]> {
 
 /// The first D nodes as a facet.
 fn facet<const D: usize>(nodes: [u32; 3]) -> [u32; D] {
-    std::array::from_fn(|place| nodes[place])
+    std::array::from_fn(|index| nodes[index])
 }
 
 /// The distinct nodes of a face, ascending, filled up with `u32::MAX`.

@@ -4,19 +4,19 @@
 pub(crate) fn sorted_by_node<T: Copy + Ord>(items: &[T], nodes: usize, node: impl Fn(&T) -> u32) -> Vec<T> {
     let Some(first) = items.first() else { return Vec::new() };
     // Where each bucket begins, and then, as it is filled, where its next item goes.
-    let mut place = vec![0u32; nodes + 1];
-    items.iter().for_each(|item| place[node(item) as usize + 1] += 1);
+    let mut offsets = vec![0u32; nodes + 1];
+    items.iter().for_each(|item| offsets[node(item) as usize + 1] += 1);
     for bucket in 0..nodes {
-        place[bucket + 1] += place[bucket];
+        offsets[bucket + 1] += offsets[bucket];
     }
     let mut out = vec![*first; items.len()];
     for item in items {
-        let next = &mut place[node(item) as usize];
+        let next = &mut offsets[node(item) as usize];
         out[*next as usize] = *item;
         *next += 1;
     }
     let mut begin = 0;
-    for end in place[..nodes].iter().map(|end| *end as usize) {
+    for end in offsets[..nodes].iter().map(|end| *end as usize) {
         if end - begin > 1 {
             out[begin..end].sort_unstable();
         }

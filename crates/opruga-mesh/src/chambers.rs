@@ -78,7 +78,7 @@ impl Survey {
         for pair in uses.chunk_by(|p, q| p.ridge == q.ridge).filter(|group| group.len() == 2) {
             let agree = pair[0].forward != pair[1].forward;
             for [facet, other] in [[pair[0].facet, pair[1].facet], [pair[1].facet, pair[0].facet]] {
-                // There are as many places as ridges.
+                // There are as many slots as ridges.
                 let own = &mut links[facet as usize];
                 if let Some(free) = own.iter().position(|link| link.0 == NONE) {
                     own[free] = (other, agree);
@@ -168,7 +168,7 @@ fn loops(free: &[Use]) -> Vec<u32> {
     let mut nodes: Vec<u32> = free.iter().flat_map(|edge| edge.ridge).collect();
     nodes.sort_unstable();
     nodes.dedup();
-    let place = |node: u32| nodes.partition_point(|&other| other < node);
+    let index_of = |node: u32| nodes.partition_point(|&other| other < node);
 
     // Union by lowest node, with path halving.
     let mut parent: Vec<usize> = (0..nodes.len()).collect();
@@ -180,7 +180,7 @@ fn loops(free: &[Use]) -> Vec<u32> {
         at
     };
     for edge in free {
-        let (p, q) = (root(&mut parent, place(edge.ridge[0])), root(&mut parent, place(edge.ridge[1])));
+        let (p, q) = (root(&mut parent, index_of(edge.ridge[0])), root(&mut parent, index_of(edge.ridge[1])));
         if p < q {
             parent[q] = p;
         } else {
@@ -237,8 +237,8 @@ impl<const D: usize> Mesh<D> {
         for hole in holes {
             let point = self.positions[self.facets[hole.facets[0] as usize][0] as usize];
             let mut home: Option<usize> = None;
-            let near = tree.as_ref().map_or(Vec::new(), |tree| tree.around(&lift(&point)));
-            for candidate in near.into_iter().map(|number| number as usize) {
+            let candidates = tree.as_ref().map_or(Vec::new(), |tree| tree.around(&lift(&point)));
+            for candidate in candidates.into_iter().map(|number| number as usize) {
                 let tighter = home.is_none_or(|best| outer[candidate].signed_volume < outer[best].signed_volume);
                 if tighter && winding_number(&skins[candidate], &self.positions, &point) > 0.5 {
                     home = Some(candidate);

@@ -59,7 +59,7 @@ impl Mesh<3> {
             let ([a, b], [c, d]) = ([2 * node, 2 * node + 1], [2 * other, 2 * other + 1]);
             let below = if node == other { &[[a, a], [b, b], [a, b]][..] } else { &[[a, c], [a, d], [b, c], [b, d]] };
             budget -= below.len() as u64;
-            waiting.extend(below.iter().filter(|[a, b]| a == b || near(&sorted.boxes[*a], &sorted.boxes[*b])));
+            waiting.extend(below.iter().filter(|[a, b]| a == b || overlap(&sorted.boxes[*a], &sorted.boxes[*b])));
         }
         found.pairs.sort_unstable();
         found
@@ -76,7 +76,7 @@ fn small([low, high]: &Bounds) -> Small {
 }
 
 /// Whether two boxes overlap; without branches, since nobody can foretell it.
-fn near(a: &Small, b: &Small) -> bool {
+fn overlap(a: &Small, b: &Small) -> bool {
     (0..3).fold(true, |so_far, d| so_far & (a[0][d] <= b[1][d]) & (b[0][d] <= a[1][d]))
 }
 
@@ -136,9 +136,9 @@ impl Sorted {
     /// Compares the facets of two leaves, or of one with one another.
     fn compare(&self, [leaf, other]: [usize; 2], pairs: &mut Vec<[u32; 2]>) {
         let others = self.facets_of(other);
-        for (place, a) in self.facets_of(leaf).iter().enumerate() {
-            for b in if leaf == other { &others[place + 1..] } else { others } {
-                if near(&a.bounds, &b.bounds) && self.meet(a, b) {
+        for (index, a) in self.facets_of(leaf).iter().enumerate() {
+            for b in if leaf == other { &others[index + 1..] } else { others } {
+                if overlap(&a.bounds, &b.bounds) && self.meet(a, b) {
                     let (a, b) = (a.number, b.number);
                     pairs.push(if a < b { [a, b] } else { [b, a] });
                 }
@@ -152,9 +152,9 @@ impl Sorted {
         let mut shared = 0;
         // What is shared comes first, in the same order.
         for k in 0..3 {
-            if let Some(place) = second[shared..].iter().position(|node| *node == first[k]) {
+            if let Some(index) = second[shared..].iter().position(|node| *node == first[k]) {
                 first.swap(shared, k);
-                second.swap(shared, shared + place);
+                second.swap(shared, shared + index);
                 shared += 1;
             }
         }

@@ -51,8 +51,8 @@ pub fn bandwidth(edges: &[[u32; 2]]) -> u32 {
 
 /// Adds the sides of a closed polygon of nodes.
 fn push_sides(nodes: &[u32], out: &mut Vec<[u32; 2]>) {
-    for (place, &a) in nodes.iter().enumerate() {
-        out.push(ascending(a, nodes[(place + 1) % nodes.len()]));
+    for (index, &a) in nodes.iter().enumerate() {
+        out.push(ascending(a, nodes[(index + 1) % nodes.len()]));
     }
 }
 
@@ -146,9 +146,9 @@ impl<const D: usize> Mesh<D> {
     pub fn edge_areas(&self, edges: &[[u32; 2]]) -> Result<Vec<f64>, MeshError> {
         self.validate()?;
 
-        // A sorted copy finds the place of an edge in any list.
+        // A sorted copy finds the index of an edge in any list.
         let mut sorted: Vec<([u32; 2], usize)> =
-            edges.iter().enumerate().map(|(place, &[a, b])| (ascending(a, b), place)).collect();
+            edges.iter().enumerate().map(|(index, &[a, b])| (ascending(a, b), index)).collect();
         sorted.sort_unstable();
         let find = |a: u32, b: u32| {
             let edge = ascending(a, b);
@@ -160,8 +160,8 @@ impl<const D: usize> Mesh<D> {
         let mut add = |[a, b, c]: [u32; 3], weight: f64| {
             let area = weight * triangle_area(at(a), at(b), at(c));
             for (p, q) in [(a, b), (b, c), (c, a)] {
-                if let Some(place) = find(p, q) {
-                    areas[place] += area;
+                if let Some(index) = find(p, q) {
+                    areas[index] += area;
                 }
             }
         };

@@ -82,8 +82,8 @@ pub fn cut_face(corners: &[[f64; 3]]) -> Result<CutFace, FaceError> {
         3 => vec![[0, 1, 2]],
         4 => {
             let square = |a: usize, b: usize| {
-                let way = subtract(points[b], points[a]);
-                dot(way, way)
+                let diagonal = subtract(points[b], points[a]);
+                dot(diagonal, diagonal)
             };
             let sharpest = (1..4).fold(0, |best, k| if turn(k) < turn(best) { k } else { best });
             let from = match turn(sharpest) > STRAIGHT * doubled {

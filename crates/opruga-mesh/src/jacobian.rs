@@ -107,7 +107,7 @@ pub fn least_jacobian<const D: usize>(nodes: &[[f64; D]]) -> Option<LeastJacobia
     Some(least)
 }
 
-/// det ∂x/∂ξ of a cell at a place, in the coordinates of [`LeastJacobian::at`] [m², m³].
+/// det ∂x/∂ξ of a cell at a point, in the coordinates of [`LeastJacobian::at`] [m², m³].
 pub fn jacobian_at<const D: usize>(nodes: &[[f64; D]], at: [f64; 4]) -> Option<f64> {
     Some(Net::of(nodes)?.value(at))
 }
@@ -166,7 +166,7 @@ impl Order {
         }
         order
     }
-    fn place(&self, index: [usize; 4]) -> usize {
+    fn rank(&self, index: [usize; 4]) -> usize {
         usize::from(self.0[index[1] + 4 * index[2] + 16 * index[3]])
     }
 }
@@ -239,21 +239,21 @@ impl Net {
             (1..corners).map(|k| (0..corners).map(|c| less(&slope(k, c), &slope(0, c))).collect()).collect();
         let list = indices(corners, D);
         let order = Order::of(&list);
-        let (mut coefficients, mut ways) = (vec![0.0; list.len()], vec![0.0; list.len()]);
-        for way in 0..corners.pow(D as u32) {
+        let (mut coefficients, mut counts) = (vec![0.0; list.len()], vec![0.0; list.len()]);
+        for assignment in 0..corners.pow(D as u32) {
             let mut index = [0; 4];
-            let mut rest = way;
+            let mut rest = assignment;
             let columns: [[f64; D]; D] = core::array::from_fn(|k| {
                 let corner = rest % corners;
                 rest /= corners;
                 index[corner] += 1;
                 side[k][corner]
             });
-            let at = order.place(index);
+            let at = order.rank(index);
             coefficients[at] += determinant(&columns);
-            ways[at] += 1.0;
+            counts[at] += 1.0;
         }
-        coefficients.iter_mut().zip(&ways).for_each(|(c, ways)| *c /= ways);
+        coefficients.iter_mut().zip(&counts).for_each(|(c, count)| *c /= count);
         Net::simplex(corners, D, coefficients)
     }
 
@@ -274,8 +274,8 @@ impl Net {
     fn hexahedron<const D: usize>(nodes: &[[f64; D]]) -> Net {
         let corner = |x: usize, y: usize, z: usize| &nodes[[0, 1, 3, 2][x + 2 * y] + 4 * z];
         let mut coefficients = vec![0.0; 27];
-        for way in 0..64_usize {
-            let bit = |k: usize| way >> k & 1;
+        for assignment in 0..64_usize {
+            let bit = |k: usize| assignment >> k & 1;
             let (y1, z1, x2, z2, x3, y3) = (bit(0), bit(1), bit(2), bit(3), bit(4), bit(5));
             let columns = [
                 less(corner(1, y1, z1), corner(0, y1, z1)),
@@ -318,7 +318,7 @@ impl Net {
         }
     }
 
-    /// The value at a place of the whole cell; only for the net of a whole cell.
+    /// The value at a point of the whole cell; only for the net of a whole cell.
     fn value(&self, at: [f64; 4]) -> f64 {
         match self.basis {
             Basis::Simplex { corners, degree } => {
@@ -349,7 +349,7 @@ impl Net {
             Basis::Simplex { corners, degree } => {
                 let order = Order::of(&indices(corners, degree));
                 let index = |k: usize| core::array::from_fn(|l| if k == l { degree } else { 0 });
-                (0..corners).map(|k| (self.coefficients[order.place(index(k))], self.corners[k])).collect()
+                (0..corners).map(|k| (self.coefficients[order.rank(index(k))], self.corners[k])).collect()
             }
             Basis::Box { axes, degree } => {
                 let vertex = |code: usize| {
@@ -387,7 +387,7 @@ impl Net {
                     let at = |k: usize| {
                         let mut index = *start;
                         (index[a], index[b]) = (steps - k, k);
-                        order.place(index)
+                        order.rank(index)
                     };
                     let row: Vec<f64> = (0..=steps).map(|k| self.coefficients[at(k)]).collect();
                     let (low, high) = split(&row);

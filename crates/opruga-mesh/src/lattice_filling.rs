@@ -126,10 +126,10 @@ fn crowded_edges(facets: &[[u32; 3]]) -> Vec<[u32; 2]> {
 fn around_edge(edge: [Key; 2], lattice: &Lattice) -> Vec<[Key; 4]> {
     let mut found = Vec::new();
     // Centres of cubes are odd; those that matter are at most two steps away.
-    let near = |x: i32| (x - 3..=x + 3).filter(|c| c.rem_euclid(2) == 1);
-    for z in near(edge[0][2]) {
-        for y in near(edge[0][1]) {
-            for x in near(edge[0][0]) {
+    let centers_around = |x: i32| (x - 3..=x + 3).filter(|c| c.rem_euclid(2) == 1);
+    for z in centers_around(edge[0][2]) {
+        for y in centers_around(edge[0][1]) {
+            for x in centers_around(edge[0][0]) {
                 for axis in 0..3 {
                     let four = lattice.beyond([x, y, z], axis);
                     found.extend(

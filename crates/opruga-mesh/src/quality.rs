@@ -103,9 +103,9 @@ impl<const D: usize> Mesh<D> {
 
     /// Turns cells round, so that their measure changes its sign; cells are counted in the order of [`crate::Cells::iter`].
     pub fn turn_cells(&mut self, cells: &[u32]) {
-        let places: Vec<(Element, u32)> = self.cells.iter().map(|(element, index, _)| (element, index)).collect();
+        let locations: Vec<(Element, u32)> = self.cells.iter().map(|(element, index, _)| (element, index)).collect();
         for cell in cells {
-            let (element, index) = places[*cell as usize];
+            let (element, index) = locations[*cell as usize];
             self.cells.turn(element, index as usize);
         }
     }

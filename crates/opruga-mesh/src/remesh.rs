@@ -51,7 +51,7 @@ struct Work {
     /// Edges that stay: their ends keep to them.
     sharp: BTreeMap<Edge, ()>,
     /// Nodes that neither move nor come nor go for now, ascending: where they did, the surface crossed itself.
-    held: Vec<u32>,
+    locked: Vec<u32>,
 }
 
 impl Mesh<3> {
@@ -114,7 +114,7 @@ impl Work {
             triangles,
             fans,
             sharp: BTreeMap::new(),
-            held: Vec::new(),
+            locked: Vec::new(),
         };
         for edge in work.edges() {
             let normals = work.beside(edge).map(|[s, t]| [s, t].map(|k| work.normal_of(k).and_then(unit)));
@@ -128,37 +128,37 @@ impl Work {
     }
 
     /// Does moves that add no nodes, without those that let the surface cross itself: they are done again with the nodes of
-    /// crossing triangles held, and with those around them, until nothing crosses.
+    /// crossing triangles locked, and with those around them, until nothing crosses.
     fn guard(&mut self, guarded: bool, moves: impl Fn(&mut Work)) {
         let before = guarded.then(|| self.clone());
         moves(self);
         let Some(before) = before else { return };
-        let mut held: Vec<u32> = Vec::new();
+        let mut locked: Vec<u32> = Vec::new();
         loop {
             let crossing = self.crossing();
             if crossing.is_empty() {
                 break;
             }
-            let known = held.len();
-            held.extend(crossing);
-            held.sort_unstable();
-            held.dedup();
-            if held.len() == known {
-                // What crosses is held already: what lies around it moved.
-                let around: Vec<u32> = held.iter().flat_map(|node| before.neighbours(*node)).collect();
-                held.extend(around);
-                held.sort_unstable();
-                held.dedup();
-                if held.len() == known {
+            let known = locked.len();
+            locked.extend(crossing);
+            locked.sort_unstable();
+            locked.dedup();
+            if locked.len() == known {
+                // What crosses is locked already: what lies around it moved.
+                let around: Vec<u32> = locked.iter().flat_map(|node| before.neighbours(*node)).collect();
+                locked.extend(around);
+                locked.sort_unstable();
+                locked.dedup();
+                if locked.len() == known {
                     *self = before;
                     break;
                 }
             }
             self.clone_from(&before);
-            self.held.clone_from(&held);
+            self.locked.clone_from(&locked);
             moves(self);
         }
-        self.held.clear();
+        self.locked.clear();
     }
 
     /// Nodes of triangles that cross, touch or overlap others.
@@ -169,8 +169,8 @@ impl Work {
         pairs.iter().flatten().flat_map(|facet| mesh.facets[*facet as usize]).collect()
     }
 
-    fn is_held(&self, node: u32) -> bool {
-        self.held.binary_search(&node).is_ok()
+    fn is_locked(&self, node: u32) -> bool {
+        self.locked.binary_search(&node).is_ok()
     }
 
     fn at(&self, node: u32) -> Point {
@@ -195,10 +195,10 @@ impl Work {
         let mut found = [None; 2];
         for &triangle in &self.fans[a as usize] {
             let Some(corners) = self.triangles[triangle as usize] else { continue };
-            let Some(place) = corners.iter().position(|node| *node == a) else { continue };
-            if corners[(place + 1) % 3] == b {
+            let Some(index) = corners.iter().position(|node| *node == a) else { continue };
+            if corners[(index + 1) % 3] == b {
                 found[0] = Some(triangle);
-            } else if corners[(place + 2) % 3] == b {
+            } else if corners[(index + 2) % 3] == b {
                 found[1] = Some(triangle);
             }
         }
@@ -278,12 +278,12 @@ impl Work {
         let mut edges: Vec<Edge> = self.edges().into_iter().filter(|e| self.length(*e) < short).collect();
         edges.sort_by(|e, f| self.length(*e).total_cmp(&self.length(*f)).then(e.cmp(f)));
         for [a, b] in edges {
-            if self.beside([a, b]).is_none() || self.length([a, b]) >= short || self.is_held(a) || self.is_held(b) {
+            if self.beside([a, b]).is_none() || self.length([a, b]) >= short || self.is_locked(a) || self.is_locked(b) {
                 continue;
             }
             // Who is bound more stays where it is.
             let bound = [self.sharpness(a), self.sharpness(b)];
-            let (kept, gone, place) = match bound {
+            let (kept, gone, position) = match bound {
                 [0, 0] => (a, b, middle(self.at(a), self.at(b))),
                 [_, 0] => (a, b, self.at(a)),
                 [0, _] => (b, a, self.at(b)),
@@ -292,21 +292,21 @@ impl Work {
                 [2, _] => (b, a, self.at(b)),
                 _ => continue,
             };
-            if self.may_merge(kept, gone, place, long) {
-                self.merge(kept, gone, place);
+            if self.may_merge(kept, gone, position, long) {
+                self.merge(kept, gone, position);
             }
         }
     }
 
-    /// Whether the surface stays sound where two neighbours become one node at a place.
-    fn may_merge(&self, kept: u32, gone: u32, place: Point, long: f64) -> bool {
+    /// Whether the surface stays sound where two neighbours become one node at a position.
+    fn may_merge(&self, kept: u32, gone: u32, position: Point, long: f64) -> bool {
         let (around, other) = (self.neighbours(kept), self.neighbours(gone));
         let common: Vec<u32> = around.iter().copied().filter(|node| other.contains(node)).collect();
         // Their common neighbours are the corners across; each of these keeps four triangles.
         if common.len() != 2 || common.iter().any(|node| self.neighbours(*node).len() < 5) {
             return false;
         }
-        let far = |node: &u32| norm(subtract(self.at(*node), place)) > long;
+        let far = |node: &u32| norm(subtract(self.at(*node), position)) > long;
         if around.iter().chain(&other).filter(|node| **node != kept && **node != gone).any(far) {
             return false;
         }
@@ -325,7 +325,7 @@ impl Work {
                 if corners.contains(&partner) {
                     return true;
                 }
-                let [p, q, r] = corners.map(|corner| if corner == node { place } else { self.at(corner) });
+                let [p, q, r] = corners.map(|corner| if corner == node { position } else { self.at(corner) });
                 let after = cross(subtract(q, p), subtract(r, p));
                 let before = self.normal(corners);
                 unit(before).zip(unit(after)).is_some_and(|(n, m)| dot(n, m) > TURN)
@@ -334,8 +334,8 @@ impl Work {
         sound(kept, gone) && sound(gone, kept)
     }
 
-    fn merge(&mut self, kept: u32, gone: u32, place: Point) {
-        self.positions[kept as usize] = place;
+    fn merge(&mut self, kept: u32, gone: u32, position: Point) {
+        self.positions[kept as usize] = position;
         let groups = std::mem::take(&mut self.groups[gone as usize]);
         self.groups[kept as usize].extend(groups);
         self.groups[kept as usize].sort_unstable();
@@ -357,7 +357,7 @@ impl Work {
     /// Flips edges where that brings their four nodes nearer to six neighbours.
     fn flip(&mut self) {
         for [a, b] in self.edges() {
-            if self.sharp.contains_key(&[a, b]) || self.is_held(a) || self.is_held(b) {
+            if self.sharp.contains_key(&[a, b]) || self.is_locked(a) || self.is_locked(b) {
                 continue;
             }
             let Some([s, t]) = self.beside([a, b]) else { continue };
@@ -403,15 +403,15 @@ impl Work {
     fn relax(&mut self, surface: &Nearest) {
         for node in 0..self.positions.len() as u32 {
             let fan = self.fans[node as usize].clone();
-            if fan.is_empty() || self.sharpness(node) > 0 || self.is_held(node) {
+            if fan.is_empty() || self.sharpness(node) > 0 || self.is_locked(node) {
                 continue;
             }
             let around = self.neighbours(node);
             let share = 1.0 / around.len() as f64;
             let mean: Point = core::array::from_fn(|d| around.iter().map(|n| self.at(*n)[d]).sum::<f64>() * share);
-            let place = surface.point(mean);
+            let position = surface.point(mean);
             let before: Vec<Option<Point>> = fan.iter().map(|t| self.normal_of(*t).and_then(unit)).collect();
-            let old = std::mem::replace(&mut self.positions[node as usize], place);
+            let old = std::mem::replace(&mut self.positions[node as usize], position);
             let turned = fan.iter().zip(before).any(|(t, before)| {
                 let after = self.normal_of(*t).and_then(unit);
                 !before.zip(after).is_some_and(|(n, m)| dot(n, m) > TURN)

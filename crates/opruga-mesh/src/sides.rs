@@ -82,11 +82,11 @@ pub fn side_points(dimensions: usize, nodes: usize) -> Vec<SidePoint> {
         _ => {
             let rings =
                 [(0.223_381_589_678_011, 0.445_948_490_915_965), (0.109_951_743_655_322, 0.091_576_213_509_771)];
-            let places = rings.into_iter().flat_map(|(weight, a)| {
+            let points = rings.into_iter().flat_map(|(weight, a)| {
                 let b = 1.0 - 2.0 * a;
                 [(a, a), (a, b), (b, a)].map(|(x, y)| (0.5 * weight, x, y))
             });
-            places.map(|(weight, x, y)| point(weight, &triangle(6, x, y))).collect()
+            points.map(|(weight, x, y)| point(weight, &triangle(6, x, y))).collect()
         }
     }
 }

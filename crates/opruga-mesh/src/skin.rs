@@ -85,8 +85,8 @@ pub(crate) fn refined(positions: &[[f64; 3]], triangles: &[[u32; 3]], longest: f
             for (p, q) in [(*a, *b), (*b, *c), (*c, *a)] {
                 let edge = if p < q { [p, q] } else { [q, p] };
                 let [x, y] = edge.map(|node| points[node as usize]);
-                let way = subtract(y, x);
-                if dot(way, way) > longest * longest && !middles.contains_key(&edge) {
+                let edge_vector = subtract(y, x);
+                if dot(edge_vector, edge_vector) > longest * longest && !middles.contains_key(&edge) {
                     middles.insert(edge, points.len() as u32);
                     points.push(core::array::from_fn(|d| 0.5 * (x[d] + y[d])));
                 }
@@ -135,11 +135,11 @@ impl<'m> Inside<'m> {
         for (index, facet) in mesh.facets.iter().enumerate() {
             let corners = facet.map(|node| mesh.positions[node as usize]);
             let range = |axis: usize| {
-                let places = corners.map(|p| grid.place(axis, p[axis]));
-                let (mut from, mut to) = (places[0], places[0]);
-                for place in places {
-                    from = usize::min(from, place);
-                    to = usize::max(to, place);
+                let cell_indices = corners.map(|p| grid.cell_index(axis, p[axis]));
+                let (mut from, mut to) = (cell_indices[0], cell_indices[0]);
+                for cell_index in cell_indices {
+                    from = usize::min(from, cell_index);
+                    to = usize::max(to, cell_index);
                 }
                 from..=to
             };
@@ -153,14 +153,14 @@ impl<'m> Inside<'m> {
         Ok(grid)
     }
 
-    fn place(&self, axis: usize, x: f64) -> usize {
-        let place = ((x - self.low[axis]) / self.cell[axis]).floor();
-        if place > 0.0 { usize::min(place as usize, self.counts[axis] - 1) } else { 0 }
+    fn cell_index(&self, axis: usize, x: f64) -> usize {
+        let index = ((x - self.low[axis]) / self.cell[axis]).floor();
+        if index > 0.0 { usize::min(index as usize, self.counts[axis] - 1) } else { 0 }
     }
 
     /// Whether a point is inside.
     pub(crate) fn contains(&self, point: [f64; 3]) -> bool {
-        let cell = &self.cells[self.place(0, point[0]) + self.counts[0] * self.place(1, point[1])];
+        let cell = &self.cells[self.cell_index(0, point[0]) + self.counts[0] * self.cell_index(1, point[1])];
         let mut inside = false;
         for facet in cell {
             let [a, b, c] = self.mesh.facets[*facet as usize].map(|node| self.mesh.positions[node as usize]);

@@ -19,7 +19,7 @@ pub fn weld(positions: &mut Vec<[f64; 3]>, triangles: &mut [[u32; 3]], distance:
     if !(distance >= 0.0 && distance.is_finite()) {
         return Err(MeshError::Size { what: Quantity::DistanceWelding, value: distance, must: Must::NotNegative });
     }
-    let target = if distance == 0.0 { same_place(positions) } else { near_place(positions, distance) };
+    let target = if distance == 0.0 { first_coincident(positions) } else { first_within(positions, distance) };
 
     // A triangle must keep three corners.
     for (index, triangle) in triangles.iter().enumerate() {
@@ -45,10 +45,10 @@ pub fn weld(positions: &mut Vec<[f64; 3]>, triangles: &mut [[u32; 3]], distance:
 }
 
 /// For every point the first one with the same coordinates; −0 is 0.
-fn same_place(positions: &[[f64; 3]]) -> Vec<u32> {
+fn first_coincident(positions: &[[f64; 3]]) -> Vec<u32> {
     const FREE: u32 = u32::MAX;
     let key = |node: u32| positions[node as usize].map(|x| (x + 0.0).to_bits());
-    // The first point of each place, at a slot that follows from its coordinates or the next free one: most points of a
+    // The first point at each position, in a slot that follows from its coordinates or the next free one: most points of a
     // soup come several times, and neighbours soon after one another.
     let slots = (2 * positions.len()).next_power_of_two();
     let mut firsts = vec![FREE; slots];
@@ -57,7 +57,7 @@ fn same_place(positions: &[[f64; 3]]) -> Vec<u32> {
         let mix = |sum: u64, x: u64| (sum ^ x).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29);
         (mix(mix(mix(0, x), y), z) >> 20) as usize & (slots - 1)
     };
-    let mut place = |node: u32| {
+    let mut first_of = |node: u32| {
         let own = key(node);
         let mut slot = slot_of(own);
         loop {
@@ -71,11 +71,11 @@ fn same_place(positions: &[[f64; 3]]) -> Vec<u32> {
             }
         }
     };
-    (0..positions.len() as u32).map(&mut place).collect()
+    (0..positions.len() as u32).map(&mut first_of).collect()
 }
 
 /// For every point the first one before it within a distance that joins no other, or itself.
-fn near_place(positions: &[[f64; 3]], distance: f64) -> Vec<u32> {
+fn first_within(positions: &[[f64; 3]], distance: f64) -> Vec<u32> {
     let cell = |x: f64| (x / distance).floor();
     let mut cells: BTreeMap<[i64; 3], Vec<u32>> = BTreeMap::new();
     let mut target = Vec::with_capacity(positions.len());
@@ -87,8 +87,8 @@ fn near_place(positions: &[[f64; 3]], distance: f64) -> Vec<u32> {
                 for z in -1..=1 {
                     let key = [i.saturating_add(x), j.saturating_add(y), k.saturating_add(z)];
                     for &other in cells.get(&key).into_iter().flatten() {
-                        let near = norm(subtract(positions[other as usize], *position)) <= distance;
-                        if near && found.is_none_or(|best| other < best) {
+                        let close = norm(subtract(positions[other as usize], *position)) <= distance;
+                        if close && found.is_none_or(|best| other < best) {
                             found = Some(other);
                         }
                     }
@@ -251,11 +251,11 @@ impl Mesh<3> {
             }
             let mut ring = Vec::new();
             let mut at = free[start][0];
-            while let Ok(place) = free.binary_search_by_key(&at, |edge| edge[0]) {
-                if core::mem::replace(&mut taken[place], true) {
+            while let Ok(index) = free.binary_search_by_key(&at, |edge| edge[0]) {
+                if core::mem::replace(&mut taken[index], true) {
                     break;
                 }
-                let [from, to] = free[place];
+                let [from, to] = free[index];
                 ring.push(from);
                 at = to;
             }
@@ -302,17 +302,17 @@ impl Mesh<3> {
     /// Nodes of a closed surface at which parts of it hang together that share no edge there, ascending.
     pub fn pinched_nodes(&self) -> Vec<u32> {
         // Around a node every facet leads from one neighbour to another; one round through all of them leaves nothing.
-        let mut ways: Vec<[u32; 3]> = Vec::with_capacity(3 * self.facets.len());
+        let mut links: Vec<[u32; 3]> = Vec::with_capacity(3 * self.facets.len());
         for [a, b, c] in &self.facets {
-            ways.extend([[*a, *b, *c], [*b, *c, *a], [*c, *a, *b]]);
+            links.extend([[*a, *b, *c], [*b, *c, *a], [*c, *a, *b]]);
         }
-        let ways = sorted_by_node(&ways, nodes_of(&self.facets), |way| way[0]);
+        let links = sorted_by_node(&links, nodes_of(&self.facets), |link| link[0]);
         let mut pinched = Vec::new();
-        for around in ways.chunk_by(|p, q| p[0] == q[0]) {
+        for around in links.chunk_by(|p, q| p[0] == q[0]) {
             let mut at = around[0][1];
             let mut steps = 0;
-            while let Ok(place) = around.binary_search_by_key(&at, |way| way[1]) {
-                at = around[place][2];
+            while let Ok(index) = around.binary_search_by_key(&at, |link| link[1]) {
+                at = around[index][2];
                 steps += 1;
                 if at == around[0][1] || steps > around.len() {
                     break;

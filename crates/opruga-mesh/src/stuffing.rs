@@ -16,7 +16,7 @@ pub const LARGEST_DIHEDRAL_ANGLE: f64 = 164.8;
 ///
 /// Of the pairs on a grid of 0.003 and 0.005 this one leaves the largest smallest angle, 10.76°, with 164.38° as the largest; the test below measures
 /// both over all stencils, with cuts at and around these limits.
-const NEAR: [f64; 2] = [0.284, 0.400];
+const WARP_LIMITS: [f64; 2] = [0.284, 0.400];
 
 /// Halvings that find where an edge meets the surface: to 10⁻¹² of the edge.
 const HALVINGS: u32 = 40;
@@ -66,7 +66,8 @@ impl Mesh<3> {
         corners.sort_unstable_by_key(order);
         corners.dedup();
         let number = |corner: &Corner| corners.binary_search_by_key(&order(corner), order).unwrap_or(0) as u32;
-        let mut mesh = Mesh::<3> { positions: corners.iter().map(|c| stuffing.place(*c)).collect(), ..Mesh::default() };
+        let mut mesh =
+            Mesh::<3> { positions: corners.iter().map(|c| stuffing.position(*c)).collect(), ..Mesh::default() };
         mesh.cells.tetrahedra = tetrahedra.iter().map(|corners| corners.map(|corner| number(&corner))).collect();
         mesh.facets = mesh.facets_from_cells()?;
         let parts = self.components()?.iter().filter(|component| component.signed_volume > 0.0).count();
@@ -144,7 +145,7 @@ impl<'a> Stuffing<'a> {
         stuffing
     }
 
-    /// The place of a lattice point in `sides`; none outside of the lattice.
+    /// The index of a lattice point in `sides`; none outside of the lattice.
     fn index(&self, key: Key) -> Option<usize> {
         let shift = key[0].rem_euclid(2);
         let counts = self.lattice.counts.map(|n| n + 1 - shift);
@@ -213,8 +214,8 @@ impl<'a> Stuffing<'a> {
             for (other, short) in neighbours(key) {
                 let Some(cut) = self.cuts.get(&sum(key, other)) else { continue };
                 let (square, whole) = (distance_square(here, *cut), distance_square(here, self.lattice.at(other)));
-                let near = square < NEAR[short] * NEAR[short] * whole;
-                if near && nearest.is_none_or(|(least, _)| square < least) {
+                let close = square < WARP_LIMITS[short] * WARP_LIMITS[short] * whole;
+                if close && nearest.is_none_or(|(least, _)| square < least) {
                     nearest = Some((square, *cut));
                 }
             }
@@ -229,7 +230,7 @@ impl<'a> Stuffing<'a> {
     }
 
     /// Where a corner lies.
-    fn place(&self, corner: Corner) -> Point {
+    fn position(&self, corner: Corner) -> Point {
         if let Some(cut) = self.cuts.get(&corner) {
             return *cut;
         }
@@ -251,7 +252,7 @@ impl<'a> Stuffing<'a> {
             }
         }
         for corners in &mut out {
-            let [a, b, c, d] = corners.map(|corner| self.place(corner));
+            let [a, b, c, d] = corners.map(|corner| self.position(corner));
             if tetrahedron_volume(a, b, c, d) < 0.0 {
                 corners.swap(2, 3);
             }
@@ -281,7 +282,7 @@ impl<'a> Stuffing<'a> {
             let volume = |of: usize| -> f64 {
                 let own = at.iter().zip(&fan).filter(|(_, fan)| **fan == of);
                 own.map(|(k, _)| {
-                    let [a, b, c, d] = tetrahedra[*k].map(|corner| self.place(corner));
+                    let [a, b, c, d] = tetrahedra[*k].map(|corner| self.position(corner));
                     tetrahedron_volume(a, b, c, d)
                 })
                 .sum()
@@ -345,7 +346,7 @@ impl<'a> Stuffing<'a> {
                 let (first, last) = (self.diagonal(p, q, m), !self.diagonal(p, q, n));
                 // The third side lies on the surface and is nobody else's: the shorter diagonal, if both will do.
                 let [[_, a, b], [_, c, d]] = ends;
-                let length = |p: Corner, q: Corner| distance_square(self.place(p), self.place(q));
+                let length = |p: Corner, q: Corner| distance_square(self.position(p), self.position(q));
                 let free = if first == last { !first } else { length(a, d) <= length(b, c) };
                 prism(ends, [first, free, last], out);
             }
@@ -438,7 +439,7 @@ mod tests {
                 for (other, short) in neighbours(key) {
                     if stuffing.side(other) == Side::Outside {
                         // Fractions at and around the thresholds, and anywhere.
-                        let near = NEAR[short];
+                        let near = WARP_LIMITS[short];
                         let t = match (random.next() * 6.0) as u32 {
                             0 => near - 1e-9,
                             1 => near + 1e-9,
@@ -454,7 +455,7 @@ mod tests {
             }
             stuffing.warp();
             for corners in stuffing.tetrahedra() {
-                for angle in dihedral_angles(corners.map(|corner| stuffing.place(corner))) {
+                for angle in dihedral_angles(corners.map(|corner| stuffing.position(corner))) {
                     let degrees = angle * 180.0 / core::f64::consts::PI;
                     smallest = if degrees < smallest { degrees } else { smallest };
                     largest = if degrees > largest { degrees } else { largest };

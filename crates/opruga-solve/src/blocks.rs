@@ -118,9 +118,9 @@ pub fn inverse_of_positive<const D: usize>(a: &Block<D>) -> Option<Block<D>> {
     Some(out)
 }
 
-/// A block without the directions that are held, and with what is as large as its diagonal in these: P A P + (1 − P) s.
+/// A block without the constrained directions, and with what is as large as its diagonal in these: P A P + (1 − P) s.
 #[inline]
-pub fn held<const D: usize>(a: &Block<D>, projector: &Block<D>) -> Block<D> {
+pub fn constrained_block<const D: usize>(a: &Block<D>, projector: &Block<D>) -> Block<D> {
     let mut size = 0.0;
     for d in 0..D {
         size += a[d][d].abs() / D as f64;

@@ -38,9 +38,9 @@ pub fn conjugate_gradients(
     x: &mut [f64],
     tolerance: f64,
     most: u32,
-    room: &mut Directions,
+    workspace: &mut Directions,
 ) -> Result<Ended, Indefinite> {
-    let Directions { residual, improved, direction, product } = room;
+    let Directions { residual, improved, direction, product } = workspace;
     for vector in [&mut *residual, improved, direction, product] {
         vector.resize(b.len(), 0.0);
     }

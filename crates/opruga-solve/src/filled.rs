@@ -69,8 +69,8 @@ fn order<const D: usize>(matrix: &BlockMatrix<D>) -> Option<Vec<usize>> {
     }
     let mut stack = MemBuffer::try_new(amd::order_scratch::<usize>(nodes, above.len())).ok()?;
     let pattern = SymbolicSparseColMatRef::new_checked(nodes, nodes, &start, None, &above);
-    let (mut order, mut place) = (vec![0; nodes], vec![0; nodes]);
-    amd::order(&mut order, &mut place, pattern, amd::Control::default(), MemStack::new(&mut stack)).ok()?;
+    let (mut order, mut inverse) = (vec![0; nodes], vec![0; nodes]);
+    amd::order(&mut order, &mut inverse, pattern, amd::Control::default(), MemStack::new(&mut stack)).ok()?;
     Some(order)
 }
 
@@ -80,9 +80,9 @@ fn pattern<const D: usize>(matrix: &BlockMatrix<D>, order: &[usize], most: usize
     if order.len() != matrix.rows() {
         return None;
     }
-    let mut place = vec![0; order.len()];
+    let mut rank = vec![0; order.len()];
     for (k, node) in order.iter().enumerate() {
-        place[*node] = k;
+        rank[*node] = k;
     }
     let (mut parent, mut seen) = (vec![NONE; order.len()], vec![NONE; order.len()]);
     let (mut rows, mut blocks) = (Vec::with_capacity(order.len()), 0);
@@ -90,7 +90,7 @@ fn pattern<const D: usize>(matrix: &BlockMatrix<D>, order: &[usize], most: usize
         seen[row] = row;
         let mut columns = Vec::new();
         for at in matrix.row(*node) {
-            let mut k = place[matrix.column[at] as usize];
+            let mut k = rank[matrix.column[at] as usize];
             while k < row && seen[k] != row {
                 columns.push(k as u32);
                 seen[k] = row;

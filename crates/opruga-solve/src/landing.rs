@@ -15,13 +15,13 @@ pub(crate) fn is_known(nodes: usize) -> bool {
 /// The blocks of some rows; what belongs to other rows is left to others.
 pub(crate) struct Landing<'a, const D: usize> {
     pub(crate) values: &'a mut [Block<D>],
-    /// The place of the first of them in the matrix.
+    /// The index of the first of them in the matrix.
     pub(crate) first: usize,
     pub(crate) factor: f64,
 }
 
 impl<const D: usize> Landing<'_, D> {
-    /// Adds the blocks of a pack of stencils at the places that are known, `[lane][a][b]`.
+    /// Adds the blocks of a pack of stencils at the indices that are known, `[lane][a][b]`.
     pub(crate) fn add(&mut self, simd: Simd, pack: &StencilPack<'_>, slots: &[u32]) {
         let Landing { values, first, factor } = self;
         let landing = Landing { values, first: *first, factor: *factor };

@@ -19,7 +19,7 @@ pub struct BlockMatrix<const D: usize> {
     pub(crate) start: Vec<u32>,
     /// The column of each block, rising within a row.
     pub(crate) column: Vec<u32>,
-    /// The place of the diagonal block of each row.
+    /// The index of the diagonal block of each row.
     pub(crate) diagonal: Vec<u32>,
     pub(crate) values: Vec<Block<D>>,
     /// How often the pattern has changed.
@@ -45,29 +45,29 @@ struct Script {
     calls: Vec<(u32, u32)>,
     slots: Vec<u32>,
     /// Nodes of packs of stencils as they were delivered, and where their blocks land.
-    pack_places: Vec<u32>,
+    pack_indices: Vec<u32>,
     pack_slots: Vec<u32>,
 }
 
 /// How far packs of stencils have come in their script.
 #[derive(Clone, Copy, Debug, Default)]
 struct Cursor {
-    places: usize,
+    indices: usize,
     slots: usize,
 }
 
 impl Script {
     fn heap_bytes(&self) -> usize {
-        let numbers = self.slots.capacity() + self.pack_places.capacity() + self.pack_slots.capacity();
+        let numbers = self.slots.capacity() + self.pack_indices.capacity() + self.pack_slots.capacity();
         self.calls.capacity() * 8 + numbers * 4
     }
     fn is_empty(&self) -> bool {
-        self.calls.is_empty() && self.pack_places.is_empty()
+        self.calls.is_empty() && self.pack_indices.is_empty()
     }
     fn clear(&mut self) {
         self.calls.clear();
         self.slots.clear();
-        self.pack_places.clear();
+        self.pack_indices.clear();
         self.pack_slots.clear();
     }
 }
@@ -182,7 +182,7 @@ impl<const D: usize> BlockMatrix<D> {
         Some(at)
     }
 
-    /// The place of a block, by search.
+    /// The index of a block, by search.
     fn look_up(&self, key: (u32, u32)) -> Option<usize> {
         let row = self.row(key.0 as usize);
         self.column[row.clone()].binary_search(&key.1).ok().map(|at| row.start + at)
@@ -192,7 +192,7 @@ impl<const D: usize> BlockMatrix<D> {
         for lane in 0..pack.count {
             for a in 0..pack.nodes {
                 for b in 0..pack.nodes {
-                    self.block(pack.place(a, lane), pack.place(b, lane), pack.block(a, b, lane));
+                    self.block(pack.index(a, lane), pack.index(b, lane), pack.block(a, b, lane));
                 }
             }
         }
@@ -200,11 +200,11 @@ impl<const D: usize> BlockMatrix<D> {
 
     /// Notes where the blocks of a pack of stencils land.
     fn record(&mut self, pack: &StencilPack<'_>) {
-        self.scripts[self.script].pack_places.extend_from_slice(pack.places);
+        self.scripts[self.script].pack_indices.extend_from_slice(pack.indices);
         for lane in 0..pack.count {
             for a in 0..pack.nodes {
                 for b in 0..pack.nodes {
-                    let key = (pack.place(a, lane) as u32, pack.place(b, lane) as u32);
+                    let key = (pack.index(a, lane) as u32, pack.index(b, lane) as u32);
                     match self.look_up(key) {
                         Some(at) => self.scripts[self.script].pack_slots.push(at as u32),
                         None => self.missing.push(key),
@@ -214,7 +214,7 @@ impl<const D: usize> BlockMatrix<D> {
         }
     }
 
-    /// Adds the blocks of a pack of stencils of so many nodes where they landed before; gives the number of these places.
+    /// Adds the blocks of a pack of stencils of so many nodes where they landed before; gives the number of these slots.
     fn replay(&mut self, pack: &StencilPack<'_>) -> usize {
         let count = pack.count * pack.nodes * pack.nodes;
         let slots = &self.scripts[self.script].pack_slots[self.packs.slots..][..count];
@@ -226,10 +226,10 @@ impl<const D: usize> BlockMatrix<D> {
     /// Adds packs of stencils on several threads, each of which looks after some rows; false where they come out of turn.
     fn replay_in_rows(&mut self, threads: usize, packs: &dyn StencilPacks<D>) -> bool {
         let (nodes, stencils) = (packs.nodes(), packs.stencils());
-        let (places, slots) = (stencils.div_ceil(WIDTH) * WIDTH * nodes, stencils * nodes * nodes);
+        let (index_count, slots) = (stencils.div_ceil(WIDTH) * WIDTH * nodes, stencils * nodes * nodes);
         let script = &self.scripts[self.script];
         let (Some(known), Some(slots)) = (
-            script.pack_places.get(self.packs.places..self.packs.places + places),
+            script.pack_indices.get(self.packs.indices..self.packs.indices + index_count),
             script.pack_slots.get(self.packs.slots..self.packs.slots + slots),
         ) else {
             return false;
@@ -253,7 +253,7 @@ impl<const D: usize> BlockMatrix<D> {
                 landing.add(Simd::best(), pack, &slots[from..from + pack.count * nodes * nodes]);
             });
         });
-        self.packs.places += places;
+        self.packs.indices += index_count;
         self.packs.slots += slots.len();
         true
     }
@@ -384,14 +384,14 @@ impl<const D: usize> Sink<D> for BlockMatrix<D> {
         let part = &mut self.rank_one[self.ranks];
         part.factor = self.factor * c;
         part.entries.clear();
-        part.entries.extend(u.iter().map(|(place, entry)| (*place as u32, *entry)));
+        part.entries.extend(u.iter().map(|(index, entry)| (*index as u32, *entry)));
         self.ranks += 1;
     }
     fn dense(&mut self, part: &DensePart<'_, D>) {
         self.beside.push(Beside::new(self.factor, part));
     }
     fn stencils(&mut self, pack: &StencilPack<'_>) {
-        let (places, slots) = (pack.places.len(), pack.count * pack.nodes * pack.nodes);
+        let (index_count, slots) = (pack.indices.len(), pack.count * pack.nodes * pack.nodes);
         if !is_known(pack.nodes) {
             return self.block_by_block(pack);
         }
@@ -403,14 +403,14 @@ impl<const D: usize> Sink<D> for BlockMatrix<D> {
             }
         } else {
             let script = &self.scripts[self.script];
-            let expected = script.pack_places.get(self.packs.places..self.packs.places + places);
-            if expected != Some(pack.places) || script.pack_slots.len() < self.packs.slots + slots {
+            let expected = script.pack_indices.get(self.packs.indices..self.packs.indices + index_count);
+            if expected != Some(pack.indices) || script.pack_slots.len() < self.packs.slots + slots {
                 // Out of turn.
                 return self.block_by_block(pack);
             }
         }
         let slots = self.replay(pack);
-        self.packs.places += places;
+        self.packs.indices += index_count;
         self.packs.slots += slots;
     }
     fn stencil_packs(&mut self, threads: usize, packs: &dyn StencilPacks<D>) {

@@ -112,8 +112,8 @@ fn every_solver_finds_the_same_solution() {
         for preconditioner in preconditioners {
             let mut x = vec![0.0; 2 * nodes];
             let multiply = |x: &[f64], y: &mut [f64]| matrix.multiply(x, y);
-            let mut room = Directions::default();
-            let ended = conjugate_gradients(multiply, preconditioner, &b, &mut x, 1e-13, 1000, &mut room).unwrap();
+            let mut workspace = Directions::default();
+            let ended = conjugate_gradients(multiply, preconditioner, &b, &mut x, 1e-13, 1000, &mut workspace).unwrap();
             check(&x, "conjugate gradients");
             counts.push(ended.iterations);
         }
@@ -152,7 +152,7 @@ fn every_solver_finds_the_same_solution() {
 }
 
 #[test]
-fn an_indefinite_matrix_is_told() {
+fn an_indefinite_matrix_is_reported() {
     let mut matrix = BlockMatrix::<2>::default();
     matrix.assemble(2, 0, |sink| {
         sink.block(0, 0, [[1.0, 0.0], [0.0, -1.0]]);

@@ -53,7 +53,7 @@ pub struct IncompleteCholesky<const D: usize> {
     generation: u64,
     start: Vec<u32>,
     column: Vec<u32>,
-    /// For each block below the diagonal its place in the matrix, or [`FILL`]; and for each on the diagonal.
+    /// For each block below the diagonal its index in the matrix, or [`FILL`]; and for each on the diagonal.
     source: Vec<u32>,
     diagonal: Vec<u32>,
     below: Vec<Block<D>>,
@@ -61,7 +61,7 @@ pub struct IncompleteCholesky<const D: usize> {
     inverse: Vec<Block<D>>,
 }
 
-/// No place in the matrix: a block that only the factor has.
+/// No index in the matrix: a block that only the factor has.
 const FILL: u32 = u32::MAX;
 
 impl<const D: usize> IncompleteCholesky<D> {
@@ -83,9 +83,9 @@ impl<const D: usize> IncompleteCholesky<D> {
             self.start.push(self.column.len() as u32);
         }
         self.diagonal = order.iter().map(|node| matrix.diagonal[*node]).collect();
-        self.make_room();
+        self.allocate();
     }
-    fn make_room(&mut self) {
+    fn allocate(&mut self) {
         self.below = vec![[[0.0; D]; D]; self.column.len()];
         self.inverse = vec![[[0.0; D]; D]; self.diagonal.len()];
     }
@@ -120,7 +120,7 @@ impl<const D: usize> IncompleteCholesky<D> {
             self.start.push(self.column.len() as u32);
         }
         self.diagonal.clone_from(&matrix.diagonal);
-        self.make_room();
+        self.allocate();
     }
     pub(crate) fn factor(&mut self, matrix: &BlockMatrix<D>, raised: f64) -> Result<(), Indefinite> {
         for row in 0..matrix.rows() {

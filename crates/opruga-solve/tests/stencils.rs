@@ -14,7 +14,7 @@ fn random(seed: &mut u64) -> f64 {
 /// Packs of stencils of `n` nodes in D dimensions; the last is not full.
 struct Packs {
     n: usize,
-    places: Vec<Vec<u32>>,
+    indices: Vec<Vec<u32>>,
     blocks: Vec<Vec<f64>>,
     counts: Vec<usize>,
 }
@@ -22,11 +22,11 @@ struct Packs {
 impl Packs {
     fn new<const D: usize>(n: usize, packs: usize) -> Packs {
         let mut seed = n as u64;
-        let mut out = Packs { n, places: Vec::new(), blocks: Vec::new(), counts: Vec::new() };
+        let mut out = Packs { n, indices: Vec::new(), blocks: Vec::new(), counts: Vec::new() };
         for pack in 0..packs {
             let first: Vec<usize> = (0..WIDTH).map(|l| (7 * pack + 3 * l) % NODES).collect();
             // Nodes of a stencil differ: 23 is a prime.
-            out.places.push((0..n * WIDTH).map(|k| ((first[k % WIDTH] + 5 * (k / WIDTH)) % NODES) as u32).collect());
+            out.indices.push((0..n * WIDTH).map(|k| ((first[k % WIDTH] + 5 * (k / WIDTH)) % NODES) as u32).collect());
             let mut blocks = vec![f64::NAN; n * n * D * D * WIDTH];
             for a in 0..n {
                 for b in a..n {
@@ -47,15 +47,19 @@ impl Packs {
     }
     fn deliver<const D: usize>(&self, whole: bool, order: &[usize], sink: &mut BlockMatrix<D>) {
         for &k in order {
-            let pack =
-                StencilPack { nodes: self.n, count: self.counts[k], places: &self.places[k], blocks: &self.blocks[k] };
+            let pack = StencilPack {
+                nodes: self.n,
+                count: self.counts[k],
+                indices: &self.indices[k],
+                blocks: &self.blocks[k],
+            };
             if whole {
                 sink.stencils(&pack);
             } else {
                 for lane in 0..pack.count {
                     for a in 0..self.n {
                         for b in 0..self.n {
-                            sink.block(pack.place(a, lane), pack.place(b, lane), pack.block(a, b, lane));
+                            sink.block(pack.index(a, lane), pack.index(b, lane), pack.block(a, b, lane));
                         }
                     }
                 }

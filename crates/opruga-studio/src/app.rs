@@ -15,8 +15,8 @@ use crate::panels::keeping::Keeping;
 use crate::panels::properties::Properties;
 use crate::panels::{bars, palette, plots, status};
 use crate::preferences::{Preferences, Store};
+use crate::report::Report;
 use crate::runner::Link;
-use crate::said::Said;
 use crate::session::{Edit, Request, Session};
 use crate::shown::{Severity, Show, Shown};
 use crate::words::Language;
@@ -66,8 +66,8 @@ pub struct Studio {
     closed: u64,
     /// Who spoke last.
     heard: message::Heard,
-    /// What was told last, since when, and where: it goes by itself.
-    told: (String, f64, message::Place),
+    /// The last message, since when it is shown, and where: it goes by itself.
+    last_message: (String, f64, message::Placement),
     /// Pictures of the interface in a second.
     rate: f64,
     /// Whether time passed in the last picture.
@@ -114,7 +114,7 @@ impl Studio {
             presses: 0,
             closed: 0,
             heard: Default::default(),
-            told: (String::new(), 0.0, message::Place::default()),
+            last_message: (String::new(), 0.0, message::Placement::default()),
             rate: 60.0,
             played: false,
             drawn_by: None,
@@ -169,9 +169,9 @@ impl Studio {
         self.link.ask(request);
     }
 
-    /// Says something to the person.
-    pub fn tell(&mut self, severity: Severity, said: Said) {
-        self.keeping.tell(severity, said);
+    /// Reports something to the person.
+    pub fn report(&mut self, severity: Severity, report: Report) {
+        self.keeping.report(severity, report);
     }
 
     /// The simulation.
@@ -247,10 +247,10 @@ impl Studio {
                 |ui| {
                     // On a narrow window curves keep their width and are pushed along.
                     // Below them is room for the bar by which they are pushed, which is seen before it is looked for.
-                    let room = ui.available_size() - egui::vec2(0.0, 10.0);
+                    let available = ui.available_size() - egui::vec2(0.0, 10.0);
                     ui.spacing_mut().scroll = egui::style::ScrollStyle::thin();
                     egui::ScrollArea::horizontal().auto_shrink(false).show(ui, |ui| {
-                        plots::show(ui, &shown, words, self.canvas.selected.as_deref(), room);
+                        plots::show(ui, &shown, words, self.canvas.selected.as_deref(), available);
                     });
                 },
             );
@@ -270,7 +270,7 @@ impl Studio {
         if let Some(rescue) = &mut self.rescue {
             rescue.poll(&self.link);
         }
-        let (pressed, held) = ui.input(|i| {
+        let (pressed, is_down) = ui.input(|i| {
             let begins = i.pointer.any_pressed();
             (begins, begins || i.pointer.any_down() || i.pointer.any_released())
         });
@@ -278,7 +278,7 @@ impl Studio {
         for ask in asks {
             // What a hand that is down sets is undone as one.
             let ask = match ask {
-                Request::Set(path, value) if held => Request::Draw(self.presses, path, value),
+                Request::Set(path, value) if is_down => Request::Draw(self.presses, path, value),
                 ask => ask,
             };
             if let Request::Show(show) = &ask {

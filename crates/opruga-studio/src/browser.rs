@@ -1,6 +1,6 @@
 //! What a browser gives: its clock, its address, downloads and files.
 
-use crate::said::Said;
+use crate::report::Report;
 use js_sys::{Array, Promise, Uint8Array};
 use std::sync::mpsc::{Receiver, channel};
 use wasm_bindgen::prelude::*;
@@ -8,7 +8,7 @@ use wasm_bindgen::{JsCast, JsValue};
 use wasm_bindgen_futures::JsFuture;
 
 /// A file that a person has chosen: its name and its bytes.
-pub(crate) type Chosen = Result<(String, Vec<u8>), Said>;
+pub(crate) type Chosen = Result<(String, Vec<u8>), Report>;
 
 fn window() -> Option<web_sys::Window> {
     web_sys::window()
@@ -30,8 +30,8 @@ pub(crate) async fn next_turn() {
     let _ = JsFuture::from(promise).await;
 }
 
-/// Tells the page that the graphics device was lost.
-pub(crate) fn tell_lost() {
+/// Reports to the page that the graphics device was lost.
+pub(crate) fn report_lost_device() {
     let event = web_sys::Event::new("opruga-device-lost");
     if let (Some(window), Ok(event)) = (window(), event) {
         let _ = window.dispatch_event(&event);
@@ -44,8 +44,8 @@ pub(crate) fn fragment() -> String {
 }
 
 /// Puts this behind the `#` of the address, without a new entry in the history; the whole address.
-pub(crate) fn set_fragment(fragment: &str) -> Result<String, Said> {
-    let failed = || Said::AddressStays;
+pub(crate) fn set_fragment(fragment: &str) -> Result<String, Report> {
+    let failed = || Report::AddressStays;
     let window = window().ok_or_else(failed)?;
     let history = window.history().map_err(|_| failed())?;
     history.replace_state_with_url(&JsValue::NULL, "", Some(&format!("#{fragment}"))).map_err(|_| failed())?;
@@ -65,8 +65,8 @@ pub(crate) fn store(name: &str, text: &str) {
 }
 
 /// Hands a file to the person as a download.
-pub(crate) fn download(name: &str, bytes: &[u8]) -> Result<(), Said> {
-    let failed = |_: JsValue| Said::NoDownload(name.into());
+pub(crate) fn download(name: &str, bytes: &[u8]) -> Result<(), Report> {
+    let failed = |_: JsValue| Report::NoDownload(name.into());
     let parts = Array::of1(&Uint8Array::from(bytes));
     let blob = web_sys::Blob::new_with_u8_array_sequence(&parts).map_err(failed)?;
     let address = web_sys::Url::create_object_url_with_blob(&blob).map_err(failed)?;
@@ -89,10 +89,10 @@ pub(crate) fn download(name: &str, bytes: &[u8]) -> Result<(), Said> {
 pub(crate) async fn read(file: &web_sys::File, most: u64) -> Chosen {
     let name = file.name();
     if file.size() > most as f64 {
-        return Err(Said::TooLarge(name, file.size() as u64, most));
+        return Err(Report::TooLarge(name, file.size() as u64, most));
     }
     let buffer = JsFuture::from(file.unchecked_ref::<web_sys::Blob>().array_buffer()).await;
-    let buffer = buffer.map_err(|_| Said::Unreadable(name.clone()))?;
+    let buffer = buffer.map_err(|_| Report::Unreadable(name.clone()))?;
     Ok((name, Uint8Array::new(&buffer).to_vec()))
 }
 

@@ -2,7 +2,7 @@
 
 use crate::document::read;
 use crate::document::{Document, kind_table, toml};
-use crate::said::Said;
+use crate::report::Report;
 use opruga::Registries;
 use opruga::blueprint::AnyBlueprint;
 use opruga::core::spec::{Value, Values};
@@ -66,17 +66,17 @@ impl Twins {
 /// names nodes names those that lie nearest at rest.
 ///
 /// # Errors
-/// [`Said`] where a difference has no place in the scene, or all that is wrong with a shape.
+/// [`Report`] where a difference has no place in the scene, or all that is wrong with a shape.
 pub fn right_of(
     document: &Document,
     differences: &[Difference],
     files: &Files,
     registries: &Registries,
-) -> Result<(Document, Twins), Said> {
+) -> Result<(Document, Twins), Report> {
     let mut right = document.clone();
     for difference in differences {
         if !write(&mut right, difference) {
-            return Err(Said::NoDifference(difference.about()));
+            return Err(Report::NoDifference(difference.about()));
         }
     }
     let reshaped: BTreeSet<&str> = differences

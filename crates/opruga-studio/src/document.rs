@@ -4,7 +4,7 @@
 mod overrides;
 mod taken_over;
 
-use crate::said::Said;
+use crate::report::Report;
 use opruga::blueprint::AnyBlueprint;
 use opruga::core::spec::{Value, Values};
 pub use opruga::io::scene::written::{add_table, command_table, kind_table, numbers, toml};
@@ -36,9 +36,9 @@ pub fn read(
     // The text has changed since anybody has seen it.
     let (blueprint, notices) = read.map_err(|errors| without_lines(errors, &document.name, ""))?;
     // Time goes on behind the end that the scene states for a run: every command comes about here.
-    let told = |code: &str| !Notice::is_asked_for(code) && code != "command.never";
-    let odd = notices.into_iter().filter(|notice| told(notice.about.code));
-    Ok((blueprint, odd.map(Warning::from).collect()))
+    let is_reported = |code: &str| !Notice::is_asked_for(code) && code != "command.never";
+    let warnings = notices.into_iter().filter(|notice| is_reported(notice.about.code));
+    Ok((blueprint, warnings.map(Warning::from).collect()))
 }
 
 /// The time of the last moment that a command without an end names [s].
@@ -48,12 +48,12 @@ impl Document {
     /// Takes a text that the reader of scenes has accepted.
     ///
     /// # Errors
-    /// [`Said::Scene`] where it is not TOML.
-    pub fn new(name: impl Into<String>, text: &str) -> Result<Document, Said> {
+    /// [`Report::Scene`] where it is not TOML.
+    pub fn new(name: impl Into<String>, text: &str) -> Result<Document, Report> {
         let name = name.into();
         let text = text.parse::<DocumentMut>().map_err(|error| {
             let bytes = error.span().unwrap_or_default();
-            Said::Scene(vec![scene::not_toml(text, &format!("{name}.toml"), error.message(), bytes)])
+            Report::Scene(vec![scene::not_toml(text, &format!("{name}.toml"), error.message(), bytes)])
         })?;
         Ok(Document { name, text })
     }
@@ -69,7 +69,7 @@ impl Document {
         files: &Files,
         registries: &Registries,
         around: Option<&str>,
-    ) -> Result<Document, Said> {
+    ) -> Result<Document, Report> {
         // The reader of scenes knows more of what can be wrong than the parser of documents.
         let reading = scene::Options { files: files.clone(), ..scene::Options::default() };
         let read = scene::read(text.as_bytes(), &format!("{name}.toml"), &catalogue_of(registries), &reading);
@@ -117,9 +117,9 @@ impl Document {
         let tables = self.text.get_mut("command")?.as_array_of_tables_mut()?;
         let last = tables.len().checked_sub(1)?;
         let table = tables.get_mut(last)?;
-        let said = |key: &str| table.get(key).and_then(Item::as_str);
-        let same = said("do") == Some("set")
-            && said("path") == Some(path)
+        let entry = |key: &str| table.get(key).and_then(Item::as_str);
+        let same = entry("do") == Some("set")
+            && entry("path") == Some(path)
             && table.get("at").and_then(Item::as_float) == Some(at);
         same.then_some(table)
     }
@@ -422,11 +422,11 @@ impl Document {
 /// what it is about, where there is a file; the lines of other files stay.
 pub(crate) fn without_lines(errors: Vec<SceneError>, scene: &str, file: &str) -> Vec<SceneError> {
     let own = format!("{scene}.toml");
-    let told = |error: SceneError| match error.file == own {
+    let without_own_lines = |error: SceneError| match error.file == own {
         true => SceneError { file: file.into(), line: None, column: None, excerpt: None, ..error },
         false => error,
     };
-    errors.into_iter().map(told).collect()
+    errors.into_iter().map(without_own_lines).collect()
 }
 
 /// The tables of a list; `command = [{ … }]` becomes `[[command]]`, which can be added to.

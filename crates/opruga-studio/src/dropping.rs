@@ -1,6 +1,6 @@
 //! What becomes of a file that is dropped on the window.
 
-use crate::said::Said;
+use crate::report::Report;
 use crate::session::Request;
 use crate::shape_file::Shape;
 use opruga::io::{Files, SceneError, scene, shapes};
@@ -21,9 +21,9 @@ const SHAPES: [(&str, &str, bool); 6] = [
 ///
 /// # Errors
 /// Why it is refused.
-pub fn take(path: &Path) -> Result<Request, Said> {
+pub fn take(path: &Path) -> Result<Request, Report> {
     let file = path.file_name().map(|f| f.to_string_lossy().into_owned()).unwrap_or_default();
-    let refused = |error| Said::Scene(vec![SceneError { file: file.clone(), ..error }]);
+    let refused = |error| Report::Scene(vec![SceneError { file: file.clone(), ..error }]);
     let bytes = || scene::bytes_of(path, &scene::Limits::default()).map_err(refused);
     request(&file, bytes, || Files::beside(path))
 }
@@ -31,22 +31,22 @@ pub fn take(path: &Path) -> Result<Request, Said> {
 /// The same for a file of this name, whatever holds it: its bytes are read where it is a scene.
 pub(crate) fn request(
     file: &str,
-    bytes: impl FnOnce() -> Result<Vec<u8>, Said>,
+    bytes: impl FnOnce() -> Result<Vec<u8>, Report>,
     files: impl FnOnce() -> Files,
-) -> Result<Request, Said> {
+) -> Result<Request, Report> {
     let path = Path::new(file);
     let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
     let name = path.file_stem().map_or_else(|| "scene".into(), |s| s.to_string_lossy().into_owned());
     if ending == "toml" {
-        let text = String::from_utf8(bytes()?).map_err(|_| Said::NoText(file.into()))?;
+        let text = String::from_utf8(bytes()?).map_err(|_| Report::NoText(file.into()))?;
         return Ok(Request::Open { name, text, files: files() });
     }
     let Some((_, fields, space)) = SHAPES.iter().find(|(known, ..)| *known == ending) else {
         let known: Vec<&str> = SHAPES.iter().map(|(known, ..)| *known).collect();
-        return Err(Said::NoShapeFile(file.into(), format!(".toml, .{}", known.join(", ."))));
+        return Err(Report::NoShapeFile(file.into(), format!(".toml, .{}", known.join(", ."))));
     };
     if file.contains(['"', '\\']) {
-        return Err(Said::NameOfFile(file.into()));
+        return Err(Report::NameOfFile(file.into()));
     }
     let (text, space) = (around(file, fields, *space), *space);
     Ok(Request::Take(Shape { name, file: file.into(), text, space, files: files() }, [0.0; 3], 1.0))

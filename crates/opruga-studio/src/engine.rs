@@ -5,7 +5,7 @@ mod exploded;
 
 use crate::document::{FOR_EVER, command_table};
 use crate::exploded::Exploded;
-use crate::said::Said;
+use crate::report::Report;
 use crate::samples::Sample;
 use crate::setting::Setting;
 use crate::shown::{BodyShown, EnergyShown, Extent, ObstacleShown, Show, Shown};
@@ -39,7 +39,7 @@ pub struct State {
     /// The snapshot of its world.
     pub world: Vec<u8>,
     /// Side by side, the state on the right, and why that one has stopped.
-    pub right: Option<(Box<State>, Option<Said>)>,
+    pub right: Option<(Box<State>, Option<Report>)>,
 }
 
 impl State {
@@ -79,7 +79,7 @@ pub trait Engine: Send {
     fn warnings(&self) -> Vec<Warning>;
     /// Frames up to the end of the scene for the command line.
     fn end(&self) -> u64;
-    /// What is odd in the present state, also about shapes, which are looked at anew by every call.
+    /// The warnings about the present state, also about shapes, which are looked at anew by every call.
     fn warnings_at_the_end(&mut self) -> Vec<Warning>;
     /// The first body that has grown beyond every measure of the scene.
     fn exploded(&mut self) -> Option<Exploded>;
@@ -110,8 +110,8 @@ pub trait Engine: Send {
         models: Option<Vec<Values>>,
         integrator: Option<Values>,
     ) -> Result<Given, WorldError>;
-    /// Gives the last command of a scene that begins now and adds a body, and what is odd about that scene.
-    fn add_from(&mut self, scene: AnyBlueprint, odd: Vec<Warning>) -> Result<(), WorldError>;
+    /// Gives the last command of a scene that begins now and adds a body, and the warnings about that scene.
+    fn add_from(&mut self, scene: AnyBlueprint, scene_warnings: Vec<Warning>) -> Result<(), WorldError>;
     /// The node of a body nearest to a point.
     fn nearest(&self, body: usize, point: [f64; 3]) -> Option<u32>;
     /// The node for which the one nearest to a point in the scene beside it stands; none where there is but one scene.
@@ -150,21 +150,25 @@ struct Living {
     scenery: Scenery,
     /// How many bodies the scenery knows.
     known: usize,
-    /// What was odd about the scene and its files.
-    odd: Vec<Warning>,
+    /// The warnings about the scene and its files.
+    scene_warnings: Vec<Warning>,
     /// The longest side of the box around all bodies at the start [m].
     size: f64,
 }
 
-/// Builds the world of a scene, about which something was odd.
+/// Builds the world of a scene, about which there are these warnings.
 ///
 /// # Errors
 /// What the world refuses.
-pub fn build(blueprint: AnyBlueprint, odd: Vec<Warning>, setting: &Setting) -> Result<Box<dyn Engine>, WorldError> {
+pub fn build(
+    blueprint: AnyBlueprint,
+    scene_warnings: Vec<Warning>,
+    setting: &Setting,
+) -> Result<Box<dyn Engine>, WorldError> {
     let world = blueprint.build_with(setting.options.clone(), &setting.registries)?;
     let (scenery, known) = (Scenery::new(&*world), world.scene().body_count());
     let size = exploded::size_of(&*world);
-    Ok(Box::new(Living { world, scenery, known, odd, size }))
+    Ok(Box::new(Living { world, scenery, known, scene_warnings, size }))
 }
 
 /// Whether bodies carry drawings with colours of their own.
@@ -239,7 +243,7 @@ impl Engine for Living {
         self.world.rewind(&state.world)
     }
     fn warnings(&self) -> Vec<Warning> {
-        self.world.warnings().into_iter().chain(self.odd.iter().cloned()).collect()
+        self.world.warnings().into_iter().chain(self.scene_warnings.iter().cloned()).collect()
     }
     fn end(&self) -> u64 {
         let time = self.world.scene().time();
@@ -247,7 +251,7 @@ impl Engine for Living {
     }
     fn warnings_at_the_end(&mut self) -> Vec<Warning> {
         self.world.look_at_steps_again();
-        self.world.warnings_at_the_end().into_iter().chain(self.odd.iter().cloned()).collect()
+        self.world.warnings_at_the_end().into_iter().chain(self.scene_warnings.iter().cloned()).collect()
     }
     fn exploded(&mut self) -> Option<Exploded> {
         self.first_exploded()
@@ -319,9 +323,9 @@ impl Engine for Living {
         self.give(0.0, Action::Change { body, models, integrator }, &name)
     }
 
-    fn add_from(&mut self, scene: AnyBlueprint, odd: Vec<Warning>) -> Result<(), WorldError> {
+    fn add_from(&mut self, scene: AnyBlueprint, scene_warnings: Vec<Warning>) -> Result<(), WorldError> {
         self.world.act_of(&scene)?;
-        self.odd = odd;
+        self.scene_warnings = scene_warnings;
         Ok(())
     }
 
@@ -440,8 +444,8 @@ impl Engine for Living {
 
     fn sample(&mut self) -> Sample {
         let numbers = self.world.bodies();
-        let told = if numbers.len() <= 64 { &numbers[..] } else { &[] };
-        let readings = told.iter().map(|body| (*body, self.world.readings(*body)));
+        let sampled = if numbers.len() <= 64 { &numbers[..] } else { &[] };
+        let readings = sampled.iter().map(|body| (*body, self.world.readings(*body)));
         let readings = readings.filter(|(_, list)| !list.is_empty()).map(|(body, list)| (body, list.into())).collect();
         let (e, [momentum, _]) = (self.world.energy(), self.world.momentum());
         let losses = e.loss_damping + e.loss_friction + e.loss_contact;

@@ -1,8 +1,8 @@
 //! What is handed to the studio and from it beside saving: files that were dropped or chosen, and on a page the address that
 //! holds the scene.
 
+use crate::report::Report;
 use crate::runner::Link;
-use crate::said::Said;
 use crate::session::Request;
 use crate::shown::Severity;
 use egui::Ui;
@@ -11,13 +11,13 @@ use egui::Ui;
 pub(crate) enum Arrived {
     /// Something to ask the session for.
     Request(Request),
-    /// Something to tell the person.
-    Told(Severity, Said),
+    /// Something to report to the person.
+    Message(Severity, Report),
 }
 
 impl Arrived {
-    fn of(outcome: Result<Request, Said>) -> Arrived {
-        outcome.map_or_else(|refused| Arrived::Told(Severity::Refused, refused), Arrived::Request)
+    fn of(outcome: Result<Request, Report>) -> Arrived {
+        outcome.map_or_else(|refused| Arrived::Message(Severity::Refused, refused), Arrived::Request)
     }
 }
 
@@ -58,9 +58,9 @@ mod page {
     use std::sync::mpsc::{Receiver, TryRecvError};
 
     /// What a file of the browser asks for: see [`crate::dropping`].
-    fn request_of(file: &str, bytes: Vec<u8>) -> Result<Request, Said> {
-        let held: Arc<[u8]> = bytes.as_slice().into();
-        let files = || opruga::scenes::files().with([(file.to_string(), held)]);
+    fn request_of(file: &str, bytes: Vec<u8>) -> Result<Request, Report> {
+        let content: Arc<[u8]> = bytes.as_slice().into();
+        let files = || opruga::scenes::files().with([(file.to_string(), content)]);
         crate::dropping::request(file, || Ok(bytes), files)
     }
 
@@ -101,9 +101,9 @@ mod page {
                 arrived.push(match share::to_fragment(&shared).and_then(|fragment| browser::set_fragment(&fragment)) {
                     Ok(address) => {
                         ui.ctx().copy_text(address);
-                        Arrived::Told(Severity::Told, Said::LinkCopied)
+                        Arrived::Message(Severity::Done, Report::LinkCopied)
                     }
-                    Err(refused) => Arrived::Told(Severity::Refused, refused),
+                    Err(refused) => Arrived::Message(Severity::Refused, refused),
                 });
             }
             if !self.files.is_empty() || self.linked.is_some() {

@@ -1,7 +1,7 @@
 //! Where files go: a window writes them into the folder `out/studio`, a page hands them over as downloads. A scene goes with the
 //! files that it names, so that it runs from where it lies.
 
-use crate::said::Said;
+use crate::report::Report;
 use opruga::io::{Files, scene};
 use opruga::{Registries, catalogue_of};
 use std::collections::BTreeMap;
@@ -43,22 +43,22 @@ mod window {
             Folder(path.into())
         }
 
-        fn made(&self) -> Result<(), Said> {
-            let refused = |e: std::io::Error| Said::NoFolder(self.0.display().to_string(), e.to_string());
+        fn made(&self) -> Result<(), Report> {
+            let refused = |e: std::io::Error| Report::NoFolder(self.0.display().to_string(), e.to_string());
             std::fs::create_dir_all(&self.0).map_err(refused)
         }
 
-        fn free(&self, name: impl Fn(String) -> String, of: &str) -> Result<PathBuf, Said> {
+        fn free(&self, name: impl Fn(String) -> String, of: &str) -> Result<PathBuf, Report> {
             let numbered = |number: u32| if number == 1 { of.to_string() } else { format!("{of}-{number}") };
             let free = (1..MOST_NAMES).map(|number| self.0.join(name(numbered(number)))).find(|path| !path.exists());
-            free.ok_or_else(|| Said::FolderFull(self.0.display().to_string()))
+            free.ok_or_else(|| Report::FolderFull(self.0.display().to_string()))
         }
 
         /// Writes a file that is not there yet; where it is.
         ///
         /// # Errors
         /// What the system refuses.
-        pub fn file(&self, name: &str, ending: &str, bytes: &[u8]) -> Result<PathBuf, Said> {
+        pub fn file(&self, name: &str, ending: &str, bytes: &[u8]) -> Result<PathBuf, Report> {
             self.made()?;
             let path = self.free(|name| format!("{name}.{ending}"), name)?;
             write(&path, bytes)?;
@@ -75,7 +75,7 @@ mod window {
             text: &str,
             files: &Files,
             registries: &Registries,
-        ) -> Result<Vec<PathBuf>, Said> {
+        ) -> Result<Vec<PathBuf>, Report> {
             let named = named_files(name, text, files, registries);
             if named.is_empty() {
                 return self.file(name, "toml", text.as_bytes()).map(|path| vec![path]);
@@ -90,7 +90,7 @@ mod window {
             outcome
         }
 
-        fn fill(&self, name: &str, text: &str, named: &BTreeMap<String, Arc<[u8]>>) -> Result<Vec<PathBuf>, Said> {
+        fn fill(&self, name: &str, text: &str, named: &BTreeMap<String, Arc<[u8]>>) -> Result<Vec<PathBuf>, Report> {
             self.made()?;
             let mut written = vec![self.0.join(format!("{name}.toml"))];
             for (name, bytes) in named {
@@ -105,7 +105,7 @@ mod window {
         }
     }
 
-    fn write(path: &Path, bytes: &[u8]) -> Result<(), Said> {
+    fn write(path: &Path, bytes: &[u8]) -> Result<(), Report> {
         safe_write(path, false, |file| file.write_all(bytes))?;
         Ok(())
     }
@@ -114,7 +114,7 @@ mod window {
     ///
     /// # Errors
     /// What the system refuses.
-    pub fn file(name: &str, ending: &str, bytes: &[u8]) -> Result<String, Said> {
+    pub fn file(name: &str, ending: &str, bytes: &[u8]) -> Result<String, Report> {
         Folder::default().file(name, ending, bytes).map(|path| path.display().to_string())
     }
 
@@ -127,7 +127,7 @@ mod window {
         text: &str,
         files: &Files,
         registries: &Registries,
-    ) -> Result<Vec<String>, Said> {
+    ) -> Result<Vec<String>, Report> {
         let written = Folder::default().scene(name, text, files, registries)?;
         Ok(written.iter().map(|path| path.display().to_string()).collect())
     }
@@ -138,7 +138,7 @@ mod page {
     use super::*;
 
     /// A download; its name.
-    pub(crate) fn file(name: &str, ending: &str, bytes: &[u8]) -> Result<String, Said> {
+    pub(crate) fn file(name: &str, ending: &str, bytes: &[u8]) -> Result<String, Report> {
         let name = format!("{name}.{ending}");
         crate::browser::download(&name, bytes).map(|()| name)
     }
@@ -149,7 +149,7 @@ mod page {
         text: &str,
         files: &Files,
         registries: &Registries,
-    ) -> Result<Vec<String>, Said> {
+    ) -> Result<Vec<String>, Report> {
         let (mut text, mut written) = (text.to_string(), vec![format!("{name}.toml")]);
         for (named, bytes) in named_files(name, &text, files, registries) {
             let last = named.rsplit('/').next().unwrap_or(&named).to_string();

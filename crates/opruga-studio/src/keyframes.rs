@@ -41,8 +41,8 @@ impl Keyframes {
 
     /// The last state at or before a frame.
     pub fn before(&self, frame: u64) -> Option<(u64, &State)> {
-        let place = self.kept.partition_point(|(kept, _)| *kept <= frame);
-        place.checked_sub(1).map(|place| (self.kept[place].0, &self.kept[place].1))
+        let index = self.kept.partition_point(|(kept, _)| *kept <= frame);
+        index.checked_sub(1).map(|index| (self.kept[index].0, &self.kept[index].1))
     }
 
     /// Gives up what comes after a frame: that future is another one now.

@@ -11,7 +11,7 @@ pub mod exploded;
 pub mod keyframes;
 pub mod pacing;
 pub mod pair;
-pub mod said;
+pub mod report;
 pub mod samples;
 pub mod session;
 pub mod shown;

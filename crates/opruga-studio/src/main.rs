@@ -5,8 +5,8 @@ use opruga::{Options, Registries};
 use opruga_studio::app::{FIRST_SCENE, Studio};
 use opruga_studio::measure::{self, Measured};
 use opruga_studio::preferences::{Store, folders};
+use opruga_studio::report::Report;
 use opruga_studio::rescue::{self, Rescue};
-use opruga_studio::said::Said;
 use opruga_studio::session::Request;
 use opruga_studio::setting::Setting;
 use opruga_studio::shown::Severity;
@@ -21,7 +21,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 const USAGE: &str = "opruga-studio [SCENE]\n\nSCENE is a scene file, the name of a scene that comes with the program, a recorded run, \
                      or the file of a shape (.svg, .obj, .stl, .ply, .gltf, .glb).";
 
-/// The arguments as texts. One that is none is told.
+/// The arguments as texts. One that is none is reported.
 fn texts(arguments: impl Iterator<Item = OsString>) -> Result<Vec<String>, ()> {
     let text = |argument: OsString| {
         argument.into_string().map_err(|argument| {
@@ -35,9 +35,9 @@ fn texts(arguments: impl Iterator<Item = OsString>) -> Result<Vec<String>, ()> {
 fn main() -> ExitCode {
     let Ok(mut arguments) = texts(std::env::args_os().skip(1)) else { return ExitCode::from(2) };
     // Not for every day: how long frames of the window take.
-    let measured = arguments.iter().position(|word| word == "--measure-frames").map(|place| {
-        let count = arguments.get(place + 1).and_then(|word| word.parse::<usize>().ok());
-        arguments.drain(place..(place + 2).min(arguments.len()));
+    let measured = arguments.iter().position(|word| word == "--measure-frames").map(|index| {
+        let count = arguments.get(index + 1).and_then(|word| word.parse::<usize>().ok());
+        arguments.drain(index..(index + 2).min(arguments.len()));
         count.unwrap_or(600)
     });
     if arguments.iter().any(|word| matches!(word.as_str(), "-h" | "--help")) {
@@ -81,7 +81,7 @@ fn main() -> ExitCode {
         .with_min_inner_size([360.0, 320.0]);
     let options = eframe::NativeOptions { viewport, ..Default::default() };
     let report = Arc::new(Mutex::new(String::new()));
-    let told = Arc::clone(&report);
+    let shared_report = Arc::clone(&report);
     if measured.is_some() {
         measure::listen();
     }
@@ -102,7 +102,7 @@ fn main() -> ExitCode {
             }
             match lost {
                 // Time stands where the window before was lost.
-                Some(saved) => studio.tell(Severity::Refused, Said::WindowLost(saved)),
+                Some(saved) => studio.report(Severity::Refused, Report::WindowLost(saved)),
                 None => studio.ask(Request::Play(true)),
             }
             if let Some(kept) = kept {
@@ -113,7 +113,7 @@ fn main() -> ExitCode {
     );
     match outcome {
         Ok(()) => {
-            let report = told.lock().unwrap_or_else(PoisonError::into_inner);
+            let report = shared_report.lock().unwrap_or_else(PoisonError::into_inner);
             if !report.is_empty() {
                 println!("{report}");
             }

@@ -120,8 +120,8 @@ mod native {
     fn processor_time(begin: Instant) -> f64 {
         // The system counts when a thread gives way.
         std::thread::yield_now();
-        let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
-        let nanoseconds = told.and_then(|text| text.split_whitespace().next()?.parse::<f64>().ok());
+        let statistics = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
+        let nanoseconds = statistics.and_then(|text| text.split_whitespace().next()?.parse::<f64>().ok());
         nanoseconds.map_or_else(|| 1e3 * begin.elapsed().as_secs_f64(), |ns| 1e-6 * ns)
     }
 

@@ -5,8 +5,8 @@ use crate::document::Document;
 use crate::engine;
 use crate::measure::Watch;
 use crate::preferences::Store;
+use crate::report::Report;
 use crate::runner::Copied;
-use crate::said::Said;
 use crate::session::{self, Request, Session};
 use crate::setting::Setting;
 use crate::share;
@@ -31,7 +31,7 @@ const PATIENCE: f64 = 2.0;
 pub struct Page {
     studio: Shared,
     screen: RefCell<Screen>,
-    places: Places,
+    named_nodes: NamedNodes,
 }
 
 impl core::fmt::Debug for Page {
@@ -66,11 +66,11 @@ impl eframe::App for Shared {
     }
 }
 
-/// Where everything is that has a name, as screen readers are told.
+/// Where everything is that has a name, as it is reported to screen readers.
 #[derive(Clone, Default)]
-struct Places(Arc<Mutex<HashMap<egui::accesskit::NodeId, Node>>>);
+struct NamedNodes(Arc<Mutex<HashMap<egui::accesskit::NodeId, Node>>>);
 
-impl egui::Plugin for Places {
+impl egui::Plugin for NamedNodes {
     fn debug_name(&self) -> &'static str {
         "places"
     }
@@ -94,12 +94,12 @@ pub async fn open(canvas: web_sys::HtmlCanvasElement, drawn_by: String, device: 
     studio.prefer(Store::Browser, &Context::default());
     studio.ask(Request::Play(true));
     if let Some(refused) = refused {
-        studio.tell(Severity::Refused, refused);
+        studio.report(Severity::Refused, refused);
     }
     let studio = Shared(Rc::new(RefCell::new((studio, None))));
-    let places = Places::default();
-    let screen = Screen::begin(canvas, [&drawn_by, &device], studio.clone(), places.clone()).await?;
-    Ok(Page { studio, screen: RefCell::new(screen), places })
+    let named_nodes = NamedNodes::default();
+    let screen = Screen::begin(canvas, [&drawn_by, &device], studio.clone(), named_nodes.clone()).await?;
+    Ok(Page { studio, screen: RefCell::new(screen), named_nodes })
 }
 
 impl Screen {
@@ -108,7 +108,7 @@ impl Screen {
         canvas: web_sys::HtmlCanvasElement,
         [drawn_by, device]: [&str; 2],
         studio: Shared,
-        places: Places,
+        named_nodes: NamedNodes,
     ) -> Result<Screen, JsValue> {
         let runner = WebRunner::new();
         let renderer = if drawn_by == "webgpu" { Renderer::Wgpu } else { Renderer::Glow };
@@ -120,11 +120,11 @@ impl Screen {
                 state.device.set_device_lost_callback(|reason, _| {
                     // A device that was given back is no loss.
                     if reason != wgpu::DeviceLostReason::Destroyed {
-                        browser::tell_lost();
+                        browser::report_lost_device();
                     }
                 });
             }
-            creation.egui_ctx.add_plugin(places);
+            creation.egui_ctx.add_plugin(named_nodes);
             let _ = sender.send(creation.egui_ctx.clone());
             Ok(Box::new(studio))
         });
@@ -135,7 +135,7 @@ impl Screen {
 }
 
 /// The scene of the address; where that is refused, the first scene, and why.
-fn first_session() -> Result<(Session, Option<Said>), Said> {
+fn first_session() -> Result<(Session, Option<Report>), Report> {
     let open = |name: &str, text: &str, files| {
         let most_bytes = Some(scene::Limits::default().memory_bytes);
         let options = Options { break_off: session::by_the_clock(), most_bytes, ..Options::default() };
@@ -180,7 +180,7 @@ impl Page {
         device: String,
     ) -> Result<(), JsValue> {
         self.screen.borrow().runner.destroy();
-        let screen = Screen::begin(canvas, [&drawn_by, &device], self.studio.clone(), self.places.clone()).await?;
+        let screen = Screen::begin(canvas, [&drawn_by, &device], self.studio.clone(), self.named_nodes.clone()).await?;
         self.screen.replace(screen);
         Ok(())
     }
@@ -199,7 +199,7 @@ impl Page {
         match share::of_fragment(&browser::fragment()) {
             Ok(Some(share::Shared { name, text, files })) => studio.0.ask(Request::Open { name, text, files }),
             Ok(None) => {}
-            Err(refused) => studio.0.tell(Severity::Refused, refused),
+            Err(refused) => studio.0.report(Severity::Refused, refused),
         }
         self.repaint();
     }
@@ -280,7 +280,7 @@ impl Page {
         let context = self.screen.borrow().context.clone();
         context.enable_accesskit();
         context.request_repaint();
-        let nodes = self.places.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let nodes = self.named_nodes.0.lock().unwrap_or_else(PoisonError::into_inner);
         let named = |node: &&Node| node.label() == Some(name) || node.value() == Some(name);
         let Some(bounds) = nodes.values().filter(named).find_map(Node::bounds) else { return Vec::new() };
         let zoom = f64::from(context.zoom_factor());
@@ -296,7 +296,7 @@ impl Page {
 #[wasm_bindgen]
 pub fn hash_after(scene_or_text: &str, frames: u32) -> Result<String, String> {
     let text = opruga::scenes::find(scene_or_text).unwrap_or(scene_or_text);
-    let document = Document::new("scene", text).map_err(|said| said.to_string())?;
+    let document = Document::new("scene", text).map_err(|report| report.to_string())?;
     let options = scene::Options { files: opruga::scenes::files(), ..scene::Options::default() };
     let setting = Setting::default();
     let read =

@@ -4,7 +4,7 @@ use crate::differences::{Difference, Twins, right_of};
 use crate::document::{Document, read};
 use crate::engine::{self, Common, Engine, Given, State};
 use crate::exploded::Exploded;
-use crate::said::Said;
+use crate::report::Report;
 use crate::samples::Sample;
 use crate::setting::Setting;
 use crate::shown::{Beside, Show, Shown};
@@ -18,16 +18,16 @@ use std::sync::Arc;
 /// Builds the engine of a scene; with differences, also the one on its right.
 ///
 /// # Errors
-/// [`Said`] where either of the two scenes cannot be.
+/// [`Report`] where either of the two scenes cannot be.
 pub fn build(
     document: &Document,
     differences: Option<&[Difference]>,
     files: &Files,
     setting: &Setting,
-) -> Result<Box<dyn Engine>, Said> {
+) -> Result<Box<dyn Engine>, Report> {
     let one = |document: &Document| {
-        let (blueprint, odd) = read(document, files, &setting.registries).map_err(Said::Scene)?;
-        engine::build(blueprint, odd, setting).map_err(Said::World)
+        let (blueprint, scene_warnings) = read(document, files, &setting.registries).map_err(Report::Scene)?;
+        engine::build(blueprint, scene_warnings, setting).map_err(Report::World)
     };
     let left = one(document)?;
     let Some(differences) = differences else { return Ok(left) };
@@ -46,7 +46,7 @@ struct Pair {
     /// Which node on the right stands for one on the left, where bodies have other nodes.
     twins: Twins,
     /// Why the right one does not go on.
-    stopped: Option<Said>,
+    stopped: Option<Report>,
     /// Whether the right one has missed a command: only one that is built anew can go on then.
     behind: bool,
 }
@@ -57,7 +57,7 @@ impl Pair {
         if self.stopped.is_none()
             && let Err(error) = act(&mut *self.right)
         {
-            self.stopped = Some(Said::World(error));
+            self.stopped = Some(Report::World(error));
         }
         self.behind |= self.stopped.is_some();
     }
@@ -99,8 +99,8 @@ impl Engine for Pair {
                 self.left.rewind(&before)?;
                 return Err(WorldError::BrokenOff {});
             }
-            Err(error) => self.stopped = Some(Said::World(error)),
-            Ok(()) => self.stopped = self.right.exploded().map(Said::Exploded),
+            Err(error) => self.stopped = Some(Report::World(error)),
+            Ok(()) => self.stopped = self.right.exploded().map(Report::Exploded),
         }
         Ok(())
     }
@@ -215,9 +215,9 @@ impl Engine for Pair {
         self.follow(|right| right.change(body, models, integrator));
         Ok(given)
     }
-    fn add_from(&mut self, scene: AnyBlueprint, odd: Vec<Warning>) -> Result<(), WorldError> {
-        self.left.add_from(scene.clone(), odd.clone())?;
-        self.follow(|right| right.add_from(scene, odd));
+    fn add_from(&mut self, scene: AnyBlueprint, scene_warnings: Vec<Warning>) -> Result<(), WorldError> {
+        self.left.add_from(scene.clone(), scene_warnings.clone())?;
+        self.follow(|right| right.add_from(scene, scene_warnings));
         Ok(())
     }
     fn nearest(&self, body: usize, point: [f64; 3]) -> Option<u32> {

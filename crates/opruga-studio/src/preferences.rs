@@ -38,11 +38,12 @@ impl Preferences {
     pub fn of(text: &str) -> Preferences {
         let mut preferences = Preferences::default();
         let Ok(document) = text.parse::<DocumentMut>() else { return preferences };
-        let said = |key: &str| document.get(key).and_then(|item| item.as_str());
-        if let Some(language) = Language::EVERY.into_iter().find(|language| said("language") == Some(language.code())) {
+        let entry = |key: &str| document.get(key).and_then(|item| item.as_str());
+        if let Some(language) = Language::EVERY.into_iter().find(|language| entry("language") == Some(language.code()))
+        {
             preferences.language = language;
         }
-        if said("theme") == Some("light") {
+        if entry("theme") == Some("light") {
             preferences.theme = Theme::Light;
         }
         preferences

@@ -2,8 +2,8 @@
 //! screen, it is found there by the program that watches over it ([`crate::watch`]).
 
 use crate::handing::named_files;
+use crate::report::Report;
 use crate::runner::{Copied, Link};
-use crate::said::Said;
 use crate::session::Session;
 use crate::setting::Setting;
 use crate::share::{self, Shared};
@@ -60,8 +60,9 @@ impl Rescue {
         self.kept = (copied.text.as_str().into(), edited);
         let known = self.files.take().filter(|(name, files, _)| *name == copied.name && *files == copied.files);
         let files = known.unwrap_or_else(|| {
-            let held = Files::held(named_files(&copied.name, &copied.text, &copied.files, &copied.registries));
-            (copied.name.clone(), copied.files.clone(), held)
+            let copied_files =
+                Files::in_memory(named_files(&copied.name, &copied.text, &copied.files, &copied.registries));
+            (copied.name.clone(), copied.files.clone(), copied_files)
         });
         let shared = Shared { name: copied.name, text: copied.text, files: files.2.clone() };
         self.files = Some(files);
@@ -83,7 +84,7 @@ pub fn mark_of(path: &Path) -> PathBuf {
 ///
 /// # Errors
 /// What the system refuses.
-pub fn write(path: &Path, shared: &Shared) -> Result<(), Said> {
+pub fn write(path: &Path, shared: &Shared) -> Result<(), Report> {
     let packed = share::pack(shared)?;
     safe_write(path, true, |file| file.write_all(&packed))?;
     Ok(())
@@ -93,8 +94,8 @@ pub fn write(path: &Path, shared: &Shared) -> Result<(), Said> {
 ///
 /// # Errors
 /// Why it cannot be read.
-pub fn read(path: &Path) -> Result<Shared, Said> {
-    let refused = |error| Said::Scene(vec![SceneError { file: path.display().to_string(), ..error }]);
+pub fn read(path: &Path) -> Result<Shared, Report> {
+    let refused = |error| Report::Scene(vec![SceneError { file: path.display().to_string(), ..error }]);
     share::unpack(&scene::bytes_of(path, &scene::Limits::default()).map_err(refused)?)
 }
 
@@ -102,7 +103,7 @@ pub fn read(path: &Path) -> Result<Shared, Said> {
 ///
 /// # Errors
 /// Why it cannot be opened.
-pub fn resume(shared: &Shared, setting: impl Into<Setting>) -> Result<Session, Said> {
+pub fn resume(shared: &Shared, setting: impl Into<Setting>) -> Result<Session, Report> {
     let mut session = Session::open(&shared.name, &shared.text, shared.files.clone(), setting)?;
     session.go_to_the_end();
     Ok(session)

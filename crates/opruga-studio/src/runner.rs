@@ -97,11 +97,12 @@ impl Course {
         let begin = self.begin;
         let clock = move || begin.elapsed();
         let now = clock();
-        let (before, was_seeking, told) = (self.session.frames(), self.session.is_seeking(), self.session.told());
+        let (before, was_seeking, message_count) =
+            (self.session.frames(), self.session.is_seeking(), self.session.message_count());
         self.session.tick(now.saturating_sub(self.last), budget, &clock);
         self.last = now;
         // A frame that fails is news too, though it leaves everything as it was.
-        news |= self.session.frames() != before || was_seeking || self.session.told() != told;
+        news |= self.session.frames() != before || was_seeking || self.session.message_count() != message_count;
         news.then(|| self.session.shown())
     }
 }

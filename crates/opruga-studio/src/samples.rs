@@ -64,9 +64,9 @@ impl Samples {
 
     /// Keeps a sample, wherever its frame lies among the others.
     pub fn keep(&mut self, sample: Sample) {
-        let place = self.kept.partition_point(|other| other.frame < sample.frame);
+        let index = self.kept.partition_point(|other| other.frame < sample.frame);
         self.bytes += sample.bytes();
-        self.kept.insert(place, sample);
+        self.kept.insert(index, sample);
         while (self.kept.len() > MOST || self.bytes > MOST_BYTES) && self.kept.len() > 2 {
             self.every *= 2;
             self.kept.retain(|sample| sample.frame.is_multiple_of(self.every));

@@ -1,7 +1,7 @@
 //! A whole scene in one piece: its text and the files that it names, compressed; in an address as letters behind the `#`, which
 //! browsers keep to themselves.
 
-use crate::said::Said;
+use crate::report::Report;
 use flate2::read::DeflateDecoder;
 use flate2::write::DeflateEncoder;
 use opruga::io::{Files, base64};
@@ -30,26 +30,26 @@ pub struct Shared {
 /// A scene in one piece. Files that come with the program are left out.
 ///
 /// # Errors
-/// [`Said::NotCompressed`].
-pub fn pack(scene: &Shared) -> Result<Vec<u8>, Said> {
+/// [`Report::NotCompressed`].
+pub fn pack(scene: &Shared) -> Result<Vec<u8>, Report> {
     let known = opruga::scenes::files();
-    let own = scene.files.held_files().filter(|(name, bytes)| known.held_file(name) != Some(*bytes));
+    let own = scene.files.files_in_memory().filter(|(name, bytes)| known.file_in_memory(name) != Some(*bytes));
     let files: Map<String, Value> = own.map(|(name, bytes)| (name.into(), base64::encode(bytes).into())).collect();
     let whole = json!({ "name": scene.name, "text": scene.text, "files": files }).to_string();
     let mut encoder = DeflateEncoder::new(Vec::new(), flate2::Compression::best());
-    encoder.write_all(whole.as_bytes()).and_then(|()| encoder.finish()).map_err(|_| Said::NotCompressed)
+    encoder.write_all(whole.as_bytes()).and_then(|()| encoder.finish()).map_err(|_| Report::NotCompressed)
 }
 
 /// The scene of [`pack`].
 ///
 /// # Errors
 /// The scene is not whole, or larger than 64 MiB.
-pub fn unpack(packed: &[u8]) -> Result<Shared, Said> {
-    let cut = || Said::AddressCut;
+pub fn unpack(packed: &[u8]) -> Result<Shared, Report> {
+    let cut = || Report::AddressCut;
     let mut whole = Vec::new();
     DeflateDecoder::new(packed).take(MOST_BYTES + 1).read_to_end(&mut whole).map_err(|_| cut())?;
     if whole.len() as u64 > MOST_BYTES {
-        return Err(Said::AddressTooLarge(MOST_BYTES));
+        return Err(Report::AddressTooLarge(MOST_BYTES));
     }
     let whole: Value = serde_json::from_slice(&whole).map_err(|_| cut())?;
     let word = |key: &str| whole[key].as_str().map(String::from).ok_or_else(cut);
@@ -64,11 +64,11 @@ pub fn unpack(packed: &[u8]) -> Result<Shared, Said> {
 /// The part of an address behind its `#` that holds a scene. Files that come with the program are left out.
 ///
 /// # Errors
-/// [`Said::AddressTooLong`].
-pub fn to_fragment(scene: &Shared) -> Result<String, Said> {
+/// [`Report::AddressTooLong`].
+pub fn to_fragment(scene: &Shared) -> Result<String, Report> {
     let letters = base64::encode(&pack(scene)?).trim_end_matches('=').replace('+', "-").replace('/', "_");
     if letters.len() > MOST_LETTERS {
-        return Err(Said::AddressTooLong(letters.len(), MOST_LETTERS));
+        return Err(Report::AddressTooLong(letters.len(), MOST_LETTERS));
     }
     Ok(format!("{HEAD}{letters}"))
 }
@@ -78,7 +78,7 @@ pub fn to_fragment(scene: &Shared) -> Result<String, Said> {
 ///
 /// # Errors
 /// There is no such scene, or the address was cut off.
-pub fn of_fragment(fragment: &str) -> Result<Option<Shared>, Said> {
+pub fn of_fragment(fragment: &str) -> Result<Option<Shared>, Report> {
     let fragment = fragment.trim_start_matches('#');
     let Some(letters) = fragment.strip_prefix(HEAD) else {
         if fragment.is_empty() {
@@ -86,11 +86,11 @@ pub fn of_fragment(fragment: &str) -> Result<Option<Shared>, Said> {
         }
         let text = opruga::scenes::find(fragment).ok_or_else(|| {
             let known: Vec<&str> = opruga::scenes::names().collect();
-            Said::AddressUnknown(known.join(", "))
+            Report::AddressUnknown(known.join(", "))
         })?;
         let shared = Shared { name: fragment.into(), text: text.into(), files: opruga::scenes::files() };
         return Ok(Some(shared));
     };
-    let packed = base64::decode(letters.replace('-', "+").replace('_', "/").as_bytes()).ok_or(Said::AddressCut)?;
+    let packed = base64::decode(letters.replace('-', "+").replace('_', "/").as_bytes()).ok_or(Report::AddressCut)?;
     unpack(&packed).map(Some)
 }

@@ -1,7 +1,7 @@
 //! What the interface sees of a session: one picture and the numbers beside it, made by the thread of the simulation.
 
 use crate::differences::Difference;
-use crate::said::{Said, Step};
+use crate::report::{Report, Step};
 use crate::samples::Samples;
 use opruga::Warning;
 use opruga::core::potential::Reading;
@@ -118,7 +118,7 @@ pub struct Beside {
     /// In what it differs.
     pub differences: Vec<Difference>,
     /// Why it does not go on.
-    pub stopped: Option<Said>,
+    pub stopped: Option<Report>,
 }
 
 /// One obstacle.
@@ -141,7 +141,7 @@ pub struct Pace {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Severity {
     /// What was done.
-    Told,
+    Done,
     /// What could not be done; all is as it was before.
     Refused,
 }
@@ -171,7 +171,7 @@ pub struct Message {
     /// How grave it is.
     pub severity: Severity,
     /// What it says.
-    pub said: Said,
+    pub report: Report,
     /// The same in English.
     pub text: String,
     /// What would help.
@@ -250,7 +250,7 @@ pub struct Shown {
     pub pulls: Vec<[[f64; 3]; 3]>,
     /// Pushes of the pointer: node, end of the arrow, force [m, m, N].
     pub pushes: Vec<[[f64; 3]; 3]>,
-    /// Points that a person has pinned: body, node, place [m].
+    /// Points that a person has pinned: body, node, position [m].
     pub pins: Vec<(usize, u32, [f64; 3])>,
     /// The energy ledger.
     pub energy: EnergyShown,

@@ -1,7 +1,7 @@
 //! What a call of the program names: a scene file, a scene that comes with the program, a recorded run, or the file of a shape.
 
 use crate::dropping;
-use crate::said::Said;
+use crate::report::Report;
 use crate::session::{Request, Session};
 use crate::setting::Setting;
 use opruga::io::recording::{MAGIC, Recording, RecordingError};
@@ -12,12 +12,12 @@ use std::path::Path;
 ///
 /// # Errors
 /// Everything that is wrong with it; where there is nothing of this name, what else could be meant.
-pub fn open(wanted: &str, setting: impl Into<Setting>) -> Result<Session, Said> {
+pub fn open(wanted: &str, setting: impl Into<Setting>) -> Result<Session, Report> {
     let (path, setting) = (Path::new(wanted), setting.into());
     if let Some(text) = opruga::scenes::find(wanted).filter(|_| !path.is_file()) {
         return Session::open(wanted, text, opruga::scenes::files(), setting);
     }
-    let refused = |error: SceneError| Said::Scene(vec![SceneError { file: wanted.into(), ..error }]);
+    let refused = |error: SceneError| Report::Scene(vec![SceneError { file: wanted.into(), ..error }]);
     if !path.exists() {
         return Err(refused(opruga::scenes::missing(wanted)));
     }
@@ -25,7 +25,7 @@ pub fn open(wanted: &str, setting: impl Into<Setting>) -> Result<Session, Said> 
         let damaged = |error: RecordingError| refused(SceneError::from(&error));
         let file = std::fs::File::open(path).map_err(|error| damaged(error.into()))?;
         let recording = Recording::open(std::io::BufReader::new(file)).map_err(damaged)?;
-        return Session::view(recording, setting).map_err(|said| Said::Inside(wanted.into(), said.into()));
+        return Session::view(recording, setting).map_err(|report| Report::Inside(wanted.into(), report.into()));
     }
     if path.is_file() && shapes::kind_of_file(wanted).is_some() {
         let taken = dropping::take(path)?;
@@ -34,7 +34,7 @@ pub fn open(wanted: &str, setting: impl Into<Setting>) -> Result<Session, Said> 
         }
     }
     let bytes = scene::bytes_of(path, &scene::Limits::default()).map_err(refused)?;
-    let text = String::from_utf8(bytes).map_err(|_| Said::NoText(wanted.into()))?;
+    let text = String::from_utf8(bytes).map_err(|_| Report::NoText(wanted.into()))?;
     let name = path.file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy().into_owned());
     Session::open(&name, &text, Files::beside(path), setting)
 }
@@ -71,8 +71,8 @@ mod tests {
         let mut session = open(&put("square.svg", svg), Setting::default()).expect("it opens");
         assert_eq!(session.shown().bodies.len(), 1);
         assert_eq!(session.name(), "square");
-        let said = open(&put("star.svg", b"<svg"), Setting::default()).expect_err("it is cut off").to_string();
-        assert!(said.starts_with("star.svg:1:1: error[svg.syntax]") && !said.contains("star.toml"), "{said}");
+        let report = open(&put("star.svg", b"<svg"), Setting::default()).expect_err("it is cut off").to_string();
+        assert!(report.starts_with("star.svg:1:1: error[svg.syntax]") && !report.contains("star.toml"), "{report}");
         std::fs::remove_dir_all(&folder).expect("the folder goes");
     }
 }

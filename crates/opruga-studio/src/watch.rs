@@ -71,7 +71,7 @@ pub fn run(arguments: &[OsString], registries: &Registries) -> ExitCode {
         if END.load(Ordering::SeqCst) {
             eprintln!("the studio was asked to end");
             if rescue::mark_of(&kept.file()).exists() {
-                hint(saved_and_told(&kept.file(), registries).as_deref());
+                hint(save_and_report(&kept.file(), registries).as_deref());
             } else {
                 eprintln!("  = nothing was done that is not saved");
             }
@@ -87,7 +87,7 @@ pub fn run(arguments: &[OsString], registries: &Registries) -> ExitCode {
         let why = signal(&status)
             .map_or_else(|| format!("exit code {}", status.code().unwrap_or(-1)), |number| format!("signal {number}"));
         eprintln!("error[studio.lost]: the window was lost ({why})");
-        saved = saved_and_told(&kept.file(), registries);
+        saved = save_and_report(&kept.file(), registries);
         lost.retain(|at| at.elapsed() < WITHIN);
         lost.push(Instant::now());
         if next == Next::Ended || lost.len() >= MOST_LOST {
@@ -98,8 +98,8 @@ pub fn run(arguments: &[OsString], registries: &Registries) -> ExitCode {
     }
 }
 
-/// Saves what was kept, and says where.
-fn saved_and_told(kept: &Path, registries: &Registries) -> Option<String> {
+/// Saves what was kept, and reports where.
+fn save_and_report(kept: &Path, registries: &Registries) -> Option<String> {
     let saved = save(kept, registries);
     match &saved {
         Some(path) => eprintln!("  = what was done is saved: {path}"),

@@ -276,7 +276,7 @@ fn row_100_more_substeps_than_a_frame_may_have_are_not_offered_and_the_message_s
         "{}",
         message.text
     );
-    let croatian = Language::Croatian.said(&message.said);
+    let croatian = Language::Croatian.report(&message.report);
     assert!(croatian.contains("najviše 1000000 podkoraka") && !croatian.contains("engleskom"), "{croatian}");
     assert_eq!(session.shown().substeps, 32);
 }

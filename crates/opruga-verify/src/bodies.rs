@@ -167,8 +167,8 @@ pub(crate) fn boundary<const D: usize>(mesh: &Mesh<D>) -> Vec<u32> {
 pub(crate) fn symmetric<const D: usize>(mesh: &Mesh<D>) -> String {
     let rows: Vec<String> = (0..D)
         .map(|d| {
-            let held = nodes(mesh, |x| x[d].abs() < 1e-9);
-            format!("{{ select = {{ nodes = {held:?} }}, axes = \"{}\" }}", ["x", "y", "z"][d])
+            let on_plane = nodes(mesh, |x| x[d].abs() < 1e-9);
+            format!("{{ select = {{ nodes = {on_plane:?} }}, axes = \"{}\" }}", ["x", "y", "z"][d])
         })
         .collect();
     format!("pin = [{}]", rows.join(", "))
@@ -178,7 +178,8 @@ pub(crate) fn symmetric<const D: usize>(mesh: &Mesh<D>) -> String {
 pub(crate) fn displacement<const D: usize>(world: &World<D>, at: [f64; D]) -> [f64; D] {
     let rest = &world.blueprint().bodies[0].mesh.positions;
     let far = |x: &[f64; D]| (0..D).map(|d| (x[d] - at[d]) * (x[d] - at[d])).sum::<f64>();
-    let node = (0..rest.len()).reduce(|near, k| if far(&rest[k]) < far(&rest[near]) { k } else { near }).unwrap_or(0);
+    let node =
+        (0..rest.len()).reduce(|nearest, k| if far(&rest[k]) < far(&rest[nearest]) { k } else { nearest }).unwrap_or(0);
     let now = world.position(0, node as u32);
     core::array::from_fn(|d| now[d] - rest[node][d])
 }
@@ -197,8 +198,8 @@ pub(crate) fn outward<const D: usize>(world: &World<D>, which: &[u32]) -> f64 {
 /// A component of the Cauchy stress of body 0 at a place at rest: the mean stresses of the cells near by, continued by the
 /// quadratic polynomial that fits them best (recovery on a patch: Zienkiewicz and Zhu 1992).
 pub(crate) fn stress_at<const D: usize>(world: &World<D>, at: [f64; D], [i, j]: [usize; 2]) -> Result<f64, Trouble> {
-    let samples = cell_stresses(world).into_iter().map(|(place, stress)| {
-        let away: Vec<f64> = (0..D).map(|d| place[d] - at[d]).collect();
+    let samples = cell_stresses(world).into_iter().map(|(middle, stress)| {
+        let away: Vec<f64> = (0..D).map(|d| middle[d] - at[d]).collect();
         (away.iter().map(|c| c * c).sum::<f64>().sqrt(), away, stress[i][j])
     });
     continued(samples.collect(), 3 * (D + 1) * (D + 2) / 2)
@@ -208,9 +209,9 @@ pub(crate) fn stress_at<const D: usize>(world: &World<D>, at: [f64; D], [i, j]: 
 /// of what is not radial of the mean stresses of the nearest `count` cells, continued by the quadratic polynomial of the radius.
 pub(crate) fn hoop_stress_at(world: &World<3>, radius: f64, count: usize) -> Result<f64, Trouble> {
     let states = cell_stresses(world);
-    let samples = states.into_iter().map(|(place, stress)| {
-        let distance = place.iter().map(|c| c * c).sum::<f64>().sqrt();
-        let ray = place.map(|c| c / distance);
+    let samples = states.into_iter().map(|(middle, stress)| {
+        let distance = middle.iter().map(|c| c * c).sum::<f64>().sqrt();
+        let ray = middle.map(|c| c / distance);
         let radial: f64 = (0..3).map(|a| (0..3).map(|b| ray[a] * stress[a][b] * ray[b]).sum::<f64>()).sum();
         let around = 0.5 * (stress[0][0] + stress[1][1] + stress[2][2] - radial);
         ((distance - radius).abs(), vec![distance - radius], around)
@@ -226,7 +227,7 @@ fn cell_stresses<const D: usize>(world: &World<D>) -> Vec<([f64; D], [[f64; 3]; 
         10 => 4,
         all => all,
     };
-    let place = |nodes: &[u32]| {
+    let middle_of = |nodes: &[u32]| {
         let count = corners(nodes);
         let mut middle = [0.0; D];
         for node in &nodes[..count] {
@@ -234,7 +235,7 @@ fn cell_stresses<const D: usize>(world: &World<D>) -> Vec<([f64; D], [[f64; 3]; 
         }
         middle
     };
-    mesh.cells.iter().zip(world.cell_states(0)).map(|((_, _, nodes), state)| (place(nodes), state.stress)).collect()
+    mesh.cells.iter().zip(world.cell_states(0)).map(|((_, _, nodes), state)| (middle_of(nodes), state.stress)).collect()
 }
 
 /// Samples, each with its distance, its way from the place that is asked for, and its value: the value there of the quadratic

@@ -95,7 +95,7 @@ pub(crate) fn moved_pins<const D: usize>(moves: impl IntoIterator<Item = (u32, [
 
 impl Lab {
     fn read(&self, scene: Scene) -> Result<AnyBlueprint, Trouble> {
-        let options = scene::Options { files: Files::held(scene.files), ..scene::Options::default() };
+        let options = scene::Options { files: Files::in_memory(scene.files), ..scene::Options::default() };
         match scene::read(scene.text.as_bytes(), "case.toml", &catalogue_of(&self.registries), &options) {
             Ok((blueprint, _)) => Ok(blueprint),
             Err(errors) => Err(errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n").into()),

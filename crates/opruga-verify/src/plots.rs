@@ -47,7 +47,7 @@ fn size_axis(row: &Row) -> Axis {
 fn errors(rows: &[&Row]) -> Panel {
     let mut lines = Vec::new();
     let alone = rows.len() == 1;
-    let names = told_apart(&rows.iter().map(|row| row.case.name).collect::<Vec<_>>());
+    let names = without_common_words(&rows.iter().map(|row| row.case.name).collect::<Vec<_>>());
     for (row, name) in rows.iter().zip(&names) {
         let points: Vec<[f64; 2]> =
             row.points.iter().map(|p| [row.case.over.size(p.level), p.error.max(NOTHING)]).collect();
@@ -78,7 +78,7 @@ fn errors(rows: &[&Row]) -> Panel {
 }
 
 /// The names of cases without the words with which all of them begin: what the axis says need not be said again.
-fn told_apart(names: &[&str]) -> Vec<String> {
+fn without_common_words(names: &[&str]) -> Vec<String> {
     let words: Vec<Vec<&str>> = names.iter().map(|name| name.split('-').collect()).collect();
     let most = words.iter().map(|words| words.len() - 1).min().unwrap_or(0);
     let common = (0..most).take_while(|k| words.iter().all(|own| own[*k] == words[0][*k])).count();
@@ -124,14 +124,14 @@ fn over_parameter(row: &Row) -> Result<String, DrawError> {
 
 #[cfg(test)]
 mod tests {
-    use super::told_apart;
+    use super::without_common_words;
 
     #[test]
     fn names_of_cases_are_told_apart_by_what_they_do_not_have_in_common() {
         let names = ["cook-linear-triangles", "cook-linear-quadrilaterals", "cook-linear-quadratic-triangles"];
-        assert_eq!(told_apart(&names), ["triangles", "quadrilaterals", "quadratic triangles"]);
-        assert_eq!(told_apart(&["tube", "tube-fine"]), ["tube", "tube fine"]);
-        assert_eq!(told_apart(&["one"]), ["one"]);
-        assert!(told_apart(&[]).is_empty());
+        assert_eq!(without_common_words(&names), ["triangles", "quadrilaterals", "quadratic triangles"]);
+        assert_eq!(without_common_words(&["tube", "tube-fine"]), ["tube", "tube fine"]);
+        assert_eq!(without_common_words(&["one"]), ["one"]);
+        assert!(without_common_words(&[]).is_empty());
     }
 }

@@ -139,8 +139,8 @@ impl Encoder {
                 }
             }
         }
-        for (place, _) in changed.iter().enumerate().filter(|(_, changed)| **changed) {
-            self.source.take(image, [place % self.blocks[0], place / self.blocks[0]]);
+        for (index, _) in changed.iter().enumerate().filter(|(_, changed)| **changed) {
+            self.source.take(image, [index % self.blocks[0], index / self.blocks[0]]);
         }
         self.last.clear();
         self.last.extend_from_slice(pixels);
@@ -184,22 +184,22 @@ impl Encoder {
     }
 
     /// What the frame before lets expect.
-    fn moved(&self, place: [usize; 2], motion: Motion) -> [Pixels; 3] {
-        std::array::from_fn(|plane| from_before(&self.before, plane, place, motion))
+    fn moved(&self, macroblock: [usize; 2], motion: Motion) -> [Pixels; 3] {
+        std::array::from_fn(|plane| from_before(&self.before, plane, macroblock, motion))
     }
 
     /// Codes a macroblock that shows what it showed before.
-    fn repeat(&mut self, bits: &mut Bits, place: [usize; 2], skipped: &mut u32) {
-        let ([expected, left_out], _) = self.neighbours(place);
-        self.drawn.copy_block(&self.before, place);
-        self.counts.clear(place);
-        let here = || -> [Pixels; 3] { self.moved(place, [0, 0]) };
-        if left_out == [0, 0] || self.moved(place, left_out) == here() {
-            self.motion[place[1] * self.blocks[0] + place[0]] = Some(left_out);
+    fn repeat(&mut self, bits: &mut Bits, macroblock: [usize; 2], skipped: &mut u32) {
+        let ([expected, left_out], _) = self.neighbours(macroblock);
+        self.drawn.copy_block(&self.before, macroblock);
+        self.counts.clear(macroblock);
+        let here = || -> [Pixels; 3] { self.moved(macroblock, [0, 0]) };
+        if left_out == [0, 0] || self.moved(macroblock, left_out) == here() {
+            self.motion[macroblock[1] * self.blocks[0] + macroblock[0]] = Some(left_out);
             *skipped += 1;
             return;
         }
-        self.motion[place[1] * self.blocks[0] + place[0]] = Some([0, 0]);
+        self.motion[macroblock[1] * self.blocks[0] + macroblock[0]] = Some([0, 0]);
         bits.ue(std::mem::take(skipped));
         bits.ue(0);
         (0..2).for_each(|axis| bits.se(-expected[axis]));
@@ -207,27 +207,27 @@ impl Encoder {
     }
 
     /// Codes a macroblock that has changed.
-    fn renew(&mut self, bits: &mut Bits, place: [usize; 2], skipped: &mut u32) {
-        let ([expected, left_out], neighbours) = self.neighbours(place);
-        let (motion, pixels, cost) = self.search(place, expected, left_out, neighbours);
+    fn renew(&mut self, bits: &mut Bits, macroblock: [usize; 2], skipped: &mut u32) {
+        let ([expected, left_out], neighbours) = self.neighbours(macroblock);
+        let (motion, pixels, cost) = self.search(macroblock, expected, left_out, neighbours);
         // What a body leaves behind is drawn anew where it is empty, so that no traces stay.
-        let empty = cost > 0 && self.source.is_empty(place);
+        let empty = cost > 0 && self.source.is_empty(macroblock);
         if cost > 256 || empty {
-            let alone = self.alone(place);
+            let alone = self.alone(macroblock);
             if alone.cost < cost || empty {
                 bits.ue(std::mem::take(skipped));
-                self.write_alone(bits, place, &alone, 5);
+                self.write_alone(bits, macroblock, &alone, 5);
                 return;
             }
         }
         let mut pixels = [pixels, [0; 256], [0; 256]];
         for plane in 1..3 {
-            pixels[plane] = from_before(&self.before, plane, place, motion);
+            pixels[plane] = from_before(&self.before, plane, macroblock, motion);
         }
-        let residual = Residual::new(&self.source, &mut self.drawn, place, &pixels, false, &self.quantisers);
-        self.motion[place[1] * self.blocks[0] + place[0]] = Some(motion);
+        let residual = Residual::new(&self.source, &mut self.drawn, macroblock, &pixels, false, &self.quantisers);
+        self.motion[macroblock[1] * self.blocks[0] + macroblock[0]] = Some(motion);
         if residual.is_empty() && motion == left_out {
-            self.counts.clear(place);
+            self.counts.clear(macroblock);
             *skipped += 1;
             return;
         }
@@ -239,13 +239,13 @@ impl Encoder {
         if pattern != 0 {
             bits.se(0);
         }
-        residual.write(bits, &mut self.counts, place);
+        residual.write(bits, &mut self.counts, macroblock);
     }
 
     /// Looks for a macroblock in the frame before, beginning with what the neighbours say.
     fn search(
         &self,
-        place: [usize; 2],
+        macroblock: [usize; 2],
         expected: Motion,
         left_out: Motion,
         neighbours: [Neighbour; 3],
@@ -265,8 +265,8 @@ impl Encoder {
             if price >= best.2 {
                 return false;
             }
-            let pixels = from_before(&self.before, 0, place, motion);
-            let cost = price + difference(&self.source, 0, place, &pixels, best.2 - price);
+            let pixels = from_before(&self.before, 0, macroblock, motion);
+            let cost = price + difference(&self.source, 0, macroblock, &pixels, best.2 - price);
             let better = cost < best.2;
             if better {
                 *best = (motion, pixels, cost);
@@ -298,16 +298,16 @@ impl Encoder {
     }
 
     /// The best expectation from the neighbours.
-    fn alone(&self, place: [usize; 2]) -> Alone {
+    fn alone(&self, macroblock: [usize; 2]) -> Alone {
         let best = |plane: usize| {
-            let directions: &[Direction] = match self.source.is_empty(place) {
+            let directions: &[Direction] = match self.source.is_empty(macroblock) {
                 true => &[Direction::Mean],
                 false => &[Direction::Mean, Direction::Right, Direction::Down],
             };
             let mut best = (Direction::Mean, [0; 256], u32::MAX);
-            for direction in directions.iter().copied().filter(|direction| direction.is_possible(place)) {
-                let pixels = from_neighbours(&self.drawn, plane, place, direction);
-                let cost = difference(&self.source, plane, place, &pixels, best.2);
+            for direction in directions.iter().copied().filter(|direction| direction.is_possible(macroblock)) {
+                let pixels = from_neighbours(&self.drawn, plane, macroblock, direction);
+                let cost = difference(&self.source, plane, macroblock, &pixels, best.2);
                 if cost < best.2 {
                     best = (direction, pixels, cost);
                 }
@@ -316,18 +316,19 @@ impl Encoder {
         };
         let (luma, brightness, cost) = best(0);
         let (colour, blue, _) = best(1);
-        let red = from_neighbours(&self.drawn, 2, place, colour);
+        let red = from_neighbours(&self.drawn, 2, macroblock, colour);
         Alone { luma, colour, expected: [brightness, blue, red], cost: cost + 12 * self.bit_cost }
     }
 
     /// Codes a macroblock from its neighbours; `offset` is how many other kinds come first in this kind of picture.
-    fn write_alone(&mut self, bits: &mut Bits, place: [usize; 2], alone: &Alone, offset: u32) {
-        let residual = Residual::new(&self.source, &mut self.drawn, place, &alone.expected, true, &self.quantisers);
-        self.motion[place[1] * self.blocks[0] + place[0]] = None;
+    fn write_alone(&mut self, bits: &mut Bits, macroblock: [usize; 2], alone: &Alone, offset: u32) {
+        let residual =
+            Residual::new(&self.source, &mut self.drawn, macroblock, &alone.expected, true, &self.quantisers);
+        self.motion[macroblock[1] * self.blocks[0] + macroblock[0]] = None;
         let luma = if residual.luma_coded == 0 { 0 } else { 12 };
         bits.ue(offset + 1 + alone.luma.luma() + 4 * residual.colour_coded + luma);
         bits.ue(alone.colour.chroma());
         bits.se(0);
-        residual.write(bits, &mut self.counts, place);
+        residual.write(bits, &mut self.counts, macroblock);
     }
 }

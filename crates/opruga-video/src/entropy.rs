@@ -16,9 +16,9 @@ pub(crate) enum Context {
 pub(crate) fn write_levels(bits: &mut Bits, levels: &[i32], context: Context) -> u8 {
     let mut found = [(0, 0); 16];
     let mut total = 0;
-    for (place, &level) in levels.iter().enumerate() {
+    for (position, &level) in levels.iter().enumerate() {
         if level != 0 {
-            found[total] = (place, level);
+            found[total] = (position, level);
             total += 1;
         }
     }

@@ -39,16 +39,16 @@ impl Frame {
     }
 
     /// Whether a macroblock has the same brightness everywhere.
-    pub(crate) fn is_empty(&self, place: [usize; 2]) -> bool {
-        let (stride, start) = (self.stride(0), self.start(0, place));
+    pub(crate) fn is_empty(&self, macroblock: [usize; 2]) -> bool {
+        let (stride, start) = (self.stride(0), self.start(0, macroblock));
         let pixels = &self.planes[0];
         (0..BLOCK).all(|row| pixels[start + row * stride..][..BLOCK].iter().all(|pixel| *pixel == pixels[start]))
     }
 
     /// Copies a macroblock from another frame of the same size.
-    pub(crate) fn copy_block(&mut self, from: &Frame, place: [usize; 2]) {
+    pub(crate) fn copy_block(&mut self, from: &Frame, macroblock: [usize; 2]) {
         for plane in 0..3 {
-            let (side, stride, start) = (Frame::side(plane), self.stride(plane), self.start(plane, place));
+            let (side, stride, start) = (Frame::side(plane), self.stride(plane), self.start(plane, macroblock));
             for row in 0..side {
                 let part = start + row * stride..start + row * stride + side;
                 self.planes[plane][part.clone()].copy_from_slice(&from.planes[plane][part]);
@@ -64,8 +64,8 @@ impl Frame {
         let (width, height) = (image.width() as usize, image.height() as usize);
         let pixels = image.pixels();
         let at = |column: usize, row: usize| -> [i32; 3] {
-            let place = 4 * (row.min(height - 1) * width + column.min(width - 1));
-            [pixels[place], pixels[place + 1], pixels[place + 2]].map(i32::from)
+            let offset = 4 * (row.min(height - 1) * width + column.min(width - 1));
+            [pixels[offset], pixels[offset + 1], pixels[offset + 2]].map(i32::from)
         };
         let (stride, start) = (self.stride(0), self.start(0, [x, y]));
         for row in 0..BLOCK {
@@ -89,9 +89,9 @@ impl Frame {
                 }
                 let [r, g, b] = sum;
                 let middle = (128 << 19) + (1 << 18);
-                let place = start + row * stride + column;
-                self.planes[1][place] = ((middle - 6_596 * r - 22_189 * g + 28_785 * b) >> 19) as u8;
-                self.planes[2][place] = ((middle + 28_784 * r - 26_145 * g - 2_639 * b) >> 19) as u8;
+                let index = start + row * stride + column;
+                self.planes[1][index] = ((middle - 6_596 * r - 22_189 * g + 28_785 * b) >> 19) as u8;
+                self.planes[2][index] = ((middle + 28_784 * r - 26_145 * g - 2_639 * b) >> 19) as u8;
             }
         }
     }

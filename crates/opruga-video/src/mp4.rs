@@ -59,7 +59,7 @@ impl Film<'_> {
         let data: u64 = self.samples.iter().map(|sample| u64::from(sample.size)).sum();
         let long = data + 8 > u64::from(u32::MAX);
         let data_head = if long { 16 } else { 8 };
-        // The place of the data has the same length whatever it is.
+        // The offset of the data has the same length whatever it is.
         let length = kind.len() + self.movie(0).len() + data_head;
         out.write_all(&kind)?;
         out.write_all(&self.movie(length as u64))?;
@@ -72,7 +72,7 @@ impl Film<'_> {
         out.write_all(b"mdat")
     }
 
-    /// Everything but the pictures, which begin at a place of the file.
+    /// Everything but the pictures, which begin at an offset in the file.
     fn movie(&self, start: u64) -> Vec<u8> {
         let duration = self.samples.len() as u64 * u64::from(self.rate.frame);
         let ticks = self.rate.ticks;
@@ -124,8 +124,8 @@ impl Film<'_> {
         let chunks = boxed(b"stsc", &[&bytes![0_u32, 1_u32, 1_u32, count, 1_u32]]);
         let sizes: Vec<u8> = self.samples.iter().flat_map(|sample| sample.size.to_be_bytes()).collect();
         let sizes = boxed(b"stsz", &[&bytes![0_u32, 0_u32, count], &sizes]);
-        let places = boxed(b"co64", &[&bytes![0_u32, 1_u32, start]]);
-        boxed(b"stbl", &[&description, &times, &starts, &chunks, &sizes, &places])
+        let offsets = boxed(b"co64", &[&bytes![0_u32, 1_u32, start]]);
+        boxed(b"stbl", &[&description, &times, &starts, &chunks, &sizes, &offsets])
     }
 
     /// What a decoder must know.

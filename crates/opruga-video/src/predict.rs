@@ -44,15 +44,15 @@ impl Direction {
 pub(crate) type Pixels = [u8; 256];
 
 /// What the neighbours let expect.
-pub(crate) fn from_neighbours(frame: &Frame, plane: usize, place: [usize; 2], direction: Direction) -> Pixels {
-    let (side, stride, start) = (Frame::side(plane), frame.stride(plane), frame.start(plane, place));
+pub(crate) fn from_neighbours(frame: &Frame, plane: usize, macroblock: [usize; 2], direction: Direction) -> Pixels {
+    let (side, stride, start) = (Frame::side(plane), frame.stride(plane), frame.start(plane, macroblock));
     let pixels = &frame.planes[plane];
     let mut out = [128; 256];
     let sum = |part: std::ops::Range<usize>, above: bool| -> u32 {
         let at = |step: usize| if above { start - stride + step } else { start - 1 + step * stride };
         part.map(|step| u32::from(pixels[at(step)])).sum()
     };
-    let [x, y] = place;
+    let [x, y] = macroblock;
     match direction {
         Direction::Down => {
             for row in out[..side * side].chunks_exact_mut(side) {
@@ -135,8 +135,8 @@ pub(crate) fn from_before(before: &Frame, plane: usize, [x, y]: [usize; 2], moti
 }
 
 /// The sum of the differences between a macroblock of a frame and what is expected; it stops above a limit.
-pub(crate) fn difference(frame: &Frame, plane: usize, place: [usize; 2], expected: &Pixels, limit: u32) -> u32 {
-    let (side, stride, start) = (Frame::side(plane), frame.stride(plane), frame.start(plane, place));
+pub(crate) fn difference(frame: &Frame, plane: usize, macroblock: [usize; 2], expected: &Pixels, limit: u32) -> u32 {
+    let (side, stride, start) = (Frame::side(plane), frame.stride(plane), frame.start(plane, macroblock));
     let mut sum = 0;
     for (row, line) in expected[..side * side].chunks_exact(side).enumerate() {
         let pixels = &frame.planes[plane][start + row * stride..][..side];

@@ -85,7 +85,7 @@ impl Counts {
 }
 
 /// The column and the row of a block in its macroblock, in the order in which blocks of the brightness are coded.
-fn luma_place(block: usize) -> [usize; 2] {
+fn luma_position(block: usize) -> [usize; 2] {
     [block & 1 | block >> 1 & 2, block >> 1 & 1 | block >> 2 & 2]
 }
 
@@ -109,7 +109,7 @@ impl Residual {
     pub(crate) fn new(
         source: &Frame,
         drawn: &mut Frame,
-        place: [usize; 2],
+        macroblock: [usize; 2],
         expected: &[Pixels; 3],
         alone: bool,
         quantisers: &Quantisers,
@@ -125,13 +125,13 @@ impl Residual {
             colour_coded: 0,
         };
         for plane in 0..3 {
-            let (side, stride, start) = (Frame::side(plane), drawn.stride(plane), drawn.start(plane, place));
+            let (side, stride, start) = (Frame::side(plane), drawn.stride(plane), drawn.start(plane, macroblock));
             for (row, line) in expected[plane][..side * side].chunks_exact(side).enumerate() {
                 drawn.planes[plane][start + row * stride..][..side].copy_from_slice(line);
             }
         }
-        out.take_luma(source, drawn, place, &expected[0], luma);
-        out.take_colour(source, drawn, place, expected, colour);
+        out.take_luma(source, drawn, macroblock, &expected[0], luma);
+        out.take_colour(source, drawn, macroblock, expected, colour);
         out
     }
 
@@ -140,14 +140,14 @@ impl Residual {
         &mut self,
         source: &Frame,
         drawn: &mut Frame,
-        place: [usize; 2],
+        macroblock: [usize; 2],
         expected: &Pixels,
         quantiser: &Quantiser,
     ) {
-        let (stride, start) = (drawn.stride(0), drawn.start(0, place));
+        let (stride, start) = (drawn.stride(0), drawn.start(0, macroblock));
         let first = usize::from(self.alone);
         for block in 0..16 {
-            let [x, y] = luma_place(block);
+            let [x, y] = luma_position(block);
             self.luma[block] = differences(source, 0, start, expected, [x, y]);
             self.sums[4 * y + x] = self.luma[block][0];
             if quantiser.quantise(&mut self.luma[block], first) {
@@ -166,7 +166,7 @@ impl Residual {
             }
         }
         for block in 0..16 {
-            let [x, y] = luma_place(block);
+            let [x, y] = luma_position(block);
             let mut numbers = self.luma[block];
             if self.alone {
                 numbers[0] = sums[4 * y + x];
@@ -183,11 +183,11 @@ impl Residual {
         &mut self,
         source: &Frame,
         drawn: &mut Frame,
-        place: [usize; 2],
+        macroblock: [usize; 2],
         expected: &[Pixels; 3],
         quantiser: &Quantiser,
     ) {
-        let (stride, start) = (drawn.stride(1), drawn.start(1, place));
+        let (stride, start) = (drawn.stride(1), drawn.start(1, macroblock));
         for plane in 1..3 {
             let (blocks, sums) = (&mut self.colour[plane - 1], &mut self.colour_sums[plane - 1]);
             for (block, numbers) in blocks.iter_mut().enumerate() {
@@ -222,13 +222,13 @@ impl Residual {
 
     /// Writes the levels.
     pub(crate) fn write(&self, bits: &mut Bits, counts: &mut Counts, [x, y]: [usize; 2]) {
-        let ordered = |block: &Block| ZIGZAG.map(|place| block[place]);
+        let ordered = |block: &Block| ZIGZAG.map(|index| block[index]);
         counts.clear([x, y]);
         if self.alone {
             write_levels(bits, &ordered(&self.sums), counts.context(0, [4 * x, 4 * y]));
         }
         for block in (0..16).filter(|block| self.luma_coded >> (block / 4) & 1 == 1) {
-            let [column, row] = luma_place(block);
+            let [column, row] = luma_position(block);
             let at = [4 * x + column, 4 * y + row];
             let levels = ordered(&self.luma[block]);
             let count = write_levels(bits, &levels[usize::from(self.alone)..], counts.context(0, at));

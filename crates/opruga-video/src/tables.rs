@@ -6,10 +6,10 @@ pub(crate) type Code = (u8, u8);
 /// Joins a table of lengths and one of values.
 const fn join<const N: usize>(lengths: [u8; N], values: [u8; N]) -> [Code; N] {
     let mut codes = [(0, 0); N];
-    let mut place = 0;
-    while place < N {
-        codes[place] = (lengths[place], values[place]);
-        place += 1;
+    let mut index = 0;
+    while index < N {
+        codes[index] = (lengths[index], values[index]);
+        index += 1;
     }
     codes
 }
@@ -142,6 +142,6 @@ mod tests {
         }
         let mut patterns = PATTERNS;
         patterns.sort_unstable();
-        assert!(patterns.iter().enumerate().all(|(place, number)| place == usize::from(*number)));
+        assert!(patterns.iter().enumerate().all(|(index, number)| index == usize::from(*number)));
     }
 }

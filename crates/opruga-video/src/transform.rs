@@ -41,7 +41,7 @@ pub(crate) struct Quantiser {
 impl Quantiser {
     /// A quantiser; `share` of a step, one third or one sixth, is what a number needs less to reach the next level.
     pub(crate) fn new(quantiser: u8, share: i32) -> Quantiser {
-        let class = |place: usize| match (place / 4 % 2, place % 4 % 2) {
+        let class = |index: usize| match (index / 4 % 2, index % 4 % 2) {
             (0, 0) => 0,
             (1, 1) => 1,
             _ => 2,
@@ -49,21 +49,21 @@ impl Quantiser {
         let (rest, sixth) = (usize::from(quantiser % 6), u32::from(quantiser / 6));
         let shift = 15 + sixth;
         Quantiser {
-            scales: std::array::from_fn(|place| SCALES[rest][class(place)]),
-            steps: std::array::from_fn(|place| STEPS[rest][class(place)] << sixth),
+            scales: std::array::from_fn(|index| SCALES[rest][class(index)]),
+            steps: std::array::from_fn(|index| STEPS[rest][class(index)] << sixth),
             round: (1 << shift) / share,
             shift,
         }
     }
 
-    /// Replaces numbers by levels, from the place `first` on; says whether any is left.
+    /// Replaces numbers by levels, from the index `first` on; says whether any is left.
     pub(crate) fn quantise(&self, block: &mut Block, first: usize) -> bool {
         let mut any = 0;
-        for place in first..16 {
-            let level = (block[place].abs() * self.scales[place] + self.round) >> self.shift;
+        for index in first..16 {
+            let level = (block[index].abs() * self.scales[index] + self.round) >> self.shift;
             let level = level.min(LARGEST);
             any |= level;
-            block[place] = if block[place] < 0 { -level } else { level };
+            block[index] = if block[index] < 0 { -level } else { level };
         }
         any != 0
     }
@@ -80,10 +80,10 @@ impl Quantiser {
         any != 0
     }
 
-    /// Replaces levels by numbers, from the place `first` on.
+    /// Replaces levels by numbers, from the index `first` on.
     pub(crate) fn restore(&self, block: &mut Block, first: usize) {
-        for place in first..16 {
-            block[place] *= self.steps[place];
+        for index in first..16 {
+            block[index] *= self.steps[index];
         }
     }
 
@@ -109,7 +109,7 @@ impl Quantiser {
 pub(crate) fn forward(block: &mut Block) {
     for (start, step) in [(4, 1), (1, 4)] {
         for line in 0..4 {
-            let at = |place: usize| line * start + place * step;
+            let at = |index: usize| line * start + index * step;
             let [a, b, c, d] = [block[at(0)], block[at(1)], block[at(2)], block[at(3)]];
             let (outer, inner) = (a + d, b + c);
             let (far, near) = (a - d, b - c);
@@ -126,7 +126,7 @@ pub(crate) fn add_inverse(block: &Block, pixels: &mut [u8], stride: usize) {
     let mut work = *block;
     for (start, step) in [(4, 1), (1, 4)] {
         for line in 0..4 {
-            let at = |place: usize| line * start + place * step;
+            let at = |index: usize| line * start + index * step;
             let [a, b, c, d] = [work[at(0)], work[at(1)], work[at(2)], work[at(3)]];
             let (even, odd) = (a + c, a - c);
             let (low, high) = ((b >> 1) - d, b + (d >> 1));
@@ -147,7 +147,7 @@ pub(crate) fn add_inverse(block: &Block, pixels: &mut [u8], stride: usize) {
 pub(crate) fn hadamard(block: &mut Block) {
     for (start, step) in [(4, 1), (1, 4)] {
         for line in 0..4 {
-            let at = |place: usize| line * start + place * step;
+            let at = |index: usize| line * start + index * step;
             let [a, b, c, d] = [block[at(0)], block[at(1)], block[at(2)], block[at(3)]];
             block[at(0)] = a + b + c + d;
             block[at(1)] = a + b - c - d;
@@ -193,7 +193,7 @@ mod tests {
     #[test]
     fn sums_come_back() {
         let rule = Quantiser::new(12, 3);
-        let wanted: Block = std::array::from_fn(|place| 64 * (place as i32 * 37 % 101 - 50));
+        let wanted: Block = std::array::from_fn(|index| 64 * (index as i32 * 37 % 101 - 50));
         let mut sums = wanted;
         hadamard(&mut sums);
         sums.iter_mut().for_each(|sum| *sum = (*sum + 1) >> 1);

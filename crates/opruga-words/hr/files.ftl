@@ -91,7 +91,7 @@ shape-format-Unreadable = datoteke s nastavkom `.{ $ending }` ne mogu se pročit
 ## TapeFault
 
 recording-input-Input = { $error }
-    .hint = snimiti se mogu naredbe, `set`, `place_node` i `remove_body`
+    .hint = snimiti se mogu naredbe, `set`, `set_node` i `remove_body`
 
 ## TapeHint
 

@@ -112,10 +112,10 @@ part-meeting-Others = dva obrisa sijeku se ili dodiruju
 ## OutlineError
 
 shape-no_area-Empty = nema zatvorenog obrisa
-shape-no_area-NoArea = obris ne obuhvaća površinu: točaka: { $points }, prva je u { $place }
+shape-no_area-NoArea = obris ne obuhvaća površinu: točaka: { $points }, prva je u { $position }
 scene-not_finite-NotFinite = koordinata je { $value }
-shape-crossing-Meeting = { $what } blizu { $place }
-shape-spacing-TooCoarse = s čvorovima na razmaku od { $spacing } m bridovi se sijeku blizu { $place }
+shape-crossing-Meeting = { $what } blizu { $position }
+shape-spacing-TooCoarse = s čvorovima na razmaku od { $spacing } m bridovi se sijeku blizu { $position }
 limit-nodes-TooFine = ispunjen čvorovima na razmaku od { $spacing } m obris bi imao oko { $nodes } čvorova
 limit-comparisons-NotCompared = bridova koji prolaze tijesno jedan uz drugoga: { $edges }; trebalo bi usporediti više od { $most } parova
     .allowed = bridovi od kojih najviše { $most } parova leži jedan uz drugoga

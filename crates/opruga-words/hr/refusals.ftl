@@ -353,7 +353,7 @@ part-place-Section = { $path ->
 
 ## WorldError
 
-part-build-Build = { $place }: { $source }
+part-build-Build = { $part }: { $source }
     .allowed = { ALLOWED($source) }
     .hint = { HINT($source) }
 step-unstable-UnstableStep = korak h = { $h } s integratora `{ $integrator }` nestabilan je za tijelo `{ $body }`

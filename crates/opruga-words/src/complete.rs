@@ -46,7 +46,7 @@ fn names_field(source: &str, field: &str) -> bool {
     let word = |text: &str| text.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == field);
     // Every other piece stands in quotes; escaped quotes change nothing in texts without braces around them.
     let plain = source.replace("\\\"", "");
-    plain.split('"').enumerate().any(|(place, piece)| match place % 2 {
+    plain.split('"').enumerate().any(|(index, piece)| match index % 2 {
         1 => piece.split('{').skip(1).any(|gap| word(gap.split('}').next().unwrap_or_default())),
         _ => word(piece),
     })

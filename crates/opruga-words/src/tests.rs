@@ -43,18 +43,18 @@ test-left_out-LeftOut = { $count ->
 fn counts_parts_and_what_is_not_there_choose_the_words() {
     let (translation, problems) = Translation::new(&[ENTRIES]);
     assert_eq!(problems, [""; 0]);
-    let said = |count, owner: Owner, time| {
+    let texts = |count, owner: Owner, time| {
         let message = Refusal::LeftOut { count, owner: owner.into(), most: 0.1 + 0.2, time };
         (translation.text(&message).expect("it is known"), translation.allowed(&message), translation.hint(&message))
     };
     let body = || Owner::Body { name: "ball".into() };
-    assert_eq!(said(0, body(), None).0, "ništa tijela `ball`");
+    assert_eq!(texts(0, body(), None).0, "ništa tijela `ball`");
     for (count, wanted) in
         [(1, "je 1 čvor"), (22, "su 22 čvora"), (12, "je 12 čvorova"), (5, "je 5 čvorova"), (101, "je 101 čvor")]
     {
-        assert!(said(count, body(), None).0.contains(wanted), "{count}");
+        assert!(texts(count, body(), None).0.contains(wanted), "{count}");
     }
-    let (text, allowed, hint) = said(2, Owner::World {}, Some(0.123));
+    let (text, allowed, hint) = texts(2, Owner::World {}, Some(0.123));
     assert_eq!(text, "izostavljena su 2 čvora svijeta u 0.12 s");
     assert_eq!((allowed.as_deref(), hint.as_deref()), (Some("najviše 0.3"), Some("leave them out")));
     let full =

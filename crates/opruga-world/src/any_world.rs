@@ -92,8 +92,8 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     /// Moves a node and gives it a velocity, from outside of the physics.
     ///
     /// # Errors
-    /// As [`World::place_node`].
-    fn place_node(&mut self, body: usize, node: u32, position: [f64; 3], velocity: [f64; 3]) -> Result<(), WorldError>;
+    /// As [`World::set_node`].
+    fn set_node(&mut self, body: usize, node: u32, position: [f64; 3], velocity: [f64; 3]) -> Result<(), WorldError>;
     /// Takes a body away.
     ///
     /// # Errors
@@ -291,9 +291,9 @@ impl<const D: usize> AnyWorld for World<D> {
     fn refused_command(&self) -> Option<RefusedCommand<'_>> {
         self.refused_command().map(|command| RefusedCommand::of(command, self.blueprint()))
     }
-    fn place_node(&mut self, body: usize, node: u32, position: [f64; 3], velocity: [f64; 3]) -> Result<(), WorldError> {
+    fn set_node(&mut self, body: usize, node: u32, position: [f64; 3], velocity: [f64; 3]) -> Result<(), WorldError> {
         let [position, velocity] = [position, velocity].map(|vector| core::array::from_fn(|d| vector[d]));
-        self.place_node(body, node, position, velocity)
+        self.set_node(body, node, position, velocity)
     }
     fn remove_body(&mut self, name: &str) -> Result<(), WorldError> {
         self.remove_body(name)
@@ -460,7 +460,7 @@ impl<const D: usize> AnyWorld for World<D> {
         self.contact_forces(body).into_iter().map(three).collect()
     }
     fn pinned_now(&self, body: usize) -> Vec<u32> {
-        self.held_nodes(body)
+        self.pinned_nodes(body)
     }
     fn usual_pull(&self, body: usize) -> Option<[f64; 2]> {
         self.usual_pull(body)

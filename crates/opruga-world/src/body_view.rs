@@ -1,7 +1,7 @@
 //! One body as a handle names it: readings that say what is wrong instead of showing another body.
 
 use crate::blueprint::BodyBlueprint;
-use crate::error::{Place, WorldError};
+use crate::error::{Part, WorldError};
 use crate::path_faults::PathFault;
 use crate::refusals::Refusal;
 use crate::slots::BodyHandle;
@@ -33,7 +33,7 @@ impl<const D: usize> World<D> {
             return Ok(handle.index);
         }
         let source = BuildError::of("handle", Refusal::StaleHandle {});
-        Err(WorldError::Build { place: Place::BodyAt { index: handle.index }, source })
+        Err(WorldError::Build { part: Part::BodyAt { index: handle.index }, source })
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::blueprint::{Blueprint, BodyBlueprint, LoadKind, Mass};
 use crate::carried::{BodyHistory, BodyState};
 use crate::contact_laws;
-use crate::error::{Place, WorldError};
+use crate::error::{Part, WorldError};
 use crate::island::Island;
 use crate::loads::{CentralForces, FollowerPressure, NodeForces};
 use crate::masses::{densities, node_masses};
@@ -133,15 +133,15 @@ impl<const D: usize> Builder<'_, D> {
         }
         let integrator = match &first.integrator {
             Some(values) => {
-                build_integrator(self.registry, values, || Place::IntegratorOf { name: first.name.clone() })?.into()
+                build_integrator(self.registry, values, || Part::IntegratorOf { name: first.name.clone() })?.into()
             }
             None => Arc::clone(self.integrator),
         };
-        let refuse = |source| WorldError::Build { place: Place::body(&first.name), source };
+        let refuse = |source| WorldError::Build { part: Part::body(&first.name), source };
         self.check_choices(&seats, &system, &*integrator).map_err(refuse)?;
         system.equip(&*integrator);
         if self.blueprint.surroundings.unfold {
-            system.history.add(&unfold::channels(), system.places());
+            system.history.add(&unfold::channels(), system.index_count());
         }
         for (l, state) in states.iter().enumerate() {
             state.history.restore(&mut system, l);
@@ -152,7 +152,7 @@ impl<const D: usize> Builder<'_, D> {
 
     /// The masses of the nodes of every body [kg], all of which and whose states are within what can be computed.
     fn plausible_masses(&self, seats: &Seats<'_, D>, range: f64) -> Result<Vec<Vec<f64>>, WorldError> {
-        let refused = |body: &BodyBlueprint<D>, source| WorldError::Build { place: Place::body(&body.name), source };
+        let refused = |body: &BodyBlueprint<D>, source| WorldError::Build { part: Part::body(&body.name), source };
         for (body, state) in seats.bodies.iter().zip(seats.states) {
             plausible::check_range(&state.x, range)
                 .and_then(|()| plausible::check_speed(&state.v, range, self.substep()))
@@ -174,16 +174,16 @@ impl<const D: usize> Builder<'_, D> {
     fn bare_system(&self, seats: &Seats<'_, D>, masses: &[Vec<f64>], time: f64) -> System<D> {
         let Seats { layout, bodies, states } = seats;
         let nodes = bodies[0].mesh.positions.len();
-        let places = layout.places(nodes);
-        let (mut x, mut v) = (Columns::zeros(places), Columns::zeros(places));
+        let index_count = layout.index_count(nodes);
+        let (mut x, mut v) = (Columns::zeros(index_count), Columns::zeros(index_count));
         for node in 0..nodes {
             for l in 0..layout.stride() {
-                x.set(layout.place(node, l), states[seats.of_lane(l)].x[node]);
-                v.set(layout.place(node, l), states[seats.of_lane(l)].v[node]);
+                x.set(layout.index(node, l), states[seats.of_lane(l)].x[node]);
+                v.set(layout.index(node, l), states[seats.of_lane(l)].v[node]);
             }
         }
-        for place in nodes * layout.stride()..places {
-            x.set(place, states[0].x[nodes - 1]);
+        for index in nodes * layout.stride()..index_count {
+            x.set(index, states[0].x[nodes - 1]);
         }
         let mass = Parameter::from_items(*layout, nodes, |node, l| masses[seats.of_lane(l)][node]);
         let mut system = System::new(self.simd, *layout, nodes, bodies.len(), x, v, mass);
@@ -207,7 +207,7 @@ impl<const D: usize> Builder<'_, D> {
         let (layout, first) = (seats.layout, seats.bodies[0]);
         let refuse = |source: BuildError| match source.code() {
             BuildError::BROKEN_OFF => WorldError::BrokenOff {},
-            _ => WorldError::Build { place: Place::body(&first.name), source },
+            _ => WorldError::Build { part: Part::body(&first.name), source },
         };
         let Some(model) = self.registry.model(values.kind()) else {
             return Err(refuse(BuildError::of(values.kind(), Refusal::NoModelHere {})));
@@ -320,7 +320,7 @@ impl<const D: usize> Builder<'_, D> {
     }
 
     fn add_drag(&self, system: &mut System<D>, body: &BodyBlueprint<D>, layout: Layout) -> Result<(), WorldError> {
-        let refuse = |source| WorldError::Build { place: Place::Section { path: "world" }, source };
+        let refuse = |source| WorldError::Build { part: Part::Section { path: "world" }, source };
         let Some(model) = self.registry.model_with(Role::WorldDrag) else { return Ok(()) };
         let mut values = Values::defaults(model.spec(), D);
         let rate = Value::Number(self.blueprint.surroundings.drag);
@@ -349,7 +349,7 @@ impl<const D: usize> Builder<'_, D> {
             for node in pin.select.resolve(&body.mesh, &body.translation) {
                 let rest = body.mesh.positions[node as usize];
                 system.pins.push(Pin {
-                    place: layout.place(node as usize, lane),
+                    index: layout.index(node as usize, lane),
                     axes: pin.axes,
                     anchor: core::array::from_fn(|d| rest[d] + body.translation[d]),
                     motion: Arc::clone(&motion),
@@ -373,31 +373,31 @@ impl<const D: usize> Builder<'_, D> {
             match load.kind {
                 LoadKind::Force(force) => {
                     for node in &nodes {
-                        entries.insert(layout.place(*node as usize, lane), force);
+                        entries.insert(layout.index(*node as usize, lane), force);
                     }
                 }
                 LoadKind::Central { value, center } => {
-                    let indices = nodes.iter().map(|node| layout.place(*node as usize, lane)).collect();
+                    let indices = nodes.iter().map(|node| layout.index(*node as usize, lane)).collect();
                     system.add(Box::new(CentralForces { indices, value, center, curve: load.curve.clone() }));
                     continue;
                 }
                 LoadKind::Traction(traction) => {
                     for (node, share) in body.mesh.boundary_shares(&nodes) {
                         let force = traction.map(|t| t * share * depth);
-                        entries.insert(layout.place(node as usize, lane), force);
+                        entries.insert(layout.index(node as usize, lane), force);
                     }
                 }
                 LoadKind::BodyForce(force) => {
                     for (node, share) in body.mesh.cell_shares(&nodes) {
-                        entries.insert(layout.place(node as usize, lane), force.map(|f| f * share * depth));
+                        entries.insert(layout.index(node as usize, lane), force.map(|f| f * share * depth));
                     }
                     if entries.is_empty() {
                         return Err(no_cells(body));
                     }
                 }
                 LoadKind::Pressure(pressure) => {
-                    let places = |side: Vec<u32>| side.iter().map(|&n| layout.place(n as usize, lane)).collect();
-                    let sides: Vec<Vec<usize>> = body.mesh.boundary_sides(&nodes).into_iter().map(places).collect();
+                    let indices = |side: Vec<u32>| side.iter().map(|&n| layout.index(n as usize, lane)).collect();
+                    let sides: Vec<Vec<usize>> = body.mesh.boundary_sides(&nodes).into_iter().map(indices).collect();
                     if sides.is_empty() {
                         return Err(no_facets(body));
                     }
@@ -448,16 +448,16 @@ pub(crate) fn build_colliders<const D: usize>(
     }
     let values: Vec<_> = blueprint.colliders.iter().map(|c| c.values.clone()).collect();
     let built = Colliders::<D>::build(&values);
-    Ok(Some(Arc::new(built.map_err(|source| WorldError::Build { place: Place::Collider {}, source })?)))
+    Ok(Some(Arc::new(built.map_err(|source| WorldError::Build { part: Part::Collider {}, source })?)))
 }
 
-/// An integrator from its parameters; `place` says whose it is.
+/// An integrator from its parameters; `part` says whose it is.
 pub(crate) fn build_integrator<const D: usize>(
     registry: &Registry<D>,
     values: &Values,
-    place: impl Fn() -> Place,
+    part: impl Fn() -> Part,
 ) -> Result<Box<dyn Integrator<D>>, WorldError> {
-    let refuse = |source| WorldError::Build { place: place(), source };
+    let refuse = |source| WorldError::Build { part: part(), source };
     let Some(kind) = registry.integrator(values.kind()) else {
         let source = BuildError::of(values.kind(), Refusal::NoIntegratorHere {});
         return Err(refuse(source));

@@ -111,7 +111,7 @@ impl Writer<'_> {
         let (bytes, _) = self.0[from..].as_chunks_mut::<8>();
         let (nodes, _) = bytes.as_chunks_mut::<D>();
         for (node, to) in nodes.iter_mut().enumerate() {
-            *to = columns.at(system.layout.place(node, lane)).map(f64::to_le_bytes);
+            *to = columns.at(system.layout.index(node, lane)).map(f64::to_le_bytes);
         }
     }
 }
@@ -196,8 +196,8 @@ impl Reader<'_> {
                 Kept::Vectors(vectors) => vectors.as_flattened(),
                 Kept::Count(_) | Kept::Flag(_) => &[],
             };
-            if let Some(odd) = numbers.iter().find(|x| !x.is_finite()) {
-                return Err(WorldError::snapshot(SnapshotFault::ChannelNumber { channel: name, number: *odd }));
+            if let Some(invalid) = numbers.iter().find(|x| !x.is_finite()) {
+                return Err(WorldError::snapshot(SnapshotFault::ChannelNumber { channel: name, number: *invalid }));
             }
             history.channels.push((name, kept));
         }

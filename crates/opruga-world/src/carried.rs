@@ -40,7 +40,7 @@ impl<const D: usize> BodyHistory<D> {
             Content::Count(count) => Kept::Count(*count),
             Content::Flag(flag) => Kept::Flag(*flag),
             Content::Vectors(columns) => {
-                Kept::Vectors((0..system.nodes).map(|node| columns.at(system.layout.place(node, lane))).collect())
+                Kept::Vectors((0..system.nodes).map(|node| columns.at(system.layout.index(node, lane))).collect())
             }
         };
         BodyHistory {
@@ -81,7 +81,7 @@ impl<const D: usize> BodyHistory<D> {
                 (Content::Flag(own), Kept::Flag(kept)) => *own = *kept,
                 (Content::Vectors(own), Kept::Vectors(kept)) => {
                     for (node, value) in kept.iter().enumerate().take(nodes) {
-                        own.set(layout.place(node, lane), *value);
+                        own.set(layout.index(node, lane), *value);
                     }
                 }
                 _ => {}

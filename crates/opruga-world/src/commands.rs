@@ -63,7 +63,7 @@ impl<const D: usize> World<D> {
     /// is no such body.
     pub fn usual_pull(&self, body: usize) -> Option<[f64; 2]> {
         self.handle(body)?;
-        let (island, lane) = self.place[body];
+        let (island, lane) = self.locations[body];
         Some(usual_pull(&self.islands[island].system, lane, &self.blueprint.bodies[body]))
     }
 
@@ -218,20 +218,20 @@ impl<const D: usize> World<D> {
         let acting = match &command.action {
             Action::Drag { body, node, facet, path, .. } => {
                 let pointer = opruga_core::system::along_path::<D>(path, self.time()).0;
-                let held = match node {
+                let targets = match node {
                     Some(node) => vec![(*node, 1.0)],
                     None => self.nearest(*body, pointer, *facet),
                 };
-                Progress::Acting { held, anchors: Vec::new() }
+                Progress::Acting { targets, anchors: Vec::new() }
             }
             Action::Push { body, select, .. } | Action::Free { body, select } => {
-                let held = self.selected(*body, select).into_iter().map(|n| (n, 1.0)).collect();
-                Progress::Acting { held, anchors: Vec::new() }
+                let targets = self.selected(*body, select).into_iter().map(|n| (n, 1.0)).collect();
+                Progress::Acting { targets, anchors: Vec::new() }
             }
             Action::Pin { body, select, .. } => {
-                let held: Vec<(u32, f64)> = self.selected(*body, select).into_iter().map(|n| (n, 1.0)).collect();
-                let anchors = held.iter().map(|(n, _)| self.position(*body, *n)).collect();
-                Progress::Acting { held, anchors }
+                let targets: Vec<(u32, f64)> = self.selected(*body, select).into_iter().map(|n| (n, 1.0)).collect();
+                let anchors = targets.iter().map(|(n, _)| self.position(*body, *n)).collect();
+                Progress::Acting { targets, anchors }
             }
             Action::Set { path, value } => {
                 self.running[number].progress = Progress::Done;
@@ -272,12 +272,12 @@ impl<const D: usize> World<D> {
             let mut best: Option<(f64, Vec<(u32, f64)>)> = None;
             for corners in &mesh.facets {
                 let corners: Vec<u32> = corners.to_vec();
-                let places: Vec<[f64; D]> = corners.iter().map(|n| self.position(body, *n)).collect();
-                let shares = nearest_shares(&places, &point);
+                let points: Vec<[f64; D]> = corners.iter().map(|n| self.position(body, *n)).collect();
+                let shares = nearest_shares(&points, &point);
                 let mut x = [0.0; D];
-                for (place, share) in places.iter().zip(&shares) {
+                for (corner, share) in points.iter().zip(&shares) {
                     for d in 0..D {
-                        x[d] += share * place[d];
+                        x[d] += share * corner[d];
                     }
                 }
                 let far = distance(x);
@@ -285,7 +285,7 @@ impl<const D: usize> World<D> {
                     best = Some((far, corners.into_iter().zip(shares).filter(|(_, s)| *s > 0.0).collect()));
                 }
             }
-            return best.map(|(_, held)| held).unwrap_or_default();
+            return best.map(|(_, shares)| shares).unwrap_or_default();
         }
         let mut best = (f64::INFINITY, 0);
         for node in 0..mesh.positions.len() as u32 {
@@ -302,31 +302,32 @@ impl<const D: usize> World<D> {
         let bodies = self.islands[island].bodies.clone();
         for number in 0..self.running.len() {
             let running = &self.running[number];
-            let Progress::Acting { held, anchors } = &running.progress else { continue };
+            let Progress::Acting { targets, anchors } = &running.progress else { continue };
             let action = &running.command.action;
             let Some(lane) = bodies.iter().position(|b| Some(*b) == action.body()) else { continue };
             let system = &mut self.islands[island].system;
             let layout = system.layout;
-            let place = |node: u32| layout.place(node as usize, lane);
+            let index = |node: u32| layout.index(node as usize, lane);
             match action {
                 Action::Drag { .. } => {
                     let limited = Arc::clone(&self.limited_pulls);
                     system.add(Box::new(pull_of(running, system, lane, &self.blueprint.bodies[bodies[lane]], limited)));
                 }
                 Action::Push { force, .. } => {
-                    let mut entries: Vec<(usize, [f64; D])> = held.iter().map(|(n, _)| (place(*n), *force)).collect();
+                    let mut entries: Vec<(usize, [f64; D])> =
+                        targets.iter().map(|(n, _)| (index(*n), *force)).collect();
                     entries.sort_by_key(|e| e.0);
                     system.add(Box::new(NodeForces { entries, curve: Vec::new() }));
                 }
                 // Pins of the body and of commands before this one are there already, those of later commands are not.
                 Action::Free { .. } => {
-                    let free: BTreeSet<usize> = held.iter().map(|(node, _)| place(*node)).collect();
-                    system.pins.retain(|pin| !free.contains(&pin.place));
+                    let free: BTreeSet<usize> = targets.iter().map(|(node, _)| index(*node)).collect();
+                    system.pins.retain(|pin| !free.contains(&pin.index));
                 }
                 Action::Pin { axes, .. } => {
-                    for ((node, _), anchor) in held.iter().zip(anchors) {
+                    for ((node, _), anchor) in targets.iter().zip(anchors) {
                         system.pins.push(Pin {
-                            place: place(*node),
+                            index: index(*node),
                             axes: *axes,
                             anchor: *anchor,
                             motion: Arc::new(Vec::new()),
@@ -347,7 +348,7 @@ impl<const D: usize> World<D> {
         island.system.equip(&*island.integrator);
     }
 
-    /// Pulls that act at present: held point, pointer, force [N].
+    /// Pulls that act at present: grabbed point, pointer, force [N].
     pub fn pulls(&self) -> Vec<([f64; D], [f64; D], [f64; D])> {
         let mut out = Vec::new();
         for running in &self.running {
@@ -355,7 +356,7 @@ impl<const D: usize> World<D> {
             else {
                 continue;
             };
-            let (island, lane) = self.place[*body];
+            let (island, lane) = self.locations[*body];
             let system = &self.islands[island].system;
             let pull = pull_of(running, system, lane, &self.blueprint.bodies[*body], Arc::default());
             let view = View {
@@ -378,7 +379,7 @@ impl<const D: usize> World<D> {
 /// Left to itself, its spring would swing the whole body twice a second. It pulls at most as it does stretched by [`FARTHEST_PULL`]
 /// sizes of the body at rest, wherever the pointer gets to.
 fn usual_pull<const D: usize>(system: &System<D>, lane: usize, body: &BodyBlueprint<D>) -> [f64; 2] {
-    let whole: f64 = (0..system.nodes).map(|n| system.mass.at(system.layout.place(n, lane))).sum();
+    let whole: f64 = (0..system.nodes).map(|n| system.mass.at(system.layout.index(n, lane))).sum();
     let stiffness = whole * 157.913_670_417_429_74;
     [stiffness, farthest_pull(&body.mesh, stiffness)]
 }
@@ -398,19 +399,19 @@ fn pull_of<const D: usize>(
     body: &BodyBlueprint<D>,
     limited: Arc<AtomicU64>,
 ) -> Pull<D> {
-    let (held, stiffness, largest_force) = match (&running.progress, &running.command.action) {
-        (Progress::Acting { held, .. }, Action::Drag { stiffness, largest_force, .. }) => {
-            (held.as_slice(), *stiffness, *largest_force)
+    let (targets, stiffness, largest_force) = match (&running.progress, &running.command.action) {
+        (Progress::Acting { targets, .. }, Action::Drag { stiffness, largest_force, .. }) => {
+            (targets.as_slice(), *stiffness, *largest_force)
         }
         _ => (&[][..], None, None),
     };
     let layout = system.layout;
-    let held: Vec<(usize, f64)> = held.iter().map(|(n, s)| (layout.place(*n as usize, lane), *s)).collect();
-    let mass: f64 = held.iter().map(|(p, s)| s * system.mass.at(*p)).sum();
+    let grabbed: Vec<(usize, f64)> = targets.iter().map(|(n, s)| (layout.index(*n as usize, lane), *s)).collect();
+    let mass: f64 = grabbed.iter().map(|(p, s)| s * system.mass.at(*p)).sum();
     let stiffness = stiffness.unwrap_or_else(|| usual_pull(system, lane, body)[0]);
     let farthest = farthest_pull(&body.mesh, stiffness);
     Pull {
-        held,
+        grabbed,
         path: Arc::clone(&running.path),
         stiffness,
         damping: 2.0 * (stiffness * mass).sqrt(),

@@ -7,7 +7,7 @@ use opruga_core::contacts::Contacts as _;
 use opruga_mesh::Measure;
 
 /// The code of the warning.
-const NO_ROOM: &str = "contact.no_room";
+const CODE: &str = "contact.no_room";
 
 /// A node this much deeper in an obstacle than its surface, in sizes of its body, is no longer held by it: implicit rules let nodes
 /// in a little.
@@ -67,19 +67,19 @@ impl<const D: usize> World<D> {
                         _ => (deepest, other) = (Some(this), deepest.or(other)),
                     }
                 });
-                let Some(((gap, inside, out), (room, touched, back))) = deepest.zip(other) else { continue };
+                let Some(((gap, inside, out), (other_gap, touched, back))) = deepest.zip(other) else { continue };
                 let opposite = -(0..D).map(|d| out[d] * back[d]).sum::<f64>() > OPPOSITE;
-                let met = thick && opposite && gap + room <= DEEP * size;
+                let met = thick && opposite && gap + other_gap <= DEEP * size;
                 if (gap < -DEEP * size || met) && worst.as_ref().is_none_or(|most| -gap > most.depth) {
                     worst = Some(Squeezed { depth: -gap, node, inside, touched });
                 }
             }
             let Some(Squeezed { depth, node, inside, touched }) = worst else { continue };
             // What is held goes where it is led.
-            if self.held_nodes(body).binary_search(&node).is_ok() {
+            if self.pinned_nodes(body).binary_search(&node).is_ok() {
                 continue;
             }
-            match self.warnings.iter_mut().find(|w| w.code == NO_ROOM) {
+            match self.warnings.iter_mut().find(|w| w.code == CODE) {
                 Some(warning) => warning.count += 1,
                 None => {
                     let kind = |collider: usize| self.blueprint.colliders[collider].values.kind().to_string();

@@ -7,7 +7,7 @@ use opruga_math::messages;
 use opruga_math::words::number;
 
 /// What would help where so many substeps would be stable.
-fn way_out(substeps: u32) -> String {
+fn remedy(substeps: u32) -> String {
     match substeps {
         ..=MOST_SUBSTEPS => format!("substeps >= {substeps}"),
         _ => format!(
@@ -34,18 +34,18 @@ fn other(first: &str, second: &str) -> String {
     if first == second { "itself".into() } else { format!("`{second}`") }
 }
 
-/// A place in front of what is wrong there; an obstacle says itself which one it is.
-fn before(place: &Place) -> String {
-    match place {
-        Place::Collider {} => String::new(),
-        place => format!("{place}: "),
+/// A part of a world in front of what is wrong there; an obstacle says itself which one it is.
+fn before(part: &Part) -> String {
+    match part {
+        Part::Collider {} => String::new(),
+        part => format!("{part}: "),
     }
 }
 
 messages! {
     /// A part of a world that is refused.
     #[derive(Clone, Debug, PartialEq)]
-    pub enum Place {
+    pub enum Part {
         "part.place" #[error("body `{name}`")]
         Body { name: String },
         "part.place" #[error("body {index}")]
@@ -70,15 +70,15 @@ messages! {
     #[derive(Clone, Debug, PartialEq)]
     pub enum WorldError {
         /// A model, integrator or collider refuses. The code is that of the source.
-        "part.build" #[error("{}{}: {}", before(place), source.kind, source.about)]
+        "part.build" #[error("{}{}: {}", before(part), source.kind, source.about)]
         #[allowed("{}", source.about.allowed().unwrap_or_default())] #[hint("{}", source.about.hint().unwrap_or_default())]
-        Build { place: Place, source: BuildError },
+        Build { part: Part, source: BuildError },
         /// The substep h \[s\] is longer than the integrator allows, and what it allows \[s\]: the largest frequency \[rad/s\], the largest
         /// damping rate \[1/s\], and the least number of substeps of a frame that is stable; a frame may not have as many.
         "step.unstable"
         #[error("the step h = {} s of `{integrator}` is unstable for body `{body}`", number(*h))]
         #[allowed("h <= {} s (its fastest motion: {} rad/s{})", number(*limit), number(*omega), damped(*damping))]
-        #[hint("{}", way_out(*substeps))]
+        #[hint("{}", remedy(*substeps))]
         UnstableStep { integrator: &'static str, body: String, h: f64, limit: f64, omega: f64, damping: f64, substeps: u32 },
         /// The motion left the finite numbers, or the range in which positions have digits: the time at the start of the substep \[s\], that
         /// of the last good frame \[s\], and how far from the origin positions keep their digits \[m\], where the node went beyond that.
@@ -129,10 +129,10 @@ messages! {
     }
 }
 
-impl Place {
+impl Part {
     /// A body by its name.
-    pub fn body(name: &str) -> Place {
-        Place::Body { name: name.into() }
+    pub fn body(name: &str) -> Part {
+        Part::Body { name: name.into() }
     }
 }
 

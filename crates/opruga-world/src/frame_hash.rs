@@ -129,7 +129,7 @@ impl<const D: usize> World<D> {
         let hash = |system: &System<D>| system.simd.run(OfBodies(system));
         let of_islands: Vec<[u64; WIDTH]> = self.islands.iter().map(|island| hash(&island.system)).collect();
         self.bodies().fold(0, |hash, body| {
-            let (island, lane) = self.place[body];
+            let (island, lane) = self.locations[body];
             join(hash, of_islands[island][lane])
         })
     }

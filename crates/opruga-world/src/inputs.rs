@@ -23,8 +23,8 @@ pub enum Input<const D: usize> {
         /// The name of the body.
         name: String,
     },
-    /// [`World::place_node`].
-    Place {
+    /// [`World::set_node`].
+    SetNode {
         /// The body, by its number.
         body: usize,
         /// The node.
@@ -89,7 +89,7 @@ impl<const D: usize> Input<D> {
                 out.count(2);
                 out.text(name);
             }
-            Input::Place { body, node, position, velocity } => {
+            Input::SetNode { body, node, position, velocity } => {
                 out.count(3);
                 out.count(*body as u64);
                 out.count(u64::from(*node));
@@ -116,7 +116,7 @@ impl<const D: usize> Input<D> {
             3 => {
                 let (body, node) = (reader.count()? as usize, reader.count()? as u32);
                 let [position, velocity] = reader.vectors::<D>()?[..] else { return Err(unknown()) };
-                Input::Place { body, node, position, velocity }
+                Input::SetNode { body, node, position, velocity }
             }
             _ => return Err(unknown()),
         };
@@ -349,7 +349,7 @@ mod tests {
             ("[a-z.]{0,9}", prop::collection::vec(-9.0..9.0f64, 0..4))
                 .prop_map(|(path, x)| Input::Set { path, value: Value::Numbers(x) }),
             "[a-z]{0,9}".prop_map(|name| Input::Remove { name }),
-            (0..9usize, any::<u32>(), vector(), vector()).prop_map(|(body, node, position, velocity)| Input::Place {
+            (0..9usize, any::<u32>(), vector(), vector()).prop_map(|(body, node, position, velocity)| Input::SetNode {
                 body,
                 node,
                 position,

@@ -29,7 +29,7 @@ impl<const D: usize> World<D> {
             self.blueprint.bodies[*body].models.iter().any(|model| model.spec().has_role(Role::OwnsCells))
         };
         let mut first: Option<(usize, u32, Found)> = None;
-        let (mut count, mut near) = (0, 0);
+        let (mut count, mut uncertain) = (0, 0);
         for body in self.bodies().filter(solid) {
             let shapes = self.shapes_of_cells(body);
             for cell in self.cell_states(body) {
@@ -44,7 +44,7 @@ impl<const D: usize> World<D> {
                     _ => continue,
                 };
                 let certain = matches!(found, Found::Inverted(_));
-                (count, near) = if certain { (count + 1, near) } else { (count, near + 1) };
+                (count, uncertain) = if certain { (count + 1, uncertain) } else { (count, uncertain + 1) };
                 // What is certain is named before what is not.
                 if first.as_ref().is_none_or(|(.., known)| certain && matches!(known, Found::Nearly(_))) {
                     first = Some((body, cell.cell, found));
@@ -52,7 +52,7 @@ impl<const D: usize> World<D> {
             }
         }
         let (body, cell, Found::Inverted(ratio) | Found::Nearly(ratio)) = first?;
-        let cells = match (count, near) {
+        let cells = match (count, uncertain) {
             (count, 0) => InvertedCells::Certain { count },
             (0, count) => InvertedCells::Perhaps { count },
             (count, perhaps) => InvertedCells::Both { count, perhaps },
@@ -66,7 +66,7 @@ impl<const D: usize> World<D> {
             help: self.what_rights_cells(body),
             unfold: self.or_unfold(),
         };
-        Some(Warning::new(warning, count + near))
+        Some(Warning::new(warning, count + uncertain))
     }
 
     /// What the shapes of the cells of a body show, in the order of its cells. Cells that have no positive J at rest, such as those with

@@ -235,16 +235,19 @@ impl<const D: usize> Island<D> {
         self.save(plan.start);
         self.potential_before = self.potential();
         let swept = self.swept_bounds(plan);
-        let near = self.reaches(plan, &swept);
-        let mut outcome = self.attempt(plan, near);
+        let may_touch = self.reaches(plan, &swept);
+        let mut outcome = self.attempt(plan, may_touch);
         // A body that left the region swept by its velocities, or found no end of a step, might have met an obstacle: once
         // more, looking at all.
-        if !near && plan.colliders.is_some() && outcome.as_ref().map_or(true, |after| left(&swept, &after.position)) {
+        if !may_touch
+            && plan.colliders.is_some()
+            && outcome.as_ref().map_or(true, |after| left(&swept, &after.position))
+        {
             self.restore();
             outcome = self.attempt(plan, true);
         }
         if plan.unfold.is_some() && outcome.is_ok() {
-            outcome = self.recover(plan, near);
+            outcome = self.recover(plan, may_touch);
         }
         match outcome {
             Ok(survey) => {
@@ -280,10 +283,10 @@ impl<const D: usize> Island<D> {
         Ok(survey(&self.system))
     }
 
-    pub(crate) fn attempt(&mut self, plan: &FramePlan<D>, near: bool) -> Result<Survey<D>, StepError> {
+    pub(crate) fn attempt(&mut self, plan: &FramePlan<D>, may_touch: bool) -> Result<Survey<D>, StepError> {
         self.system.work = Work8::default();
         self.system.contacts = None;
-        if let (true, Some(colliders)) = (near, plan.colliders) {
+        if let (true, Some(colliders)) = (may_touch, plan.colliders) {
             self.system.contacts = Some(Arc::clone(colliders).into_contacts());
         }
         self.begin_path(plan);
@@ -342,8 +345,8 @@ impl<const D: usize> Island<D> {
         let system = &self.system;
         for node in 0..system.nodes {
             for body in 0..system.bodies {
-                let place = system.layout.place(node, body);
-                let (x, v) = (system.state.x.at(place), system.state.v.at(place));
+                let index = system.layout.index(node, body);
+                let (x, v) = (system.state.x.at(index), system.state.v.at(index));
                 let finite = x.iter().chain(&v).all(|c| c.is_finite());
                 if !finite || x.iter().any(|c| c.abs() > self.range) {
                     let range = finite.then_some(self.range);

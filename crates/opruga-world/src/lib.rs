@@ -44,7 +44,7 @@ mod node_states;
 mod other_balances;
 mod path;
 mod path_faults;
-mod pin_ways;
+mod pin_travel;
 mod plausible;
 mod population;
 mod problems;

@@ -17,21 +17,21 @@ fn isotropic<const D: usize>(value: f64) -> [[f64; D]; D] {
     core::array::from_fn(|i| core::array::from_fn(|j| if i == j { value } else { 0.0 }))
 }
 
-/// Adds a force at a place and enters its power.
-fn push<const D: usize>(tile: &mut Tile<D>, view: &View<D>, place: usize, force: [f64; D]) {
-    let k = place - tile.range.start;
+/// Adds a force at an index and enters its power.
+fn push<const D: usize>(tile: &mut Tile<D>, view: &View<D>, index: usize, force: [f64; D]) {
+    let k = index - tile.range.start;
     let mut power = 0.0;
     for d in 0..D {
         tile.force[d][k] += force[d];
-        power += force[d] * view.v[d][place];
+        power += force[d] * view.v[d][index];
     }
-    tile.power[place % WIDTH] += power;
+    tile.power[index % WIDTH] += power;
 }
 
 /// Given forces on nodes, with a factor over time.
 #[derive(Debug)]
 pub(crate) struct NodeForces<const D: usize> {
-    /// Place and force [N], places rising.
+    /// Index and force [N], indices rising.
     pub(crate) entries: Vec<(usize, [f64; D])>,
     /// Factor over time, rows `[t, factor]`; empty: 1.
     pub(crate) curve: Vec<Vec<f64>>,
@@ -48,10 +48,10 @@ impl<const D: usize> Potential<D> for NodeForces<D> {
     }
     fn add_force(&self, _simd: Simd, view: &View<D>, _scratch: &[f64], tile: &mut Tile<D>) {
         let factor = factor(&self.curve, view.time);
-        let first = self.entries.partition_point(|(place, _)| *place < tile.range.start);
-        let last = self.entries.partition_point(|(place, _)| *place < tile.range.end);
-        for (place, force) in &self.entries[first..last] {
-            push(tile, view, *place, force.map(|f| f * factor));
+        let first = self.entries.partition_point(|(index, _)| *index < tile.range.start);
+        let last = self.entries.partition_point(|(index, _)| *index < tile.range.end);
+        for (index, force) in &self.entries[first..last] {
+            push(tile, view, *index, force.map(|f| f * factor));
         }
     }
 }
@@ -124,7 +124,7 @@ pub(crate) struct FollowerPressure<const D: usize> {
     pressure: f64,
     curve: Vec<Vec<f64>>,
     stride: usize,
-    /// Places of the nodes of every side.
+    /// Indices of the nodes of every side.
     sides: Vec<Vec<usize>>,
     /// For each number of nodes, the points of such sides.
     points: Vec<Vec<SidePoint>>,
@@ -137,7 +137,7 @@ impl<const D: usize> FollowerPressure<D> {
     }
     /// Where the nodes of a side are.
     fn corners(view: &View<D>, side: &[usize]) -> [[f64; D]; MOST_SIDE_NODES] {
-        core::array::from_fn(|n| side.get(n).map_or([0.0; D], |&place| view.position(place)))
+        core::array::from_fn(|n| side.get(n).map_or([0.0; D], |&index| view.position(index)))
     }
 }
 
@@ -147,7 +147,7 @@ impl<const D: usize> Potential<D> for FollowerPressure<D> {
     }
     fn stencils(&self, visit: &mut dyn FnMut(&[u32])) {
         for side in &self.sides {
-            let nodes: Vec<u32> = side.iter().map(|place| (place / self.stride) as u32).collect();
+            let nodes: Vec<u32> = side.iter().map(|index| (index / self.stride) as u32).collect();
             visit(&nodes);
         }
     }
@@ -160,9 +160,9 @@ impl<const D: usize> Potential<D> for FollowerPressure<D> {
             let x = FollowerPressure::corners(view, side);
             for point in &self.points[side.len()] {
                 let area = side_vector(point, &x);
-                for (&place, shape) in side.iter().zip(point.shape) {
-                    if tile.range.contains(&place) {
-                        push(tile, view, place, area.map(|a| a * (strength * point.weight * shape)));
+                for (&index, shape) in side.iter().zip(point.shape) {
+                    if tile.range.contains(&index) {
+                        push(tile, view, index, area.map(|a| a * (strength * point.weight * shape)));
                     }
                 }
             }
@@ -210,11 +210,11 @@ impl<const D: usize> FollowerPressure<D> {
     }
 }
 
-/// A spring, critically damped on the held mass, from a moving pointer to a node or to a point of a facet.
+/// A spring, critically damped on the grabbed mass, from a moving pointer to a node or to a point of a facet.
 #[derive(Debug)]
 pub(crate) struct Pull<const D: usize> {
-    /// Places of the held nodes and their shares, which add up to one.
-    pub(crate) held: Vec<(usize, f64)>,
+    /// Indices of the grabbed nodes and their shares, which add up to one.
+    pub(crate) grabbed: Vec<(usize, f64)>,
     /// Path of the pointer, rows `[t, x, y(, z)]`; it grows while somebody leads the pointer.
     pub(crate) path: Arc<RwLock<Vec<Vec<f64>>>>,
     /// Stiffness [N/m].
@@ -231,15 +231,15 @@ pub(crate) struct Pull<const D: usize> {
 const FAR: f64 = 1e-200;
 
 impl<const D: usize> Pull<D> {
-    /// The held point, the pointer, and the force on the held point [N].
+    /// The grabbed point, the pointer, and the force on the grabbed point [N].
     pub(crate) fn force(&self, view: &View<D>) -> ([f64; D], [f64; D], [f64; D], bool) {
         let path = self.path.read().unwrap_or_else(PoisonError::into_inner);
         let (pointer, speed) = along_path::<D>(&path, view.time);
         let (mut x, mut v) = ([0.0; D], [0.0; D]);
-        for (place, share) in &self.held {
+        for (index, share) in &self.grabbed {
             for d in 0..D {
-                x[d] += share * view.x[d][*place];
-                v[d] += share * view.v[d][*place];
+                x[d] += share * view.x[d][*index];
+                v[d] += share * view.v[d][*index];
             }
         }
         let mut force = [0.0; D];
@@ -281,13 +281,13 @@ impl<const D: usize> Potential<D> for Pull<D> {
         Ok(())
     }
     fn add_force(&self, _simd: Simd, view: &View<D>, scratch: &[f64], tile: &mut Tile<D>) {
-        for (place, share) in &self.held {
-            if tile.range.contains(place) {
+        for (index, share) in &self.grabbed {
+            if tile.range.contains(index) {
                 let mut force = [0.0; D];
                 for d in 0..D {
                     force[d] = share * scratch[d];
                 }
-                push(tile, view, *place, force);
+                push(tile, view, *index, force);
             }
         }
     }
@@ -302,12 +302,12 @@ impl<const D: usize> Potential<D> for Pull<D> {
 impl<const D: usize> Observe<D> for Pull<D> {}
 
 impl<const D: usize> Pull<D> {
-    /// A spring or damper of some strength at the held point; none where the force is at its limit.
+    /// A spring or damper of some strength at the grabbed point; none where the force is at its limit.
     fn add_spring(&self, view: &View<D>, strength: f64, sink: &mut dyn Sink<D>) {
         let (_, _, _, limited) = self.force(view);
         let strength = if limited { 0.0 } else { strength };
-        for (a, of_a) in &self.held {
-            for (b, of_b) in &self.held {
+        for (a, of_a) in &self.grabbed {
+            for (b, of_b) in &self.grabbed {
                 sink.block(*a, *b, isotropic(strength * of_a * of_b));
             }
         }
@@ -338,10 +338,10 @@ impl<const D: usize> Potential<D> for UserForce<D> {
         let stride = self.layout.stride();
         let nodes = tile.range.start / stride..tile.range.end.div_ceil(stride).min(view.nodes);
         for node in nodes {
-            let place = self.layout.place(node, self.body);
-            if tile.range.contains(&place) {
-                let force = (self.law)(node as u32, view.position(place), view.velocity(place), view.time);
-                push(tile, view, place, force);
+            let index = self.layout.index(node, self.body);
+            if tile.range.contains(&index) {
+                let force = (self.law)(node as u32, view.position(index), view.velocity(index), view.time);
+                push(tile, view, index, force);
             }
         }
     }
@@ -360,8 +360,8 @@ impl<const D: usize> UserForce<D> {
     fn add_slope(&self, view: &View<D>, [of_x, of_v]: [f64; 2], sink: &mut dyn Sink<D>) {
         const STEP: f64 = 6e-6;
         for node in 0..view.nodes {
-            let place = self.layout.place(node, self.body);
-            let (x, v) = (view.position(place), view.velocity(place));
+            let index = self.layout.index(node, self.body);
+            let (x, v) = (view.position(index), view.velocity(index));
             let mut slope = [[0.0; D]; D];
             for j in 0..D {
                 let step = STEP * (1.0 + of_x * x[j].abs() + of_v * v[j].abs());
@@ -377,7 +377,7 @@ impl<const D: usize> UserForce<D> {
                 }
             }
             let block = core::array::from_fn(|i| core::array::from_fn(|j| 0.5 * (slope[i][j] + slope[j][i])));
-            sink.block(place, place, block);
+            sink.block(index, index, block);
         }
     }
 }

@@ -108,10 +108,10 @@ impl<const D: usize> Meeting<D> {
             let nodes = touching.surface.add_surface(surface, own as u32);
             let Island { system, integrator, .. } = &all[island];
             let island = islands.binary_search(&island).unwrap_or(0);
-            let indices: Vec<u32> = nodes.iter().map(|n| system.layout.place(*n as usize, lane) as u32).collect();
+            let indices: Vec<u32> = nodes.iter().map(|n| system.layout.index(*n as usize, lane) as u32).collect();
             for index in &indices {
                 let mut inverse = [system.inverse_mass.at(*index as usize); D];
-                for pin in system.pins.iter().filter(|pin| pin.place == *index as usize) {
+                for pin in system.pins.iter().filter(|pin| pin.index == *index as usize) {
                     (0..D).filter(|d| pin.axes[*d]).for_each(|d| inverse[d] = 0.0);
                 }
                 touching.inverse_mass.push(inverse);

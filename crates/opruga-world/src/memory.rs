@@ -2,7 +2,7 @@
 
 use crate::blueprint::{Blueprint, BodyBlueprint};
 use crate::build::build_integrator;
-use crate::error::{Place, WorldError};
+use crate::error::{Part, WorldError};
 use crate::refusals::Refusal;
 use crate::registry::Registry;
 use opruga_core::error::BuildError;
@@ -33,7 +33,7 @@ impl<'a, const D: usize> Estimate<'a, D> {
         let (bytes, couplings) = needs.fold((0.0, 0.0), |sum, need| (sum.0 + need.bytes, sum.1 + need.couplings));
         let own = body.integrator.as_ref();
         let own = own
-            .map(|values| build_integrator(self.registry, values, || Place::IntegratorOf { name: body.name.clone() }));
+            .map(|values| build_integrator(self.registry, values, || Part::IntegratorOf { name: body.name.clone() }));
         let working = own.transpose()?.as_deref().unwrap_or(self.integrator).memory(&counts, couplings);
         let mesh = Arc::as_ptr(&body.mesh);
         let mesh_bytes = if mesh == self.mesh { 0.0 } else { counts.mesh_bytes::<D>() };
@@ -52,7 +52,7 @@ impl<'a, const D: usize> Estimate<'a, D> {
 /// # Errors
 /// [`WorldError`] where there is no such integrator.
 pub fn estimate<const D: usize>(blueprint: &Blueprint<D>, registry: &Registry<D>) -> Result<f64, WorldError> {
-    let integrator = build_integrator(registry, &blueprint.integrator, || Place::Section { path: "integrator" })?;
+    let integrator = build_integrator(registry, &blueprint.integrator, || Part::Section { path: "integrator" })?;
     Ok(estimate_of(&blueprint.bodies, &*integrator, registry)?.all)
 }
 
@@ -85,7 +85,7 @@ pub(crate) fn check<const D: usize>(
         _ if is_given(all) => return Ok(()),
         _ => Refusal::MachineMemory { all: shown, body: name.into(), largest },
     };
-    Err(WorldError::Build { place: Place::body(name), source: BuildError::of("memory", refusal) })
+    Err(WorldError::Build { part: Part::body(name), source: BuildError::of("memory", refusal) })
 }
 
 /// Asks for memory in one piece and gives it back: where a limit of the system is below that, building would end the program.

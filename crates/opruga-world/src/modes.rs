@@ -6,7 +6,7 @@
 //! that is about to buckle.
 
 use crate::any_scene::three;
-use crate::error::{Place, WorldError};
+use crate::error::{Part, WorldError};
 use crate::path_faults::PathFault;
 use crate::refusals::Refusal;
 use crate::world::World;
@@ -66,10 +66,8 @@ impl<const D: usize> World<D> {
             return Err(WorldError::path(format!("body {body}"), PathFault::NoBody {}));
         }
         let name = self.blueprint.bodies[body].name.clone();
-        let refuse = |refusal: Refusal| WorldError::Build {
-            place: Place::body(&name),
-            source: BuildError::of("modes", refusal),
-        };
+        let refuse =
+            |refusal: Refusal| WorldError::Build { part: Part::body(&name), source: BuildError::of("modes", refusal) };
         // By itself: others side by side do not matter.
         let mut system = self.island_of(&[body], &BTreeMap::new(), &self.integrator)?.system;
         let has_modes = |views: Views| views.hessian && views.symmetric;
@@ -80,7 +78,7 @@ impl<const D: usize> World<D> {
                 None => Refusal::NoModes { model: properties.name },
             }));
         }
-        let mut force = Columns::zeros(system.places());
+        let mut force = Columns::zeros(system.index_count());
         system.evaluate(Stage::Current, 0.0, 0.0, &mut force).map_err(|cause| refuse(Refusal::State { cause }))?;
         let mut motions = SmallMotions::about(system, count).map_err(refuse)?;
         let (mut modes, known) = motions.rigid();
@@ -120,7 +118,7 @@ impl<const D: usize> SmallMotions<D> {
         });
         let mass: Vec<f64> = (0..system.nodes).flat_map(|node| [system.mass.at(node); D]).collect();
         let mut pinned = vec![false; mass.len()];
-        system.held_axes(&mut |place, d| pinned[place * D + d] = true);
+        system.pinned_axes(&mut |node, d| pinned[node * D + d] = true);
         if pinned.iter().all(|pinned| *pinned) {
             return Err(Refusal::AllHeld {});
         }

@@ -70,7 +70,7 @@ impl<const D: usize> World<D> {
         let Some((island, lane)) = self.island_of_body(body) else { return NOTHING };
         let (layout, nodes) = (island.system.layout, island.system.nodes);
         let Some(last) = nodes.checked_sub(1) else { return NOTHING };
-        Strided { column: &column[layout.place(0, lane)..=layout.place(last, lane)], stride: layout.stride() }
+        Strided { column: &column[layout.index(0, lane)..=layout.index(last, lane)], stride: layout.stride() }
     }
 
     /// The vectors of a body's nodes, by their columns.

@@ -15,24 +15,24 @@ impl<const D: usize> World<D> {
         if self.handle(body).is_none() {
             return Vec::new();
         }
-        let (island, lane) = self.place[body];
+        let (island, lane) = self.locations[body];
         let system = &mut self.islands[island].system;
         let forces = match account {
             Some(account) => system.forces_of(account),
             None => system.forces(true),
         };
         let Ok(forces) = forces else { return Vec::new() };
-        (0..system.nodes).map(|node| forces.at(system.layout.place(node, lane))).collect()
+        (0..system.nodes).map(|node| forces.at(system.layout.index(node, lane))).collect()
     }
     /// The nodes of a body that pins hold now, along some of their axes or all.
-    pub fn held_nodes(&self, body: usize) -> Vec<u32> {
+    pub fn pinned_nodes(&self, body: usize) -> Vec<u32> {
         if self.handle(body).is_none() {
             return Vec::new();
         }
-        let (island, lane) = self.place[body];
+        let (island, lane) = self.locations[body];
         let system = &self.islands[island].system;
-        let held: std::collections::BTreeSet<usize> = system.pins.iter().map(|pin| pin.place).collect();
-        (0..system.nodes as u32).filter(|node| held.contains(&system.layout.place(*node as usize, lane))).collect()
+        let pinned: std::collections::BTreeSet<usize> = system.pins.iter().map(|pin| pin.index).collect();
+        (0..system.nodes as u32).filter(|node| pinned.contains(&system.layout.index(*node as usize, lane))).collect()
     }
     /// The forces of contact on the nodes of a body [N]: of obstacles in the coming substep, f = m (v' − v*)/h, and of bodies, and of corners
     /// and edges of obstacles, in the last one, impulse over h.
@@ -45,7 +45,7 @@ impl<const D: usize> World<D> {
         if let Some(clusters) = self.clusters.as_ref().filter(|_| self.handle(body).is_some()) {
             let (h, nodes) = (self.h(), self.node_count(body));
             forces.resize(nodes, [0.0; D]);
-            let stride = self.islands[self.place[body].0].system.layout.stride();
+            let stride = self.islands[self.locations[body].0].system.layout.stride();
             for meeting in clusters.meetings().filter(|meeting| meeting.bodies.contains(&body)) {
                 meeting.add_forces(body, h, stride, &mut forces);
             }
@@ -55,18 +55,18 @@ impl<const D: usize> World<D> {
 
     fn obstacle_forces(&mut self, body: usize) -> Vec<[f64; D]> {
         let Some(colliders) = self.colliders.clone().filter(|_| self.handle(body).is_some()) else { return Vec::new() };
-        let (h, time, (island, lane)) = (self.h(), self.time(), self.place[body]);
+        let (h, time, (island, lane)) = (self.h(), self.time(), self.locations[body]);
         let system = &mut self.islands[island].system;
         let Ok(forces) = system.forces(true) else { return Vec::new() };
-        let (places, layout) = (system.places(), system.layout);
+        let (index_count, layout) = (system.index_count(), system.layout);
         let used = system.nodes * layout.stride();
-        let (mut x, mut v) = (Columns::zeros(places), Columns::zeros(places));
-        for place in 0..used {
-            let mass = system.mass.at(place);
+        let (mut x, mut v) = (Columns::zeros(index_count), Columns::zeros(index_count));
+        for index in 0..used {
+            let mass = system.mass.at(index);
             for d in 0..D {
-                let now = system.state.v.0[d][place];
-                v.0[d][place] = if mass > 0.0 { now + h * forces.0[d][place] / mass } else { now };
-                x.0[d][place] = system.state.x.0[d][place] + h * v.0[d][place];
+                let now = system.state.v.0[d][index];
+                v.0[d][index] = if mass > 0.0 { now + h * forces.0[d][index] / mass } else { now };
+                x.0[d][index] = system.state.x.0[d][index] + h * v.0[d][index];
             }
         }
         let free = v.clone();
@@ -74,8 +74,8 @@ impl<const D: usize> World<D> {
         colliders.resolve(
             system.simd,
             &mut Moved {
-                range: 0..places,
-                places_used: used,
+                range: 0..index_count,
+                padding_start: used,
                 before: system.state.x.0.each_ref().map(|column| &**column),
                 x: &mut x,
                 v: &mut v,
@@ -90,12 +90,12 @@ impl<const D: usize> World<D> {
                 work_correction: &mut correction,
             },
         );
-        let held: std::collections::BTreeSet<usize> = system.pins.iter().map(|pin| pin.place).collect();
-        let force = |place: usize| -> [f64; D] {
-            let share = if held.contains(&place) { 0.0 } else { system.mass.at(place) / h };
-            core::array::from_fn(|d| share * (v.0[d][place] - free.0[d][place]))
+        let pinned: std::collections::BTreeSet<usize> = system.pins.iter().map(|pin| pin.index).collect();
+        let force = |index: usize| -> [f64; D] {
+            let share = if pinned.contains(&index) { 0.0 } else { system.mass.at(index) / h };
+            core::array::from_fn(|d| share * (v.0[d][index] - free.0[d][index]))
         };
-        (0..system.nodes).map(|node| force(layout.place(node, lane))).collect()
+        (0..system.nodes).map(|node| force(layout.index(node, lane))).collect()
     }
     /// The sum of the forces that pins exert on nodes [N]; NaN where there is no such body, or one of the nodes is not there.
     pub fn reaction(&mut self, body: usize, nodes: &[u32]) -> [f64; D] {
@@ -103,36 +103,36 @@ impl<const D: usize> World<D> {
         if !self.slots.is_there(body) || nodes.iter().any(|node| *node as usize >= count) {
             return [f64::NAN; D];
         }
-        let (island, lane) = self.place[body];
+        let (island, lane) = self.locations[body];
         let still = self.islands[island].integrator.is_static();
         let frame = self.blueprint.time.frame;
         let system = &mut self.islands[island].system;
         let mut sum = [0.0; D];
         let Ok(forces) = system.forces(true) else { return sum };
         // How pins accelerate what they hold; nothing does in statics.
-        let mut held = vec![None; system.nodes * D];
+        let mut rates = vec![None; system.nodes * D];
         for pin in &system.pins {
-            let node = pin.place / system.layout.stride();
-            if system.layout.place(node, lane) != pin.place {
+            let node = pin.index / system.layout.stride();
+            if system.layout.index(node, lane) != pin.index {
                 continue;
             }
             let rate = if still { [0.0; D] } else { pin.acceleration(system.time, frame) };
-            (0..D).filter(|d| pin.axes[*d]).for_each(|d| held[node * D + d] = Some(rate[d]));
+            (0..D).filter(|d| pin.axes[*d]).for_each(|d| rates[node * D + d] = Some(rate[d]));
         }
         let inertia = system.inertia.as_ref().filter(|_| !still).map(|inertia| {
-            let mut a: Vec<f64> = held.iter().map(|rate| rate.unwrap_or(0.0)).collect();
-            let is_held: Vec<bool> = held.iter().map(Option::is_some).collect();
+            let mut a: Vec<f64> = rates.iter().map(|rate| rate.unwrap_or(0.0)).collect();
+            let is_pinned: Vec<bool> = rates.iter().map(Option::is_some).collect();
             // Where masses are coupled there are no obstacles, so that these are all forces on what is free.
-            accelerations(system, &is_held, &system.node_by_node(&forces), &mut a);
+            accelerations(system, &is_pinned, &system.node_by_node(&forces), &mut a);
             (inertia, a)
         });
         for node in nodes.iter().map(|node| *node as usize) {
-            let place = system.layout.place(node, lane);
+            let index = system.layout.index(node, lane);
             let more = inertia.as_ref().map_or([0.0; D], |(inertia, a)| inertia.product::<D>(node, a));
             // A node that two pins hold is held by one force all the same.
             for d in 0..D {
-                if let Some(rate) = held[node * D + d] {
-                    sum[d] += system.mass.at(place) * rate + more[d] - forces.0[d][place];
+                if let Some(rate) = rates[node * D + d] {
+                    sum[d] += system.mass.at(index) * rate + more[d] - forces.0[d][index];
                 }
             }
         }

@@ -13,7 +13,7 @@
 //! three times round holds what they gave, though its ends lie where those of the bar at rest do. A node that was led counts with the
 //! way that it has gone, beyond one of all pins as a whole, where that is longer: U ≤ Σ |fᵢ| sᵢ where the forces grew on the way.
 
-use crate::pin_ways::ways;
+use crate::pin_travel::travel_lengths;
 use crate::warnings::{Warning, WorldWarning};
 use crate::world::World;
 use opruga_core::potential::Properties;
@@ -86,7 +86,7 @@ impl<const D: usize> World<D> {
             }
             let Some((energies, forces)) = elastic(&island.system, self.time()) else { continue };
             for body in bodies {
-                let energy = energies[self.place[body].1];
+                let energy = energies[self.locations[body].1];
                 let nodes = self.nodes_of(body, &forces);
                 if !(energy > 0.0 && beyond_whole(&nodes, D) <= REST * energy) {
                     continue;
@@ -127,28 +127,28 @@ impl<const D: usize> World<D> {
     fn is_judged(&self, body: usize) -> bool {
         let models = self.blueprint.bodies[body].models.iter();
         let mut solids = models.filter(|model| model.spec().has_role(Role::OwnsCells)).peekable();
-        let members = &self.islands[self.place[body].0].system.members;
+        let members = &self.islands[self.locations[body].0].system.members;
         let turns = members.iter().any(|member| member.potential.properties().acts_between_nodes == Some(true));
         (turns || solids.peek().is_some()) && solids.all(|model| model.text("material") != Some("linear"))
     }
 
     fn nodes_of(&self, body: usize, forces: &Columns<D>) -> Vec<Node> {
-        let (island, lane) = self.place[body];
+        let (island, lane) = self.locations[body];
         let system = &self.islands[island].system;
         let layout = system.layout;
         let mesh = &self.blueprint.bodies[body].mesh;
         let mut led = vec![0.0; mesh.positions.len()];
-        let node_at: BTreeMap<usize, usize> = (0..led.len()).map(|node| (layout.place(node, lane), node)).collect();
-        let pins: Vec<_> = system.pins.iter().filter(|pin| node_at.contains_key(&pin.place)).collect();
-        for (pin, way) in pins.iter().zip(ways(&pins, system.time)) {
-            let led = &mut led[node_at[&pin.place]];
-            *led = led.larger(way);
+        let node_at: BTreeMap<usize, usize> = (0..led.len()).map(|node| (layout.index(node, lane), node)).collect();
+        let pins: Vec<_> = system.pins.iter().filter(|pin| node_at.contains_key(&pin.index)).collect();
+        for (pin, travel) in pins.iter().zip(travel_lengths(&pins, system.time)) {
+            let led = &mut led[node_at[&pin.index]];
+            *led = led.larger(travel);
         }
         let of = |node: (usize, &[f64; D])| Node {
             rest: in_space(node.1),
             now: in_space(&self.position(body, node.0 as u32)),
             velocity: in_space(&self.velocity(body, node.0 as u32)),
-            force: in_space(&forces.at(layout.place(node.0, lane))),
+            force: in_space(&forces.at(layout.index(node.0, lane))),
             mass: self.node_mass(body, node.0 as u32),
             led: led[node.0],
         };
@@ -157,25 +157,25 @@ impl<const D: usize> World<D> {
 
     /// Whether any cell has another shape than at rest.
     fn is_strained(&self, body: usize, nodes: &[Node]) -> bool {
-        let odd = |ratio: f64| (ratio - 1.0).abs() > STRAINED;
+        let strained = |ratio: f64| (ratio - 1.0).abs() > STRAINED;
         let mesh = &self.blueprint.bodies[body].mesh;
         let drawn = mesh.cells.iter().any(|(_, _, cell)| {
             let pairs =
                 cell.iter().enumerate().flat_map(|(k, a)| cell[..k].iter().map(move |b| (*a as usize, *b as usize)));
             pairs.into_iter().any(|(a, b)| {
                 let (a, b) = (&nodes[a], &nodes[b]);
-                odd(length(&less(&a.now, &b.now)) / length(&less(&a.rest, &b.rest)))
+                strained(length(&less(&a.now, &b.now)) / length(&less(&a.rest, &b.rest)))
             })
         });
-        drawn || self.cell_states(body).iter().any(|cell| odd(cell.smallest_volume_ratio))
+        drawn || self.cell_states(body).iter().any(|cell| strained(cell.smallest_volume_ratio))
     }
 }
 
 /// The energies of the models of a system by which its bodies are judged [J], and the forces of these on all nodes at rest [N]; none where they
 /// have no meaning.
 fn elastic<const D: usize>(system: &System<D>, time: f64) -> Option<([f64; WIDTH], Columns<D>)> {
-    let still = Columns::<D>::zeros(system.places());
-    let mut forces = Columns::<D>::zeros(system.places());
+    let still = Columns::<D>::zeros(system.index_count());
+    let mut forces = Columns::<D>::zeros(system.index_count());
     let view = View { v: still.slices(), threads: 1, ..system.view(Stage::Current, time) };
     let mut energies = [0.0; WIDTH];
     let is_asked = |properties: Properties| properties.judges_balance || properties.acts_between_nodes == Some(true);
@@ -188,7 +188,7 @@ fn elastic<const D: usize>(system: &System<D>, time: f64) -> Option<([f64; WIDTH
             Layout::Batch => (0..WIDTH).for_each(|lane| energies[lane] += energy[lane]),
         }
         let mut tile = Tile {
-            range: 0..system.places(),
+            range: 0..system.index_count(),
             force: forces.0.each_mut().map(|column| &mut **column),
             power: &mut [0.0; WIDTH],
             weight: None,

@@ -1,7 +1,7 @@
 //! What a scene may well say, but hardly means: units that do not go together, bodies that begin inside an obstacle.
 
 use crate::blueprint::{BodyBlueprint, Mass};
-use crate::error::{Place, WorldError};
+use crate::error::{Part, WorldError};
 use crate::island::Island;
 use crate::masses::node_masses;
 use crate::refusals::Refusal;
@@ -44,8 +44,8 @@ pub(crate) fn sag<const D: usize>(body: &BodyBlueprint<D>, gravity: &[f64; D], s
     let size = longest_side(&body.mesh);
     let sag = mass * g / stiffness;
     // Without models there is nothing to sag; not a number where all is zero.
-    let odd = stiffness > 0.0 && sag.is_finite() && sag > size && size > 0.0;
-    odd.then(|| Warning::new(WorldWarning::Sag { body: body.common_name().into(), mass, sag, size }, 1))
+    let implausible = stiffness > 0.0 && sag.is_finite() && sag > size && size > 0.0;
+    implausible.then(|| Warning::new(WorldWarning::Sag { body: body.common_name().into(), mass, sag, size }, 1))
 }
 
 /// Positions are rounded by at most this part of the distance between neighbouring nodes.
@@ -127,13 +127,13 @@ impl<const D: usize> World<D> {
         }
         let most =
             |numbers: &[f64]| numbers.iter().fold(0.0, |most: f64, x| if x.abs() > most { x.abs() } else { most });
-        let refuse = |part: Place, kind: &str, refusal: Refusal| {
-            Err(WorldError::Build { place: part, source: BuildError::of(kind, refusal) })
+        let refuse = |part: Part, kind: &str, refusal: Refusal| {
+            Err(WorldError::Build { part, source: BuildError::of(kind, refusal) })
         };
         let g = most(&self.blueprint.surroundings.gravity);
         if g > LARGEST {
             let refusal = Refusal::Weight { weight: g, most: LARGEST };
-            return refuse(Place::Section { path: "world.gravity" }, "gravity", refusal);
+            return refuse(Part::Section { path: "world.gravity" }, "gravity", refusal);
         }
         let finite = |island: &&Island<D>| {
             let (survey, stock) = (&island.survey, &island.stock);
@@ -147,7 +147,7 @@ impl<const D: usize> World<D> {
             true => Refusal::BeyondFinite { word, value: format!("{value:?}"), most: LARGEST },
             false => Refusal::Sums {},
         };
-        refuse(Place::body(&body.name), "mass", refusal)
+        refuse(Part::body(&body.name), "mass", refusal)
     }
 }
 
@@ -169,9 +169,9 @@ impl<const D: usize> World<D> {
                 continue;
             }
             // What is held does not move, wherever it is.
-            let held = self.held_nodes(body);
+            let pinned = self.pinned_nodes(body);
             let nodes: Vec<u32> =
-                (0..self.node_count(body) as u32).filter(|node| held.binary_search(node).is_err()).collect();
+                (0..self.node_count(body) as u32).filter(|node| pinned.binary_search(node).is_err()).collect();
             let points: Vec<[f64; D]> = nodes.iter().map(|node| self.position(body, *node)).collect();
             let Some(buried) = colliders.buried(&points, SHALLOW * size) else { continue };
             let name = own.common_name().to_string();

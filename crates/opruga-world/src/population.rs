@@ -31,18 +31,18 @@ impl<const D: usize> World<D> {
         Ok(number)
     }
 
-    /// The place that an added body takes.
-    fn place_for(&self, body: &BodyBlueprint<D>, source: Source) -> usize {
+    /// The slot that an added body takes.
+    fn slot_for(&self, body: &BodyBlueprint<D>, source: Source) -> usize {
         let origins = || self.slots.origin.iter().enumerate().skip(self.slots.initial);
         let end = self.slots.len();
         match source {
             // Commands of the scene name the bodies that others of them add by the numbers behind those at the start.
             Source::Command(_) => {
-                origins().find(|(_, origin)| **origin == Origin::Reserved).map_or(end, |(place, _)| place)
+                origins().find(|(_, origin)| **origin == Origin::Reserved).map_or(end, |(slot, _)| slot)
             }
             Source::Program => {
-                let free = |(place, origin): (usize, &Origin)| match origin {
-                    Origin::Free(like) => Some((place, *like)),
+                let free = |(slot, origin): (usize, &Origin)| match origin {
+                    Origin::Free(like) => Some((slot, *like)),
                     _ => None,
                 };
                 // Rather beside bodies like it, where a batch keeps a seat.
@@ -50,7 +50,7 @@ impl<const D: usize> World<D> {
                     like.is_some_and(|other| alike(&self.blueprint.bodies[other], body))
                 };
                 let found = origins().filter_map(free).find(beside).or_else(|| origins().find_map(free));
-                found.map_or(end, |(place, _)| place)
+                found.map_or(end, |(slot, _)| slot)
             }
         }
     }
@@ -62,13 +62,13 @@ impl<const D: usize> World<D> {
         crate::validity::body(&body)?;
         crate::memory::check(std::slice::from_ref(&body), &*self.integrator, &self.registry, self.options.most_bytes)?;
         if source == Source::Program {
-            // Places of bodies that the scene is yet to add stay theirs.
+            // Slots of bodies that the scene is yet to add stay theirs.
             let coming = self.blueprint.commands.iter().filter(|c| matches!(c.action, Action::Add(_))).count();
             if coming > 0 {
                 self.reserve(self.slots.initial + coming - 1, Origin::Reserved);
             }
         }
-        let number = self.place_for(&body, source);
+        let number = self.slot_for(&body, source);
         let fresh = BTreeMap::from([(number, crate::build::initial_state(&body))]);
         let kept = self.slots.clone();
         let (origin, generation) = match source {
@@ -180,7 +180,7 @@ impl<const D: usize> World<D> {
         }
         let outcome = self.regroup(&Touched::Bodies(Vec::new()), &BTreeMap::new());
         match &outcome {
-            Ok(()) => self.free_places(),
+            Ok(()) => self.free_slots(),
             Err(_) => (self.slots, self.running, self.warnings) = kept,
         }
         outcome
@@ -236,9 +236,9 @@ impl<const D: usize> World<D> {
 }
 
 impl<const D: usize> World<D> {
-    /// Makes sure that there is a place, without a body so far.
-    pub(crate) fn reserve(&mut self, place: usize, origin: Origin) {
-        while self.slots.len() <= place {
+    /// Makes sure that there is a slot, without a body so far.
+    pub(crate) fn reserve(&mut self, slot: usize, origin: Origin) {
+        while self.slots.len() <= slot {
             self.blueprint.bodies.push(BodyBlueprint::nobody());
             self.slots.put(self.slots.len(), origin, 0);
             if let Some(last) = self.slots.alive.last_mut() {
@@ -247,36 +247,36 @@ impl<const D: usize> World<D> {
         }
     }
 
-    /// Forgets the bodies of the program that are gone, and gives their places free; those at the end of the list are given up.
-    pub(crate) fn free_places(&mut self) {
-        for place in self.slots.initial..self.slots.len() {
-            if self.slots.alive[place] || self.slots.origin[place] != Origin::Program {
+    /// Forgets the bodies of the program that are gone, and gives their slots free; those at the end of the list are given up.
+    pub(crate) fn free_slots(&mut self) {
+        for slot in self.slots.initial..self.slots.len() {
+            if self.slots.alive[slot] || self.slots.origin[slot] != Origin::Program {
                 continue;
             }
-            let gone = &self.blueprint.bodies[place];
+            let gone = &self.blueprint.bodies[slot];
             let like = |other: &usize| {
-                *other != place
+                *other != slot
                     && self.slots.origin[*other].is_taken()
                     && (self.slots.alive[*other] || self.slots.origin[*other] != Origin::Program)
                     && alike(gone, &self.blueprint.bodies[*other])
             };
             let beside = (0..self.slots.len()).find(like);
             for origin in &mut self.slots.origin {
-                if *origin == Origin::Free(Some(place)) {
+                if *origin == Origin::Free(Some(slot)) {
                     *origin = Origin::Free(beside);
                 }
             }
-            self.slots.origin[place] = Origin::Free(beside);
-            self.blueprint.bodies[place] = BodyBlueprint::nobody();
-            self.at_start.bodies.remove(&place);
-            self.user_forces.retain(|(handle, _)| handle.index != place);
-            self.laws_saved.remove(&place);
+            self.slots.origin[slot] = Origin::Free(beside);
+            self.blueprint.bodies[slot] = BodyBlueprint::nobody();
+            self.at_start.bodies.remove(&slot);
+            self.user_forces.retain(|(handle, _)| handle.index != slot);
+            self.laws_saved.remove(&slot);
         }
         while matches!(self.slots.origin.last(), Some(Origin::Free(_))) {
             let count = self.slots.len() - 1;
             self.slots.truncate(count);
             self.blueprint.bodies.truncate(count);
-            self.place.truncate(count);
+            self.locations.truncate(count);
         }
     }
 }

@@ -60,7 +60,7 @@ impl<const D: usize> World<D> {
                 continue;
             }
             // Building stops at the first model that refuses; each of the others is asked by itself.
-            let place = problems.len();
+            let start = problems.len();
             for model in &body.models {
                 let alone = BodyBlueprint { models: vec![model.clone()], pins: Vec::new(), ..body.clone() };
                 // Cells that it leaves to the others are no fault of its own.
@@ -70,8 +70,8 @@ impl<const D: usize> World<D> {
                 };
                 problems.extend(refused(part(vec![alone], Vec::new(), Vec::new())).filter(own));
             }
-            if !problems[place..].contains(&first) {
-                problems.insert(place, first);
+            if !problems[start..].contains(&first) {
+                problems.insert(start, first);
             }
         }
         problems

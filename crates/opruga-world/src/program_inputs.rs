@@ -35,7 +35,7 @@ impl<const D: usize> World<D> {
             Input::Command(command) => self.command(command.clone()),
             Input::Set { path, value } => self.set(path, value.clone()),
             Input::Remove { name } => self.remove_body(name),
-            Input::Place { body, node, position, velocity } => self.place_node(*body, *node, *position, *velocity),
+            Input::SetNode { body, node, position, velocity } => self.set_node(*body, *node, *position, *velocity),
             Input::Add { .. } | Input::Force { .. } | Input::Act => Err(input.unwritable()),
         }
     }
@@ -44,7 +44,7 @@ impl<const D: usize> World<D> {
     ///
     /// # Errors
     /// [`WorldError::Path`] if there is no such node, or a number is not finite; the world stays as it was.
-    pub fn place_node(
+    pub fn set_node(
         &mut self,
         body: usize,
         node: u32,
@@ -58,11 +58,11 @@ impl<const D: usize> World<D> {
         if let Some(x) = position.iter().chain(&velocity).find(|x| !x.is_finite()) {
             return refuse(PathFault::NoPosition { value: *x });
         }
-        let (island, lane) = self.place[body];
+        let (island, lane) = self.locations[body];
         let island = &mut self.islands[island];
-        let place = island.system.layout.place(node as usize, lane);
-        island.system.state.x.set(place, position);
-        island.system.state.v.set(place, velocity);
+        let index = island.system.layout.index(node as usize, lane);
+        island.system.state.x.set(index, position);
+        island.system.state.v.set(index, velocity);
         // What an integrator remembers does not lead to here.
         island.system.history.reset();
         island.refresh();
@@ -70,7 +70,7 @@ impl<const D: usize> World<D> {
         let before = self.energy.total();
         self.flows.start += self.stock_energy() - before;
         self.refresh_ledger();
-        self.write_down(|| Input::Place { body, node, position, velocity });
+        self.write_down(|| Input::SetNode { body, node, position, velocity });
         Ok(())
     }
     /// Adds a force on every node of a body by a user's law of (node, position, velocity, time).

@@ -1,7 +1,7 @@
 //! Scenes that a program builds without a file: values by name, and blueprints with the defaults of the scene format.
 
 use crate::blueprint::{Blueprint, BodyBlueprint, ColliderBlueprint, Mass, Surroundings, Time};
-use crate::error::{Place, WorldError};
+use crate::error::{Part, WorldError};
 use crate::refusals::Refusal;
 use crate::registry::Registry;
 use opruga_core::error::BuildError;
@@ -18,7 +18,7 @@ fn values<const D: usize>(
     fields: &[(&str, Value)],
 ) -> Result<Values, WorldError> {
     let refuse = |about: AnyMessage| {
-        Err(WorldError::Build { place: Place::Section { path: what }, source: BuildError::of(kind, about) })
+        Err(WorldError::Build { part: Part::Section { path: what }, source: BuildError::of(kind, about) })
     };
     let Some(spec) = specs.iter().find(|spec| spec.kind == kind) else {
         let known = specs.iter().map(|spec| spec.kind).collect::<Vec<_>>().join(", ");
@@ -34,7 +34,7 @@ fn values<const D: usize>(
         Some(name) => refuse(Refusal::NoFieldGiven { name }.into()),
         None => match values.check_choices(spec) {
             Ok(()) => Ok(values),
-            Err(source) => Err(WorldError::Build { place: Place::Section { path: what }, source }),
+            Err(source) => Err(WorldError::Build { part: Part::Section { path: what }, source }),
         },
     }
 }

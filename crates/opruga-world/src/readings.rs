@@ -77,14 +77,14 @@ impl<const D: usize> World<D> {
     }
     /// The island of a body that is there, and its lane in it.
     pub(crate) fn island_of_body(&self, body: usize) -> Option<(&Island<D>, usize)> {
-        let (island, lane) = *self.place.get(body).filter(|_| self.slots.is_there(body))?;
+        let (island, lane) = *self.locations.get(body).filter(|_| self.slots.is_there(body))?;
         Some((self.islands.get(island)?, lane))
     }
     /// The system of a body that is there, and the index of one of its nodes in the columns.
     fn index_of(&self, body: usize, node: u32) -> Option<(&System<D>, usize)> {
         let (island, lane) = self.island_of_body(body)?;
         let system = &island.system;
-        ((node as usize) < system.nodes).then(|| (system, system.layout.place(node as usize, lane)))
+        ((node as usize) < system.nodes).then(|| (system, system.layout.index(node as usize, lane)))
     }
     /// The number of nodes of a body; 0 where there is no such body.
     pub fn node_count(&self, body: usize) -> usize {
@@ -109,7 +109,7 @@ impl<const D: usize> World<D> {
         if self.handle(body).is_none() {
             return Vec::new();
         }
-        let (island, lane) = self.place[body];
+        let (island, lane) = self.locations[body];
         let time = self.time();
         self.islands[island].readings(lane, time)
     }
@@ -118,7 +118,7 @@ impl<const D: usize> World<D> {
         if self.handle(body).is_none() {
             return Vec::new();
         }
-        let (island, lane) = self.place[body];
+        let (island, lane) = self.locations[body];
         let time = self.time();
         self.islands[island].node_pressures(lane, time)
     }
@@ -142,7 +142,7 @@ impl<const D: usize> World<D> {
         if self.handle(body).is_none() {
             return Vec::new();
         }
-        let (island, lane) = self.place[body];
+        let (island, lane) = self.locations[body];
         let system = &self.islands[island].system;
         let view = system.view(Stage::Current, self.time());
         let mut out: Vec<CellState> =
@@ -243,8 +243,8 @@ impl<const D: usize> World<D> {
         add(WorldWarning::Estimated { error_estimate: solver.error_estimate }, solver.estimated);
         add(WorldWarning::Conditioning { times: solver.conditioning }, solver.conditioned);
         add(WorldWarning::Disturbed {}, solver.disturbed);
-        if solver.odd_rests > 0 {
-            add(WorldWarning::DegenerateRest { worst: self.worst_cell() }, solver.odd_rests);
+        if solver.stayed_degenerate > 0 {
+            add(WorldWarning::DegenerateRest { worst: self.worst_cell() }, solver.stayed_degenerate);
         }
         add(WorldWarning::NoForce {}, self.missing_laws());
         if let Some((unloaded, part, body)) = self.load_left() {

@@ -3,7 +3,7 @@
 use crate::blueprint::{Blueprint, BodyBlueprint};
 use crate::build::{Builder, build_integrator};
 use crate::carried::{BodyHistory, BodyState};
-use crate::error::{Place, WorldError};
+use crate::error::{Part, WorldError};
 use crate::grouping::group;
 use crate::island::Island;
 use crate::world::World;
@@ -33,13 +33,13 @@ impl Touched {
 impl<const D: usize> World<D> {
     /// The state of a body that is there.
     pub(crate) fn state_of(&self, body: usize) -> BodyState<D> {
-        let (island, lane) = self.place[body];
+        let (island, lane) = self.locations[body];
         let system = &self.islands[island].system;
-        let place = |node| system.layout.place(node, lane);
+        let index = |node| system.layout.index(node, lane);
         let models = self.blueprint.bodies[body].models.len();
         BodyState {
-            x: (0..system.nodes).map(|n| system.state.x.at(place(n))).collect(),
-            v: (0..system.nodes).map(|n| system.state.v.at(place(n))).collect(),
+            x: (0..system.nodes).map(|n| system.state.x.at(index(n))).collect(),
+            v: (0..system.nodes).map(|n| system.state.v.at(index(n))).collect(),
             memory: system.members[..models]
                 .iter()
                 .map(|m| m.memory.iter().skip(lane).step_by(WIDTH).copied().collect())
@@ -61,7 +61,7 @@ impl<const D: usize> World<D> {
     /// On failure the old islands stay.
     pub(crate) fn rebuild(&mut self, bodies: &BTreeSet<usize>) -> Result<(), WorldError> {
         let there = bodies.iter().filter(|b| self.slots.is_there(**b));
-        let numbers: BTreeSet<usize> = there.map(|b| self.place[*b].0).collect();
+        let numbers: BTreeSet<usize> = there.map(|b| self.locations[*b].0).collect();
         if numbers.is_empty() {
             return Ok(());
         }
@@ -89,13 +89,13 @@ impl<const D: usize> World<D> {
     ) -> Result<(), WorldError> {
         let before = self.stock_energy();
         let integrator: Arc<_> =
-            build_integrator(&self.registry, &self.blueprint.integrator, || Place::Section { path: "integrator" })?
+            build_integrator(&self.registry, &self.blueprint.integrator, || Part::Section { path: "integrator" })?
                 .into();
         let groups = group(&self.blueprint.bodies, &self.slots, |body| self.batches(body));
         // For every group its old island, or one that is new.
         let mut found: Vec<Result<usize, Box<Island<D>>>> = Vec::with_capacity(groups.len());
         for members in &groups {
-            let old = self.place.get(members[0]).map(|place| place.0).filter(|number| {
+            let old = self.locations.get(members[0]).map(|location| location.0).filter(|number| {
                 self.islands.get(*number).is_some_and(|island| island.bodies == *members)
                     && members.iter().all(|b| !touched.contains(*b) && !fresh.contains_key(b))
             });
@@ -106,10 +106,10 @@ impl<const D: usize> World<D> {
         }
         let mut old: Vec<Option<Island<D>>> = std::mem::take(&mut self.islands).into_iter().map(Some).collect();
         self.integrator = integrator;
-        self.place = vec![(0, 0); self.blueprint.bodies.len()];
+        self.locations = vec![(0, 0); self.blueprint.bodies.len()];
         for (number, (members, island)) in groups.iter().zip(found).enumerate() {
             for (lane, body) in members.iter().enumerate() {
-                self.place[*body] = (number, lane);
+                self.locations[*body] = (number, lane);
             }
             match island {
                 Ok(kept) => self.islands.extend(old[kept].take()),

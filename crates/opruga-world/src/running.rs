@@ -8,8 +8,8 @@ use std::sync::{Arc, RwLock};
 pub(crate) enum Progress<const D: usize> {
     /// Its time has not come.
     Waiting,
-    /// It acts; a drag holds these nodes with these shares, a pin holds nodes at these places.
-    Acting { held: Vec<(u32, f64)>, anchors: Vec<[f64; D]> },
+    /// It acts; a drag holds these nodes with these shares, a pin holds nodes at these positions.
+    Acting { targets: Vec<(u32, f64)>, anchors: Vec<[f64; D]> },
     /// It is over.
     Done,
 }

@@ -64,7 +64,7 @@ impl<const D: usize> World<D> {
         }
     }
 
-    /// Bodies that have come since the start, place by place; a mesh that an earlier body has too is told by the place of that.
+    /// Bodies that have come since the start, slot by slot; a mesh that an earlier body has too is given by the slot of that.
     fn write_added(&self, out: &mut Writer<'_>) {
         let bodies = &self.blueprint.bodies;
         out.count((bodies.len() - self.slots.initial) as u64);
@@ -73,12 +73,12 @@ impl<const D: usize> World<D> {
             return;
         }
         let mut meshes: BTreeMap<*const Mesh<D>, usize> = BTreeMap::new();
-        for (place, body) in bodies.iter().enumerate() {
-            let first = *meshes.entry(Arc::as_ptr(&body.mesh)).or_insert(place);
-            if place < self.slots.initial {
+        for (slot, body) in bodies.iter().enumerate() {
+            let first = *meshes.entry(Arc::as_ptr(&body.mesh)).or_insert(slot);
+            if slot < self.slots.initial {
                 continue;
             }
-            match self.slots.origin[place] {
+            match self.slots.origin[slot] {
                 Origin::Scene | Origin::Free(_) => out.count(0),
                 Origin::Command(number) => {
                     out.count(1);
@@ -86,10 +86,10 @@ impl<const D: usize> World<D> {
                 }
                 Origin::Program => {
                     out.count(2);
-                    out.count(self.slots.generation[place]);
+                    out.count(self.slots.generation[slot]);
                     out.body(body);
-                    out.count(u64::from(first < place));
-                    match first < place {
+                    out.count(u64::from(first < slot));
+                    match first < slot {
                         true => out.count(first as u64),
                         false => out.mesh(&body.mesh),
                     }
@@ -170,9 +170,9 @@ impl<const D: usize> World<D> {
         known: &[Arc<Mesh<D>>],
     ) -> Result<(), WorldError> {
         for _ in 0..reader.length()? {
-            let place = self.slots.len();
+            let slot = self.slots.len();
             match reader.count()? {
-                0 => self.reserve(place, Origin::Free(None)),
+                0 => self.reserve(slot, Origin::Free(None)),
                 1 => {
                     let number = reader.count()? as usize;
                     let command = commands.get(number).map(|running| (&running.command.action, running.generation));
@@ -180,7 +180,7 @@ impl<const D: usize> World<D> {
                         return refused(SnapshotFault::NotAdded {});
                     };
                     self.blueprint.bodies.push((**body).clone());
-                    self.slots.put(place, Origin::Command(number), generation);
+                    self.slots.put(slot, Origin::Command(number), generation);
                 }
                 2 => {
                     let generation = reader.count()?;
@@ -203,9 +203,9 @@ impl<const D: usize> World<D> {
                     let body = BodyBlueprint { mesh, ..body };
                     crate::validity::body(&body)?;
                     self.blueprint.bodies.push(body);
-                    self.slots.put(place, Origin::Program, generation);
+                    self.slots.put(slot, Origin::Program, generation);
                 }
-                3 => self.reserve(place, Origin::Reserved),
+                3 => self.reserve(slot, Origin::Reserved),
                 _ => return refused(SnapshotFault::FromNowhere {}),
             }
         }

@@ -4,7 +4,7 @@ mod filling;
 mod from_files;
 mod rings;
 
-pub use filling::{Filling, LOST_AND_TOLD, Loss, filling};
+pub use filling::{Filling, Loss, REPORTED_LOSS, filling};
 pub use from_files::is_from_file;
 use from_files::{FILLING_OF_SURFACES, SPACING_OF_FILLINGS};
 
@@ -399,7 +399,7 @@ fn plane(shape: &Values, transform: &Transform<'_>) -> Result<Made<2>, MeshError
         }
         _ => either(shape)?,
     };
-    place(&mut mesh, transform)?;
+    apply_transform(&mut mesh, transform)?;
     Ok(Made { mesh, flipped, loss: None })
 }
 
@@ -420,7 +420,7 @@ fn space(shape: &Values, transform: &Transform<'_>) -> Result<Made<3>, MeshError
     if let Some(filling) = filling(shape)? {
         (mesh, loss) = filling.of(&mesh)?;
     }
-    place(&mut mesh, transform)?;
+    apply_transform(&mut mesh, transform)?;
     Ok(Made { mesh, flipped: false, loss })
 }
 
@@ -442,7 +442,7 @@ fn moved(mut mesh: Mesh<3>, by: [f64; 3]) -> Mesh<3> {
 ///
 /// # Errors
 /// Factors and angles that are not finite.
-pub fn place<const D: usize>(mesh: &mut Mesh<D>, transform: &Transform<'_>) -> Result<(), MeshError> {
+pub fn apply_transform<const D: usize>(mesh: &mut Mesh<D>, transform: &Transform<'_>) -> Result<(), MeshError> {
     if transform.scale != 1.0 {
         mesh.scale([transform.scale; D], [0.0; D])?;
     }

@@ -1,4 +1,4 @@
-//! The list of bodies: who is in which place of it, and handles that tell a body from another one in its place.
+//! The list of bodies: who is in which slot of it, and handles that tell a body from another one in its slot.
 
 use crate::blueprint::{BodyBlueprint, Mass};
 use opruga_mesh::Mesh;
@@ -7,14 +7,14 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// A body of one world by number and generation.
 ///
-/// No two bodies that a program or a user adds to a world have the same generation, also where one takes the place of another, and
+/// No two bodies that a program or a user adds to a world have the same generation, also where one takes the slot of another, and
 /// where a restored snapshot has taken the world back to before one of them came. So a handle means its body or none, never
 /// another one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BodyHandle {
-    /// The place in the list of bodies.
+    /// The slot in the list of bodies.
     pub index: usize,
-    /// Which of the bodies that have been there it is; bodies of the scene have 0, for their places are given to no others.
+    /// Which of the bodies that have been there it is; bodies of the scene have 0, for their slots are given to no others.
     pub generation: u64,
     /// The world.
     world: u64,
@@ -27,18 +27,18 @@ impl BodyHandle {
     }
 }
 
-/// Where the body in a place came from.
+/// Where the body in a slot came from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Origin {
     /// The scene: there at the start.
     Scene,
     /// The command of this number, which belongs to the scene.
     Command(usize),
-    /// A call of the program. Once the body is gone nothing is kept of it, and its place is free for another one.
+    /// A call of the program. Once the body is gone nothing is kept of it, and its slot is free for another one.
     Program,
-    /// Nobody: the place is free. Where a body lay in a batch, it is kept a seat beside bodies like this one.
+    /// Nobody: the slot is free. Where a body lay in a batch, it is kept a seat beside bodies like this one.
     Free(Option<usize>),
-    /// Nobody yet: the place of a body that a command of the scene will add, which names it by its number.
+    /// Nobody yet: the slot of a body that a command of the scene will add, which names it by its number.
     Reserved,
 }
 
@@ -49,7 +49,7 @@ impl Origin {
     }
 }
 
-/// Places in the list of bodies.
+/// Slots in the list of bodies.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Slots {
     pub(crate) alive: Vec<bool>,
@@ -87,7 +87,7 @@ impl Slots {
         self.alive.len()
     }
 
-    /// Whether there is a body in a place.
+    /// Whether there is a body in a slot.
     pub(crate) fn is_there(&self, body: usize) -> bool {
         self.alive.get(body).copied().unwrap_or(false)
     }
@@ -96,7 +96,7 @@ impl Slots {
         self.is_there(body).then(|| self.named(body))
     }
 
-    /// The handle of a body that was in a place last, whether it is there or not.
+    /// The handle of a body that was in a slot last, whether it is there or not.
     pub(crate) fn named(&self, body: usize) -> BodyHandle {
         BodyHandle { index: body, generation: self.generation[body], world: self.world }
     }
@@ -117,14 +117,14 @@ impl Slots {
         ACTED | self.acted
     }
 
-    /// Puts a body into a place, the next one or one that is free.
-    pub(crate) fn put(&mut self, place: usize, origin: Origin, generation: u64) {
-        if place == self.len() {
+    /// Puts a body into a slot, the next one or one that is free.
+    pub(crate) fn put(&mut self, slot: usize, origin: Origin, generation: u64) {
+        if slot == self.len() {
             self.alive.push(true);
             self.generation.push(generation);
             self.origin.push(origin);
         } else {
-            (self.alive[place], self.generation[place], self.origin[place]) = (true, generation, origin);
+            (self.alive[slot], self.generation[slot], self.origin[slot]) = (true, generation, origin);
         }
     }
 
@@ -136,7 +136,7 @@ impl Slots {
 }
 
 impl<const D: usize> BodyBlueprint<D> {
-    /// What stands in a place without a body: no name, no nodes.
+    /// What stands in a slot without a body: no name, no nodes.
     pub(crate) fn nobody() -> BodyBlueprint<D> {
         BodyBlueprint {
             name: String::new(),

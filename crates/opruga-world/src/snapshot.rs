@@ -47,7 +47,7 @@ impl<const D: usize> World<D> {
             if !alive {
                 continue;
             }
-            let (island, lane) = self.place[body];
+            let (island, lane) = self.locations[body];
             let system = &self.islands[island].system;
             out.columns(&system.state.x, system, lane);
             out.columns(&system.state.v, system, lane);
@@ -109,12 +109,12 @@ impl<const D: usize> World<D> {
         let kept = (self.blueprint.clone(), self.at_start.clone(), self.colliders.clone(), self.running.clone());
         let bodies = (self.slots.clone(), self.frames, self.flows);
         let islands =
-            (std::mem::take(&mut self.islands), std::mem::take(&mut self.place), Arc::clone(&self.integrator));
+            (std::mem::take(&mut self.islands), std::mem::take(&mut self.locations), Arc::clone(&self.integrator));
         let outcome = self.go_to(bytes, &commands, other_future);
         if outcome.is_err() {
             (self.blueprint, self.at_start, self.colliders, self.running) = kept;
             (self.slots, self.frames, self.flows) = bodies;
-            (self.islands, self.place, self.integrator) = islands;
+            (self.islands, self.locations, self.integrator) = islands;
             self.refresh_ledger();
         }
         outcome
@@ -236,11 +236,11 @@ impl<const D: usize> World<D> {
         let of_scene = commands.iter().map(|known| &known.command).zip(&rest.progress);
         let of_program = rest.given.iter().map(|given| (&given.command, &given.progress));
         for (command, progress) in of_scene.chain(of_program) {
-            let Progress::Acting { held, anchors } = progress else { continue };
+            let Progress::Acting { targets, anchors } = progress else { continue };
             let state = command.action.body().and_then(|body| rest.states.get(&body));
             let nodes = state.map_or(0, |state| state.x.len());
-            let pinned = if let Action::Pin { .. } = command.action { held.len() } else { 0 };
-            if held.iter().any(|(node, _)| *node as usize >= nodes) || anchors.len() != pinned {
+            let pinned = if let Action::Pin { .. } = command.action { targets.len() } else { 0 };
+            if targets.iter().any(|(node, _)| *node as usize >= nodes) || anchors.len() != pinned {
                 return refuse(SnapshotFault::CommandHolds {});
             }
         }
@@ -270,7 +270,7 @@ impl<const D: usize> World<D> {
         }
         let rest = self.read_rest(&mut reader, version, commands, other_future)?;
         let fits = |number: &usize| {
-            let (island, lane) = self.place[*number];
+            let (island, lane) = self.locations[*number];
             let (state, system) = (&rest.states[number], &self.islands[island].system);
             let mut models = state.memory.iter().zip(&system.members);
             let alike = models.all(|(kept, member)| kept.len() == member.memory.iter().skip(lane).step_by(WIDTH).len());
@@ -297,9 +297,9 @@ impl<const D: usize> World<D> {
                 let body = island.bodies.get(l).unwrap_or(&island.bodies[0]);
                 let state = &rest.states[body];
                 for node in 0..nodes {
-                    let place = layout.place(node, l);
-                    island.system.state.x.set(place, state.x[node]);
-                    island.system.state.v.set(place, state.v[node]);
+                    let index = layout.index(node, l);
+                    island.system.state.x.set(index, state.x[node]);
+                    island.system.state.v.set(index, state.v[node]);
                 }
                 state.history.restore(&mut island.system, l);
                 for (member, kept) in island.system.members.iter_mut().zip(&state.memory) {
@@ -307,8 +307,8 @@ impl<const D: usize> World<D> {
                 }
             }
             let first = &rest.states[&island.bodies[0]];
-            for place in nodes * layout.stride()..layout.places(nodes) {
-                island.system.state.x.set(place, first.x[nodes - 1]);
+            for index in nodes * layout.stride()..layout.index_count(nodes) {
+                island.system.state.x.set(index, first.x[nodes - 1]);
             }
             island.system.time = time;
             island.outcome = Ok(());
@@ -387,10 +387,10 @@ fn write_progress<const D: usize>(out: &mut Writer<'_>, progress: &Progress<D>) 
     match progress {
         Progress::Waiting => out.count(0),
         Progress::Done => out.count(1),
-        Progress::Acting { held, anchors } => {
+        Progress::Acting { targets, anchors } => {
             out.count(2);
-            out.count(held.len() as u64);
-            for (node, share) in held {
+            out.count(targets.len() as u64);
+            for (node, share) in targets {
                 out.count(u64::from(*node));
                 out.number(*share);
             }
@@ -405,10 +405,10 @@ fn read_progress<const D: usize>(reader: &mut Reader<'_>) -> Result<Progress<D>,
         1 => Progress::Done,
         2 => {
             let n = reader.length()?;
-            let held = (0..n)
+            let targets = (0..n)
                 .map(|_| Ok((reader.count()? as u32, reader.number()?)))
                 .collect::<Result<Vec<_>, WorldError>>()?;
-            Progress::Acting { held, anchors: reader.vectors::<D>()? }
+            Progress::Acting { targets, anchors: reader.vectors::<D>()? }
         }
         _ => return Err(WorldError::snapshot(SnapshotFault::CommandState {})),
     })

@@ -1,7 +1,7 @@
 //! The stable step of every kind of body, estimated before it is stepped.
 
 use crate::blueprint::BodyBlueprint;
-use crate::error::{Place, WorldError};
+use crate::error::{Part, WorldError};
 use crate::island::Island;
 use crate::masses::node_masses;
 use crate::plausible;
@@ -21,16 +21,16 @@ impl<const D: usize> World<D> {
     /// Bodies are of one kind where nothing that the estimate depends on differs. Islands that were left alone keep their
     /// estimate: a change of one body refuses no step for the state that another has meanwhile come to.
     pub(crate) fn check_stability(&mut self) -> Result<(), WorldError> {
-        let mut seen: Vec<(usize, Held)> = Vec::new();
+        let mut seen: Vec<(usize, PinnedAxes)> = Vec::new();
         let mut first_of_kind = Vec::new();
         for (number, island) in self.islands.iter().enumerate() {
             // Loads, pulls and users' forces belong to one body: such an island is of a kind of its own.
             let mut known = !self.has_more_than_models(island);
             for (lane, body) in island.bodies.iter().enumerate() {
-                let held = held(island, lane);
-                if !seen.iter().any(|(other, nodes)| *nodes == held && self.same_kind(*other, *body)) {
+                let pinned = pinned_axes(island, lane);
+                if !seen.iter().any(|(other, nodes)| *nodes == pinned && self.same_kind(*other, *body)) {
                     known = false;
-                    seen.push((*body, held));
+                    seen.push((*body, pinned));
                 }
             }
             if !known {
@@ -46,7 +46,7 @@ impl<const D: usize> World<D> {
                 None => {
                     let body = &self.blueprint.bodies[island.bodies[0]];
                     estimate(&island.system, &*island.integrator).map_err(|error| WorldError::Build {
-                        place: Place::body(&name),
+                        part: Part::body(&name),
                         source: BuildError::of("stability", no_estimate(error, body)),
                     })?
                 }
@@ -96,10 +96,10 @@ impl<const D: usize> World<D> {
                 _ => {}
             }
             let body = &self.blueprint.bodies[self.islands[*number].bodies[0]];
-            if let Some(odd) = plausible::sag(body, &self.blueprint.surroundings.gravity, &stability.spectrum) {
-                match warnings.iter_mut().find(|w| w.code == odd.code) {
+            if let Some(sag) = plausible::sag(body, &self.blueprint.surroundings.gravity, &stability.spectrum) {
+                match warnings.iter_mut().find(|w| w.code == sag.code) {
                     Some(warning) => warning.count += 1,
-                    None => warnings.push(odd),
+                    None => warnings.push(sag),
                 }
             }
         }
@@ -158,13 +158,13 @@ impl<const D: usize> World<D> {
     }
 }
 
-/// The held nodes of a body and their axes, a bit each.
-type Held = Vec<(usize, u8)>;
+/// The pinned nodes of a body and their axes, a bit each.
+type PinnedAxes = Vec<(usize, u8)>;
 
-fn held<const D: usize>(island: &Island<D>, lane: usize) -> Held {
+fn pinned_axes<const D: usize>(island: &Island<D>, lane: usize) -> PinnedAxes {
     let stride = island.system.layout.stride();
-    let own = island.system.pins.iter().filter(|pin| pin.place % stride == lane);
-    own.map(|pin| (pin.place / stride, pin.axes.iter().fold(0, |bits, axis| bits * 2 + u8::from(*axis)))).collect()
+    let own = island.system.pins.iter().filter(|pin| pin.index % stride == lane);
+    own.map(|pin| (pin.index / stride, pin.axes.iter().fold(0, |bits, axis| bits * 2 + u8::from(*axis)))).collect()
 }
 
 /// Why there is no estimate, with the numbers of a body that most likely lie behind forces or frequencies that are not finite.

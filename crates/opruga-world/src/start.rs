@@ -4,7 +4,7 @@ use crate::at_start::AtStart;
 use crate::blueprint::Blueprint;
 use crate::build::{build_colliders, build_integrator, initial_state};
 use crate::contact_memory::ContactMemory;
-use crate::error::{Place, WorldError};
+use crate::error::{Part, WorldError};
 use crate::ledger::{Energy, Flows, Momentum};
 use crate::looks::Looks;
 use crate::path_faults::PathFault;
@@ -52,7 +52,7 @@ impl<const D: usize> World<D> {
             return Err(WorldError::path("threads", PathFault::Is { value, allowed }));
         }
         let integrator: Arc<dyn Integrator<D>> =
-            build_integrator(&registry, &blueprint.integrator, || Place::Section { path: "integrator" })?.into();
+            build_integrator(&registry, &blueprint.integrator, || Part::Section { path: "integrator" })?.into();
         crate::memory::check(&blueprint.bodies, &*integrator, &registry, options.most_bytes)?;
         let colliders = build_colliders(&blueprint)?;
         let pool = (options.threads > 1)
@@ -76,7 +76,7 @@ impl<const D: usize> World<D> {
             contact_memory: ContactMemory::default(),
             contacts: None,
             islands_built: 0,
-            place: Vec::new(),
+            locations: Vec::new(),
             slots: Slots::of_scene(bodies),
             user_forces: Vec::new(),
             laws_saved: BTreeMap::new(),

@@ -134,7 +134,7 @@ impl<const D: usize> Island<D> {
         system.history.set(LAST, system.time);
         match SIZES.get(times as usize) {
             Some(part) => displace_with_work(system, part * size, times),
-            None => system.work.solver.odd_rests += 1,
+            None => system.work.solver.stayed_degenerate += 1,
         }
         Ok(())
     }
@@ -171,7 +171,7 @@ impl<const D: usize> Island<D> {
             }
             self.system.work.solver.disturbed += 1;
         }
-        self.system.work.solver.odd_rests += u64::from(degenerate_size(&self.system, mesh).is_some());
+        self.system.work.solver.stayed_degenerate += u64::from(degenerate_size(&self.system, mesh).is_some());
         Ok(())
     }
 
@@ -232,7 +232,7 @@ fn motion<const D: usize>(system: &mut System<D>, v0: &Columns<D>, frame: f64) -
         None
     };
     let mut pinned = vec![[false; D]; system.nodes];
-    system.held_axes(&mut |node, d| pinned[node][d] = true);
+    system.pinned_axes(&mut |node, d| pinned[node][d] = true);
     let mut mass = 0.0;
     let (mut center, mut speed, mut change) = ([0.0; D], [0.0; D], [0.0; D]);
     for node in 0..system.nodes {

@@ -5,7 +5,7 @@ use crate::blueprint::{
     Action, Blueprint, BodyBlueprint, CommandBlueprint, LoadBlueprint, LoadKind, Mass, PinBlueprint, Selector,
     Surroundings, Time,
 };
-use crate::error::{Place, WorldError};
+use crate::error::{Part, WorldError};
 use crate::schema::{self, Section};
 use opruga_core::error::BuildError;
 use opruga_core::spec::{Allowed, Value, ValueError};
@@ -36,8 +36,8 @@ impl Fault {
         Fault { field, about: about.into() }
     }
     /// The error about it in a part of the blueprint.
-    fn at(self, place: Place) -> WorldError {
-        WorldError::Build { place, source: BuildError::of(self.field, self.about) }
+    fn at(self, part: Part) -> WorldError {
+        WorldError::Build { part, source: BuildError::of(self.field, self.about) }
     }
 }
 
@@ -176,30 +176,30 @@ pub(crate) fn blueprint<const D: usize>(scene: &Blueprint<D>) -> Result<(), Worl
     for one in &bodies {
         // Copies share their mesh.
         if meshes.insert(Arc::as_ptr(&one.mesh)) {
-            mesh(one).map_err(|fault| fault.at(Place::body(&one.name)))?;
+            mesh(one).map_err(|fault| fault.at(Part::body(&one.name)))?;
         }
-        numbers(one).map_err(|fault| fault.at(Place::body(&one.name)))?;
+        numbers(one).map_err(|fault| fault.at(Part::body(&one.name)))?;
         if !names.insert(one.name.as_str()) {
             let about = NameFault::TwoBodies { name: one.name.clone(), line: None };
-            return Err(Fault::new("name", about).at(Place::body(&one.name)));
+            return Err(Fault::new("name", about).at(Part::body(&one.name)));
         }
     }
     contact(scene, &bodies)?;
     for (k, one) in scene.loads.iter().enumerate() {
-        load(one, &bodies).map_err(|fault| fault.at(Place::Load { index: k }))?;
+        load(one, &bodies).map_err(|fault| fault.at(Part::Load { index: k }))?;
     }
     for (k, one) in scene.commands.iter().enumerate() {
-        command(one).map_err(|fault| fault.at(Place::Command { index: k }))?;
+        command(one).map_err(|fault| fault.at(Part::Command { index: k }))?;
     }
     names.clear();
     for probe in &scene.probes {
-        let place = || Place::Probe { name: probe.name.clone() };
+        let part = || Part::Probe { name: probe.name.clone() };
         if !names.insert(probe.name.as_str()) {
             let about = NameFault::TwoProbes { name: probe.name.clone(), line: None };
-            return Err(Fault::new("name", about).at(place()));
+            return Err(Fault::new("name", about).at(part()));
         }
-        let body = body_of(probe.body, &bodies).map_err(|fault| fault.at(place()))?;
-        select(&probe.select, body).map_err(|fault| fault.at(place()))?;
+        let body = body_of(probe.body, &bodies).map_err(|fault| fault.at(part()))?;
+        select(&probe.select, body).map_err(|fault| fault.at(part()))?;
     }
     Ok(())
 }
@@ -209,7 +209,7 @@ pub(crate) fn blueprint<const D: usize>(scene: &Blueprint<D>) -> Result<(), Worl
 /// # Errors
 /// As [`blueprint`].
 pub(crate) fn body<const D: usize>(body: &BodyBlueprint<D>) -> Result<(), WorldError> {
-    mesh(body).and_then(|()| numbers(body)).map_err(|fault| fault.at(Place::body(&body.name)))
+    mesh(body).and_then(|()| numbers(body)).map_err(|fault| fault.at(Part::body(&body.name)))
 }
 
 /// Refuses pairs of groups that no body is in.
@@ -221,7 +221,7 @@ fn contact<const D: usize>(scene: &Blueprint<D>, bodies: &[&BodyBlueprint<D>]) -
             if !groups.contains(group) {
                 let known = groups.iter().copied().collect::<Vec<_>>().join(", ");
                 let fault = Fault::new(field, BlueprintFault::NoMember { group: group.into(), known });
-                return Err(fault.at(Place::Pair { index: k }));
+                return Err(fault.at(Part::Pair { index: k }));
             }
         }
     }
@@ -245,7 +245,7 @@ pub(crate) fn time<const D: usize>(time: &Time) -> Result<(), WorldError> {
         field::<D>(&schema::TIME, "substeps", Value::Integer(time.substeps.into()))?;
         time_fault(time).map_or(Ok(()), Err)
     };
-    all().map_err(|fault| fault.at(Place::Section { path: "time" }))
+    all().map_err(|fault| fault.at(Part::Section { path: "time" }))
 }
 
 pub(crate) fn surroundings<const D: usize>(all: &Surroundings<D>) -> Result<(), WorldError> {
@@ -262,7 +262,7 @@ pub(crate) fn surroundings<const D: usize>(all: &Surroundings<D>) -> Result<(), 
         }
         Ok(())
     };
-    check().map_err(|fault: Fault| fault.at(Place::Section { path: "world" }))
+    check().map_err(|fault: Fault| fault.at(Part::Section { path: "world" }))
 }
 
 /// What the mesh of a body must keep to, so that nobody who reads it goes astray.
@@ -372,7 +372,7 @@ pub(crate) fn command<const D: usize>(command: &CommandBlueprint<D>) -> Result<(
 /// # Errors
 /// As [`blueprint`].
 pub(crate) fn given<const D: usize>(given: &CommandBlueprint<D>) -> Result<(), WorldError> {
-    command(given).map_err(|fault| fault.at(Place::Section { path: "command" }))?;
+    command(given).map_err(|fault| fault.at(Part::Section { path: "command" }))?;
     match &given.action {
         Action::Add(added) => body(added),
         _ => Ok(()),

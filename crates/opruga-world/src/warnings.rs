@@ -1,6 +1,6 @@
 //! What deserves attention in a world: warnings as values.
 
-use crate::error::{Place, WorldError};
+use crate::error::{Part, WorldError};
 use crate::faults::{BlueprintFault, NameFault};
 use crate::path_faults::{Content, PathFault, Promised, SnapshotFault};
 use crate::refusals::Refusal;
@@ -22,7 +22,7 @@ pub const MESSAGES: &[&[opruga_math::message::Variant]] = &[
     WorstCell::VARIANTS,
     WorldWarning::VARIANTS,
     Refusal::VARIANTS,
-    Place::VARIANTS,
+    Part::VARIANTS,
     WorldError::VARIANTS,
     PathFault::VARIANTS,
     SnapshotFault::VARIANTS,

@@ -77,7 +77,7 @@ pub struct World<const D: usize> {
     /// How many islands were built since the start.
     pub(crate) islands_built: u64,
     /// Island and lane of every body.
-    pub(crate) place: Vec<(usize, usize)>,
+    pub(crate) locations: Vec<(usize, usize)>,
     /// Who is where in the list of bodies.
     pub(crate) slots: Slots,
     /// Commands of the scene and those that act as if it had held them; behind them those of the program that are not over.

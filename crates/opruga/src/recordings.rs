@@ -112,7 +112,7 @@ opruga_math::messages! {
     /// Why a program cannot be recorded.
     #[derive(Clone, Debug, PartialEq)]
     pub enum TapeFault {
-        "recording.input" #[error("{error}")] #[hint("commands, `set`, `place_node` and `remove_body` can be recorded")]
+        "recording.input" #[error("{error}")] #[hint("commands, `set`, `set_node` and `remove_body` can be recorded")]
         Input { error: WorldError },
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::io::problem::visible;
 use crate::io::{Files, SceneError};
-use opruga_core::spec::all_near;
+use opruga_core::spec::close_matches;
 use opruga_math::message::Variant;
 use std::path::Path;
 use std::sync::Arc;
@@ -88,7 +88,7 @@ shapes![
 
 /// The files that these scenes name.
 pub fn files() -> Files {
-    Files::held(SHAPES.iter().map(|(name, bytes)| (name.to_string(), Arc::from(*bytes))))
+    Files::in_memory(SHAPES.iter().map(|(name, bytes)| (name.to_string(), Arc::from(*bytes))))
 }
 
 /// The names of the scenes, in the order of the documentation.
@@ -154,7 +154,7 @@ pub fn missing(name: &str) -> SceneError {
         false => {
             let mut known: Vec<&str> = names().collect();
             known.extend(files.iter().map(String::as_str));
-            all_near(name, known.into_iter())
+            close_matches(name, known.into_iter())
         }
     };
     let quoted: Vec<String> = closest.iter().map(|name| format!("`{}`", visible(name))).collect();

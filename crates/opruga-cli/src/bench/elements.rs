@@ -203,10 +203,10 @@ type Times = (Vec<(&'static str, f64)>, [f64; 2]);
 
 fn times<const D: usize>(solid: &dyn Potential<D>, mesh: &Mesh<D>, elements: usize) -> Result<Times, Failure> {
     let nodes = mesh.positions.len();
-    let places = Layout::Single.places(nodes);
-    let v = Columns::<D>::zeros(places);
+    let column_length = Layout::Single.index_count(nodes);
+    let v = Columns::<D>::zeros(column_length);
     // Two states by turns: a model may keep what it found in the last one.
-    let mut states = [Columns::<D>::zeros(places), Columns::<D>::zeros(places)];
+    let mut states = [Columns::<D>::zeros(column_length), Columns::<D>::zeros(column_length)];
     for (k, p) in mesh.positions.iter().enumerate() {
         let across = p.get(2).copied().unwrap_or(0.0);
         let bent = [p[0] + 0.2 * p[1] * p[1], p[1] + 0.1 * p[0] * across, across * (1.0 - 0.1 * p[0])];
@@ -220,7 +220,7 @@ fn times<const D: usize>(solid: &dyn Potential<D>, mesh: &Mesh<D>, elements: usi
     });
     let mut turn = 0;
     let mut scratch = Column::zeros(solid.properties().scratch_len);
-    let mut force = Columns::<D>::zeros(places);
+    let mut force = Columns::<D>::zeros(column_length);
     let (mut slots, mut power) = (Column::default(), [0.0; WIDTH]);
     let per_element = |seconds: f64| seconds * 1e9 / elements as f64;
     let mut forces = Vec::new();
@@ -232,8 +232,8 @@ fn times<const D: usize>(solid: &dyn Potential<D>, mesh: &Mesh<D>, elements: usi
             if let Err(error) = solid.prepare(simd, view, &[], &mut scratch) {
                 refused = Some(error);
             }
-            for start in (0..places).step_by(TILE) {
-                let range = start..(start + TILE).min(places);
+            for start in (0..column_length).step_by(TILE) {
+                let range = start..(start + TILE).min(column_length);
                 let columns = force.0.each_mut().map(|f| &mut f[range.clone()]);
                 let mut tile = Tile { range, force: columns, power: &mut power, weight: None, slots: &mut slots };
                 solid.add_force(simd, view, &scratch, &mut tile);

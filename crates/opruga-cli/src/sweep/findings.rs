@@ -55,14 +55,14 @@ impl Found<'_> {
             json!({"value": value, "point": row.number, "at": at})
         };
         let ends = |ends: Ends<'_>| json!({"lowest": end(ends.lowest), "highest": end(ends.highest)});
-        let metrics = self.sweep.metrics.iter().enumerate().map(|(place, metric)| {
-            let mut object = self.ends(place, self.rows.iter()).map_or_else(|| json!({}), ends);
+        let metrics = self.sweep.metrics.iter().enumerate().map(|(index, metric)| {
+            let mut object = self.ends(index, self.rows.iter()).map_or_else(|| json!({}), ends);
             object["name"] = metric.name.clone().into();
             object["unit"] = metric.unit(self.length_unit).into();
-            object["numbers"] = self.rows.iter().filter(|row| row.numbers[place].is_some()).count().into();
+            object["numbers"] = self.rows.iter().filter(|row| row.numbers[index].is_some()).count().into();
             if self.sweep.design == Design::Each {
                 let of = (0..self.sweep.axes.len()).map(|axis| {
-                    let mut object = self.ends(place, self.rows_of(axis)).map_or_else(|| json!({}), ends);
+                    let mut object = self.ends(index, self.rows_of(axis)).map_or_else(|| json!({}), ends);
                     object["parameter"] = self.sweep.axes[axis].path.clone().into();
                     object
                 });
@@ -83,7 +83,7 @@ impl Found<'_> {
     }
 
     /// A line for a metric over some rows.
-    pub(super) fn say(
+    pub(super) fn write_line(
         &self,
         f: &mut core::fmt::Formatter<'_>,
         name: &str,
@@ -123,14 +123,14 @@ impl core::fmt::Display for Found<'_> {
         if self.sweep.design == Design::Each {
             for (axis, about) in self.sweep.axes.iter().enumerate() {
                 writeln!(f, "{}", visible(&about.path))?;
-                for (place, metric) in self.sweep.metrics.iter().enumerate() {
-                    self.say(f, &metric.name, place, Some(axis))?;
+                for (index, metric) in self.sweep.metrics.iter().enumerate() {
+                    self.write_line(f, &metric.name, index, Some(axis))?;
                 }
             }
             return Ok(());
         }
-        for (place, metric) in self.sweep.metrics.iter().enumerate() {
-            self.say(f, &metric.name, place, None)?;
+        for (index, metric) in self.sweep.metrics.iter().enumerate() {
+            self.write_line(f, &metric.name, index, None)?;
         }
         Ok(())
     }

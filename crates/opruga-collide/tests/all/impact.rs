@@ -24,7 +24,7 @@ fn one_pass<const D: usize>(
     h: f64,
     time: f64,
 ) -> (Columns<D>, Columns<D>, f64) {
-    let places = Layout::Single.places(x.len());
+    let places = Layout::Single.index_count(x.len());
     let (mut cx, mut cv) = (Columns::zeros(places), Columns::zeros(places));
     let mut before: Vec<Vec<f64>> = vec![vec![0.0; places]; D];
     for (k, (x, v)) in x.iter().zip(v).enumerate() {
@@ -42,7 +42,7 @@ fn one_pass<const D: usize>(
     let none = vec![0.0; places + WIDTH];
     let mut moved = Moved {
         range: 0..places,
-        places_used: x.len(),
+        padding_start: x.len(),
         before: core::array::from_fn(|d| before[d].as_slice()),
         x: &mut cx,
         v: &mut cv,

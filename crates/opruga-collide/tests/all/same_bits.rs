@@ -122,7 +122,7 @@ fn same_bits<const D: usize>() {
             assert!(expected.0.iter().all(|x| x.abs() < 3.5));
             assert_eq!((single.state.x.at(node), single.state.v.at(node)), expected, "{simd:?} {node}");
             for body in 0..8 {
-                let place = Layout::Batch.place(node, body);
+                let place = Layout::Batch.index(node, body);
                 assert_eq!((batch.state.x.at(place), batch.state.v.at(place)), expected, "{simd:?} {node} {body}");
             }
         }

@@ -26,13 +26,14 @@ impl<const D: usize> Suite<'_, D> {
         let (mut tiles, mut lanes) = (0.0, 0.0);
         let gravity: [f64; D] = random.vector();
         for case in [&mut alone, &mut eight] {
-            let places = case.places();
+            let index_count = case.index_count();
             let stride = case.layout.stride();
             let columns = |c: &Columns<D>| (0..nodes * stride).map(|p| c.at(p)).collect::<Vec<_>>();
-            let (whole, power) = case.forces(best, &regular(places, places), None)?;
+            let (whole, power) = case.forces(best, &regular(index_count, index_count), None)?;
             let whole = columns(&whole);
-            let mut cuts = vec![regular(places, TILE), regular(places, WIDTH), regular(places, 3 * WIDTH)];
-            cuts.extend((0..4).map(|_| irregular(places, random)));
+            let mut cuts =
+                vec![regular(index_count, TILE), regular(index_count, WIDTH), regular(index_count, 3 * WIDTH)];
+            cuts.extend((0..4).map(|_| irregular(index_count, random)));
             for cut in &cuts {
                 tiles += unequal_bits(&columns(&case.forces(best, cut, None)?.0), &whole);
             }
@@ -47,7 +48,7 @@ impl<const D: usize> Suite<'_, D> {
             }
             let energy = case.energy(best)?;
             for simd in Simd::available() {
-                let (force, other) = case.forces(simd, &regular(places, places), None)?;
+                let (force, other) = case.forces(simd, &regular(index_count, index_count), None)?;
                 lanes += unequal_bits(&columns(&force), &whole);
                 lanes += unequal_bits(&[other], &[power]) + unequal_bits(&[case.energy(simd)?], &[energy]);
             }
@@ -58,7 +59,7 @@ impl<const D: usize> Suite<'_, D> {
         // Each of eight bodies alone.
         let mut batch = 0.0;
         let mut powers = 0.0;
-        let (together, power) = eight.forces(best, &regular(eight.places(), TILE), None)?;
+        let (together, power) = eight.forces(best, &regular(eight.index_count(), TILE), None)?;
         let energies = eight.energy(best)?;
         for l in 0..WIDTH {
             let own = self.build(Some(l))?;

@@ -94,23 +94,23 @@ pub(super) type Answer<T> = Result<T, String>;
 impl<'a, const D: usize> Case<'a, D> {
     pub(super) fn new(potential: &'a dyn Potential<D>, layout: Layout, bodies: &[&Body<D>], time: f64) -> Case<'a, D> {
         let nodes = bodies[0].x.len();
-        let places = layout.places(nodes);
-        let (mut x, mut v) = (Columns::zeros(places), Columns::zeros(places));
+        let index_count = layout.index_count(nodes);
+        let (mut x, mut v) = (Columns::zeros(index_count), Columns::zeros(index_count));
         for node in 0..nodes {
             for (l, body) in bodies.iter().enumerate().take(layout.stride()) {
-                x.set(layout.place(node, l), body.x[node]);
-                v.set(layout.place(node, l), body.v[node]);
+                x.set(layout.index(node, l), body.x[node]);
+                v.set(layout.index(node, l), body.v[node]);
             }
         }
         // Padding repeats the last node.
-        for place in nodes * layout.stride()..places {
-            x.set(place, bodies[0].x[nodes - 1]);
+        for index in nodes * layout.stride()..index_count {
+            x.set(index, bodies[0].x[nodes - 1]);
         }
         let (memory, scratch) = (potential.initial_memory(), Column::zeros(potential.properties().scratch_len));
         Case { potential, layout, nodes, x, v, memory, scratch, time }
     }
-    pub(super) fn places(&self) -> usize {
-        self.layout.places(self.nodes)
+    pub(super) fn index_count(&self) -> usize {
+        self.layout.index_count(self.nodes)
     }
     pub(super) fn prepare(&mut self, simd: Simd) -> Answer<()> {
         let view = view(&self.x, &self.v, self.nodes, self.layout, self.time);
@@ -123,7 +123,7 @@ impl<'a, const D: usize> Case<'a, D> {
         self.prepare(simd)?;
         Ok(self.potential.energy(simd, &self.view(), &self.scratch))
     }
-    /// Force and power with the places cut into tiles; `weight` begins the forces, by the model itself where `fused`.
+    /// Force and power with the indices cut into tiles; `weight` begins the forces, by the model itself where `fused`.
     pub(super) fn forces(
         &mut self,
         simd: Simd,
@@ -131,7 +131,7 @@ impl<'a, const D: usize> Case<'a, D> {
         weight: Option<(&Parameter, [f64; D], bool)>,
     ) -> Answer<(Columns<D>, [f64; WIDTH])> {
         self.prepare(simd)?;
-        let mut out = Columns::zeros(self.places());
+        let mut out = Columns::zeros(self.index_count());
         let mut power = [0.0; WIDTH];
         let mut slots = Column::default();
         for range in tiles {
@@ -155,23 +155,23 @@ impl<'a, const D: usize> Case<'a, D> {
     }
     /// Forces node by node of one body, in tiles as a step has them.
     pub(super) fn plain(&mut self, simd: Simd) -> Answer<(Vec<[f64; D]>, f64)> {
-        let tiles = regular(self.places(), TILE);
+        let tiles = regular(self.index_count(), TILE);
         let (columns, power) = self.forces(simd, &tiles, None)?;
         Ok((by_node(&columns, self.layout, self.nodes, 0), sum_in_fixed_order(&power)))
     }
 }
 
-pub(super) fn regular(places: usize, length: usize) -> Vec<Range<usize>> {
-    (0..places).step_by(length).map(|s| s..(s + length).min(places)).collect()
+pub(super) fn regular(index_count: usize, length: usize) -> Vec<Range<usize>> {
+    (0..index_count).step_by(length).map(|s| s..(s + length).min(index_count)).collect()
 }
 
 /// Tiles of random sizes, in no order.
-pub(super) fn irregular(places: usize, random: &mut Random) -> Vec<Range<usize>> {
+pub(super) fn irregular(index_count: usize, random: &mut Random) -> Vec<Range<usize>> {
     let mut tiles = Vec::new();
     let mut start = 0;
-    while start < places {
+    while start < index_count {
         let most = 1 << (random.bits() % 7);
-        let end = (start + WIDTH * (1 + random.bits() as usize % most)).min(places);
+        let end = (start + WIDTH * (1 + random.bits() as usize % most)).min(index_count);
         tiles.push(start..end);
         start = end;
     }
@@ -185,7 +185,7 @@ pub(super) fn by_node<const D: usize>(
     nodes: usize,
     body: usize,
 ) -> Vec<[f64; D]> {
-    (0..nodes).map(|n| columns.at(layout.place(n, body))).collect()
+    (0..nodes).map(|n| columns.at(layout.index(n, body))).collect()
 }
 
 pub(super) fn unequal_bits<const D: usize>(a: &[[f64; D]], b: &[[f64; D]]) -> f64 {

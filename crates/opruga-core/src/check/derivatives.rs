@@ -15,11 +15,11 @@ pub(super) struct Assembled<const D: usize> {
 }
 
 impl<const D: usize> Assembled<D> {
-    fn row(&self, place: usize, d: usize) -> Option<usize> {
+    fn row(&self, index: usize, d: usize) -> Option<usize> {
         match self.layout {
-            Layout::Single => Some(place * D + d),
+            Layout::Single => Some(index * D + d),
             // The first of eight bodies.
-            Layout::Batch if place.is_multiple_of(WIDTH) => Some(place / WIDTH * D + d),
+            Layout::Batch if index.is_multiple_of(WIDTH) => Some(index / WIDTH * D + d),
             Layout::Batch => None,
         }
     }
@@ -39,34 +39,34 @@ impl<const D: usize> Assembled<D> {
     }
 }
 
-/// How many entries of a Hessian couple nodes of which no stencil says so.
-struct Untold {
+/// How many entries of a Hessian couple nodes that no stencil declares.
+struct Undeclared {
     nodes: usize,
     stride: usize,
-    told: Vec<bool>,
+    declared: Vec<bool>,
     count: usize,
 }
 
-impl Untold {
+impl Undeclared {
     fn of<const D: usize>(case: &Case<D>) -> usize {
         let nodes = case.nodes;
-        let mut told = vec![false; nodes * nodes];
+        let mut declared = vec![false; nodes * nodes];
         case.potential.stencils(&mut |stencil| {
             for a in stencil {
-                stencil.iter().for_each(|b| told[*a as usize * nodes + *b as usize] = true);
+                stencil.iter().for_each(|b| declared[*a as usize * nodes + *b as usize] = true);
             }
         });
-        let mut sink = Untold { nodes, stride: case.layout.stride(), told, count: 0 };
+        let mut sink = Undeclared { nodes, stride: case.layout.stride(), declared, count: 0 };
         case.potential.hessian(&case.view(), &case.scratch, Definiteness::Exact, &mut sink);
         sink.count
     }
 }
 
-impl<const D: usize> Sink<D> for Untold {
+impl<const D: usize> Sink<D> for Undeclared {
     fn block(&mut self, a: usize, b: usize, value: [[f64; D]; D]) {
         let (a, b) = (a / self.stride, b / self.stride);
         let coupled = a != b && value.iter().flatten().any(|entry| *entry != 0.0);
-        self.count += usize::from(coupled && !self.told[a * self.nodes + b]);
+        self.count += usize::from(coupled && !self.declared[a * self.nodes + b]);
     }
     // What couples all nodes is no stencil.
     fn low_rank(&mut self, _: f64, _: &[(usize, [f64; D])]) {}
@@ -135,9 +135,9 @@ impl<const D: usize> Suite<'_, D> {
                     case.x.0[d][node] = at;
                     Ok(sum_in_fixed_order(&energy))
                 };
-                let near = energy(h)? - energy(-h)?;
-                let far = energy(2.0 * h)? - energy(-2.0 * h)?;
-                expected.push(-(8.0 * near - far) / (12.0 * h));
+                let inner = energy(h)? - energy(-h)?;
+                let outer = energy(2.0 * h)? - energy(-2.0 * h)?;
+                expected.push(-(8.0 * inner - outer) / (12.0 * h));
             }
         }
         let force: Vec<f64> = force.into_iter().flatten().collect();
@@ -182,7 +182,7 @@ impl<const D: usize> Suite<'_, D> {
         if potential.properties().views.symmetric {
             add("symmetry", difference(&transposed, &matrix, 1e-300), 1e-11);
         }
-        add("stencils", Untold::of(&case) as f64, 0.0);
+        add("stencils", Undeclared::of(&case) as f64, 0.0);
 
         // Product with a vector, of one body and of eight.
         let all = self.build(None)?;
@@ -193,11 +193,11 @@ impl<const D: usize> Suite<'_, D> {
         let assembled: Vec<f64> =
             (0..size).map(|p| (0..size).map(|q| matrix[p * size + q] * direction[q]).sum::<f64>()).collect();
         for case in [&case, &eight] {
-            let length = case.places();
+            let length = case.index_count();
             let (mut along, mut out) = (Columns::<D>::zeros(length), Columns::<D>::zeros(length));
             for node in 0..case.nodes {
                 let row = core::array::from_fn(|d| direction[node * D + d]);
-                along.set(case.layout.place(node, 0), row);
+                along.set(case.layout.index(node, 0), row);
             }
             let mut columns = out.0.each_mut().map(|c| &mut **c);
             case.potential.add_hessian_product(&case.view(), &case.scratch, &along.slices(), &mut columns);

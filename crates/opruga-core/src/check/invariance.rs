@@ -79,8 +79,8 @@ impl<const D: usize> Suite<'_, D> {
             let mut case = self.case(potential, &still);
             let (force, _) = case.plain(best)?;
             let omega = skew::<D>(random);
-            let places = case.places();
-            let (mut along, mut out) = (Columns::<D>::zeros(places), Columns::<D>::zeros(places));
+            let index_count = case.index_count();
+            let (mut along, mut out) = (Columns::<D>::zeros(index_count), Columns::<D>::zeros(index_count));
             for node in 0..nodes {
                 let arm: [f64; D] = core::array::from_fn(|d| body.x[node][d] - center[d]);
                 along.set(node, times(&omega, &arm));

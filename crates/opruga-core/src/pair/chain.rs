@@ -6,15 +6,15 @@ use crate::state::{Layout, Parameter, View};
 use crate::tile::{Tile, Weight};
 use opruga_math::{Lane, Pack, RepeatStrip, Simd, Strip, StripMut, WIDTH, Work, lanes};
 
-/// A run of pairs (a + k, a + k + 1), in places.
+/// A run of pairs (a + k, a + k + 1), in indices.
 pub(super) struct Chain<'a, 'v, L, const D: usize> {
     pub(super) law: L,
     pub(super) view: &'a View<'v, D>,
-    /// The first place of the first node.
+    /// The first index of the first node.
     pub(super) a: usize,
-    /// The place of the first pair among the parameters.
+    /// The index of the first pair among the parameters.
     pub(super) first: usize,
-    /// Places of all pairs.
+    /// Indices of all pairs.
     pub(super) length: usize,
     pub(super) layout: Layout,
     /// The pair by itself that comes next.
@@ -151,7 +151,7 @@ struct Walker<'a, P, L, const D: usize> {
     law: L,
     next: usize,
     lead: usize,
-    /// Places of the nodes, filled up to whole packs.
+    /// Indices of the nodes, filled up to whole packs.
     packed: usize,
     x: Strip<'a, D>,
     v: Strip<'a, D>,

@@ -42,7 +42,7 @@ impl PairTable {
             }
             let (a, b) = (run.a as usize * stride, run.b as usize * stride);
             let (first, length) = (run.first as usize * stride, run.count as usize * stride);
-            // The places of the run whose first (second) node lies in the tile.
+            // The indices of the run whose first (second) node lies in the tile.
             let own = within(a, length, start, end);
             let other = within(b, length, start, end);
             if own.is_empty() && other.is_empty() {
@@ -57,18 +57,18 @@ impl PairTable {
             }
             tile.settle(simd);
             if length <= WIDTH {
-                let place = [a, b, first, length];
-                simd.run(Short { table: self, law, view, place, own, other, tile, power: &mut power });
+                let extent = [a, b, first, length];
+                simd.run(Short { table: self, law, view, extent, own, other, tile, power: &mut power });
                 continue;
             }
-            let place = [a, b, first];
+            let starts = [a, b, first];
             let parts = if other.start <= own.end && own.start <= other.end {
                 [(own.start.min(other.start)..own.end.max(other.end), own, other), (0..0, 0..0, 0..0)]
             } else {
                 [(own.clone(), own, 0..0), (other.clone(), 0..0, other)]
             };
             for (all, own, other) in parts {
-                simd.run(Long { table: self, law, view, place, all, own, other, tile, power: &mut power });
+                simd.run(Long { table: self, law, view, starts, all, own, other, tile, power: &mut power });
             }
         }
         tile.settle(simd);
@@ -127,7 +127,7 @@ impl PairTable {
         }
     }
 
-    /// Evaluates the places `all` of a run once and adds them to the nodes of the tile.
+    /// Evaluates the indices `all` of a run once and adds them to the nodes of the tile.
     #[inline(always)]
     #[allow(clippy::too_many_arguments)] // inner loop of `add_force`
     fn run<P: Pack, L: PairLaw<D>, const D: usize>(
@@ -145,8 +145,8 @@ impl PairTable {
             return;
         }
         let packed = all.len().next_multiple_of(WIDTH);
-        let room = packed + 2 * WIDTH;
-        tile.slots.grow(D * room);
+        let column_length = packed + 2 * WIDTH;
+        tile.slots.grow(D * column_length);
         // One strip from the lower end on serves both ends: few pointers stay in registers.
         let base = a.min(b);
         let (to_a, to_b) = (a - base, b - base);
@@ -160,8 +160,8 @@ impl PairTable {
             p2.strip(first + all.start, packed),
         );
         // Slot columns begin with a spare pack, so that a shifted read stays inside.
-        let mut slots = StripMut::<1>::new([&mut **tile.slots], 0, D * room);
-        // Places of the run, counted from `all.start`, whose first node belongs to the tile.
+        let mut slots = StripMut::<1>::new([&mut **tile.slots], 0, D * column_length);
+        // Indices of the run, counted from `all.start`, whose first node belongs to the tile.
         let (low, high) = (own.start.saturating_sub(all.start), own.end.saturating_sub(all.start));
         for k in (0..packed).step_by(WIDTH) {
             let (at_a, at_b) = (k + to_a, k + to_b);
@@ -171,7 +171,7 @@ impl PairTable {
             let [second, third] = if L::UNIFORM { law.uniform() } else { [p1.load(k), p2.load(k)] };
             let (force, dissipated) = law.force([p0.load(k), second, third], d, rate, law.ahead(d));
             for i in 0..D {
-                slots.store(0, i * room + WIDTH + k, force[i]);
+                slots.store(0, i * column_length + WIDTH + k, force[i]);
             }
             if L::DAMPED {
                 // The tile of the first node enters the power.
@@ -185,13 +185,13 @@ impl PairTable {
                 }
             }
         }
-        // Places that are a first node, and a second node; most are both.
+        // Indices that are a first node, and a second node; most are both.
         let firsts = a + own.start..a + own.end;
         let seconds = b + other.start..b + other.end;
         let both = firsts.start.max(seconds.start)..firsts.end.min(seconds.end);
         let start = tile.range.start;
         for i in 0..D {
-            let column = &tile.slots[i * room..(i + 1) * room];
+            let column = &tile.slots[i * column_length..(i + 1) * column_length];
             let into = &mut *tile.force[i];
             // Stretches of first nodes alone, of second nodes alone, and of both.
             let overlap = !(both.is_empty() || own.is_empty() || other.is_empty());
@@ -296,7 +296,7 @@ struct Short<'a, 'v, 't, L, const D: usize> {
     table: &'a PairTable,
     law: L,
     view: &'a View<'v, D>,
-    place: [usize; 4],
+    extent: [usize; 4],
     own: Range<usize>,
     other: Range<usize>,
     tile: &'a mut Tile<'t, D>,
@@ -307,7 +307,7 @@ impl<L: PairLaw<D>, const D: usize> Work for Short<'_, '_, '_, L, D> {
     #[inline(always)]
     fn run<P: Pack>(self) {
         let mut power = P::load(self.power);
-        self.table.short::<P, L, D>(self.law, self.view, self.place, self.own, self.other, self.tile, &mut power);
+        self.table.short::<P, L, D>(self.law, self.view, self.extent, self.own, self.other, self.tile, &mut power);
         power.store(self.power);
     }
 }
@@ -317,7 +317,7 @@ struct Long<'a, 'v, 't, L, const D: usize> {
     table: &'a PairTable,
     law: L,
     view: &'a View<'v, D>,
-    place: [usize; 3],
+    starts: [usize; 3],
     all: Range<usize>,
     own: Range<usize>,
     other: Range<usize>,
@@ -329,8 +329,8 @@ impl<L: PairLaw<D>, const D: usize> Work for Long<'_, '_, '_, L, D> {
     #[inline(always)]
     fn run<P: Pack>(self) {
         let mut power = P::load(self.power);
-        let Long { law, view, place, all, own, other, tile, .. } = self;
-        self.table.run::<P, L, D>(law, view, place, all, own, other, tile, &mut power);
+        let Long { law, view, starts, all, own, other, tile, .. } = self;
+        self.table.run::<P, L, D>(law, view, starts, all, own, other, tile, &mut power);
         power.store(self.power);
     }
 }

@@ -9,7 +9,7 @@ use opruga_math::{Pack, WIDTH, Work, lanes};
 /// A pair of one body, or the same pair of eight.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lone {
-    /// The places of its nodes, and of its parameters.
+    /// The indices of its nodes, and of its parameters.
     pub(super) a: usize,
     pub(super) b: usize,
     pub(super) number: usize,

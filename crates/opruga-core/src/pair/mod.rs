@@ -81,9 +81,9 @@ pub struct PairTable {
 const SHORTEST_RUN: u32 = 24;
 
 impl PairTable {
-    /// Sorts pairs of `nodes` nodes into runs; the shorter ones are pulled where `odd` says that the law changes sign
+    /// Sorts pairs of `nodes` nodes into runs; the shorter ones are pulled where `antisymmetric` says that the law changes sign
     /// with its argument.
-    pub fn new(layout: Layout, nodes: usize, pairs: &[[u32; 2]], odd: bool) -> PairTable {
+    pub fn new(layout: Layout, nodes: usize, pairs: &[[u32; 2]], antisymmetric: bool) -> PairTable {
         let mut runs: Vec<Run> = Vec::new();
         for (k, &[a, b]) in pairs.iter().enumerate() {
             match runs.last_mut() {
@@ -93,7 +93,7 @@ impl PairTable {
         }
         // A few short runs are cheaper as runs than a table for every node.
         let short: u32 = runs.iter().filter(|r| r.count < SHORTEST_RUN).map(|r| r.count).sum();
-        let pulled = odd && short as usize * 2 > pairs.len() && nodes > 16;
+        let pulled = antisymmetric && short as usize * 2 > pairs.len() && nodes > 16;
         let mut pull = None;
         if pulled {
             let mut lists: Vec<Vec<(u32, u32)>> = vec![Vec::new(); nodes];
@@ -176,7 +176,7 @@ impl PairTable {
 /// The runs that touch each tile, one tile after the other, and where those of each tile begin.
 fn runs_by_tile(layout: Layout, nodes: usize, runs: &[Run]) -> (Vec<u32>, Vec<u32>) {
     let stride = layout.stride();
-    let mut lists = vec![Vec::new(); layout.places(nodes).div_ceil(TILE)];
+    let mut lists = vec![Vec::new(); layout.index_count(nodes).div_ceil(TILE)];
     for (number, run) in runs.iter().enumerate() {
         for end in [run.a, run.b] {
             let (from, until) = (end as usize * stride, (end + run.count) as usize * stride);
@@ -202,8 +202,8 @@ fn within(from: usize, length: usize, start: usize, end: usize) -> Range<usize> 
     low..high.max(low)
 }
 
-/// Where the slot lies that a place of a run's first (second) nodes receives.
+/// Where the slot lies that an index of a run's first (second) nodes receives.
 #[inline(always)]
-fn slot_of(place: usize, node: usize, start: usize) -> usize {
-    WIDTH + place - node - start
+fn slot_of(index: usize, node: usize, start: usize) -> usize {
+    WIDTH + index - node - start
 }

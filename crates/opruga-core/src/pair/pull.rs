@@ -46,17 +46,17 @@ pub(super) struct Pull {
 const AT_ONCE: usize = 6;
 
 impl Pull {
-    /// The slots that are not empty for eight places.
+    /// The slots that are not empty for eight indices.
     #[inline(always)]
-    fn used(&self, layout: Layout, place: usize) -> usize {
-        let pack = place / WIDTH;
+    fn used(&self, layout: Layout, index: usize) -> usize {
+        let pack = index / WIDTH;
         self.widths[if layout == Layout::Single { pack } else { pack / WIDTH }] as usize
     }
 
-    /// The partners of eight places in a slot, and the pairs.
+    /// The partners of eight indices in a slot, and the pairs.
     #[inline(always)]
-    fn slot(&self, layout: Layout, place: usize, slot: usize) -> (At<'_>, At<'_>) {
-        let pack = place / WIDTH;
+    fn slot(&self, layout: Layout, index: usize, slot: usize) -> (At<'_>, At<'_>) {
+        let pack = index / WIDTH;
         match layout {
             Layout::Single => {
                 let at = (pack * self.width + slot) * WIDTH;
@@ -76,12 +76,12 @@ impl Pull {
     }
 }
 
-/// The numbers of a column at eight places.
+/// The numbers of a column at eight indices.
 #[inline(always)]
 fn read<P: Pack>(column: &[f64], at: At) -> P {
     match at {
-        At::Run(place) => P::load(&column[place..]),
-        At::Each(places) => P::gather(column, places),
+        At::Run(index) => P::load(&column[index..]),
+        At::Each(indices) => P::gather(column, indices),
     }
 }
 
@@ -97,22 +97,22 @@ impl PairTable {
         power: &mut P,
     ) {
         let half = P::splat(0.5);
-        for place in tile.range.clone().step_by(WIDTH) {
-            let x: [P; D] = load(&view.x, place);
-            let v: [P; D] = if L::DAMPED { load(&view.v, place) } else { [P::zero(); D] };
-            let mut force: [P; D] = lanes!(P, i => P::load(&tile.force[i][place - tile.range.start..]));
-            let width = pull.used(self.layout, place);
+        for index in tile.range.clone().step_by(WIDTH) {
+            let x: [P; D] = load(&view.x, index);
+            let v: [P; D] = if L::DAMPED { load(&view.v, index) } else { [P::zero(); D] };
+            let mut force: [P; D] = lanes!(P, i => P::load(&tile.force[i][index - tile.range.start..]));
+            let width = pull.used(self.layout, index);
             for from in (0..width).step_by(AT_ONCE) {
                 let slots = from..(from + AT_ONCE).min(width);
                 // First what takes long, for all partners; meanwhile the rest of the first ones is worked out.
                 let (mut d, mut ahead) = ([[P::zero(); D]; AT_ONCE], [P::zero(); AT_ONCE]);
                 for slot in slots.clone() {
-                    let (partner, _) = pull.slot(self.layout, place, slot);
+                    let (partner, _) = pull.slot(self.layout, index, slot);
                     d[slot - from] = lanes!(P, i => x[i] - read::<P>(view.x[i], partner));
                     ahead[slot - from] = law.ahead(d[slot - from]);
                 }
                 for slot in slots {
-                    let (partner, pair) = pull.slot(self.layout, place, slot);
+                    let (partner, pair) = pull.slot(self.layout, index, slot);
                     let rate = lanes!(P, i => if L::DAMPED { v[i] - read::<P>(view.v[i], partner) } else { P::zero() });
                     let (f, dissipated) =
                         law.force(law_parameters(&law, pair), d[slot - from], rate, ahead[slot - from]);
@@ -125,7 +125,7 @@ impl PairTable {
                 }
             }
             for i in 0..D {
-                force[i].store(&mut tile.force[i][place - tile.range.start..]);
+                force[i].store(&mut tile.force[i][index - tile.range.start..]);
             }
         }
     }

@@ -49,14 +49,14 @@ const MOST_OFFERED: usize = 4;
 
 /// All candidates that may be meant by a word, the nearest first: those a few letters away as a whole or up to a part of
 /// them, as `balloon-in-a-box` is to `ballon`; of equally near ones, the one that begins like the word longer.
-pub fn all_near<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Vec<String> {
+pub fn close_matches<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Vec<String> {
     let candidates: Vec<&str> = candidates.collect();
     let limit = word.chars().count() / 3 + 1;
     let mut found: Vec<(usize, usize, &str)> = Vec::new();
     for candidate in &candidates {
         let parts = candidate.match_indices(['-', '_', '.']).map(|(at, _)| &candidate[..at]);
-        let near = parts.filter(|part| part.chars().count() > 2).map(|part| letters_apart(word, part) + 1);
-        let distance = near.chain([letters_apart(word, candidate)]).min().unwrap_or(usize::MAX);
+        let part_distances = parts.filter(|part| part.chars().count() > 2).map(|part| letters_apart(word, part) + 1);
+        let distance = part_distances.chain([letters_apart(word, candidate)]).min().unwrap_or(usize::MAX);
         let common = word.chars().zip(candidate.chars()).take_while(|(a, b)| a == b).count();
         if distance <= limit && distance < candidate.chars().count() && common > 0 || distance <= 1 {
             found.push((distance, usize::MAX - common, candidate));
@@ -66,7 +66,7 @@ pub fn all_near<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Ve
     let first = nearest(word, candidates.into_iter());
     let closest = found.first().map_or(0, |best| best.0);
     let offered =
-        found.into_iter().filter(|(distance, ..)| *distance <= closest + 1).map(|(.., near)| near.to_string());
+        found.into_iter().filter(|(distance, ..)| *distance <= closest + 1).map(|(.., name)| name.to_string());
     let mut offered: Vec<String> = offered.take(MOST_OFFERED).collect();
     if offered.is_empty() {
         offered.extend(first);

@@ -49,9 +49,9 @@ pub(super) fn extremes<const D: usize>(
 ) -> Result<[f64; 2], StepError> {
     let mut q = start(weights);
     let freedom = weights.0.iter().flatten().filter(|w| **w > 0.0).count();
-    let places = weights.0[0].len() - WIDTH;
-    let mut before: Columns<D> = Columns::zeros(places);
-    let (mut d, mut r): (Columns<D>, Columns<D>) = (Columns::zeros(places), Columns::zeros(places));
+    let index_count = weights.0[0].len() - WIDTH;
+    let mut before: Columns<D> = Columns::zeros(index_count);
+    let (mut d, mut r): (Columns<D>, Columns<D>) = (Columns::zeros(index_count), Columns::zeros(index_count));
     let mut matrix = Tridiagonal::default();
     let mut found = [None, None];
     for iteration in 1..=MOST_PRODUCTS.min(freedom) {

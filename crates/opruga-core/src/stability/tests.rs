@@ -64,8 +64,8 @@ fn anchored(
     stiffness: Vec<f64>,
     damping: Vec<f64>,
 ) -> System<2> {
-    let places = layout.places(nodes);
-    let (mut x, v) = (Columns::zeros(places), Columns::zeros(places));
+    let index_count = layout.index_count(nodes);
+    let (mut x, v) = (Columns::zeros(index_count), Columns::zeros(index_count));
     for p in 0..nodes * layout.stride() {
         x.set(p, [0.1 * p as f64, 1.0 / (1.0 + p as f64)]);
     }
@@ -92,11 +92,11 @@ fn the_largest_eigenvalues_are_found() {
 }
 
 #[test]
-fn held_nodes_and_axes_and_unused_bodies_do_not_count() {
+fn pinned_nodes_and_axes_and_unused_bodies_do_not_count() {
     let mut stiffness = vec![4.0; 20];
     (stiffness[3], stiffness[7]) = (400.0, 900.0);
     let mut system = anchored(Layout::Single, 20, 1, 1.0, stiffness, vec![0.0; 20]);
-    let pin = |place, axes| Pin { place, axes, anchor: [0.0; 2], motion: Default::default() };
+    let pin = |index, axes| Pin { index, axes, anchor: [0.0; 2], motion: Default::default() };
     close(estimate(&system, &SYMPLECTIC).unwrap().spectrum.omega, 30.0);
     system.pins.push(pin(7, [true, false]));
     close(estimate(&system, &SYMPLECTIC).unwrap().spectrum.omega, 30.0);
@@ -118,8 +118,8 @@ fn nothing_to_move_is_stable() {
     let stability = estimate(&system, &EXPLICIT).unwrap();
     assert_eq!((stability.spectrum.omega, stability.spectrum.damping), (0.0, 0.0));
     assert_eq!(stability.largest_stable_step, Some(f64::INFINITY));
-    let held = anchored(Layout::Single, 9, 1, 0.0, vec![5.0; 9], vec![0.0; 9]);
-    assert_eq!(estimate(&held, &SYMPLECTIC).unwrap().largest_stable_step, Some(f64::INFINITY));
+    let pinned = anchored(Layout::Single, 9, 1, 0.0, vec![5.0; 9], vec![0.0; 9]);
+    assert_eq!(estimate(&pinned, &SYMPLECTIC).unwrap().largest_stable_step, Some(f64::INFINITY));
 }
 
 #[test]

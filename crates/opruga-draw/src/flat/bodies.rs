@@ -11,8 +11,8 @@ use tiny_skia::{FilterQuality, Paint, Path, PathBuilder, Pattern, Pixmap, Spread
 
 /// The length in pixels below which an edge of a coloured outline is joined to the next.
 const SHORT: f32 = 1.2;
-/// The distance of nodes from which on dots have room, in units of lines.
-const ROOM: f32 = 15.0;
+/// The spacing of nodes from which on they are drawn as dots, in units of lines.
+const DOT_SPACING: f32 = 15.0;
 
 /// How the scalars of a picture become colours.
 struct Scalars {
@@ -23,14 +23,14 @@ struct Scalars {
 }
 
 impl Scalars {
-    /// The place of a scalar on the map.
-    fn place(&self, scalar: f64) -> f64 {
-        View::place(self.range, scalar)
+    /// The fraction of the map at which a scalar lies.
+    fn fraction(&self, scalar: f64) -> f64 {
+        View::fraction(self.range, scalar)
     }
 
     /// The colour of a scalar.
     fn colour(&self, scalar: f64) -> [u8; 3] {
-        self.map.colour(self.place(scalar))
+        self.map.colour(self.fraction(scalar))
     }
 
     /// The mean of the scalars of some nodes.
@@ -71,8 +71,8 @@ pub(crate) fn draw(canvas: &mut Canvas, picture: &Picture, view: &View, projecti
 /// The colour of a body without scalars; many bodies take colours without a visible order.
 pub(crate) fn body_colour(index: usize, count: usize) -> [u8; 3] {
     let shuffled = (index as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 33;
-    let place = if count <= 2 * BODIES.len() { index } else { shuffled as usize };
-    BODIES[place % BODIES.len()]
+    let choice = if count <= 2 * BODIES.len() { index } else { shuffled as usize };
+    BODIES[choice % BODIES.len()]
 }
 
 /// One body on its way to the canvas.
@@ -214,16 +214,16 @@ impl Drawing<'_> {
         let Some(mut scratch) = Pixmap::new((high[0] - low[0]) as u32, (high[1] - low[1]) as u32) else {
             return;
         };
-        let places: Vec<f64> = self.body.scalar.iter().map(|&scalar| self.scalars.place(scalar)).collect();
+        let fractions: Vec<f64> = self.body.scalar.iter().map(|&scalar| self.scalars.fraction(scalar)).collect();
         // The first pass reaches beyond the cells, so that the soft edge of the outline has a colour to take.
         let passes: &[f32] = if outline.is_some() { &[1.5, 0.01] } else { &[0.01] };
         for &reach in passes {
             for cell in cells {
                 let corners = cell.map(|node| {
                     let [x, y] = self.pixels[node as usize];
-                    ([x - low[0], y - low[1]], places[node as usize])
+                    ([x - low[0], y - low[1]], fractions[node as usize])
                 });
-                shade::triangle(&mut scratch.as_mut(), corners, reach, &|place| self.scalars.map.colour(place));
+                shade::triangle(&mut scratch.as_mut(), corners, reach, &|fraction| self.scalars.map.colour(fraction));
             }
         }
         let shift = Transform::from_translate(low[0], low[1]);
@@ -311,16 +311,16 @@ impl Drawing<'_> {
             let count = if chain.closed { chain.nodes.len() } else { chain.nodes.len() - 1 };
             let (mut from, mut last) = (self.pixels[chain.nodes[0] as usize], None);
             let (mut sum, mut edges) = (0.0, 0.0);
-            for place in 0..count {
-                let ends = [chain.nodes[place], chain.nodes[(place + 1) % chain.nodes.len()]];
+            for edge in 0..count {
+                let ends = [chain.nodes[edge], chain.nodes[(edge + 1) % chain.nodes.len()]];
                 let to = self.pixels[ends[1] as usize];
                 sum += Scalars::mean(self.body, ends.into_iter());
                 edges += 1.0;
                 // Edges too short to be seen are drawn together, in the colour of their mean.
-                if (to[0] - from[0]).abs() + (to[1] - from[1]).abs() < SHORT && place + 1 < count {
+                if (to[0] - from[0]).abs() + (to[1] - from[1]).abs() < SHORT && edge + 1 < count {
                     continue;
                 }
-                let shade = (self.scalars.place(sum / edges).clamp(0.0, 1.0) * shades).round() / shades;
+                let shade = (self.scalars.fraction(sum / edges).clamp(0.0, 1.0) * shades).round() / shades;
                 if last != Some(shade) {
                     self.coloured_line(canvas, &mut points, width, last);
                     points.push(from);
@@ -347,7 +347,7 @@ impl Drawing<'_> {
             return;
         }
         let radius = match self.body.node_spacing {
-            Some(spacing) if ((spacing * self.projection.scale) as f32) < ROOM * self.unit => return,
+            Some(spacing) if ((spacing * self.projection.scale) as f32) < DOT_SPACING * self.unit => return,
             Some(_) => 2.6 * self.unit,
             None => {
                 // The distance of neighbours, if they lie around the body or fill it.

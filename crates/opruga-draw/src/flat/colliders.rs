@@ -15,7 +15,7 @@ pub(crate) fn draw(canvas: &mut Canvas, collider: &ColliderPicture, projection: 
             let (a, b) = (projection.pixel(*min), projection.pixel(*max));
             let (top, bottom) = (a[1].min(b[1]), a[1].max(b[1]));
             let corners = [[a[0], top], [b[0], top], [b[0], bottom], [a[0], bottom]];
-            if *inside { room(canvas, corners, projection, unit) } else { block(canvas, &corners, edge) }
+            if *inside { container(canvas, corners, projection, unit) } else { block(canvas, &corners, edge) }
         }
         ColliderPicture::Ball { center, radius } => {
             let center = projection.pixel(*center);
@@ -56,8 +56,8 @@ fn block(canvas: &mut Canvas, points: &[[f32; 2]], edge: f32) {
     }
 }
 
-/// Draws the walls of a room.
-fn room(canvas: &mut Canvas, corners: [[f32; 2]; 4], projection: &Projection, unit: f32) {
+/// Draws the walls of a container.
+fn container(canvas: &mut Canvas, corners: [[f32; 2]; 4], projection: &Projection, unit: f32) {
     let mut builder = PathBuilder::new();
     if let Some(all) = Rect::from_xywh(-1.0, -1.0, projection.size[0] + 2.0, projection.size[1] + 2.0) {
         builder.push_rect(all);
@@ -118,16 +118,16 @@ fn hatched(canvas: &mut Canvas, from: [f32; 2], to: [f32; 2], unit: f32) {
     let direction = [along[0] / length, along[1] / length];
     let away = [direction[1], -direction[0]];
     let (step, depth) = (11.0 * unit, 9.0 * unit);
-    let mut place = 0.5 * step;
+    let mut distance = 0.5 * step;
     let mut builder = PathBuilder::new();
-    while place < length {
-        let start = [from[0] + place * direction[0], from[1] + place * direction[1]];
+    while distance < length {
+        let start = [from[0] + distance * direction[0], from[1] + distance * direction[1]];
         builder.move_to(start[0], start[1]);
         builder.line_to(
             start[0] + depth * (away[0] - 0.8 * direction[0]),
             start[1] + depth * (away[1] - 0.8 * direction[1]),
         );
-        place += step;
+        distance += step;
     }
     if let Some(path) = builder.finish() {
         canvas.stroke(&path, 0.9 * unit, &paint(OBSTACLE_EDGE, 0.7));

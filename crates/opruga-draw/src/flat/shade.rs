@@ -2,7 +2,7 @@
 
 use tiny_skia::{PixmapMut, PremultipliedColorU8};
 
-/// A corner of a triangle: its pixel and its scalar place in the colour map, from 0 to 1.
+/// A corner of a triangle: its pixel and the fraction of the colour map of its scalar, from 0 to 1.
 pub(crate) type Corner = ([f32; 2], f64);
 
 /// Fills a triangle; `reach` is how far, in pixels, its colours go beyond its edges.
@@ -31,8 +31,8 @@ pub(crate) fn triangle(pixmap: &mut PixmapMut, corners: [Corner; 3], reach: f32,
             };
             let shares = [share(b, c), share(c, a), share(a, b)];
             if (0..3).all(|corner| shares[corner] >= -slack[corner]) {
-                let place: f64 = (0..3).map(|corner| f64::from(shares[corner]) * corners[corner].1).sum();
-                let [red, green, blue] = colour(place);
+                let fraction: f64 = (0..3).map(|corner| f64::from(shares[corner]) * corners[corner].1).sum();
+                let [red, green, blue] = colour(fraction);
                 if let Some(pixel) = PremultipliedColorU8::from_rgba(red, green, blue, 255) {
                     pixels[(row * width + column) as usize] = pixel;
                 }

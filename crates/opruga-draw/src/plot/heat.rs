@@ -11,13 +11,13 @@ use std::collections::BTreeMap;
 const CELL_SIZE: f64 = 11.0;
 /// The colour of a cell without a number.
 const NOTHING: [u8; 3] = [226, 228, 232];
-/// The room right of the cells: colour bar and its ticks.
-const BAR_ROOM: f64 = 96.0;
+/// The space right of the cells: colour bar and its ticks.
+const BAR_SPACE: f64 = 96.0;
 
 /// Writes a map.
 pub(super) fn write(map: &HeatMap) -> String {
     let labels = map.y.iter().map(|label| width_of(label, TICK_SIZE)).fold(20.0, f64::max);
-    let (left, right) = (labels + 44.0, map.width - BAR_ROOM);
+    let (left, right) = (labels + 44.0, map.width - BAR_SPACE);
     let cell = [(right - left) / map.x.len() as f64, (300.0 / map.y.len() as f64).clamp(12.0, 40.0)];
     let height = cell[1] * map.y.len() as f64;
     let mut svg = Svg::default();
@@ -46,7 +46,7 @@ pub(super) fn write(map: &HeatMap) -> String {
     y += 56.0;
     let marks = [
         (map.panels.iter().any(|panel| !panel.failed.is_empty()), "× the run has failed"),
-        (map.panels.iter().any(|panel| places(map).any(|at| mark(panel, at) == Some("–"))), "– no such number"),
+        (map.panels.iter().any(|panel| cell_indices(map).any(|at| mark(panel, at) == Some("–"))), "– no such number"),
     ];
     let notes: Vec<&str> = marks.iter().filter(|(seen, _)| *seen).map(|(_, note)| *note).collect();
     if !notes.is_empty() {
@@ -57,7 +57,7 @@ pub(super) fn write(map: &HeatMap) -> String {
 }
 
 /// All cells: column and row.
-fn places(map: &HeatMap) -> impl Iterator<Item = [usize; 2]> {
+fn cell_indices(map: &HeatMap) -> impl Iterator<Item = [usize; 2]> {
     let (columns, rows) = (map.x.len(), map.y.len());
     (0..rows).flat_map(move |row| (0..columns).map(move |column| [column, row]))
 }
@@ -78,7 +78,7 @@ fn mark(panel: &HeatPanel, at: [usize; 2]) -> Option<&'static str> {
 
 /// What stands in the cells: numbers with three digits, and more where cells of other colours would bear the same.
 fn texts(map: &HeatMap, panel: &HeatPanel, scale: &Scale) -> Vec<([usize; 2], Option<String>)> {
-    let cells: Vec<([usize; 2], Option<f64>)> = places(map).map(|at| (at, value(panel, at))).collect();
+    let cells: Vec<([usize; 2], Option<f64>)> = cell_indices(map).map(|at| (at, value(panel, at))).collect();
     let largest = cells.iter().filter_map(|cell| cell.1).fold(0.0, |most: f64, value| most.max(value.abs()));
     let step = |of: f64, digits: i32| 10_f64.powi((of.log10() + 1e-9).floor() as i32 + 1 - digits);
     let written = |digits: i32| -> Vec<Option<String>> {
@@ -89,14 +89,14 @@ fn texts(map: &HeatMap, panel: &HeatPanel, scale: &Scale) -> Vec<([usize; 2], Op
         };
         cells.iter().map(|cell| cell.1.map(text)).collect()
     };
-    let tells = |texts: &[Option<String>]| {
+    let distinguishes = |texts: &[Option<String>]| {
         let mut seen: BTreeMap<&str, [u8; 3]> = BTreeMap::new();
         cells.iter().zip(texts).filter_map(|(cell, text)| Some((cell.1?, text.as_deref()?))).all(|(value, text)| {
-            let colour = scale.place(value).map_or(NOTHING, |place| ColourMap::Viridis.colour(place));
+            let colour = scale.fraction(value).map_or(NOTHING, |fraction| ColourMap::Viridis.colour(fraction));
             *seen.entry(text).or_insert(colour) == colour || alike(seen[text], colour)
         })
     };
-    let texts = (3..9).map(written).find(|texts| tells(texts)).unwrap_or_else(|| written(9));
+    let texts = (3..9).map(written).find(|texts| distinguishes(texts)).unwrap_or_else(|| written(9));
     cells.into_iter().map(|cell| cell.0).zip(texts).collect()
 }
 
@@ -108,15 +108,15 @@ fn alike(a: [u8; 3], b: [u8; 3]) -> bool {
 /// Draws the cells, the labels of the rows and the colour bar.
 fn draw_panel(svg: &mut Svg, map: &HeatMap, panel: &HeatPanel, area: [f64; 4], cell: [f64; 2]) {
     let [left, top, right, bottom] = area;
-    let scale = Scale::fit(&panel.scale, places(map).filter_map(|at| value(panel, at)), 0.0);
+    let scale = Scale::fit(&panel.scale, cell_indices(map).filter_map(|at| value(panel, at)), 0.0);
     let texts = texts(map, panel, &scale);
     let widest = texts.iter().flat_map(|(_, text)| text).map(|text| width_of(text, CELL_SIZE)).fold(0.0, f64::max);
     let readable = widest + 4.0 < cell[0] && cell[1] > 15.0;
     for (at, text) in texts {
         // The first row is the lowest.
         let corner = [left + at[0] as f64 * cell[0], bottom - (at[1] + 1) as f64 * cell[1]];
-        let colour = value(panel, at).and_then(|value| scale.place(value));
-        let colour = colour.map_or(NOTHING, |place| ColourMap::Viridis.colour(place));
+        let colour = value(panel, at).and_then(|value| scale.fraction(value));
+        let colour = colour.map_or(NOTHING, |fraction| ColourMap::Viridis.colour(fraction));
         rectangle(svg, corner, cell, colour);
         let text = mark(panel, at).map(String::from).or(text.filter(|_| readable));
         let middle = [corner[0] + 0.5 * cell[0], corner[1] + 0.5 * cell[1] + 4.0];
@@ -129,7 +129,7 @@ fn draw_panel(svg: &mut Svg, map: &HeatMap, panel: &HeatPanel, area: [f64; 4], c
         let middle = bottom - (row as f64 + 0.5) * cell[1];
         svg.text(label, [left - 9.0, middle + 4.2], TICK_SIZE, "end", INK, "");
     }
-    if places(map).any(|at| value(panel, at).is_some()) {
+    if cell_indices(map).any(|at| value(panel, at).is_some()) {
         colour_bar(svg, &scale, [right + 14.0, top, right + 30.0, bottom]);
     }
 }
@@ -146,8 +146,8 @@ fn colour_bar(svg: &mut Svg, scale: &Scale, [left, top, right, bottom]: [f64; 4]
         rectangle(svg, corner, [right - left, strip + reach], colour);
     }
     for tick in scale.ticks(tick_count(bottom - top)) {
-        if let Some(place) = scale.place(tick.value).filter(|_| !tick.label.is_empty()) {
-            let y = bottom - place * (bottom - top);
+        if let Some(fraction) = scale.fraction(tick.value).filter(|_| !tick.label.is_empty()) {
+            let y = bottom - fraction * (bottom - top);
             svg.line([right, y, right + 5.0, y], SOFT_INK, 1.0, "");
             svg.text(&tick.label, [right + 9.0, y + 4.2], TICK_SIZE, "start", INK, "");
         }
@@ -229,7 +229,7 @@ mod tests {
 
     /// The texts within cells.
     fn cell_texts(map: &HeatMap) -> Vec<String> {
-        let scale = Scale::fit(&map.panels[0].scale, places(map).filter_map(|at| value(&map.panels[0], at)), 0.0);
+        let scale = Scale::fit(&map.panels[0].scale, cell_indices(map).filter_map(|at| value(&map.panels[0], at)), 0.0);
         texts(map, &map.panels[0], &scale).into_iter().filter_map(|(_, text)| text).collect()
     }
 

@@ -1,9 +1,9 @@
-//! How the values of an axis become places, and where its ticks are.
+//! How the values of an axis become fractions of its length, and where its ticks are.
 
 use super::Axis;
 use crate::ticks::{decades, format_tick, nice_ticks, scientific};
 
-/// The linear or logarithmic way from a value to a place from 0 to 1.
+/// The linear or logarithmic map from a value to a fraction from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Scale {
     /// The value at the start.
@@ -49,14 +49,14 @@ impl Scale {
         Scale { low: low - pad, high: high + pad, logarithmic }
     }
 
-    /// The place of a value, or nothing where it has none.
-    pub(crate) fn place(&self, value: f64) -> Option<f64> {
-        let place = if self.logarithmic {
+    /// The fraction at which a value lies, or nothing where it has none.
+    pub(crate) fn fraction(&self, value: f64) -> Option<f64> {
+        let fraction = if self.logarithmic {
             (value / self.low).ln() / (self.high / self.low).ln()
         } else {
             (value - self.low) / (self.high - self.low)
         };
-        place.is_finite().then_some(place)
+        fraction.is_finite().then_some(fraction)
     }
 
     /// The ticks within the scale, about `count` of them.
@@ -114,7 +114,7 @@ mod tests {
         let scale = Scale::fit(&Axis::default(), [0.0, 10.0].into_iter(), 0.0);
         let labels: Vec<String> = scale.ticks(5).into_iter().map(|tick| tick.label).collect();
         assert_eq!(labels, ["0", "2", "4", "6", "8", "10"]);
-        assert_eq!(scale.place(5.0), Some(0.5));
+        assert_eq!(scale.fraction(5.0), Some(0.5));
     }
 
     #[test]
@@ -123,7 +123,7 @@ mod tests {
         let labels: Vec<String> =
             scale.ticks(6).into_iter().map(|tick| tick.label).filter(|label| !label.is_empty()).collect();
         assert_eq!(labels, ["10", "100", "1000", "10\u{a0}000"]);
-        assert_eq!(scale.place(0.0), None);
+        assert_eq!(scale.fraction(0.0), None);
     }
 
     #[test]

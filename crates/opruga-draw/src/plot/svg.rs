@@ -171,45 +171,45 @@ fn names(svg: &mut Svg, panel: &Panel, [left, right]: [f64; 2], top: f64) -> usi
 fn draw_panel(svg: &mut Svg, panel: &Panel, [x, y]: [&Scale; 2], area: [f64; 4], index: usize, last: bool) {
     let [left, top, right, bottom] = area;
     let grid = [232, 234, 238];
-    let at_x = |place: f64| left + place * (right - left);
-    let at_y = |place: f64| bottom - place * (bottom - top);
+    let at_x = |fraction: f64| left + fraction * (right - left);
+    let at_y = |fraction: f64| bottom - fraction * (bottom - top);
     for tick in x.ticks(((right - left) / 80.0) as usize) {
-        let Some(place) = x.place(tick.value).map(at_x) else {
+        let Some(pixel) = x.fraction(tick.value).map(at_x) else {
             continue;
         };
         if !tick.label.is_empty() {
-            svg.line([place, top, place, bottom], grid, 1.0, "");
+            svg.line([pixel, top, pixel, bottom], grid, 1.0, "");
             if last {
-                svg.text(&tick.label, [place, bottom + 20.0], TICK_SIZE, "middle", INK, "");
+                svg.text(&tick.label, [pixel, bottom + 20.0], TICK_SIZE, "middle", INK, "");
             }
         }
         let length = if tick.label.is_empty() { 3.0 } else { 5.0 };
-        svg.line([place, bottom, place, bottom + length], SOFT_INK, 1.0, "");
+        svg.line([pixel, bottom, pixel, bottom + length], SOFT_INK, 1.0, "");
     }
     for tick in y.ticks(tick_count(panel.height)) {
-        let Some(place) = y.place(tick.value).map(at_y) else {
+        let Some(pixel) = y.fraction(tick.value).map(at_y) else {
             continue;
         };
         if !tick.label.is_empty() {
-            svg.line([left, place, right, place], grid, 1.0, "");
-            svg.text(&tick.label, [left - 9.0, place + 4.2], TICK_SIZE, "end", INK, "");
+            svg.line([left, pixel, right, pixel], grid, 1.0, "");
+            svg.text(&tick.label, [left - 9.0, pixel + 4.2], TICK_SIZE, "end", INK, "");
         }
         let length = if tick.label.is_empty() { 3.0 } else { 5.0 };
-        svg.line([left - length, place, left, place], SOFT_INK, 1.0, "");
+        svg.line([left - length, pixel, left, pixel], SOFT_INK, 1.0, "");
     }
     let (width, height) = (right - left, bottom - top);
     svg.add(format_args!(
         r#"<clipPath id="panel-{index}"><rect x="{left:.1}" y="{top:.1}" width="{width:.1}" height="{height:.1}"/></clipPath>"#
     ));
     for level in &panel.levels {
-        if let Some(place) = y.place(level.value).map(at_y) {
-            svg.line([left, place, right, place], SOFT_INK, 1.4, "7 5");
+        if let Some(pixel) = y.fraction(level.value).map(at_y) {
+            svg.line([left, pixel, right, pixel], SOFT_INK, 1.4, "7 5");
         }
     }
     for (number, line) in panel.lines.iter().enumerate().filter(|(_, line)| !line.band.is_empty()) {
         let edge = |end: usize| {
-            let place = move |point: &[f64; 3]| Some([at_x(x.place(point[0])?), at_y(y.place(point[end])?)]);
-            thinned(line.band.iter().map(place))
+            let pixel_of = move |point: &[f64; 3]| Some([at_x(x.fraction(point[0])?), at_y(y.fraction(point[end])?)]);
+            thinned(line.band.iter().map(pixel_of))
         };
         // There along the upper ends, and back along the lower ones.
         let around = edge(2).into_iter().flatten().chain(edge(1).into_iter().flatten().rev());
@@ -221,8 +221,8 @@ fn draw_panel(svg: &mut Svg, panel: &Panel, [x, y]: [&Scale; 2], area: [f64; 4],
     }
     for (number, line) in panel.lines.iter().enumerate() {
         let colour = colour_of(line, number);
-        let places = line.points.iter().map(|point| Some([at_x(x.place(point[0])?), at_y(y.place(point[1])?)]));
-        let path = path_text(places);
+        let pixels = line.points.iter().map(|point| Some([at_x(x.fraction(point[0])?), at_y(y.fraction(point[1])?)]));
+        let path = path_text(pixels);
         if !path.is_empty() {
             let dashes = if line.dashed { r#" stroke-dasharray="6 4""# } else { "" };
             let colour = hex(colour);
@@ -232,7 +232,7 @@ fn draw_panel(svg: &mut Svg, panel: &Panel, [x, y]: [&Scale; 2], area: [f64; 4],
         }
         if let Some(marker) = line.marker {
             for point in &line.points {
-                if let (Some(px), Some(py)) = (x.place(point[0]), y.place(point[1]))
+                if let (Some(px), Some(py)) = (x.fraction(point[0]), y.fraction(point[1]))
                     && (-1e-9..=1.0 + 1e-9).contains(&px)
                     && (-1e-9..=1.0 + 1e-9).contains(&py)
                 {
@@ -254,13 +254,13 @@ fn draw_panel(svg: &mut Svg, panel: &Panel, [x, y]: [&Scale; 2], area: [f64; 4],
 /// Writes what a level means, above or below its line, at the end where the lines of the panel are farthest away.
 fn level_label(svg: &mut Svg, panel: &Panel, level: &Level, [x, y]: [&Scale; 2], area: [f64; 4]) {
     let [left, top, right, bottom] = area;
-    let Some(place) = y.place(level.value) else { return };
-    let line = bottom - place * (bottom - top);
+    let Some(fraction) = y.fraction(level.value) else { return };
+    let line = bottom - fraction * (bottom - top);
     let width = width_of(&level.label, TICK_SIZE);
     let points = panel.lines.iter().flat_map(|line| &line.points);
     let pixels: Vec<[f64; 2]> = points
         .filter_map(|point| {
-            Some([left + x.place(point[0])? * (right - left), bottom - y.place(point[1])? * (bottom - top)])
+            Some([left + x.fraction(point[0])? * (right - left), bottom - y.fraction(point[1])? * (bottom - top)])
         })
         .collect();
     let candidates = [(true, -11.0), (true, 11.0), (false, -11.0), (false, 11.0)].map(|(at_end, shift)| {
@@ -315,22 +315,22 @@ fn thinned(points: impl Iterator<Item = Option<[f64; 2]>>) -> Vec<Vec<[f64; 2]>>
         column.clear();
     };
     for point in points {
-        let place = pieces.len() - 1;
+        let current = pieces.len() - 1;
         match point {
             Some(point) => {
                 if column.first().is_some_and(|first| (first[0] - point[0]).abs() > 0.5) {
-                    flush(&mut column, &mut pieces[place]);
+                    flush(&mut column, &mut pieces[current]);
                 }
                 column.push(point);
             }
             None => {
-                flush(&mut column, &mut pieces[place]);
+                flush(&mut column, &mut pieces[current]);
                 pieces.push(Vec::new());
             }
         }
     }
-    let place = pieces.len() - 1;
-    flush(&mut column, &mut pieces[place]);
+    let current = pieces.len() - 1;
+    flush(&mut column, &mut pieces[current]);
     pieces.retain(|piece| !piece.is_empty());
     pieces
 }
@@ -339,8 +339,8 @@ fn thinned(points: impl Iterator<Item = Option<[f64; 2]>>) -> Vec<Vec<[f64; 2]>>
 fn path_text(points: impl Iterator<Item = Option<[f64; 2]>>) -> String {
     let mut path = String::new();
     for piece in thinned(points) {
-        for (place, [x, y]) in piece.into_iter().enumerate() {
-            let _ = write!(path, "{}{x:.1} {y:.1}", if place > 0 { "L" } else { "M" });
+        for (index, [x, y]) in piece.into_iter().enumerate() {
+            let _ = write!(path, "{}{x:.1} {y:.1}", if index > 0 { "L" } else { "M" });
         }
     }
     path

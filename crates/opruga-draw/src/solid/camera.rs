@@ -37,7 +37,7 @@ pub(crate) struct Seen {
     /// The pixel, from the left and from the top.
     pub(crate) pixel: [f32; 2],
     /// One divided by the distance along the axis of the camera.
-    pub(crate) near: f32,
+    pub(crate) inverse_distance: f32,
 }
 
 /// The directions to the right, upwards and forwards of the camera of a view.
@@ -63,8 +63,8 @@ pub(crate) fn seen_size(view: &View) -> [f64; 2] {
     let (axes, points) = (axes(view), must_see(view));
     [0, 1].map(|axis| {
         let along = |ends: [f64; 2], point: &[f64; 3]| {
-            let place = dot(axes[axis], *point);
-            [ends[0].min(place), ends[1].max(place)]
+            let coordinate = dot(axes[axis], *point);
+            [ends[0].min(coordinate), ends[1].max(coordinate)]
         };
         let [low, high] = points.iter().fold([f64::INFINITY, f64::NEG_INFINITY], along);
         high - low
@@ -74,8 +74,8 @@ pub(crate) fn seen_size(view: &View) -> [f64; 2] {
 /// A camera with a perspective view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Camera {
-    /// The place of the camera [m].
-    pub(crate) place: [f64; 3],
+    /// The position of the camera [m].
+    pub(crate) position: [f64; 3],
     /// The directions to the right, upwards and forwards.
     pub(crate) axes: [[f64; 3]; 3],
     /// The number of pixels for a tangent of one.
@@ -115,7 +115,7 @@ impl Camera {
         }
         let distance = far_enough(&seen(target));
         Camera {
-            place: along(target, forward, -distance.max(1e-6)),
+            position: along(target, forward, -distance.max(1e-6)),
             axes,
             focus: 0.5 * height / HALF_HEIGHT,
             middle: [0.5 * width, 0.5 * height],
@@ -124,7 +124,7 @@ impl Camera {
 
     /// The number of pixels in a metre at the distance of a point.
     pub(crate) fn scale(&self, point: [f64; 3]) -> f64 {
-        self.focus / self.turn(between(self.place, point))[2].max(1e-9)
+        self.focus / self.turn(between(self.position, point))[2].max(1e-9)
     }
 
     /// The components of a direction to the right, upwards and forwards.
@@ -134,13 +134,13 @@ impl Camera {
 
     /// Where a point is seen, unless it is behind the camera or not finite.
     pub(crate) fn see(&self, point: [f64; 3]) -> Option<Seen> {
-        let [x, y, z] = self.turn(between(self.place, point));
+        let [x, y, z] = self.turn(between(self.position, point));
         if !(z > 1e-9 && z.is_finite()) {
             return None;
         }
         let pixel = [self.middle[0] + self.focus * x / z, self.middle[1] - self.focus * y / z];
         let wide = pixel.iter().all(|value| value.abs() < 1e6);
-        wide.then(|| Seen { pixel: pixel.map(|value| value as f32), near: (1.0 / z) as f32 })
+        wide.then(|| Seen { pixel: pixel.map(|value| value as f32), inverse_distance: (1.0 / z) as f32 })
     }
 }
 
@@ -159,6 +159,6 @@ mod tests {
             let [x, y] = camera.see(point).unwrap().pixel;
             assert!((0.0..800.0).contains(&x) && (0.0..600.0).contains(&y), "{x} {y}");
         }
-        assert!(camera.see(along(camera.place, camera.axes[2], -1.0)).is_none());
+        assert!(camera.see(along(camera.position, camera.axes[2], -1.0)).is_none());
     }
 }

@@ -65,7 +65,7 @@ impl Shadow {
             self.span[side + 1] = self.span[side + 1].max(span[side + 1]);
         }
         let shade = &mut self.shade;
-        cover.each(screen.width, |place, _| shade[place] = 255);
+        cover.each(screen.width, |index, _| shade[index] = 255);
     }
 
     /// Adds the shadows of triangles.
@@ -111,12 +111,12 @@ impl Shadow {
             }
             let mut column = vec![0; bottom - top];
             for x in left..right {
-                for (place, value) in column.iter_mut().enumerate() {
-                    *value = self.shade[(top + place) * screen.width + x];
+                for (offset, value) in column.iter_mut().enumerate() {
+                    *value = self.shade[(top + offset) * screen.width + x];
                 }
                 slide(&mut column, radius, &mut sums);
-                for (place, value) in column.iter().enumerate() {
-                    self.shade[(top + place) * screen.width + x] = *value;
+                for (offset, value) in column.iter().enumerate() {
+                    self.shade[(top + offset) * screen.width + x] = *value;
                 }
             }
         }
@@ -134,8 +134,8 @@ fn slide(values: &mut [u8], radius: usize, sums: &mut Vec<u32>) {
     }
     let count = values.len();
     let window = (2 * radius + 1) as u32;
-    for (place, value) in values.iter_mut().enumerate() {
-        let (first, last) = (place.saturating_sub(radius), (place + radius + 1).min(count));
+    for (index, value) in values.iter_mut().enumerate() {
+        let (first, last) = (index.saturating_sub(radius), (index + radius + 1).min(count));
         *value = ((sums[last] - sums[first]) / window) as u8;
     }
 }
@@ -169,7 +169,7 @@ pub(crate) fn draw(
     plane: Plane,
     shadow: Option<&Shadow>,
 ) {
-    let height = plane.height(camera.place);
+    let height = plane.height(camera.position);
     if height <= 1e-9 {
         return;
     }
@@ -183,7 +183,7 @@ pub(crate) fn draw(
     let second = cross(plane.normal, first);
     let center = along(view.center(), plane.normal, -plane.height(view.center()));
     let middle = [dot(first, between(plane.point, center)), dot(second, between(plane.point, center))];
-    let start = between(plane.point, camera.place);
+    let start = between(plane.point, camera.position);
     let start = [dot(first, start), dot(second, start)];
     let step = along([0.0; 3], camera.axes[0], 1.0 / camera.focus);
     let above = 1.0 / height;
@@ -211,18 +211,18 @@ pub(crate) fn draw(
             let u = start[0] + distance * (ray_first + x * step_first);
             let v = start[1] + distance * (ray_second + x * step_second);
             let away = (u - middle[0]) * (u - middle[0]) + (v - middle[1]) * (v - middle[1]);
-            let place = row * screen.width + column;
-            let near = (fall * above) as f32;
-            if away >= outer || near <= screen.near[place] {
+            let index = row * screen.width + column;
+            let inverse_distance = (fall * above) as f32;
+            if away >= outer || inverse_distance <= screen.inverse_distances[index] {
                 continue;
             }
             let fade = if away <= inner { 0.0 } else { (away.sqrt() - fade_from) / fade_over };
-            let odd = below(u * per_metre).wrapping_add(below(v * per_metre)) & 1;
-            let tone = tones[odd as usize][(fade * LAST_TONE) as usize & LAST_TONE as usize];
-            let dark = shadow.map_or(0, |shadow| shadow.shade[place]);
-            screen.colours[place] =
+            let parity = below(u * per_metre).wrapping_add(below(v * per_metre)) & 1;
+            let tone = tones[parity as usize][(fade * LAST_TONE) as usize & LAST_TONE as usize];
+            let dark = shadow.map_or(0, |shadow| shadow.shade[index]);
+            screen.colours[index] =
                 if dark > 0 { mix(tone, [40, 46, 62], SHADOW * f64::from(dark) / 255.0) } else { tone };
-            screen.near[place] = near * 0.9995;
+            screen.inverse_distances[index] = inverse_distance * 0.9995;
         }
     }
 }

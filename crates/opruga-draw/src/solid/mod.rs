@@ -53,9 +53,9 @@ pub(crate) fn scene(
         let shadow = shadow.as_ref().filter(|_| Some(plane) == floor);
         ground::draw(&mut screen, background, &painter.camera, view, *plane, shadow);
     }
-    // The dot of a node lies before its place: it would hide the arrow that begins there.
+    // The dot of a node lies before its position: it would hide the arrow that begins there.
     let dotted = picture.bodies.iter().any(|body| body.nodes_drawn);
-    let surfaces = (dotted && !picture.arrows.is_empty()).then(|| screen.near.clone());
+    let surfaces = (dotted && !picture.arrows.is_empty()).then(|| screen.inverse_distances.clone());
     for (index, body) in picture.bodies.iter().enumerate() {
         painter.nodes(&mut screen, body, BODIES[index % BODIES.len()]);
     }
@@ -68,9 +68,9 @@ pub(crate) fn scene(
     }
     let mut canvas = Canvas::new(&mut image);
     let project = |point| painter.camera.see(point).map(|seen| seen.pixel.map(|value| value / SAMPLES as f32));
-    let near = surfaces.as_deref().unwrap_or(&screen.near);
+    let inverse_distances = surfaces.as_deref().unwrap_or(&screen.inverse_distances);
     draw_marks(&mut canvas, (picture, &picture.arrows), view, background, unit, &project, &|point| {
-        painter.in_sight([screen.width, screen.height], near, point)
+        painter.in_sight([screen.width, screen.height], inverse_distances, point)
     });
     Ok((image, painter.camera.scale(view.center()) / SAMPLES as f64))
 }
@@ -130,11 +130,11 @@ impl Painter<'_> {
         shadow
     }
 
-    /// Whether nothing hides a point of a surface on a screen of this size with surfaces so near.
-    fn in_sight(&self, [width, height]: [usize; 2], near: &[f32], point: [f64; 3]) -> bool {
+    /// Whether nothing hides a point of a surface on a screen of this size with surfaces at these inverse distances.
+    fn in_sight(&self, [width, height]: [usize; 2], inverse_distances: &[f32], point: [f64; 3]) -> bool {
         let Some(seen) = self.camera.see(point) else { return false };
         let [column, row] = seen.pixel.map(|value| value as usize);
-        column >= width || row >= height || near[row * width + column] < seen.near * 1.004
+        column >= width || row >= height || inverse_distances[row * width + column] < seen.inverse_distance * 1.004
     }
 
     /// Draws a line between two points.
@@ -148,7 +148,7 @@ impl Painter<'_> {
     fn collider(&self, screen: &mut Screen, collider: &ColliderPicture) {
         match collider {
             ColliderPicture::HalfSpace { .. } => {}
-            ColliderPicture::Box { min, max, inside: true } => self.room(screen, *min, *max),
+            ColliderPicture::Box { min, max, inside: true } => self.container(screen, *min, *max),
             ColliderPicture::Polyline(points) => {
                 for pair in points.windows(2) {
                     self.line(screen, [pair[0], pair[1]], 3.0 * self.unit, OBSTACLE_EDGE);
@@ -164,26 +164,26 @@ impl Painter<'_> {
         }
     }
 
-    /// Draws the walls of a room which are seen from inside: their edges, and lines at round distances.
-    fn room(&self, screen: &mut Screen, min: [f64; 3], max: [f64; 3]) {
+    /// Draws the walls of a container which are seen from inside: their edges, and lines at round distances.
+    fn container(&self, screen: &mut Screen, min: [f64; 3], max: [f64; 3]) {
         let square = self.view.square();
         for (corners, axis, high) in FACES {
             let corners = corners.map(|bits| corner(min, max, bits));
-            let towards = between(corners[0], self.camera.place)[axis];
+            let towards = between(corners[0], self.camera.position)[axis];
             if (towards > 0.0) == high {
                 continue;
             }
             for other in (0..3).filter(|&other| other != axis) {
                 let third = 3 - axis - other;
-                let mut place = (min[other] / square).ceil() * square;
-                while place <= max[other] {
+                let mut coordinate = (min[other] / square).ceil() * square;
+                while coordinate <= max[other] {
                     let mut ends = [corners[0]; 2];
                     for (end, limit) in ends.iter_mut().zip([min[third], max[third]]) {
-                        end[other] = place;
+                        end[other] = coordinate;
                         end[third] = limit;
                     }
                     self.line(screen, ends, 0.6 * self.unit, mix(FRAME, [255; 3], 0.4));
-                    place += square;
+                    coordinate += square;
                 }
             }
             for side in 0..4 {
@@ -198,11 +198,11 @@ impl Painter<'_> {
         if triangles(body).is_empty() { 1.6 * self.unit } else { 0.8 * self.unit }
     }
 
-    /// The places of the scalars of a body on its map.
-    fn places(&self, body: &BodyPicture) -> (ColourMap, Vec<f32>) {
+    /// The fractions of its map at which the scalars of a body lie.
+    fn fractions(&self, body: &BodyPicture) -> (ColourMap, Vec<f32>) {
         let range = self.view.range(self.picture);
         let map = self.picture.legend.as_ref().map_or(ColourMap::Viridis, |legend| legend.map);
-        (map, body.scalar.iter().map(|&scalar| View::place(range, scalar) as f32).collect())
+        (map, body.scalar.iter().map(|&scalar| View::fraction(range, scalar) as f32).collect())
     }
 
     /// Draws the nodes of a body, where they are wanted.
@@ -210,12 +210,12 @@ impl Painter<'_> {
         if !body.nodes_drawn {
             return;
         }
-        let (map, places) = self.places(body);
+        let (map, fractions) = self.fractions(body);
         for (node, &position) in body.positions.iter().enumerate() {
             if let Some(seen) = self.camera.see(position) {
-                let colour = places
+                let colour = fractions
                     .get(node)
-                    .map_or_else(|| darker(body.colour.unwrap_or(base)), |&place| map.colour(f64::from(place)));
+                    .map_or_else(|| darker(body.colour.unwrap_or(base)), |&fraction| map.colour(f64::from(fraction)));
                 screen.disc(seen, 1.9 * self.unit, darker(colour));
             }
         }
@@ -228,13 +228,13 @@ impl Painter<'_> {
             self.line(screen, ends, 1.0 * self.unit, SOFT_INK);
         }
         let base = body.colour.unwrap_or(base);
-        let (map, places) = self.places(body);
-        let colouring = if places.is_empty() { Colouring::Plain(base) } else { Colouring::mapped(map, &places) };
+        let (map, fractions) = self.fractions(body);
+        let colouring = if fractions.is_empty() { Colouring::Plain(base) } else { Colouring::mapped(map, &fractions) };
         let surface = Surface { positions: &body.positions, triangles: triangles(body), smooth: true };
         shade::fill(screen, &self.camera, &self.light, &surface, &colouring);
         let filled = !surface.triangles.is_empty();
-        let colour = |node: u32| match places.get(node as usize) {
-            Some(&place) => map.colour(f64::from(place)),
+        let colour = |node: u32| match fractions.get(node as usize) {
+            Some(&fraction) => map.colour(f64::from(fraction)),
             None => darker(base),
         };
         let seen: Vec<Option<Seen>> = body.positions.iter().map(|&position| self.camera.see(position)).collect();

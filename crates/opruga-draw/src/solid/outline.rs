@@ -32,7 +32,7 @@ impl Mask {
 
     fn cover(&mut self, corners: [Seen; 3]) {
         if let Some(cover) = Cover::new(corners, self.width, self.height) {
-            cover.each(self.width, |place, _| self.covered[place] = true);
+            cover.each(self.width, |index, _| self.covered[index] = true);
         }
     }
 
@@ -62,12 +62,12 @@ impl Mask {
 
     /// Whether a sample is covered and has a neighbour that is not; the border of the picture is none of the body.
     fn is_border(&self, row: usize, column: usize) -> bool {
-        let place = row * self.width + column;
-        self.covered[place]
-            && ((column > 0 && !self.covered[place - 1])
-                || (column + 1 < self.width && !self.covered[place + 1])
-                || (row > 0 && !self.covered[place - self.width])
-                || (row + 1 < self.height && !self.covered[place + self.width]))
+        let index = row * self.width + column;
+        self.covered[index]
+            && ((column > 0 && !self.covered[index - 1])
+                || (column + 1 < self.width && !self.covered[index + 1])
+                || (row > 0 && !self.covered[index - self.width])
+                || (row + 1 < self.height && !self.covered[index + self.width]))
     }
 }
 
@@ -87,7 +87,7 @@ pub(super) fn draw(
         for (column, pixel) in line.chunks_exact_mut(4).enumerate() {
             let samples = (0..SAMPLES * SAMPLES)
                 .map(|k| (SAMPLES * row + k / SAMPLES) * screen.width + SAMPLES * column + k % SAMPLES);
-            let share = samples.filter(|place| around[*place]).count();
+            let share = samples.filter(|index| around[*index]).count();
             if share > 0 {
                 let share = share as f64 / (SAMPLES * SAMPLES) as f64;
                 let below = [pixel[0], pixel[1], pixel[2]];
@@ -159,8 +159,8 @@ mod tests {
         let at = |x: u32, y: u32| plain.pixel(x, y) != [255; 3];
         for (x, y) in (5..SIZE - 5).flat_map(|y| (5..SIZE - 5).map(move |x| (x, y))) {
             if outlined.pixel(x, y) != plain.pixel(x, y) {
-                let near = (x - 3..=x + 3).any(|x| (y - 3..=y + 3).any(|y| at(x, y)));
-                assert!(near, "({x}, {y}) lies farther than 3 pixels from the body");
+                let close = (x - 3..=x + 3).any(|x| (y - 3..=y + 3).any(|y| at(x, y)));
+                assert!(close, "({x}, {y}) lies farther than 3 pixels from the body");
             }
         }
     }

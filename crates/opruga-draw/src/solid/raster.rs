@@ -16,7 +16,7 @@ pub(crate) struct Screen {
     /// The colours.
     pub(crate) colours: Vec<[u8; 3]>,
     /// The inverses of the distances; 0 is infinitely far.
-    pub(crate) near: Vec<f32>,
+    pub(crate) inverse_distances: Vec<f32>,
 }
 
 /// The samples which a triangle covers.
@@ -58,7 +58,7 @@ impl Cover {
         self.span
     }
 
-    /// Calls a function with the place of each sample and the shares of the corners in it.
+    /// Calls a function with the index of each sample and the shares of the corners in it.
     #[inline(always)]
     pub(crate) fn each(&self, width: usize, mut call: impl FnMut(usize, [f32; 3])) {
         let [a, b, c] = self.corners.map(|corner| corner.pixel);
@@ -90,22 +90,27 @@ impl Screen {
     /// An empty screen for an image of some pixels.
     pub(crate) fn new(width: u32, height: u32, background: [u8; 3]) -> Screen {
         let (width, height) = (width as usize * SAMPLES, height as usize * SAMPLES);
-        Screen { width, height, colours: vec![background; width * height], near: vec![0.0; width * height] }
+        Screen {
+            width,
+            height,
+            colours: vec![background; width * height],
+            inverse_distances: vec![0.0; width * height],
+        }
     }
 
     /// Fills a triangle; the function gives the colour from the shares of the corners, seen in perspective.
     #[inline(always)]
     pub(crate) fn triangle(&mut self, corners: [Seen; 3], colour: impl Fn([f32; 3]) -> [u8; 3]) {
         let Some(cover) = Cover::new(corners, self.width, self.height) else { return };
-        let near = corners.map(|corner| corner.near);
-        let (depths, colours) = (&mut self.near, &mut self.colours);
-        cover.each(self.width, |place, shares| {
-            let weights = [shares[0] * near[0], shares[1] * near[1], shares[2] * near[2]];
+        let inverses = corners.map(|corner| corner.inverse_distance);
+        let (depths, colours) = (&mut self.inverse_distances, &mut self.colours);
+        cover.each(self.width, |index, shares| {
+            let weights = [shares[0] * inverses[0], shares[1] * inverses[1], shares[2] * inverses[2]];
             let depth = weights[0] + weights[1] + weights[2];
-            if depth > depths[place] {
-                depths[place] = depth;
+            if depth > depths[index] {
+                depths[index] = depth;
                 let whole = 1.0 / depth;
-                colours[place] = colour(weights.map(|weight| weight * whole));
+                colours[index] = colour(weights.map(|weight| weight * whole));
             }
         });
     }
@@ -113,7 +118,7 @@ impl Screen {
     /// Draws a line with a width in samples, a little nearer than it is, so that it is seen on a surface.
     pub(crate) fn line(&mut self, ends: [Seen; 2], width: f32, colours: [[u8; 3]; 2]) {
         for corners in line_triangles(ends, width) {
-            let corners = corners.map(|corner| Seen { near: corner.near * 1.004, ..corner });
+            let corners = corners.map(|corner| Seen { inverse_distance: corner.inverse_distance * 1.004, ..corner });
             let whole = colours[0] == colours[1];
             let first = |corner: Seen| {
                 let distance =
@@ -141,10 +146,10 @@ impl Screen {
         for row in span(y, self.height) {
             for column in span(x, self.width) {
                 let far = (column as f32 + 0.5 - x).powi(2) + (row as f32 + 0.5 - y).powi(2);
-                let place = row * self.width + column;
-                if far <= radius * radius && center.near * 1.006 > self.near[place] {
-                    self.near[place] = center.near * 1.006;
-                    self.colours[place] = colour;
+                let index = row * self.width + column;
+                if far <= radius * radius && center.inverse_distance * 1.006 > self.inverse_distances[index] {
+                    self.inverse_distances[index] = center.inverse_distance * 1.006;
+                    self.colours[index] = colour;
                 }
             }
         }
@@ -177,7 +182,7 @@ pub(crate) fn line_triangles([from, to]: [Seen; 2], width: f32) -> [[Seen; 3]; 2
     let side = [-0.5 * width * y / length, 0.5 * width * x / length];
     let shift = |end: Seen, sign: f32| Seen {
         pixel: [end.pixel[0] + sign * side[0], end.pixel[1] + sign * side[1]],
-        near: end.near,
+        inverse_distance: end.inverse_distance,
     };
     let corners = [shift(from, 1.0), shift(to, 1.0), shift(to, -1.0), shift(from, -1.0)];
     [[corners[0], corners[1], corners[2]], [corners[0], corners[2], corners[3]]]
@@ -188,16 +193,16 @@ mod tests {
     use super::*;
 
     /// A triangle over the left upper half of the screen.
-    fn corners(near: f32) -> [Seen; 3] {
-        [[0.0, 0.0], [40.0, 0.0], [0.0, 40.0]].map(|pixel| Seen { pixel, near })
+    fn corners(inverse_distance: f32) -> [Seen; 3] {
+        [[0.0, 0.0], [40.0, 0.0], [0.0, 40.0]].map(|pixel| Seen { pixel, inverse_distance })
     }
 
     #[test]
     fn the_nearer_triangle_wins_in_any_order() {
         for order in [[1.0, 2.0], [2.0, 1.0]] {
             let mut screen = Screen::new(20, 20, [255; 3]);
-            for near in order {
-                screen.triangle(corners(near), |_| [if near > 1.5 { 200 } else { 10 }, 0, 0]);
+            for inverse_distance in order {
+                screen.triangle(corners(inverse_distance), |_| [if inverse_distance > 1.5 { 200 } else { 10 }, 0, 0]);
             }
             let image = screen.image().unwrap();
             assert_eq!(image.pixel(3, 3), [200, 0, 0]);
@@ -209,7 +214,7 @@ mod tests {
     fn neighbours_leave_no_gap() {
         let mut screen = Screen::new(20, 20, [255; 3]);
         screen.triangle(corners(1.0), |_| [0; 3]);
-        let other = [[40.0, 0.0], [40.0, 40.0], [0.0, 40.0]].map(|pixel| Seen { pixel, near: 1.0 });
+        let other = [[40.0, 0.0], [40.0, 40.0], [0.0, 40.0]].map(|pixel| Seen { pixel, inverse_distance: 1.0 });
         screen.triangle(other, |_| [0; 3]);
         assert!(screen.colours.iter().all(|colour| *colour == [0; 3]));
     }

@@ -55,21 +55,21 @@ pub(crate) struct Surface<'a> {
 pub(crate) enum Colouring<'a> {
     /// The same everywhere.
     Plain([u8; 3]),
-    /// From a place on a colour map at each corner.
+    /// From a fraction of a colour map at each corner.
     Mapped {
         /// The colours of the map, and behind them that of what is no number.
         colours: Vec<[u8; 3]>,
-        /// The places of the corners, from 0 to 1.
-        places: &'a [f32],
+        /// The fractions of the corners, from 0 to 1.
+        fractions: &'a [f32],
     },
 }
 
 impl<'a> Colouring<'a> {
-    /// The colours of a map at places.
-    pub(crate) fn mapped(map: ColourMap, places: &'a [f32]) -> Colouring<'a> {
+    /// The colours of a map at fractions of it.
+    pub(crate) fn mapped(map: ColourMap, fractions: &'a [f32]) -> Colouring<'a> {
         let steps = (0..256).map(|step| f64::from(step) / 255.0).chain([f64::NAN]);
-        let colours = steps.map(|place| map.colour(place)).collect();
-        Colouring::Mapped { colours, places }
+        let colours = steps.map(|fraction| map.colour(fraction)).collect();
+        Colouring::Mapped { colours, fractions }
     }
 }
 
@@ -97,7 +97,7 @@ pub(crate) fn fill(screen: &mut Screen, camera: &Camera, light: &Light, surface:
     for (triangle, &face) in triangles.iter().zip(&faces) {
         let [Some(a), Some(b), Some(c)] = triangle.map(|node| seen[node as usize]) else { continue };
         let face = unit(face);
-        let towards = between(positions[triangle[0] as usize], camera.place);
+        let towards = between(positions[triangle[0] as usize], camera.position);
         let sign = if dot(face, towards) < 0.0 { -1.0 } else { 1.0 };
         let corners = triangle.map(|node| {
             let chosen = match normals[node as usize] {
@@ -185,11 +185,11 @@ fn paint(
 ) {
     match colouring {
         Colouring::Plain(colour) => screen.triangle(seen, |weights| lit(*colour, shine(weights))),
-        Colouring::Mapped { colours, places } => {
-            let places = triangle.map(|node| places[node as usize]);
+        Colouring::Mapped { colours, fractions } => {
+            let fractions = triangle.map(|node| fractions[node as usize]);
             screen.triangle(seen, |weights| {
-                let place = total(weights, places);
-                let step = if place.is_nan() { 256 } else { (place.clamp(0.0, 1.0) * 255.0 + 0.5) as usize };
+                let fraction = total(weights, fractions);
+                let step = if fraction.is_nan() { 256 } else { (fraction.clamp(0.0, 1.0) * 255.0 + 0.5) as usize };
                 lit(colours[step.min(256)], shine(weights))
             });
         }

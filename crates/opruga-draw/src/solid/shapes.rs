@@ -72,16 +72,16 @@ fn capsule(a: [f64; 3], b: [f64; 3], radius: f64) -> Shape {
         let half = rings / 2;
         let (end, step) = if ring < half { (a, ring) } else { (b, ring - 1) };
         let angle = PI * f64::from(step) / f64::from(rings - 2);
-        for place in 0..around {
-            let turn = TAU * f64::from(place) / f64::from(around);
+        for index in 0..around {
+            let turn = TAU * f64::from(index) / f64::from(around);
             let point = along(end, axis, -radius * angle.cos());
             let point = along(point, side, radius * angle.sin() * turn.cos());
             shape.positions.push(along(point, third, radius * angle.sin() * turn.sin()));
         }
     }
     for ring in 0..rings - 1 {
-        for place in 0..around {
-            let (p, q) = (ring * around + place, ring * around + (place + 1) % around);
+        for index in 0..around {
+            let (p, q) = (ring * around + index, ring * around + (index + 1) % around);
             shape.triangles.push([p, q, q + around]);
             shape.triangles.push([p, q + around, p + around]);
         }

@@ -29,7 +29,7 @@ fn free_fall_is_that_of_its_recurrence() {
 /// 1/√(1 + h²ω²): .995037, .707107, .099504 at hω = .1, 1, 10 (validation B4).
 #[allow(clippy::approx_constant)] // the figures of the source as they stand there
 #[test]
-fn the_amplitude_falls_as_its_closed_form_says() {
+fn the_amplitude_falls_as_in_its_closed_form() {
     for (z, expected) in [(0.1, 0.995_037), (1.0, core::f64::consts::FRAC_1_SQRT_2), (10.0, 0.099_504)] {
         let (omega, steps) = (5.0, 20);
         let mut system = testing::oscillator::<2>(2.0, 2.0 * omega * omega, 0.0, 1.0, 0.0);

@@ -112,7 +112,7 @@ impl<const D: usize> Rule<D> for Bdf2 {
             }
             if system.inertia.is_some() {
                 // What pins hold goes on as if it had always moved as it does in this step; its neighbours would feel more.
-                system.held_axes(&mut |node, d| {
+                system.pinned_axes(&mut |node, d| {
                     let k = node * D + d;
                     workspace.z[k] = share * last * workspace.v0[k];
                     workspace.y[k] = workspace.z[k] + span * workspace.v0[k];

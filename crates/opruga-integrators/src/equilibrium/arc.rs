@@ -42,7 +42,7 @@ pub(super) fn follow<const D: usize>(
 ) -> Result<f64, StepError> {
     if load == 0.0 && system.contacts.is_some() {
         // A body that begins in an obstacle comes to its surface before there is any load.
-        rule.balance(system, workspace, Reached { load, held: 1.0, time: h }, h)?;
+        rule.balance(system, workspace, Reached { load, pin_motion: 1.0, time: h }, h)?;
     }
     let start = workspace.u.clone();
     let mut displacement = length * (system.nodes as f64).sqrt();
@@ -57,7 +57,7 @@ pub(super) fn follow<const D: usize>(
                 return Ok(reached);
             }
             // Past the end: the equilibrium under the whole load is near.
-            rule.balance(system, workspace, Reached { load: 1.0, held: 1.0, time: h }, h)?;
+            rule.balance(system, workspace, Reached { load: 1.0, pin_motion: 1.0, time: h }, h)?;
             system.history.set(COMPLETE, true);
             return Ok(1.0);
         }
@@ -103,7 +103,7 @@ fn one_step<const D: usize>(
     (*turned, *unloaded) = (false, false);
     let start = workspace.u.clone();
     // Of what is free: what pins move does not tell how the curve goes on.
-    let free = |k: usize| if workspace.held[k].is_nan() { 1.0 } else { 0.0 };
+    let free = |k: usize| if workspace.pin_displacement[k].is_nan() { 1.0 } else { 0.0 };
     let before = system.history.vectors(DISPLACEMENT);
     let last: Vec<f64> = (0..start.len()).map(|k| before.map_or(0.0, |u| free(k) * u.0[k % D][k / D])).collect();
     let mut now = load;
@@ -199,7 +199,8 @@ fn directions<const D: usize>(
     balance: &Balance,
 ) -> Result<(Vec<f64>, Vec<f64>), Indefinite> {
     let Workspace { contacting, linear, mass, free, projectors, prescribed, residual, outer, .. } = workspace;
-    let farthest = contacting.hold(&workspace.u, 1.0, &workspace.held, &workspace.x0, free, projectors, prescribed);
+    let farthest =
+        contacting.hold(&workspace.u, 1.0, &workspace.pin_displacement, &workspace.x0, free, projectors, prescribed);
     let mixture = mixture(system, mass, balance, Definiteness::Exact, &rule.settings);
     linear.assemble(&mixture);
     let contact_query = ContactQuery::new(system, balance, &workspace.x0, &workspace.u, workspace.extent);
@@ -207,8 +208,8 @@ fn directions<const D: usize>(
     let filter = Filter { free, projectors };
     linear.factor(&filter)?;
     let displacements = (farthest > 0.0).then_some(&**prescribed);
-    let room_for = [&mut workspace.trial[..], &mut workspace.right[..]];
-    wanted_forces(system.threads, &mixture, linear, contacting, residual, displacements, room_for);
+    let buffers = [&mut workspace.trial[..], &mut workspace.right[..]];
+    wanted_forces(system.threads, &mixture, linear, contacting, residual, displacements, buffers);
     let mut correction = workspace.right.clone();
     let mut tangent: Vec<f64> = (0..correction.len()).map(|k| outer.0[k % D][k / D]).collect();
     for vector in [&mut correction, &mut tangent] {

@@ -135,7 +135,7 @@ impl<const D: usize> IntegratorKind<D> for EquilibriumKind {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Reached {
     load: f64,
-    held: f64,
+    pin_motion: f64,
     time: f64,
 }
 
@@ -143,7 +143,11 @@ impl Reached {
     /// Half the way to another point.
     fn midway(self, to: Reached) -> Reached {
         let mean = |a: f64, b: f64| 0.5 * (a + b);
-        Reached { load: mean(self.load, to.load), held: mean(self.held, to.held), time: mean(self.time, to.time) }
+        Reached {
+            load: mean(self.load, to.load),
+            pin_motion: mean(self.pin_motion, to.pin_motion),
+            time: mean(self.time, to.time),
+        }
     }
 }
 
@@ -180,19 +184,23 @@ impl Equilibrium {
             let solver = &mut system.work.solver;
             solver.halved += 1;
             solver.deepest = solver.deepest.max(u64::from(halvings) + 1);
-            workspace.hold(system, from.held, h);
+            workspace.hold(system, from.pin_motion, h);
             for k in 0..workspace.u.len() {
-                workspace.u[k] = if workspace.held[k].is_nan() { workspace.u1[k] } else { workspace.held[k] };
+                workspace.u[k] = if workspace.pin_displacement[k].is_nan() {
+                    workspace.u1[k]
+                } else {
+                    workspace.pin_displacement[k]
+                };
             }
             let middle = from.midway(to);
             self.go(system, workspace, (from, middle), h, halvings + 1)?;
             return self.go(system, workspace, (middle, to), h, halvings + 1);
         }
-        outcome.map_err(|error| self.told(error, system, (from.load > 0.0 && from.load < 1.0).then_some(from)))
+        outcome.map_err(|error| self.with_hint(error, system, (from.load > 0.0 && from.load < 1.0).then_some(from)))
     }
 
     /// An error with how far the load was on, and what helps in statics.
-    fn told<const D: usize>(&self, mut error: StepError, system: &System<D>, from: Option<Reached>) -> StepError {
+    fn with_hint<const D: usize>(&self, mut error: StepError, system: &System<D>, from: Option<Reached>) -> StepError {
         let helps = self.settings.hint_of_statics(self.arc_length.is_some(), system.contacts.is_none());
         match &mut error {
             StepError::Model { model, about, helps: own } if *model != SPEC.kind && about.hint().is_none() => {
@@ -217,7 +225,7 @@ impl Equilibrium {
         at: Reached,
         h: f64,
     ) -> Result<(), StepError> {
-        workspace.hold(system, at.held, h);
+        workspace.hold(system, at.pin_motion, h);
         let balance =
             Balance { sigma: 0.0, beta: 0.0, theta: 1.0, time: at.time, h, load: at.load, impulse: 1.0, echo: 0.0 };
         let mut solved = Newton(self.settings).minimise(system, workspace, &balance)?;
@@ -255,21 +263,21 @@ impl Equilibrium {
         workspace.z.fill(0.0);
         workspace.hold(system, 1.0, h);
         for k in 0..workspace.u.len() {
-            workspace.u[k] = if workspace.held[k].is_nan() { 0.0 } else { workspace.held[k] };
+            workspace.u[k] = if workspace.pin_displacement[k].is_nan() { 0.0 } else { workspace.pin_displacement[k] };
         }
         lift_out(system, workspace, h);
-        let whole = Reached { load: 1.0, held: 1.0, time: h };
+        let whole = Reached { load: 1.0, pin_motion: 1.0, time: h };
         match self.arc_length {
             Some(length) if !complete => {
                 load = arc::follow(self, system, workspace, length, load, h)
-                    .map_err(|error| self.told(error, system, Some(Reached { load, ..whole })))?;
+                    .map_err(|error| self.with_hint(error, system, Some(Reached { load, ..whole })))?;
             }
             _ if complete => {
-                let start = Reached { held: 0.0, time: 0.0, ..whole };
+                let start = Reached { pin_motion: 0.0, time: 0.0, ..whole };
                 self.go(system, workspace, (start, whole), h, 0)?;
             }
             _ => {
-                let mut from = Reached { load: 0.0, held: 0.0, time: 0.0 };
+                let mut from = Reached { load: 0.0, pin_motion: 0.0, time: 0.0 };
                 for part in 1..=self.load_steps {
                     load = f64::from(part) / f64::from(self.load_steps);
                     let to = Reached { load, ..whole };

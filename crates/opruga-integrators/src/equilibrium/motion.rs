@@ -98,7 +98,7 @@ impl<const D: usize> Sink<D> for Projection<'_> {
     }
 }
 
-/// The mean of the places of some nodes.
+/// The mean of the positions of some nodes.
 pub(super) fn center<const D: usize>(x: &Columns<D>, piece: &[usize]) -> [f64; D] {
     let mut center = [0.0; D];
     for node in piece {
@@ -111,7 +111,7 @@ pub(super) fn center<const D: usize>(x: &Columns<D>, piece: &[usize]) -> [f64; D
 }
 
 /// The motions of a piece that neither pins hold nor what holds nodes along the given directions, with the nodes at the given
-/// places; translations first.
+/// positions; translations first.
 pub(super) fn unpinned_motions<const D: usize>(
     system: &System<D>,
     x: &Columns<D>,
@@ -162,12 +162,12 @@ pub(super) fn loose_motions<const D: usize>(
         motions.iter().map(|motion| shape_at(x, system.nodes, piece, motion, &center)).collect();
     let n = motions.len();
 
-    // How much each combination moves held axes, or strains what acts from outside.
-    let mut held = vec![0.0; n * n];
-    system.held_axes(&mut |place, d| {
+    // How much each combination moves pinned axes, or strains what acts from outside.
+    let mut resistance = vec![0.0; n * n];
+    system.pinned_axes(&mut |node, d| {
         for p in 0..n {
             for q in 0..n {
-                held[p * n + q] += shapes[p][place * D + d] * shapes[q][place * D + d];
+                resistance[p * n + q] += shapes[p][node * D + d] * shapes[q][node * D + d];
             }
         }
     });
@@ -175,7 +175,7 @@ pub(super) fn loose_motions<const D: usize>(
         let along = |shape: &Vec<f64>| (0..D).map(|d| shape[node * D + d] * direction[d]).sum::<f64>();
         for p in 0..n {
             for q in 0..n {
-                held[p * n + q] += along(&shapes[p]) * along(&shapes[q]);
+                resistance[p * n + q] += along(&shapes[p]) * along(&shapes[q]);
             }
         }
     }
@@ -183,8 +183,8 @@ pub(super) fn loose_motions<const D: usize>(
         let mut projection = Projection::of(&shapes);
         deliver(&mut projection);
         if projection.largest > 0.0 {
-            for (held, strained) in held.iter_mut().zip(&projection.out) {
-                *held += strained / projection.largest;
+            for (resistance, strained) in resistance.iter_mut().zip(&projection.out) {
+                *resistance += strained / projection.largest;
             }
         }
     }
@@ -202,7 +202,7 @@ pub(super) fn loose_motions<const D: usize>(
     let reduced: Vec<f64> = (0..m * m)
         .map(|k| {
             let (a, b) = (&real[k / m], &real[k % m]);
-            (0..n * n).map(|e| a[e / n] * held[e] * b[e % n]).sum()
+            (0..n * n).map(|e| a[e / n] * resistance[e] * b[e % n]).sum()
         })
         .collect();
     let (values, vectors) = symmetric_eigen(&reduced, m);
@@ -240,7 +240,7 @@ pub(super) fn of_weights<const D: usize>(motions: &[Motion<D>], weights: Vec<Vec
         .collect()
 }
 
-/// The displacements of all nodes, at the given places, in a motion of a piece about the given centre: the others stay.
+/// The displacements of all nodes, at the given positions, in a motion of a piece about the given centre: the others stay.
 pub(super) fn shape_at<const D: usize>(
     x: &Columns<D>,
     nodes: usize,

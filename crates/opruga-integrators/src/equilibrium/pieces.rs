@@ -15,7 +15,7 @@ pub(super) fn whole<const D: usize>(system: &System<D>) -> Vec<usize> {
 /// it is counts as one.
 pub(crate) fn pieces<const D: usize>(system: &System<D>) -> Vec<Vec<usize>> {
     let mut ties = Ties { tied_to: whole(system) };
-    let rest = Columns::zeros(system.places());
+    let rest = Columns::zeros(system.index_count());
     let mut view = system.view(opruga_core::system::Stage::Current, system.time);
     view.v = rest.slices();
     for member in system.members.iter().filter(|member| member.potential.properties().views.hessian) {

@@ -1,7 +1,7 @@
 //! Which motions of a body as a whole the loads leave free: those under which loads and weight do no work of any order.
 //!
 //! In a motion q of the whole (displacements φ_q, turning by ω_q) the force on a node changes by −K φ_q, where K = −∂F/∂x. Were
-//! the forces carried along, it would change by ω_q × F. Only the difference can bring a body to a place of its own:
+//! the forces carried along, it would change by ω_q × F. Only the difference can bring a body to a position of its own:
 //!
 //! P_pq = Σ φ_p·(ω_q × F + K φ_q)
 //!
@@ -29,7 +29,7 @@ const NOTHING: f64 = 1e-14;
 pub(super) const TURN: f64 = 0.9;
 
 /// The motions of the whole, or of a piece, that neither pins nor loads nor the weight of a pendulum hold, nor obstacles that
-/// hold nodes along the given directions, with the nodes at the given places; translations first.
+/// hold nodes along the given directions, with the nodes at the given positions; translations first.
 pub(super) fn free_motions<const D: usize>(
     system: &System<D>,
     x: &Columns<D>,
@@ -93,7 +93,7 @@ fn ties_to_space<const D: usize>(system: &System<D>, member: &Member<D>) -> bool
     if !properties.views.hessian {
         return false;
     }
-    let (x, rest) = (&system.state.x, Columns::zeros(system.places()));
+    let (x, rest) = (&system.state.x, Columns::zeros(system.index_count()));
     let view = View { x: x.slices(), v: rest.slices(), ..system.view(Stage::Current, system.time) };
     let Some(scratch) = prepared(system, member, &view) else { return false };
     let all = whole(system);
@@ -126,7 +126,7 @@ pub(crate) fn acts_between_nodes<const D: usize>(system: &System<D>, member: &Me
     if properties.account == Account::User || !properties.views.hessian || ties_to_space(system, member) {
         return false;
     }
-    let (x, rest) = (&system.state.x, Columns::zeros(system.places()));
+    let (x, rest) = (&system.state.x, Columns::zeros(system.index_count()));
     let view = View { x: x.slices(), v: rest.slices(), ..system.view(Stage::Current, system.time) };
     let Some(scratch) = prepared(system, member, &view) else { return false };
     let all = whole(system);
@@ -146,7 +146,7 @@ pub(crate) fn acts_between_nodes<const D: usize>(system: &System<D>, member: &Me
         let (sum, sizes) = force.iter().fold((0.0, 0.0), |(sum, sizes), f| (sum + f[d], sizes + f[d].abs()));
         f64::abs(sum) > NO_TIE * sizes
     };
-    // What does not change with positions knows no places of nodes.
+    // What does not change with positions knows no positions of nodes.
     stiffness.largest > 0.0 && !(0..shapes.len()).any(brakes) && !(0..D).any(pushes)
 }
 
@@ -159,7 +159,7 @@ fn prepared<const D: usize>(system: &System<D>, member: &Member<D>, view: &View<
 
 /// Delivers the second derivatives of what acts from outside, at rest.
 pub(super) fn deliver_outer<const D: usize>(system: &System<D>, x: &Columns<D>, sink: &mut dyn Sink<D>) {
-    let rest = Columns::zeros(system.places());
+    let rest = Columns::zeros(system.index_count());
     let view = View { x: x.slices(), v: rest.slices(), ..system.view(Stage::Current, system.time) };
     for member in outer(system).into_iter().filter(|member| member.potential.properties().views.hessian) {
         if let Some(scratch) = prepared(system, member, &view) {
@@ -195,7 +195,7 @@ impl<'a, const D: usize> Restraint<'a, D> {
         let n = self.motions.len();
         let shape = |motion| shape_at(x, system.nodes, self.piece, motion, &self.center);
         let shapes: Vec<Vec<f64>> = self.motions.iter().map(shape).collect();
-        let rest = Columns::zeros(system.places());
+        let rest = Columns::zeros(system.index_count());
         let view = View { x: x.slices(), v: rest.slices(), ..system.view(Stage::Current, time) };
         let mut force = vec![[0.0; D]; system.nodes];
         let mut part = vec![0.0; n * n];
@@ -275,11 +275,11 @@ pub(crate) fn add_forces_of<const D: usize>(
     view: &View<'_, D>,
     out: &mut [[f64; D]],
 ) {
-    let places = system.places();
-    let mut columns: [Column; D] = core::array::from_fn(|_| Column::zeros(places + WIDTH));
+    let index_count = system.index_count();
+    let mut columns: [Column; D] = core::array::from_fn(|_| Column::zeros(index_count + WIDTH));
     let mut slots = Column::default();
     let mut tile = Tile {
-        range: 0..places,
+        range: 0..index_count,
         force: columns.each_mut().map(|column| &mut **column),
         power: &mut [0.0; WIDTH],
         weight: None,
@@ -325,7 +325,7 @@ pub(super) fn pose<const D: usize>(
     if speed == 0.0 {
         return out;
     }
-    // Places move by φ = t + ω × (x − c). The axis passes through c + ω × t/|ω|²; along it the translation goes on.
+    // Positions move by φ = t + ω × (x − c). The axis passes through c + ω × t/|ω|²; along it the translation goes on.
     let axis: Vec<f64> = motion.rotation.iter().map(|r| r / speed).collect();
     let unit = Motion { translation: [0.0; D], rotation: axis.clone() };
     let across = turned(&unit, &motion.translation);

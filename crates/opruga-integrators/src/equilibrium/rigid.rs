@@ -30,7 +30,7 @@ pub(super) fn refuse_free_motions<const D: usize>(system: &System<D>) -> Result<
             free = endless_turns(system, piece);
         }
         if !free.is_empty() {
-            let (pieces, nodes, center) = (all.len(), piece.len(), place(&center(x, piece)));
+            let (pieces, nodes, center) = (all.len(), piece.len(), coordinates(&center(x, piece)));
             return refused(Refusal::FreePiece { pieces, nodes, center, motions: names(&free), count: free.len() });
         }
     }
@@ -47,14 +47,14 @@ fn names<const D: usize>(free: &[Motion<D>]) -> AnyMessage {
     names.fold(None, list).unwrap_or_else(|| MotionName::Rotation {}.into())
 }
 
-/// `(0.5, 2)`, a place in metres with four digits.
-fn place<const D: usize>(x: &[f64; D]) -> String {
+/// `(0.5, 2)`, a position in metres with four digits.
+fn coordinates<const D: usize>(x: &[f64; D]) -> String {
     let numbers: Vec<String> = x.iter().map(|x| number(*x)).collect();
     format!("({}) m", numbers.join(", "))
 }
 
 /// Refuses a body that can move as a whole though it lies on obstacles, which hold nodes along the given directions, with its
-/// nodes at the given places.
+/// nodes at the given positions.
 pub(super) fn refuse_what_contact_leaves_free<const D: usize>(
     system: &System<D>,
     x: &Columns<D>,
@@ -75,7 +75,7 @@ pub(super) fn refuse_what_contact_leaves_free<const D: usize>(
             touched.iter().filter(|(node, _)| piece.binary_search(node).is_ok()).copied().collect();
         let free = free_motions(system, x, piece, &own);
         if !free.is_empty() {
-            let (nodes, center) = (piece.len(), place(&center(x, piece)));
+            let (nodes, center) = (piece.len(), coordinates(&center(x, piece)));
             let refusal = Refusal::PieceSlides { pieces: pieces.len(), nodes, center, motions: names(&free) };
             return Err(StepError::of("equilibrium", refusal));
         }
@@ -95,7 +95,7 @@ pub fn unheld_motions<const D: usize>(system: &System<D>) -> Vec<Motion<D>> {
     untied_motions(system, &system.state.x, &whole(system))
 }
 
-/// The same of a piece with the nodes at the given places.
+/// The same of a piece with the nodes at the given positions.
 fn untied_motions<const D: usize>(system: &System<D>, x: &Columns<D>, piece: &[usize]) -> Vec<Motion<D>> {
     loose_motions(system, x, piece, &[], Some(&|projection| deliver_outer(system, x, projection)))
 }

@@ -45,9 +45,9 @@ fn goes_on<const D: usize>(system: &System<D>, piece: &[usize], motion: &Motion<
     round > 0.0 && round.is_finite() && straight <= NOTHING * round
 }
 
-/// The forces of the body's own models with its nodes at the given places, at rest; none where a model refuses them.
+/// The forces of the body's own models with its nodes at the given positions, at rest; none where a model refuses them.
 fn own_forces<const D: usize>(system: &System<D>, x: &Columns<D>) -> Option<Vec<[f64; D]>> {
-    let rest = Columns::zeros(system.places());
+    let rest = Columns::zeros(system.index_count());
     let view = View { x: x.slices(), v: rest.slices(), ..system.view(Stage::Current, system.time) };
     let mut force = vec![[0.0; D]; system.nodes];
     let outer = outer(system);

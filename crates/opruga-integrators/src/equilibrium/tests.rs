@@ -19,29 +19,29 @@ fn rule(fields: &[(&str, Value)]) -> Equilibrium {
 }
 
 /// Nodes joined by springs.
-fn body<const D: usize>(places: &[[f64; D]], pairs: Vec<[usize; 2]>, stiffness: f64, mass: Vec<f64>) -> System<D> {
+fn body<const D: usize>(positions: &[[f64; D]], pairs: Vec<[usize; 2]>, stiffness: f64, mass: Vec<f64>) -> System<D> {
     let (mut x, v) = (Columns::zeros(8), Columns::zeros(8));
     for column in &mut x.0 {
-        column.grow(Layout::Single.places(places.len()) + 8);
+        column.grow(Layout::Single.index_count(positions.len()) + 8);
     }
     let mut speeds = v;
     for column in &mut speeds.0 {
-        column.grow(Layout::Single.places(places.len()) + 8);
+        column.grow(Layout::Single.index_count(positions.len()) + 8);
     }
-    for (node, place) in places.iter().enumerate() {
-        x.set(node, *place);
+    for (node, position) in positions.iter().enumerate() {
+        x.set(node, *position);
     }
-    let first: [f64; D] = core::array::from_fn(|d| places[pairs[0][0]][d] - places[pairs[0][1]][d]);
+    let first: [f64; D] = core::array::from_fn(|d| positions[pairs[0][0]][d] - positions[pairs[0][1]][d]);
     let rest_length = first.iter().map(|c| c * c).sum::<f64>().sqrt();
     let mass = Parameter::column(mass);
-    let mut system = System::new(Simd::best(), Layout::Single, places.len(), 1, x, speeds, mass);
+    let mut system = System::new(Simd::best(), Layout::Single, positions.len(), 1, x, speeds, mass);
     system.add(Box::new(Springs { pairs, stiffness, damping: 0.0, rest_length, gas: 0.0 }));
     system
 }
 
 fn pin<const D: usize>(system: &mut System<D>, node: usize, axes: [bool; D]) {
     let anchor = system.state.x.at(node);
-    system.pins.push(Pin { place: node, axes, anchor, motion: Arc::default() });
+    system.pins.push(Pin { index: node, axes, anchor, motion: Arc::default() });
 }
 
 /// ρ = 1000, L = 1, E = 125 000, g = 9.81: the end sinks by ρgL²/2E = .03924 m (validation B1), for any number of springs
@@ -50,11 +50,11 @@ fn pin<const D: usize>(system: &mut System<D>, node: usize, axes: [bool; D]) {
 fn a_hanging_bar_has_the_length_of_its_closed_form() {
     for (nodes, solver) in [(2, "conjugate_gradients"), (11, "conjugate_gradients"), (41, "cholesky")] {
         let springs = nodes - 1;
-        let places: Vec<[f64; 2]> = (0..nodes).map(|k| [0.0, -(k as f64) / springs as f64]).collect();
+        let positions: Vec<[f64; 2]> = (0..nodes).map(|k| [0.0, -(k as f64) / springs as f64]).collect();
         let part = 1000.0 / springs as f64;
         let mass = (0..nodes).map(|k| if k == 0 || k == springs { 0.5 * part } else { part }).collect();
         let pairs = (0..springs).map(|k| [k, k + 1]).collect();
-        let mut system = body(&places, pairs, 125_000.0 * springs as f64, mass);
+        let mut system = body(&positions, pairs, 125_000.0 * springs as f64, mass);
         system.gravity = [0.0, -9.81];
         pin(&mut system, 0, [true, true]);
         let rule = rule(&[("linear_solver", Value::Text(solver.into()))]);
@@ -68,7 +68,7 @@ fn a_hanging_bar_has_the_length_of_its_closed_form() {
         let (damped, work): (f64, f64) = (system.work.damping.iter().sum(), system.work.user.iter().sum());
         let stored = system.stored_energy(opruga_core::system::Stage::Current, 0.0);
         assert!(damped == 0.0 && work < 0.0, "{damped} {work}");
-        let lifted: f64 = (0..nodes).map(|k| system.mass.at(k) * 9.81 * places[k][1]).sum();
+        let lifted: f64 = (0..nodes).map(|k| system.mass.at(k) * 9.81 * positions[k][1]).sum();
         assert!((work - (stored - lifted)).abs() < 1e-9 * stored.abs(), "{work} {stored} {lifted}");
     }
 }
@@ -112,7 +112,7 @@ fn a_truss_is_followed_through_its_snap() {
     arc.step(&mut system, 0.1).unwrap();
     assert!((system.state.x.at(1)[1] - behind).abs() < 1e-9);
 
-    // All at once it jumps to the same place.
+    // All at once it jumps to the same position.
     let mut jumped = truss();
     let plain = rule(&[]);
     jumped.equip(&plain);
@@ -133,16 +133,16 @@ fn a_body_that_nothing_holds_is_refused_with_the_names_of_its_rigid_modes() {
             error.about.to_string().split(';').next().unwrap_or_default().to_string()
         })
     };
-    let told = |text: &str| Err(format!("nothing holds the body against {text}"));
-    assert_eq!(message(&[]), told("translation along x, translation along y, rotation: 3 rigid modes"));
-    assert_eq!(message(&[(0, [false, true])]), told("translation along x, rotation: 2 rigid modes"));
-    assert_eq!(message(&[(0, [true, true])]), told("rotation: 1 rigid mode"));
-    assert_eq!(message(&[(0, [true, true]), (1, [true, false])]), told("rotation: 1 rigid mode"));
+    let refusal = |text: &str| Err(format!("nothing holds the body against {text}"));
+    assert_eq!(message(&[]), refusal("translation along x, translation along y, rotation: 3 rigid modes"));
+    assert_eq!(message(&[(0, [false, true])]), refusal("translation along x, rotation: 2 rigid modes"));
+    assert_eq!(message(&[(0, [true, true])]), refusal("rotation: 1 rigid mode"));
+    assert_eq!(message(&[(0, [true, true]), (1, [true, false])]), refusal("rotation: 1 rigid mode"));
     assert_eq!(message(&[(0, [true, true]), (1, [false, true])]), Ok(()));
     // A pendulum is held by its weight, unless it hangs at its centre of mass.
     let pendulum = |shift: f64| {
-        let places = [[0.0, 0.0], [1.0, 0.0], [shift - 1.0, 0.0]];
-        let mut system = body(&places, vec![[0, 1], [0, 2]], 10.0, vec![1.0; 3]);
+        let positions = [[0.0, 0.0], [1.0, 0.0], [shift - 1.0, 0.0]];
+        let mut system = body(&positions, vec![[0, 1], [0, 2]], 10.0, vec![1.0; 3]);
         system.gravity = [0.0, -9.81];
         pin(&mut system, 0, [true, true]);
         system.equip(&rule(&[]));
@@ -151,7 +151,7 @@ fn a_body_that_nothing_holds_is_refused_with_the_names_of_its_rigid_modes() {
     assert_eq!(pendulum(0.1), Ok(()));
     assert!(pendulum(0.0).unwrap_err().about.to_string().contains("rotation: 1 rigid mode"));
     // Axes along x only, at three heights.
-    assert_eq!(message(&[(0, [true, false]), (2, [true, false])]), told("translation along y: 1 rigid mode"));
+    assert_eq!(message(&[(0, [true, false]), (2, [true, false])]), refusal("translation along y: 1 rigid mode"));
 
     let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let mut system = body(&corners, vec![[0, 1], [1, 2], [2, 3]], 10.0, vec![1.0; 4]);
@@ -185,7 +185,7 @@ fn a_balance_that_is_not_found_leaves_the_state_as_it_was() {
 }
 
 #[test]
-fn what_is_out_of_balance_is_told_of_nodes_that_are_held_along_some_axes_too() {
+fn what_is_out_of_balance_is_reported_for_nodes_pinned_along_some_axes_too() {
     let mut system = body(&[[0.0, 0.0], [0.0, -1.0]], vec![[0, 1]], 10.0, vec![1.0, 5.0]);
     system.gravity = [300.0, -9.81];
     pin(&mut system, 0, [true, true]);

@@ -230,13 +230,13 @@ impl<const D: usize> Contacting<D> {
         changed
     }
 
-    /// Takes what is held out of the free directions, and writes how far held nodes have to go in the stage.
+    /// Takes what is held out of the free directions, and writes how far pinned nodes have to go in the stage.
     #[allow(clippy::too_many_arguments)]
     pub(crate) fn hold(
         &self,
         u: &[f64],
         theta: f64,
-        held: &[f64],
+        pin_displacement: &[f64],
         x0: &[f64],
         free: &mut [bool],
         projectors: &mut [Block<D>],
@@ -250,7 +250,7 @@ impl<const D: usize> Contacting<D> {
                 next += 1;
             }
             let at = node * D;
-            let pinned = held[at..at + D].iter().any(|x| !x.is_nan());
+            let pinned = pin_displacement[at..at + D].iter().any(|x| !x.is_nan());
             prescribed[at..at + D].fill(0.0);
             free[node] = true;
             if first == next && !pinned {
@@ -282,10 +282,10 @@ impl<const D: usize> Contacting<D> {
                 rank += 1;
             };
             for d in 0..D {
-                if !held[at + d].is_nan() {
+                if !pin_displacement[at + d].is_nan() {
                     let mut axis = [0.0; D];
                     axis[d] = 1.0;
-                    require(&axis, held[at + d] - u[at + d], &mut displacement);
+                    require(&axis, pin_displacement[at + d] - u[at + d], &mut displacement);
                 }
             }
             let contacts = &self.contacts[first..next];
@@ -464,13 +464,13 @@ pub(super) fn split<const D: usize>(contacts: &[Contact<D>], force: &[f64; D]) -
         out[only] = dot(force, &contacts[only].touch.normal);
         return out;
     }
-    let held: Vec<usize> = (0..contacts.len().min(D)).filter(is_active).collect();
-    let n = held.len();
-    let normal = |k: usize| &contacts[held[k]].touch.normal;
+    let active: Vec<usize> = (0..contacts.len().min(D)).filter(is_active).collect();
+    let n = active.len();
+    let normal = |k: usize| &contacts[active[k]].touch.normal;
     let gram: Vec<f64> = (0..n * n).map(|k| dot(normal(k / n), normal(k % n))).collect();
     if let Some(inverse) = opruga_solve::dense::inverse(&gram, n) {
         for i in 0..n {
-            out[held[i]] = (0..n).map(|j| inverse[i * n + j] * dot(force, normal(j))).sum();
+            out[active[i]] = (0..n).map(|j| inverse[i * n + j] * dot(force, normal(j))).sum();
         }
     }
     out

@@ -115,9 +115,9 @@ pub(super) fn enter_stage<R: Rule<D>, const D: usize>(
     own_loss::add_given(&mut system.work, &entered);
     own_loss::add_pushes(system, &workspace.u1);
     if system.inertia.is_some() {
-        // Where held nodes are coupled, they have the velocity of the step to its end.
+        // Where pinned nodes are coupled, they have the velocity of the step to its end.
         let Workspace { v0, v1, .. } = &mut *workspace;
-        system.held_axes(&mut |node, d| v1[node * D + d] = v0[node * D + d]);
+        system.pinned_axes(&mut |node, d| v1[node * D + d] = v0[node * D + d]);
         holding::enter_work(system, v0, v1);
     }
 }
@@ -173,7 +173,7 @@ pub(super) fn end<R: Rule<D>, const D: usize>(
 
 /// Writes the end of the step into the state.
 pub(crate) fn commit<const D: usize>(system: &mut System<D>, workspace: &Workspace<D>) {
-    let (places, nodes, threads) = (system.places(), system.nodes, system.threads);
+    let (index_count, nodes, threads) = (system.index_count(), system.nodes, system.threads);
     let state = [&mut system.state.x, &mut system.state.v];
-    write(places, nodes, threads, state, |k| [workspace.x0[k] + workspace.u1[k], workspace.v1[k]]);
+    write(index_count, nodes, threads, state, |k| [workspace.x0[k] + workspace.u1[k], workspace.v1[k]]);
 }

@@ -84,7 +84,7 @@ impl<const D: usize> Minimiser<D> for RealTime {
 fn begin_anew<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, balance: &Balance) {
     workspace.contacting.clear(system.nodes);
     for k in 0..workspace.u.len() {
-        let pinned = workspace.held[k];
+        let pinned = workspace.pin_displacement[k];
         workspace.u[k] = if pinned.is_nan() { balance.theta * balance.h * workspace.v0[k] } else { pinned };
     }
 }
@@ -106,7 +106,7 @@ fn has_risen<const D: usize>(
         return Ok(true);
     }
     for k in 0..workspace.u.len() {
-        workspace.trial[k] = if workspace.held[k].is_nan() { 0.0 } else { workspace.held[k] };
+        workspace.trial[k] = if workspace.pin_displacement[k].is_nan() { 0.0 } else { workspace.pin_displacement[k] };
     }
     // Where a body stood where its law has no meaning there is nothing to compare with.
     let before = match evaluate(system, workspace, balance, true) {

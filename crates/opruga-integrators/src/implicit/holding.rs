@@ -1,14 +1,14 @@
 //! What pins do to the motion of nodes that a consistent mass matrix couples to theirs.
 //!
-//! A held node has the velocity of its pin from the moment on at which it is held, in a step the mean velocity w over the step.
+//! A pinned node has the velocity of its pin from the moment on at which it is held, in a step the mean velocity w over the step.
 //! Where that is another than it had (a body is caught in flight, a table of motion has a corner, or accelerates in many small
-//! ones), the pin gives an impulse at the start of the step. It acts on the held node alone; but consistent masses couple nodes,
+//! ones), the pin gives an impulse at the start of the step. It acts on the pinned node alone; but consistent masses couple nodes,
 //! so that those beside it are thrown back, as a bat is where one does not hold it:
 //!
 //! M_ff Δv_f + M_fp (w − v_p) = 0,
 //!
 //! the motion that is nearest to the one before in the norm of M, and never one of more energy where the pins stand still. Within
-//! the step held nodes do not accelerate, whatever the rule, and at its end they still have the velocity w: what a rule makes of
+//! the step pinned nodes do not accelerate, whatever the rule, and at its end they still have the velocity w: what a rule makes of
 //! a jump of velocity within a step is its own, and would be another motion with every rule.
 //!
 //! With lumped masses no impulse reaches a neighbour, and nothing of this is needed.
@@ -27,15 +27,15 @@ pub(super) fn take_hold<const D: usize>(system: &mut System<D>, kick: &mut Vec<f
     if system.inertia.is_none() || system.pins.is_empty() {
         return None;
     }
-    let held = held(system);
-    let mut jumps = vec![0.0; held.len()];
+    let pinned = pinned_coordinates(system);
+    let mut jumps = vec![0.0; pinned.len()];
     let mut any = false;
     for pin in &system.pins {
         let (target, _) = pin.target(system.time + h);
         for d in (0..D).filter(|d| pin.axes[*d]) {
-            let (x, v) = (system.state.x.0[d][pin.place], system.state.v.0[d][pin.place]);
+            let (x, v) = (system.state.x.0[d][pin.index], system.state.v.0[d][pin.index]);
             let jump = (target[d] - x) / h - v;
-            jumps[pin.place * D + d] = jump;
+            jumps[pin.index * D + d] = jump;
             any |= jump != 0.0;
         }
     }
@@ -43,7 +43,7 @@ pub(super) fn take_hold<const D: usize>(system: &mut System<D>, kick: &mut Vec<f
         return None;
     }
     let before = (system.state.v.clone(), system.kinetic_energy());
-    accelerations(system, &held, &vec![0.0; jumps.len()], &mut jumps);
+    accelerations(system, &pinned, &vec![0.0; jumps.len()], &mut jumps);
     for node in 0..system.nodes {
         let v = system.state.v.at(node);
         system.state.v.set(node, core::array::from_fn(|d| v[d] + jumps[node * D + d]));
@@ -58,7 +58,7 @@ pub(super) fn enter_work<const D: usize>(system: &mut System<D>, v0: &[f64], v1:
     let Some(inertia) = system.inertia.as_ref().filter(|_| !system.pins.is_empty()) else { return };
     let change: Vec<f64> = v0.iter().zip(v1).map(|(before, after)| after - before).collect();
     let mut work = [0.0; WIDTH];
-    system.held_axes(&mut |node, d| {
+    system.pinned_axes(&mut |node, d| {
         let velocity = v0[node * D + d];
         if velocity != 0.0 {
             work[node % WIDTH] += velocity * inertia.product::<D>(node, &change)[d];
@@ -70,27 +70,27 @@ pub(super) fn enter_work<const D: usize>(system: &mut System<D>, v0: &[f64], v1:
 }
 
 /// Which coordinates pins hold.
-pub(crate) fn held<const D: usize>(system: &System<D>) -> Vec<bool> {
-    let mut held = vec![false; system.nodes * D];
-    system.held_axes(&mut |node, d| held[node * D + d] = true);
-    held
+pub(crate) fn pinned_coordinates<const D: usize>(system: &System<D>) -> Vec<bool> {
+    let mut pinned = vec![false; system.nodes * D];
+    system.pinned_axes(&mut |node, d| pinned[node * D + d] = true);
+    pinned
 }
 
 /// The accelerations of the coordinates that are not held, in `a`, from the forces on them and the accelerations of those that
 /// are, which `a` holds: M_ff a_f = F_f − M_fp a_p. Changes of velocity by impulses are the same.
-pub fn accelerations<const D: usize>(system: &System<D>, held: &[bool], force: &[f64], a: &mut [f64]) {
+pub fn accelerations<const D: usize>(system: &System<D>, pinned: &[bool], force: &[f64], a: &mut [f64]) {
     let Some(inertia) = &system.inertia else {
-        for (k, a) in a.iter_mut().enumerate().filter(|(k, _)| !held[*k]) {
+        for (k, a) in a.iter_mut().enumerate().filter(|(k, _)| !pinned[*k]) {
             *a = force[k] * system.inverse_mass.at(k / D);
         }
         return;
     };
-    a.iter_mut().zip(held).filter(|(_, held)| !**held).for_each(|(a, _)| *a = 0.0);
+    a.iter_mut().zip(pinned).filter(|(_, pinned)| !**pinned).for_each(|(a, _)| *a = 0.0);
     let given = a.to_vec();
-    let mut right = vec![0.0; held.len()];
+    let mut right = vec![0.0; pinned.len()];
     for node in 0..system.nodes {
         let coupled = inertia.product::<D>(node, &given);
-        for d in (0..D).filter(|d| !held[node * D + d]) {
+        for d in (0..D).filter(|d| !pinned[node * D + d]) {
             right[node * D + d] = force[node * D + d] - coupled[d];
         }
     }
@@ -100,25 +100,25 @@ pub fn accelerations<const D: usize>(system: &System<D>, held: &[bool], force: &
             let (mass, coupled) = (system.mass.at(node), inertia.product::<D>(node, x));
             for d in 0..D {
                 let k = node * D + d;
-                y[k] = if held[k] { x[k] } else { mass * x[k] + coupled[d] };
+                y[k] = if pinned[k] { x[k] } else { mass * x[k] + coupled[d] };
             }
         }
     };
     let blocks: Vec<Block<D>> = (0..system.nodes).map(|node| isotropic(system.mass.at(node))).collect();
     let mut lumped = BlockJacobi::default();
-    let mut out = vec![0.0; held.len()];
+    let mut out = vec![0.0; pinned.len()];
     // The matrix of masses is as well conditioned as a cell: some tens of products are enough for all digits.
     let solved = lumped.update(blocks.iter()).and_then(|()| {
         let mut workspace = Directions::default();
         conjugate_gradients(multiply, &lumped, &right, &mut out, 1e-14, 1000, &mut workspace)
     });
     if solved.is_ok() {
-        for k in (0..out.len()).filter(|k| !held[*k]) {
+        for k in (0..out.len()).filter(|k| !pinned[*k]) {
             a[k] = out[k];
         }
     } else {
         // A matrix that is none of masses: each node by its own.
-        for k in (0..out.len()).filter(|k| !held[*k]) {
+        for k in (0..out.len()).filter(|k| !pinned[*k]) {
             a[k] = force[k] * system.inverse_mass.at(k / D);
         }
     }

@@ -188,14 +188,14 @@ impl<const D: usize> Motion<D> {
         let own = dot(&turned, &touch.normal);
         let impact = touch.gap_before > touch.rounding || nears < 0.0 && !still(nears, own);
         let Balance { impulse, echo, .. } = ending.balance;
-        let held = h * (impulse + echo) * force.normal;
+        let normal_impulse = h * (impulse + echo) * force.normal;
         let remembered = dot(&self.memory, &touch.normal);
         let stopped = impact || !still(nears, own) || !still(MOVES_ALONG * remembered, own);
         let (after, change) = if stopped {
             let bounces = came > touch.rest_speed && impact;
             let back = if bounces { touch.restitution * came } else { 0.0 };
             let brought = speed + remembered;
-            let change = (mass * (back - brought)).larger(-held);
+            let change = (mass * (back - brought)).larger(-normal_impulse);
             self.forget(&touch.normal);
             (brought + change / mass, change)
         } else {
@@ -207,7 +207,7 @@ impl<const D: usize> Motion<D> {
             let memory = contact.along(&self.memory);
             let pull = contact.along(&force.total);
             let free: [f64; D] = core::array::from_fn(|d| slide[d] + memory[d] - h * (impulse + echo) * pull[d] / mass);
-            let (pace, most) = (size(&free), touch.friction * (held + change) / mass);
+            let (pace, most) = (size(&free), touch.friction * (normal_impulse + change) / mass);
             let own = size(&contact.along(&turned));
             let goes_along = still(size(&contact.along(&beside)), own) && still(MOVES_ALONG * size(&memory), own);
             if goes_along && change >= 0.0 {

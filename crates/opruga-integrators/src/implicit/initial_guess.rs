@@ -20,8 +20,8 @@ pub(super) fn begin<const D: usize>(
         Ok(()) => return Ok(None),
         Err(error) => error,
     };
-    let leads = |(held, u): (&f64, &f64)| !held.is_nan() && *u != 0.0;
-    if !(matches!(error, StepError::Model { .. }) && workspace.held.iter().zip(&workspace.u).any(leads)) {
+    let leads = |(target, u): (&f64, &f64)| !target.is_nan() && *u != 0.0;
+    if !(matches!(error, StepError::Model { .. }) && workspace.pin_displacement.iter().zip(&workspace.u).any(leads)) {
         return Err(error);
     }
     workspace.u.fill(0.0);
@@ -42,7 +42,7 @@ fn begin_with_pins<const D: usize>(
         return evaluate(system, workspace, balance, false);
     }
     for k in 0..workspace.u.len() {
-        workspace.trial[k] = if workspace.held[k].is_nan() { 0.0 } else { workspace.held[k] };
+        workspace.trial[k] = if workspace.pin_displacement[k].is_nan() { 0.0 } else { workspace.pin_displacement[k] };
     }
     let here = match evaluate(system, workspace, balance, true) {
         Ok(()) => potential(system, workspace, balance, true).map(|(energy, _)| energy),
@@ -56,7 +56,7 @@ fn begin_with_pins<const D: usize>(
     };
     if better {
         for k in 0..workspace.u.len() {
-            workspace.u[k] = if workspace.held[k].is_nan() { 0.0 } else { workspace.held[k] };
+            workspace.u[k] = if workspace.pin_displacement[k].is_nan() { 0.0 } else { workspace.pin_displacement[k] };
         }
         evaluate(system, workspace, balance, false)?;
     }

@@ -4,7 +4,7 @@ use super::settings::{Settings, Solver};
 use opruga_core::potential::{Definiteness, DensePart, Sink};
 use opruga_core::system::{Stage, System};
 use opruga_math::Lane;
-use opruga_solve::blocks::{Block, held, isotropic, nodes, nodes_mut, times};
+use opruga_solve::blocks::{Block, constrained_block, isotropic, nodes, nodes_mut, times};
 use opruga_solve::{
     BlockJacobi, BlockMatrix, Cholesky, Directions, Factors, FilledCholesky, IncompleteCholesky, Indefinite,
     Preconditioner, conjugate_gradients,
@@ -107,14 +107,14 @@ impl<const D: usize> Sink<D> for ProductSink<'_, D> {
     }
     fn low_rank(&mut self, c: f64, u: &[(usize, [f64; D])]) {
         let mut along = 0.0;
-        for (place, entry) in u {
+        for (index, entry) in u {
             for d in 0..D {
-                along += entry[d] * self.x[*place][d];
+                along += entry[d] * self.x[*index][d];
             }
         }
-        for (place, entry) in u {
+        for (index, entry) in u {
             for d in 0..D {
-                self.y[*place][d] += self.factor * c * along * entry[d];
+                self.y[*index][d] += self.factor * c * along * entry[d];
             }
         }
     }
@@ -146,17 +146,17 @@ impl<const D: usize> Sink<D> for DiagonalSink<'_, D> {
         }
     }
     fn low_rank(&mut self, c: f64, u: &[(usize, [f64; D])]) {
-        for (place, entry) in u {
+        for (index, entry) in u {
             for i in 0..D {
                 for j in 0..D {
-                    self.blocks[*place][i][j] += self.factor * c * entry[i] * entry[j];
+                    self.blocks[*index][i][j] += self.factor * c * entry[i] * entry[j];
                 }
             }
         }
     }
     fn dense(&mut self, part: &DensePart<'_, D>) {
-        for (number, place) in part.indices.iter().enumerate() {
-            Sink::<D>::block(self, *place as usize, *place as usize, part.block(number, number));
+        for (number, index) in part.indices.iter().enumerate() {
+            Sink::<D>::block(self, *index as usize, *index as usize, part.block(number, number));
         }
         for (c, u) in part.parts_of_rank_one() {
             self.low_rank(c, &u);
@@ -305,7 +305,7 @@ impl<const D: usize> Linear<D> {
     ) -> Result<u32, Indefinite> {
         if mixture.matrix_free {
             for (node, block) in self.diagonal.iter_mut().enumerate().filter(|(node, _)| !filter.free[*node]) {
-                *block = held(block, &filter.projectors[node]);
+                *block = constrained_block(block, &filter.projectors[node]);
             }
             self.jacobi.update(self.diagonal.iter())?;
         } else if self.is_unsymmetric {

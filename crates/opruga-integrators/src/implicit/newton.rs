@@ -137,8 +137,8 @@ impl<'a> Iteration<'a> {
     /// Looks which nodes are held, and how far they have to go.
     fn hold<const D: usize>(&self, system: &System<D>, workspace: &mut Workspace<D>) -> Contacts {
         let changed = look(system, workspace, self.balance, true);
-        let Workspace { contacting, u, held, x0, free, projectors, prescribed, .. } = workspace;
-        let farthest = contacting.hold(u, self.balance.theta, held, x0, free, projectors, prescribed);
+        let Workspace { contacting, u, pin_displacement, x0, free, projectors, prescribed, .. } = workspace;
+        let farthest = contacting.hold(u, self.balance.theta, pin_displacement, x0, free, projectors, prescribed);
         Contacts { changed, farthest }
     }
 

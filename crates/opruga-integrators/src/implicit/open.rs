@@ -143,8 +143,8 @@ impl<R: Rule<D>, const D: usize> OpenStep<D> for Open<R, D> {
     }
     fn look(&mut self, system: &System<D>) -> bool {
         let changed = look(system, &mut self.workspace, &self.balance, true);
-        let Workspace { contacting, u, held, x0, free, projectors, prescribed, .. } = &mut *self.workspace;
-        contacting.hold(u, self.balance.theta, held, x0, free, projectors, prescribed);
+        let Workspace { contacting, u, pin_displacement, x0, free, projectors, prescribed, .. } = &mut *self.workspace;
+        contacting.hold(u, self.balance.theta, pin_displacement, x0, free, projectors, prescribed);
         changed
     }
     fn factor(&mut self, system: &System<D>, exact: bool) -> bool {

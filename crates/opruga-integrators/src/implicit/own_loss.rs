@@ -23,7 +23,7 @@
 //! any. The tests of the rules compare them. The work of r, h i v̄·r, is in no channel of the ledger: it stays unexplained, which is
 //! what it is. The work of R is entered by the contacts.
 //!
-//! What pins hold does not count: their work is entered with the kinetic energy of held nodes.
+//! What pins hold does not count: their work is entered with the kinetic energy of pinned nodes.
 
 use super::balance::Balance;
 use super::workspace::Workspace;
@@ -55,12 +55,12 @@ pub(super) fn add_pushes<const D: usize>(system: &mut System<D>, u1: &[f64]) {
 
 /// Takes v̄·J, before obstacles change velocities at the end of the step. What is out of balance is that of the stage.
 pub(super) fn take_impulses<const D: usize>(system: &mut System<D>, workspace: &mut Workspace<D>, balance: &Balance) {
-    let Workspace { v0, v1, held, mass, residual, trial: change, .. } = workspace;
+    let Workspace { v0, v1, pin_displacement, mass, residual, trial: change, .. } = workspace;
     let span = balance.h * balance.impulse;
     if system.inertia.is_some() {
         // What pins hold has the velocity of the step throughout.
         for (k, change) in change.iter_mut().enumerate() {
-            *change = if held[k].is_nan() { v1[k] - v0[k] } else { 0.0 };
+            *change = if pin_displacement[k].is_nan() { v1[k] - v0[k] } else { 0.0 };
         }
     }
     let mut work = [0.0; WIDTH];
@@ -68,7 +68,7 @@ pub(super) fn take_impulses<const D: usize>(system: &mut System<D>, workspace: &
         let coupled = system.inertia.as_ref().map_or([0.0; D], |inertia| inertia.product::<D>(node, change));
         for d in 0..D {
             let k = node * D + d;
-            if held[k].is_nan() {
+            if pin_displacement[k].is_nan() {
                 let impulse = mass * (v1[k] - v0[k]) + coupled[d] - span * residual[k];
                 work[node % WIDTH] += 0.5 * (v0[k] + v1[k]) * impulse;
             }

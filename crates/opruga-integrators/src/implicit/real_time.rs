@@ -82,12 +82,12 @@ pub(super) fn predict<const D: usize>(system: &System<D>, workspace: &mut Worksp
     }
     let Some(before) = system.history.vectors(VELOCITY) else { return };
     let share = theta * theta * h * h / last;
-    let Workspace { u, held, v0, .. } = workspace;
+    let Workspace { u, pin_displacement, v0, .. } = workspace;
     each_block(system.threads, D, [u], |first, [u]| {
         for (node, u) in (first / D..).zip(u.as_chunks_mut::<D>().0) {
             for d in 0..D {
                 let k = node * D + d;
-                if held[k].is_nan() {
+                if pin_displacement[k].is_nan() {
                     u[d] += share * (v0[k] - before.0[d][node]);
                 }
             }
@@ -169,12 +169,12 @@ impl Task<'_> {
         let Some(reference) = system.history.vectors(REFERENCE) else { return Ok(false) };
         let mixture = self.mixture(system, &workspace.mass);
         if !workspace.reused.is_of(reference, &mixture) {
-            let (nodes, places) = (system.nodes, system.places());
+            let (nodes, index_count) = (system.nodes, system.index_count());
             let System { history, state, .. } = system;
             let Some(reference) = history.vectors(REFERENCE) else { return Ok(false) };
             for (to, from) in state.work[0][0].0.iter_mut().zip(&reference.0) {
-                for place in 0..places {
-                    to[place] = from[place.min(nodes - 1)];
+                for index in 0..index_count {
+                    to[index] = from[index.min(nodes - 1)];
                 }
             }
             system.evaluate(Workspace::<D>::STAGE, self.balance.time, 0.0, &mut workspace.force)?;
@@ -297,8 +297,8 @@ pub(super) fn iterate<const D: usize>(
             {
                 workspace.contacting.start_from(|node| core::array::from_fn(|d| forces.0[d][node]));
             }
-            let Workspace { contacting, u, held, x0, free, projectors, prescribed, .. } = &mut *workspace;
-            moves = contacting.hold(u, balance.theta, held, x0, free, projectors, prescribed) > 0.0;
+            let Workspace { contacting, u, pin_displacement, x0, free, projectors, prescribed, .. } = &mut *workspace;
+            moves = contacting.hold(u, balance.theta, pin_displacement, x0, free, projectors, prescribed) > 0.0;
         }
         let mut size = task.out_of_balance(system, workspace, moves).unwrap_or(f64::NAN);
         if solved.iterations == 0 {

@@ -87,8 +87,8 @@ impl<const D: usize> ReusedMatrix<D> {
     ) -> Result<(), Indefinite> {
         self.is_solved = false;
         let same = self.ready && self.free == filter.free;
-        let held = |node: usize| filter.free[node] || self.projectors[node] == filter.projectors[node];
-        if same && (0..filter.free.len()).all(held) {
+        let unchanged = |node: usize| filter.free[node] || self.projectors[node] == filter.projectors[node];
+        if same && (0..filter.free.len()).all(unchanged) {
             return Ok(());
         }
         self.ready = false;

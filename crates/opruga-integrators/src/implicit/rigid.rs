@@ -212,7 +212,7 @@ impl<const D: usize> Rigid<D> {
         out.fill(0.0);
         for ((motion, piece), nodes) in self.motions(shares).iter().zip(&self.pieces).zip(&self.nodes) {
             for node in nodes {
-                let displacement = motion.finite_way(&arm(x0, u, *node, &piece.center));
+                let displacement = motion.finite_displacement(&arm(x0, u, *node, &piece.center));
                 out[node * D..][..D].copy_from_slice(&displacement);
             }
         }
@@ -231,7 +231,7 @@ impl<const D: usize> Rigid<D> {
         for (((found, wanted), piece), nodes) in motions.zip(&self.pieces).zip(&self.nodes) {
             for node in nodes {
                 let arm = arm(x0, u, *node, &piece.center);
-                let (from, to) = (found.displacement(&arm), wanted.finite_way(&arm));
+                let (from, to) = (found.displacement(&arm), wanted.finite_displacement(&arm));
                 let displacement = core::array::from_fn(|d| to[d] - from[d]);
                 let displacement =
                     if filter.free[*node] { displacement } else { times(&filter.projectors[*node], &displacement) };
@@ -345,9 +345,9 @@ impl<const D: usize> Sink<D> for Resistance<'_, D> {
         let Some((first, _)) = u.first() else { return };
         let out = &mut self.of[self.owner[*first]];
         let mut sums = [0.0; MOST];
-        for (place, entry) in u {
+        for (index, entry) in u {
             for p in 0..MOST {
-                sums[p] += along(entry, &self.displacements[place * MOST + p]);
+                sums[p] += along(entry, &self.displacements[index * MOST + p]);
             }
         }
         for p in 0..MOST {

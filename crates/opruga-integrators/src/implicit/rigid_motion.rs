@@ -38,7 +38,7 @@ impl<const D: usize> Motion<D> {
     }
     /// The same of a finite turn: R − 1 = α (ω× + ½ ω×ω×), α = 1/(1 + ¼ω²), about the axis that the motion leaves in place, and
     /// straight on along that.
-    pub(super) fn finite_way(&self, arm: &[f64; D]) -> [f64; D] {
+    pub(super) fn finite_displacement(&self, arm: &[f64; D]) -> [f64; D] {
         let (displacement, turn) = (self.displacement(arm), &self.rotation);
         let again = cross(turn, &displacement);
         let square: f64 = turn.iter().map(|w| w * w).sum();

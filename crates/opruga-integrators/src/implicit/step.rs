@@ -266,11 +266,11 @@ fn find_stage<R: Rule<D>, const D: usize>(
     workspace.contacting.clear(system.nodes);
     let balance = rule.begin(system, workspace, h);
     workspace.hold(system, balance.theta, h);
-    // Held axes are where they have to be.
-    let Workspace { u, held, v0, .. } = &mut *workspace;
+    // Pinned axes are where they have to be.
+    let Workspace { u, pin_displacement, v0, .. } = &mut *workspace;
     each_block(system.threads, D, [u], |first, [u]| {
         for (k, u) in (first..).zip(u) {
-            *u = if held[k].is_nan() { balance.theta * h * v0[k] } else { held[k] };
+            *u = if pin_displacement[k].is_nan() { balance.theta * h * v0[k] } else { pin_displacement[k] };
         }
     });
     minimiser.predict(system, workspace, &balance);
@@ -284,9 +284,10 @@ fn touches<const D: usize>(system: &System<D>, workspace: &Workspace<D>, h: f64)
     let Some(obstacles) = &system.contacts else { return false };
     nodes::<D>(&workspace.x0).iter().zip(nodes::<D>(&workspace.v0)).any(|(from, velocity)| {
         let to: [f64; D] = core::array::from_fn(|d| from[d] + h * velocity[d]);
-        let mut near = false;
+        let mut touching = false;
         let reach = SMALL * workspace.extent;
-        obstacles.touch(from, &to, system.time + h, h, reach, &mut |touch| near |= touch.gap <= touch.rounding + reach);
-        near
+        obstacles
+            .touch(from, &to, system.time + h, h, reach, &mut |touch| touching |= touch.gap <= touch.rounding + reach);
+        touching
     })
 }

@@ -28,7 +28,7 @@ const LEFT: f64 = 1e-6;
 /// Where no pin holds a body that begins deep in obstacles, the iteration begins with the body as a whole out of them, in
 /// `workspace.u`: put onto the surface one by one, nodes that are deep inside would tear it.
 pub(crate) fn lift_out<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, h: f64) {
-    if system.contacts.is_none() || workspace.held.iter().any(|displacement| !displacement.is_nan()) {
+    if system.contacts.is_none() || workspace.pin_displacement.iter().any(|displacement| !displacement.is_nan()) {
         return;
     }
     let mut lift = [0.0; D];
@@ -53,7 +53,7 @@ pub(crate) fn leaves_nodes_inside<const D: usize>(system: &System<D>, workspace:
     deepest(system, workspace, &|node, d| workspace.u[node * D + d], h).is_some_and(|touch| touch.gap < -most)
 }
 
-/// The deepest place of a node that no pin holds, at the displacements that `displacement` tells of nodes and axes; none where all are outside.
+/// The deepest position of a node that no pin holds, at the displacements that `displacement` tells of nodes and axes; none where all are outside.
 fn deepest<const D: usize>(
     system: &System<D>,
     workspace: &Workspace<D>,
@@ -62,8 +62,10 @@ fn deepest<const D: usize>(
 ) -> Option<Touch<D>> {
     let obstacles = system.contacts.as_ref()?;
     let mut deepest: Option<Touch<D>> = None;
-    for (node, (from, held)) in nodes::<D>(&workspace.x0).iter().zip(nodes::<D>(&workspace.held)).enumerate() {
-        if held.iter().any(|displacement| !displacement.is_nan()) {
+    for (node, (from, targets)) in
+        nodes::<D>(&workspace.x0).iter().zip(nodes::<D>(&workspace.pin_displacement)).enumerate()
+    {
+        if targets.iter().any(|displacement| !displacement.is_nan()) {
             continue;
         }
         let at: [f64; D] = core::array::from_fn(|d| from[d] + displacement(node, d));

@@ -47,8 +47,8 @@ pub(crate) struct Workspace<const D: usize> {
     /// What held directions take of the force [N].
     pub(crate) reaction: Vec<f64>,
     pub(crate) prescribed: Vec<f64>,
-    /// How far held axes have to go in the stage; not a number where an axis is free.
-    pub(crate) held: Vec<f64>,
+    /// How far pinned axes have to go in the stage; not a number where an axis is free.
+    pub(crate) pin_displacement: Vec<f64>,
     /// Which nodes are quite free, and the projectors of the others.
     pub(crate) free: Vec<bool>,
     pub(crate) projectors: Vec<Block<D>>,
@@ -98,7 +98,7 @@ impl<const D: usize> Default for Workspace<D> {
             struck: Vec::new(),
             memory: Vec::new(),
             prescribed: Vec::new(),
-            held: Vec::new(),
+            pin_displacement: Vec::new(),
             free: Vec::new(),
             projectors: Vec::new(),
             linear: Linear::default(),
@@ -114,19 +114,19 @@ impl<const D: usize> Default for Workspace<D> {
     }
 }
 
-/// Writes two numbers for every coordinate into columns; places behind the last node have what that has.
+/// Writes two numbers for every coordinate into columns; indices behind the last node have what that has.
 pub(crate) fn write<const D: usize>(
-    places: usize,
+    index_count: usize,
     nodes: usize,
     threads: usize,
     [one, other]: [&mut Columns<D>; 2],
     numbers: impl Fn(usize) -> [f64; 2] + Sync,
 ) {
     for d in 0..D {
-        let columns = [&mut one.0[d][..places], &mut other.0[d][..places]];
+        let columns = [&mut one.0[d][..index_count], &mut other.0[d][..index_count]];
         each_block(threads, 1, columns, |first, [one, other]| {
-            for (place, (one, other)) in (first..).zip(one.iter_mut().zip(other)) {
-                [*one, *other] = numbers(place.min(nodes - 1) * D + d);
+            for (index, (one, other)) in (first..).zip(one.iter_mut().zip(other)) {
+                [*one, *other] = numbers(index.min(nodes - 1) * D + d);
             }
         });
     }
@@ -151,7 +151,7 @@ impl<const D: usize> Workspace<D> {
             &mut self.right,
             &mut self.reaction,
             &mut self.prescribed,
-            &mut self.held,
+            &mut self.pin_displacement,
         ] {
             vector.resize(size, 0.0);
         }
@@ -162,7 +162,7 @@ impl<const D: usize> Workspace<D> {
         self.free.resize(system.nodes, true);
         self.projectors.resize(system.nodes, isotropic(1.0));
         for column in self.force.0.iter_mut().chain(&mut self.outer.0) {
-            column.grow(system.places() + opruga_math::WIDTH);
+            column.grow(system.index_count() + opruga_math::WIDTH);
         }
         for (columns, out) in [(&system.state.x, &mut self.x0), (&system.state.v, &mut self.v0)] {
             each_block(system.threads, D, [out], |first, [out]| {
@@ -187,16 +187,16 @@ impl<const D: usize> Workspace<D> {
         }
     }
 
-    /// Notes how far held axes have to go in the stage: a part `theta` of the way to where they have to be at the end of
+    /// Notes how far pinned axes have to go in the stage: a part `theta` of the way to where they have to be at the end of
     /// the step, `h` after its start.
     pub(crate) fn hold(&mut self, system: &System<D>, theta: f64, h: f64) {
-        self.held.fill(f64::NAN);
+        self.pin_displacement.fill(f64::NAN);
         for pin in &system.pins {
             let (target, _) = pin.target(system.time + h);
             for d in 0..D {
                 if pin.axes[d] {
-                    let k = pin.place * D + d;
-                    self.held[k] = theta * (target[d] - self.x0[k]);
+                    let k = pin.index * D + d;
+                    self.pin_displacement[k] = theta * (target[d] - self.x0[k]);
                 }
             }
         }
@@ -204,9 +204,9 @@ impl<const D: usize> Workspace<D> {
 
     /// Writes a stage into the work columns of a system: x₀ + u, and the velocities β (u − z).
     pub(crate) fn show(system: &mut System<D>, x0: &[f64], u: &[f64], z: &[f64], beta: f64) {
-        let (places, nodes, threads) = (system.places(), system.nodes, system.threads);
+        let (index_count, nodes, threads) = (system.index_count(), system.nodes, system.threads);
         let stage = system.state.work[0].each_mut();
-        write(places, nodes, threads, stage, |k| [x0[k] + u[k], beta * (u[k] - z[k])]);
+        write(index_count, nodes, threads, stage, |k| [x0[k] + u[k], beta * (u[k] - z[k])]);
     }
 
     /// The largest force out of balance on a node along what nothing holds [N].

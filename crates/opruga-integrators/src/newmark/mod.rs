@@ -20,7 +20,7 @@
 mod tests;
 
 use crate::implicit::balance::Balance;
-use crate::implicit::holding::{accelerations, held};
+use crate::implicit::holding::{accelerations, pinned_coordinates};
 use crate::implicit::rule::Rule;
 use crate::implicit::settings::fields;
 use crate::implicit::step::Implicit;
@@ -149,7 +149,7 @@ impl<const D: usize> Rule<D> for Newmark {
         let rate = gamma / (beta * h);
         first_acceleration(system, workspace);
         // What pins have just taken hold of is not accelerated any more; its neighbours would feel it.
-        let stopped = if begun && system.inertia.is_some() { held(system) } else { Vec::new() };
+        let stopped = if begun && system.inertia.is_some() { pinned_coordinates(system) } else { Vec::new() };
         for node in 0..system.nodes {
             for d in 0..D {
                 let k = node * D + d;
@@ -230,7 +230,7 @@ fn first_acceleration<const D: usize>(system: &System<D>, workspace: &mut Worksp
         }
     } else if !system.history.get(BEGUN) {
         right.iter_mut().enumerate().for_each(|(k, force_on)| *force_on = force.0[k % D][k / D]);
-        accelerations(system, &held(system), right, a0);
+        accelerations(system, &pinned_coordinates(system), right, a0);
     }
 }
 

@@ -97,8 +97,8 @@ fn held_axes_follow_their_path() {
         let mut system = two_nodes::<2>(0.5);
         // The first node is led along x with 2 m/s from (1, 0) and is free along y; the second is held in y.
         let motion = Arc::new(vec![vec![0.0, 0.0, 0.0], vec![10.0, 20.0, 0.0]]);
-        system.pins.push(Pin { place: 0, axes: [true, false], anchor: [1.0, 0.0], motion });
-        system.pins.push(Pin { place: 1, axes: [false, true], anchor: [0.0, 0.25], motion: Arc::default() });
+        system.pins.push(Pin { index: 0, axes: [true, false], anchor: [1.0, 0.0], motion });
+        system.pins.push(Pin { index: 1, axes: [false, true], anchor: [0.0, 0.25], motion: Arc::default() });
         run(&mut system, rule, 0.01, 100);
         let (x, v) = (&system.state.x.0, &system.state.v.0);
         assert!((x[0][0] - 3.0).abs() < 1e-12 && (v[0][0] - 2.0).abs() < 1e-12, "{}", rule.name());
@@ -137,8 +137,8 @@ fn the_work_of_pins_is_in_the_ledger() {
             let (start, speed) = (system.state.x.at(0), [2.0, -0.5]);
             let motion = Arc::new(vec![vec![0.0, 0.0, 0.0], vec![10.0, 10.0 * speed[0], 10.0 * speed[1]]]);
             // The same node twice: it is held once.
-            system.pins.push(Pin { place: 0, axes: [true, true], anchor: start, motion: Arc::clone(&motion) });
-            system.pins.push(Pin { place: 0, axes: [true, false], anchor: start, motion });
+            system.pins.push(Pin { index: 0, axes: [true, true], anchor: start, motion: Arc::clone(&motion) });
+            system.pins.push(Pin { index: 0, axes: [true, false], anchor: start, motion });
             system.state.v.set(0, speed);
             let total = |system: &System<2>| {
                 let weight = |node: usize| {

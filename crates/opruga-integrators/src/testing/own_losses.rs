@@ -95,7 +95,7 @@ fn by_mass(system: &System<2>, a: &Vectors, b: &Vectors) -> f64 {
     (0..NODES).map(|n| system.mass.at(n) * (a[n][0] * b[n][0] + a[n][1] * b[n][1])).sum()
 }
 
-/// ∇U in another place.
+/// ∇U at another position.
 fn gradient_at(system: &mut System<2>, x: &Vectors) -> Vectors {
     let kept = system.state.x.clone();
     x.iter().enumerate().for_each(|(node, x)| system.state.x.set(node, *x));
@@ -185,7 +185,7 @@ fn the_ledger_of_implicit_rules_closes_whatever_acts() {
             if led {
                 let (start, speed) = (system.state.x.at(0), [2.0, -0.5]);
                 let motion = Arc::new(vec![vec![0.0, 0.0, 0.0], vec![10.0, 10.0 * speed[0], 10.0 * speed[1]]]);
-                system.pins.push(Pin { place: 0, axes: [true, true], anchor: start, motion });
+                system.pins.push(Pin { index: 0, axes: [true, true], anchor: start, motion });
                 system.state.v.set(0, speed);
             }
             system.equip(&*rule);

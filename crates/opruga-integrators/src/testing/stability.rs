@@ -14,7 +14,8 @@ use opruga_math::Simd;
 
 /// A ring of radius `radius` whose springs are at rest with edges `rest` times as long, and a gas inside.
 fn ring(nodes: usize, radius: f64, rest: f64, stiffness: f64, damping: f64, gas: f64) -> System<2> {
-    let (mut x, v) = (Columns::zeros(Layout::Single.places(nodes)), Columns::zeros(Layout::Single.places(nodes)));
+    let (mut x, v) =
+        (Columns::zeros(Layout::Single.index_count(nodes)), Columns::zeros(Layout::Single.index_count(nodes)));
     for p in 0..nodes {
         let angle = 2.0 * core::f64::consts::PI * p as f64 / nodes as f64;
         x.set(p, [radius * libm::cos(angle), radius * libm::sin(angle)]);

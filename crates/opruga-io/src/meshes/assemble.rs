@@ -35,7 +35,7 @@ pub(super) fn assemble<const D: usize>(
     let dimension = work.dimension::<D>()?;
     let mut notices = found.all_notices();
     let stored = Stored::of(&found.positions, found.items.iter().map(Item::nodes), found.single);
-    notices.extend(stored.told().map_err(|error| work.file(error))?);
+    notices.extend(stored.warning().map_err(|error| work.file(error))?);
     let mut mesh = Mesh::<D> { positions: work.positions(&mut notices)?, node_values, ..Mesh::default() };
     // Cells are counted kind by kind: `order` says which item each of them was.
     let order = work.order(dimension);
@@ -61,7 +61,7 @@ struct Assembly<'a> {
 
 impl Assembly<'_> {
     fn at(&self, item: &Item, message: impl Into<AnyMessage>) -> SceneError {
-        self.items.error(message, item.place)
+        self.items.error(message, item.offset)
     }
 
     fn topology(&self, error: &opruga_mesh::MeshError) -> SceneError {
@@ -70,8 +70,8 @@ impl Assembly<'_> {
     }
 
     fn at_node(&self, node: usize, message: MeshFileError) -> SceneError {
-        match self.found.node_places.get(node) {
-            Some(place) => self.nodes.error(message, *place),
+        match self.found.node_offsets.get(node) {
+            Some(offset) => self.nodes.error(message, *offset),
             None => self.file(SceneError::of(message)),
         }
     }

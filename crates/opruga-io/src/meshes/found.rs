@@ -71,7 +71,7 @@ pub(crate) struct Item {
     /// Its number in the file.
     pub(crate) number: u64,
     /// The byte where it stands.
-    pub(crate) place: usize,
+    pub(crate) offset: usize,
 }
 
 impl Item {
@@ -85,8 +85,8 @@ impl Item {
 pub(crate) struct Found {
     /// Positions of nodes in the order of the file [m]; z is 0 where the file has none.
     pub(crate) positions: Vec<[f64; 3]>,
-    /// The byte where each node stands; empty where the format has no place for single nodes.
-    pub(crate) node_places: Vec<usize>,
+    /// The byte where each node stands; empty where the format lists no single nodes.
+    pub(crate) node_offsets: Vec<usize>,
     /// The number that the file gives each node.
     pub(crate) node_numbers: Vec<u64>,
     pub(crate) items: Vec<Item>,
@@ -110,17 +110,17 @@ pub(crate) struct Found {
 
 impl Found {
     /// Adds a node.
-    pub(super) fn node(&mut self, number: u64, position: [f64; 3], place: usize) {
+    pub(super) fn node(&mut self, number: u64, position: [f64; 3], offset: usize) {
         self.positions.push(position);
         self.node_numbers.push(number);
-        self.node_places.push(place);
+        self.node_offsets.push(offset);
     }
 
     /// Adds an element whose nodes stand in the order of Opruga.
-    pub(super) fn item(&mut self, kind: Kind, nodes: &[u32], number: u64, place: usize) {
+    pub(super) fn item(&mut self, kind: Kind, nodes: &[u32], number: u64, offset: usize) {
         let mut own = [0; 10];
         own[..nodes.len()].copy_from_slice(nodes);
-        self.items.push(Item { kind, nodes: own, number, place });
+        self.items.push(Item { kind, nodes: own, number, offset });
     }
 
     /// Adds the item that was added last to a group.
@@ -135,13 +135,13 @@ impl Found {
     /// Refuses elements with a number that another one has.
     ///
     /// # Errors
-    /// `mesh.duplicate_element` with the place of the second one.
+    /// `mesh.duplicate_element` with the offset of the second one.
     pub(super) fn distinct_elements(&self, scanner: &Scanner<'_>) -> Result<(), SceneError> {
-        let mut order: Vec<(u64, usize)> = self.items.iter().map(|item| (item.number, item.place)).collect();
+        let mut order: Vec<(u64, usize)> = self.items.iter().map(|item| (item.number, item.offset)).collect();
         order.sort_unstable();
         let pairs = order.windows(2).filter(|pair| pair[0].0 == pair[1].0);
-        let Some(&(number, place)) = pairs.map(|pair| &pair[1]).min_by_key(|second| second.1) else { return Ok(()) };
-        Err(scanner.error(MeshFileError::ElementTwice { number }, place))
+        let Some(&(number, offset)) = pairs.map(|pair| &pair[1]).min_by_key(|second| second.1) else { return Ok(()) };
+        Err(scanner.error(MeshFileError::ElementTwice { number }, offset))
     }
 
     /// Adds the last items, from one on, to groups, each of them to all.
@@ -221,7 +221,7 @@ pub(super) fn is_kept(components: u64) -> bool {
     (1..=3).contains(&components)
 }
 
-/// From the numbers of a file to places in a list.
+/// From the numbers of a file to indices in a list.
 pub(super) struct Numbers(Vec<(u64, u32)>);
 
 impl Numbers {
@@ -233,7 +233,7 @@ impl Numbers {
         pairs.sort_unstable();
         if let Some(pair) = pairs.windows(2).filter(|pair| pair[0].0 == pair[1].0).min_by_key(|pair| pair[1].1) {
             let (number, second) = pair[1];
-            return Err(scanner.error(MeshFileError::NodeTwice { number }, found.node_places[second as usize]));
+            return Err(scanner.error(MeshFileError::NodeTwice { number }, found.node_offsets[second as usize]));
         }
         Ok(Numbers(pairs))
     }
@@ -247,7 +247,7 @@ impl Numbers {
         number: u64,
         scanner: &Scanner<'_>,
         element: Option<u64>,
-        place: usize,
+        offset: usize,
     ) -> Result<u32, SceneError> {
         if let Ok(at) = self.0.binary_search_by_key(&number, |pair| pair.0) {
             return Ok(self.0[at].1);
@@ -260,6 +260,6 @@ impl Numbers {
             Some(element) => MeshFileError::NoNode { element, node: number, listed },
             None => MeshFileError::NoNodeOfValue { node: number, listed },
         };
-        Err(scanner.error(error, place))
+        Err(scanner.error(error, offset))
     }
 }

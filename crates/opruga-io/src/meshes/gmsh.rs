@@ -44,7 +44,7 @@ pub(super) struct Context {
     pub(super) divided: bool,
     /// How often values of a name came again, as those of later steps do.
     later: BTreeMap<String, u64>,
-    /// The numbers of elements, ascending, with their places in the list; made where values are first looked for.
+    /// The numbers of elements, ascending, with their indices in the list; made where values are first looked for.
     order: Vec<(u64, usize)>,
 }
 
@@ -170,11 +170,11 @@ fn physical_names(scanner: &mut Scanner<'_>, names: &mut Names) -> Result<(), Sc
 /// Passes over a section that says nothing about a body at rest.
 fn skip(scanner: &mut Scanner<'_>, section: &str, from: usize, found: &mut Found) -> Result<(), SceneError> {
     let end = format!("$End{section}");
-    let place = scanner.bytes[scanner.at..].windows(end.len()).position(|window| window == end.as_bytes());
-    let Some(place) = place else {
+    let offset = scanner.bytes[scanner.at..].windows(end.len()).position(|window| window == end.as_bytes());
+    let Some(offset) = offset else {
         return Err(scanner.error(GmshError::NoEnd { section: visible(section) }, from));
     };
-    scanner.at += place;
+    scanner.at += offset;
     if section != "Comments" {
         found.left_out(MeshFileNotice::Section { section: visible(section) });
     }
@@ -215,10 +215,10 @@ fn data(scanner: &mut Scanner<'_>, context: &mut Context, nodes: Option<&Numbers
         found.left_out(MeshFileNotice::Components { components, name: visible(&name) });
         scanner.at = start;
         let end = format!("$End{section}");
-        let place = scanner.bytes[start..].windows(end.len()).position(|window| window == end.as_bytes());
-        return match place {
-            Some(place) => {
-                scanner.at += place;
+        let offset = scanner.bytes[start..].windows(end.len()).position(|window| window == end.as_bytes());
+        return match offset {
+            Some(offset) => {
+                scanner.at += offset;
                 Ok(())
             }
             None => Err(scanner.ends(SYNTAX, Keyword::One { word: end })),
@@ -238,17 +238,17 @@ fn data(scanner: &mut Scanner<'_>, context: &mut Context, nodes: Option<&Numbers
         if !scanner.binary {
             scanner.peek();
         }
-        let place = scanner.at;
+        let offset = scanner.at;
         let number = if scanner.binary {
             scanner.binary_i32(SIZE, number_of)? as u64
         } else {
             scanner.whole::<u64>(SYNTAX, number_of)?.0
         };
         let at = match nodes {
-            Some(nodes) => nodes.node(number, scanner, None, place)? as usize,
+            Some(nodes) => nodes.node(number, scanner, None, offset)? as usize,
             None => match order.binary_search_by_key(&number, |entry| entry.0) {
                 Ok(at) => order[at].1,
-                Err(_) => return Err(scanner.error(GmshError::NoElement { element: number }, place)),
+                Err(_) => return Err(scanner.error(GmshError::NoElement { element: number }, offset)),
             },
         };
         let row = &mut values[at * width..(at + 1) * width];
@@ -257,7 +257,7 @@ fn data(scanner: &mut Scanner<'_>, context: &mut Context, nodes: Option<&Numbers
                 Some(_) => GmshError::NodeValueTwice { node: number },
                 None => GmshError::ElementValueTwice { element: number },
             };
-            return Err(scanner.error(twice, place));
+            return Err(scanner.error(twice, offset));
         }
         for slot in row {
             *slot = if scanner.binary {
@@ -286,7 +286,7 @@ fn data(scanner: &mut Scanner<'_>, context: &mut Context, nodes: Option<&Numbers
 ///
 /// # Errors
 /// `mesh.unsupported_element` with name and number.
-pub(super) fn element_type(scanner: &Scanner<'_>, number: i64, place: usize) -> Result<Kind, SceneError> {
+pub(super) fn element_type(scanner: &Scanner<'_>, number: i64, offset: usize) -> Result<Kind, SceneError> {
     use ElementName as Name;
     let element = match number {
         1 => return Ok(Kind::Line),
@@ -321,7 +321,7 @@ pub(super) fn element_type(scanner: &Scanner<'_>, number: i64, place: usize) -> 
         92 => Name::CubicHexahedron,
         _ => Name::UnknownType,
     };
-    Err(scanner.error(MeshFileError::UnsupportedType { element, number }, place))
+    Err(scanner.error(MeshFileError::UnsupportedType { element, number }, offset))
 }
 
 /// Brings the nodes of an element into the order of Opruga: Gmsh lists the middles of edges 2–3 and 1–3 the other way round.

@@ -13,22 +13,22 @@ pub(super) fn nodes(scanner: &mut Scanner<'_>, found: &mut Found) -> Result<(), 
     scanner.line_end(SYNTAX, Expected::NumberOfNodes)?;
     let each = if scanner.binary { 28 } else { 8 };
     for _ in 0..scanner.fits(SIZE, count, each, Expected::Nodes, from)? {
-        let place = scanner.at;
+        let offset = scanner.at;
         if scanner.binary {
             let number = scanner.binary_i32(SIZE, Expected::Node)?;
             let mut position = [0.0; 3];
             for x in &mut position {
                 *x = scanner.binary_f64(SIZE, Expected::Coordinate)?;
             }
-            found.node(number as u64, position, place);
+            found.node(number as u64, position, offset);
         } else {
-            let (number, place) = scanner.whole::<u64>(SYNTAX, Expected::NumberOfNode)?;
+            let (number, offset) = scanner.whole::<u64>(SYNTAX, Expected::NumberOfNode)?;
             let mut position = [0.0; 3];
             for x in &mut position {
                 *x = scanner.number(SYNTAX, Expected::Coordinate)?;
             }
             scanner.line_end(SYNTAX, Expected::Node)?;
-            found.node(number, position, place);
+            found.node(number, position, offset);
         }
     }
     Ok(())
@@ -43,7 +43,7 @@ pub(super) fn elements(scanner: &mut Scanner<'_>, context: &mut Context, numbers
         return binary(scanner, context, numbers, count);
     }
     for _ in 0..count {
-        let (number, place) = scanner.whole::<u64>(SYNTAX, Expected::NumberOfElement)?;
+        let (number, offset) = scanner.whole::<u64>(SYNTAX, Expected::NumberOfElement)?;
         let (kind, from) = scanner.whole::<i64>(SYNTAX, Expected::TypeOfElement)?;
         let kind = element_type(scanner, kind, from)?;
         let (tags, from) = scanner.whole::<u64>(SYNTAX, Expected::NumberOfTags)?;
@@ -60,15 +60,15 @@ pub(super) fn elements(scanner: &mut Scanner<'_>, context: &mut Context, numbers
             *node = numbers.node(named, scanner, Some(number), from)?;
         }
         scanner.line_end(SYNTAX, Expected::Element)?;
-        add(context, kind, &mut nodes, number, place, group);
+        add(context, kind, &mut nodes, number, offset, group);
     }
     Ok(())
 }
 
-fn add(context: &mut Context, kind: super::found::Kind, nodes: &mut [u32; 10], number: u64, place: usize, group: i64) {
+fn add(context: &mut Context, kind: super::found::Kind, nodes: &mut [u32; 10], number: u64, offset: usize, group: i64) {
     let nodes = &mut nodes[..kind.nodes()];
     reorder(kind, nodes);
-    context.found.item(kind, nodes, number, place);
+    context.found.item(kind, nodes, number, offset);
     if group != 0 {
         let name = context.names.of(kind.dimension(), group);
         context.found.join(name);
@@ -94,7 +94,7 @@ fn binary(scanner: &mut Scanner<'_>, context: &mut Context, numbers: &Numbers, c
             return Err(scanner.error(GmshError::BlockSize { elements: follow, most: count - read }, from));
         }
         for _ in 0..follow {
-            let place = scanner.at;
+            let offset = scanner.at;
             let number = scanner.binary_i32(SIZE, Expected::Element)? as u64;
             let mut group = 0;
             for k in 0..tags {
@@ -109,7 +109,7 @@ fn binary(scanner: &mut Scanner<'_>, context: &mut Context, numbers: &Numbers, c
                 let named = scanner.binary_i32(SIZE, Expected::NodeOfElement)?;
                 *node = numbers.node(named as u64, scanner, Some(number), from)?;
             }
-            add(context, kind, &mut nodes, number, place, group);
+            add(context, kind, &mut nodes, number, offset, group);
         }
         read += follow;
     }

@@ -120,9 +120,9 @@ pub(super) fn nodes(scanner: &mut Scanner<'_>, found: &mut Found) -> Result<Numb
         line_end(scanner, Expected::BlockOfNodes)?;
         let first = found.node_numbers.len();
         for _ in 0..own {
-            let (name, place) = long(scanner, Expected::NumberOfNode)?;
+            let (name, offset) = long(scanner, Expected::NumberOfNode)?;
             line_end(scanner, Expected::NumberOfNode)?;
-            found.node(name, [0.0; 3], place);
+            found.node(name, [0.0; 3], offset);
         }
         for node in first..first + own {
             for axis in 0..3 {
@@ -180,7 +180,7 @@ pub(super) fn elements(scanner: &mut Scanner<'_>, context: &mut Context, numbers
             .map(|group| context.names.of(kind.dimension(), group.abs()))
             .collect();
         for _ in 0..own {
-            let (name, place) = long(scanner, Expected::NumberOfElement)?;
+            let (name, offset) = long(scanner, Expected::NumberOfElement)?;
             let mut nodes = [0; 10];
             for node in &mut nodes[..kind.nodes()] {
                 let (named, at) = long(scanner, Expected::NumberOfNode)?;
@@ -189,7 +189,7 @@ pub(super) fn elements(scanner: &mut Scanner<'_>, context: &mut Context, numbers
             line_end(scanner, Expected::Element)?;
             let nodes = &mut nodes[..kind.nodes()];
             reorder(kind, nodes);
-            context.found.item(kind, nodes, name, place);
+            context.found.item(kind, nodes, name, offset);
         }
         context.found.join_all(&groups, first).map_err(|e| scanner.at(e, at_tag))?;
     }

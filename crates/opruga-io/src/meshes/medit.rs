@@ -107,14 +107,14 @@ fn vertices(scanner: &mut Scanner<'_>, found: &mut Found, dimension: usize) -> R
     let (count, from) = scanner.whole::<u64>(SYNTAX, Expected::NumberOfVertices)?;
     for node in 0..scanner.fits(SIZE, count, 2 * (dimension as u64 + 1), Expected::Vertices, from)? {
         scanner.peek();
-        let place = scanner.at;
+        let offset = scanner.at;
         let mut position = [0.0; 3];
         for x in &mut position[..dimension] {
             *x = scanner.number(SYNTAX, Expected::Coordinate)?;
         }
         let (reference, _) = scanner.whole::<i64>(SYNTAX, Expected::ReferenceOfVertex)?;
         scanner.line_end(SYNTAX, Expected::Vertex)?;
-        found.node(node as u64 + 1, position, place);
+        found.node(node as u64 + 1, position, offset);
         if reference != 0 {
             found.node_groups.entry(format!("vertex {reference}")).or_default().push(node as u32);
         }
@@ -128,7 +128,7 @@ fn elements(scanner: &mut Scanner<'_>, found: &mut Found, kind: Kind) -> Result<
     let element = if kind == Kind::Line { ElementName::Edge } else { kind.name() };
     for number in 0..scanner.fits(SIZE, count, 2 * (kind.nodes() as u64 + 1), Expected::Elements, from)? {
         scanner.peek();
-        let place = scanner.at;
+        let offset = scanner.at;
         let mut own = [0; 8];
         for slot in &mut own[..kind.nodes()] {
             let (node, at) = scanner.whole::<u64>(SYNTAX, Expected::NumberOfVertex)?;
@@ -140,7 +140,7 @@ fn elements(scanner: &mut Scanner<'_>, found: &mut Found, kind: Kind) -> Result<
         }
         let (reference, _) = scanner.whole::<i64>(SYNTAX, Expected::ReferenceOfElement)?;
         scanner.line_end(SYNTAX, Expected::Element)?;
-        found.item(kind, &own[..kind.nodes()], number as u64 + 1, place);
+        found.item(kind, &own[..kind.nodes()], number as u64 + 1, offset);
         if reference != 0 {
             found.join(format!("{element} {reference}"));
         }

@@ -24,7 +24,7 @@ struct Draft {
     nodes: Vec<(u64, usize)>,
     attribute: i64,
     boundary: bool,
-    place: usize,
+    offset: usize,
 }
 
 /// Reads a file.
@@ -94,7 +94,7 @@ pub(super) fn read(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
             }
             *slot = node as u32;
         }
-        found.item(draft.kind, &nodes[..draft.nodes.len()], number as u64, draft.place);
+        found.item(draft.kind, &nodes[..draft.nodes.len()], number as u64, draft.offset);
         found.join(format!("{} {}", if draft.boundary { "boundary" } else { "attribute" }, draft.attribute));
     }
     Ok(found)
@@ -111,7 +111,7 @@ fn elements(
     let (count, from) = scanner.whole::<u64>(SYNTAX, Expected::NumberOfElements)?;
     scanner.line_end(SYNTAX, Expected::NumberOfElements)?;
     for _ in 0..scanner.fits(SIZE, count, 6, Expected::Elements, from)? {
-        let (attribute, place) = scanner.whole::<i64>(SYNTAX, Expected::Attribute)?;
+        let (attribute, offset) = scanner.whole::<i64>(SYNTAX, Expected::Attribute)?;
         let (geometry, at) = scanner.whole::<u64>(SYNTAX, Expected::GeometryOfElement)?;
         let kind = match geometry {
             0 => Kind::Point,
@@ -142,7 +142,7 @@ fn elements(
             nodes.push(scanner.whole::<u64>(SYNTAX, Expected::VertexOfElement)?);
         }
         scanner.line_end(SYNTAX, Expected::Element)?;
-        drafts.push(Draft { kind, nodes, attribute, boundary, place });
+        drafts.push(Draft { kind, nodes, attribute, boundary, offset });
     }
     Ok(())
 }
@@ -159,13 +159,13 @@ fn vertices(scanner: &mut Scanner<'_>, found: &mut Found, least: usize) -> Resul
     }
     for number in 0..scanner.fits(SIZE, count, 2 * dimension as u64, Expected::Vertices, from)? {
         scanner.peek();
-        let place = scanner.at;
+        let offset = scanner.at;
         let mut position = [0.0; 3];
         for x in &mut position[..dimension] {
             *x = scanner.number(SYNTAX, Expected::Coordinate)?;
         }
         scanner.line_end(SYNTAX, Expected::Vertex)?;
-        found.node(number as u64, position, place);
+        found.node(number as u64, position, offset);
     }
     Ok(())
 }

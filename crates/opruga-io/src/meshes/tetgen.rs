@@ -33,7 +33,7 @@ pub(super) fn nodes(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
     }
     scanner.line_end(SYNTAX, Expected::Head)?;
     for _ in 0..scanner.fits(SIZE, count, 2 * (1 + dimension as u64), Expected::Nodes, from)? {
-        let (number, place) = scanner.whole::<u64>(SYNTAX, Expected::NumberOfNode)?;
+        let (number, offset) = scanner.whole::<u64>(SYNTAX, Expected::NumberOfNode)?;
         let mut position = [0.0; 3];
         for x in &mut position[..dimension] {
             *x = scanner.number(SYNTAX, Expected::Coordinate)?;
@@ -49,7 +49,7 @@ pub(super) fn nodes(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
             }
         }
         scanner.line_end(SYNTAX, Expected::Node)?;
-        found.node(number, position, place);
+        found.node(number, position, offset);
     }
     if attributes > 0 {
         found.left_out(MeshFileNotice::Attributes { count: attributes });
@@ -76,10 +76,10 @@ pub(super) fn elements(scanner: &mut Scanner<'_>, found: &mut Found, numbers: &N
     let mut values: Vec<Vec<f64>> = Vec::new();
     let mut next: Option<u64> = None;
     for k in 0..count {
-        let (number, place) = scanner.whole::<u64>(SYNTAX, Expected::NumberOfElement)?;
+        let (number, offset) = scanner.whole::<u64>(SYNTAX, Expected::NumberOfElement)?;
         // Elements are counted: another number says that lines are missing, twice there or out of order.
         if let Some(wanted) = next.filter(|next| number != *next) {
-            return Err(scanner.error(TetgenError::Order { element: number, wanted }, place));
+            return Err(scanner.error(TetgenError::Order { element: number, wanted }, offset));
         }
         next = Some(number.saturating_add(1));
         let mut nodes = [0; 4];
@@ -96,7 +96,7 @@ pub(super) fn elements(scanner: &mut Scanner<'_>, found: &mut Found, numbers: &N
             values[attribute].push(value);
         }
         scanner.line_end(SYNTAX, Expected::Element)?;
-        found.item(kind, &nodes[..corners], number, place);
+        found.item(kind, &nodes[..corners], number, offset);
     }
     for (attribute, values) in values.into_iter().enumerate() {
         let name = if attribute == 0 { "attribute".to_string() } else { format!("attribute {}", attribute + 1) };

@@ -33,7 +33,13 @@ pub(super) fn kind(number: u64) -> Option<(Kind, &'static [usize])> {
 }
 
 /// Adds a cell of VTK whose nodes are counted from `first` on, or says why that cannot be.
-pub(super) fn add(found: &mut Found, number: i128, nodes: &[i128], first: u32, place: usize) -> Result<(), SceneError> {
+pub(super) fn add(
+    found: &mut Found,
+    number: i128,
+    nodes: &[i128],
+    first: u32,
+    byte_offset: usize,
+) -> Result<(), SceneError> {
     let cell = found.items.len() as u64;
     let Some((kind, order)) = u64::try_from(number).ok().and_then(kind) else {
         let element = match number {
@@ -66,7 +72,7 @@ pub(super) fn add(found: &mut Found, number: i128, nodes: &[i128], first: u32, p
         }
         *slot = first + node as u32;
     }
-    found.item(kind, &own[..order.len()], cell, place);
+    found.item(kind, &own[..order.len()], cell, byte_offset);
     Ok(())
 }
 
@@ -75,7 +81,7 @@ struct Reader<'s, 'a> {
     /// Whether numbers of arrays are binary; keywords are words in any case.
     binary: bool,
     found: Found,
-    /// Nodes of the cells, before their types are known: their place and their nodes.
+    /// Nodes of the cells, before their types are known: their offset in the file and their nodes.
     cells: Vec<(usize, Vec<i128>)>,
 }
 
@@ -191,9 +197,9 @@ impl Reader<'_, '_> {
         let mut out = Vec::with_capacity(count);
         for _ in 0..count {
             self.scanner.peek().filter(|_| !self.binary);
-            let place = self.scanner.at;
+            let byte_offset = self.scanner.at;
             let value = self.value(kind, what)?;
-            out.push((made(self.scanner, value, place)?, place));
+            out.push((made(self.scanner, value, byte_offset)?, byte_offset));
         }
         Ok(out)
     }
@@ -217,8 +223,9 @@ impl Reader<'_, '_> {
         what: Expected,
         from: usize,
     ) -> Result<Vec<(i128, usize)>, SceneError> {
-        self.array((count, from), kind, what, |scanner, value, place| {
-            let refused = |x: f64| scanner.error_of(SYNTAX, ScanError::NotWhole { word: x.to_string(), what }, place);
+        self.array((count, from), kind, what, |scanner, value, byte_offset| {
+            let refused =
+                |x: f64| scanner.error_of(SYNTAX, ScanError::NotWhole { word: x.to_string(), what }, byte_offset);
             value.whole().map_err(refused)
         })
     }
@@ -261,11 +268,11 @@ impl Reader<'_, '_> {
             let nodes = self.wholes(size, kind, Expected::NodesOfCells, size_from)?;
             // What no cell names would be lost.
             let there = nodes.len() as i128;
-            if let Some(&(offset, place)) = offsets.first().filter(|(offset, _)| *offset != 0) {
-                return Err(self.scanner.error(VtkError::FirstOffset { offset, wanted: 0 }, place));
+            if let Some(&(offset, byte_offset)) = offsets.first().filter(|(offset, _)| *offset != 0) {
+                return Err(self.scanner.error(VtkError::FirstOffset { offset, wanted: 0 }, byte_offset));
             }
-            if let Some(&(offset, place)) = offsets.last().filter(|(offset, _)| *offset != there) {
-                return Err(self.scanner.error(VtkError::LastOffset { offset, wanted: there }, place));
+            if let Some(&(offset, byte_offset)) = offsets.last().filter(|(offset, _)| *offset != there) {
+                return Err(self.scanner.error(VtkError::LastOffset { offset, wanted: there }, byte_offset));
             }
             for pair in offsets.windows(2) {
                 let (start, end) = (pair[0].0, pair[1].0);
@@ -283,14 +290,14 @@ impl Reader<'_, '_> {
         let mut rest = &numbers[..];
         for cell in 0..count {
             let there = rest.len().saturating_sub(1);
-            let Some(&(length, place)) = rest.first() else {
+            let Some(&(length, byte_offset)) = rest.first() else {
                 return Err(self.scanner.error(VtkError::Cells { there: cell, count }, from));
             };
             if !(0..=there as i128).contains(&length) {
-                return Err(self.scanner.error(VtkError::Follow { nodes: length, there }, place));
+                return Err(self.scanner.error(VtkError::Follow { nodes: length, there }, byte_offset));
             }
             let (own, behind) = rest[1..].split_at(length as usize);
-            self.cells.push((place, own.iter().map(|x| x.0).collect()));
+            self.cells.push((byte_offset, own.iter().map(|x| x.0).collect()));
             rest = behind;
         }
         if !rest.is_empty() {
@@ -307,9 +314,9 @@ impl Reader<'_, '_> {
             return Err(self.scanner.error(VtkError::Types { count, cells: self.cells.len() }, begin));
         }
         let types = self.wholes(count, Number::Whole(4, true), Expected::TypesOfCells, from)?;
-        for ((place, nodes), (number, at)) in self.cells.iter().zip(types) {
-            add(&mut self.found, number, nodes, 0, *place).map_err(|error| {
-                let at = if error.code == "mesh.unsupported_element" { at } else { *place };
+        for ((byte_offset, nodes), (number, at)) in self.cells.iter().zip(types) {
+            add(&mut self.found, number, nodes, 0, *byte_offset).map_err(|error| {
+                let at = if error.code == "mesh.unsupported_element" { at } else { *byte_offset };
                 self.scanner.at(error, at)
             })?;
         }

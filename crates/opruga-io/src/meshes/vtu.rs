@@ -80,8 +80,8 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Found, SceneError> {
     };
     let options = ParsingOptions { nodes_limit: 1_000_000, ..ParsingOptions::default() };
     let document = Document::parse_with_options(text, options).map_err(|e| {
-        let place = e.pos();
-        let from = crate::source::Source { file, text }.offset(place.row as usize, place.col as usize);
+        let position = e.pos();
+        let from = crate::source::Source { file, text }.offset(position.row as usize, position.col as usize);
         scanner.error(VtuError::Xml { reason: visible(&e.to_string()) }, from)
     })?;
     let root = document.root_element();
@@ -181,7 +181,7 @@ impl Reader<'_> {
         let first = found.positions.len() as u32;
         let first_cell = found.items.len();
         let array = self.array(piece, "Points", None)?;
-        let place = array.range().start;
+        let offset = array.range().start;
         if let Some(components) = array.attribute("NumberOfComponents").filter(|components| components.trim() != "3") {
             return Err(at(self.scanner, array, VtuError::Coordinates { components: visible(components) }));
         }
@@ -191,7 +191,7 @@ impl Reader<'_> {
             if let Some(bad) = x.iter().find(|x| !x.is_finite()) {
                 return Err(at(self.scanner, array, VtuError::NotFinitePoint { point: number, number: *bad }));
             }
-            found.node(u64::from(first) + number as u64, [x[0], x[1], x[2]], place);
+            found.node(u64::from(first) + number as u64, [x[0], x[1], x[2]], offset);
         }
         let offset_array = self.array(piece, "Cells", Some("offsets"))?;
         let offsets = self.wholes(offset_array, cells)?;
@@ -202,14 +202,14 @@ impl Reader<'_> {
             return Err(at(self.scanner, offset_array, VtuError::LastOffset { offset: total }));
         }
         let array = self.array(piece, "Cells", Some("connectivity"))?;
-        let place = array.range().start;
+        let offset = array.range().start;
         let nodes = self.wholes(array, total as u64)?;
         let mut start = 0;
         for (cell, (&end, kind)) in offsets.iter().zip(types).enumerate() {
             if !(start..=total).contains(&end) {
                 return Err(at(self.scanner, offset_array, VtuError::Reach { cell, start, end, most: nodes.len() }));
             }
-            vtk::add(found, kind, &nodes[start as usize..end as usize], first, place).map_err(|error| {
+            vtk::add(found, kind, &nodes[start as usize..end as usize], first, offset).map_err(|error| {
                 let of = if error.code == "mesh.unsupported_element" { type_array } else { array };
                 marked(self.scanner, of, error)
             })?;
@@ -321,8 +321,8 @@ impl Reader<'_> {
     /// Counts numbers of binary arrays: compressed ones are few bytes, and those at the end of the file may be named again and again.
     fn counted(&self, array: Node<'_, '_>, count: u64) -> Result<(), SceneError> {
         self.numbers.set(self.numbers.get().saturating_add(count));
-        let held = (self.scanner.bytes.len() + self.appended.map_or(0, |(data, _)| data.len())) as u64;
-        let counted = NUMBERS.check_beside(self.numbers.get(), NUMBERS_PER_BYTE.saturating_mul(held));
+        let available = (self.scanner.bytes.len() + self.appended.map_or(0, |(data, _)| data.len())) as u64;
+        let counted = NUMBERS.check_beside(self.numbers.get(), NUMBERS_PER_BYTE.saturating_mul(available));
         counted.map_err(|e| marked(self.scanner, array, e.advice(LimitHint::Compression)))
     }
 

@@ -69,8 +69,8 @@ impl RecordingFile {
         let (aside, file) = make_aside(folder, name)
             .map_err(|e| WriteError::of(path, WriteFault::FileNotMade { reason: crate::regular_file::reason(&e) }))?;
         let begin = || -> io::Result<(File, Writer<Box<dyn Target + Send>>)> {
-            let held = file.try_clone()?;
-            lock(&held)?;
+            let locked = file.try_clone()?;
+            lock(&locked)?;
             let target: Box<dyn Target + Send> = Box::new(wrap(file));
             let writer = Writer::new(target, header)?;
             // Only what takes the place of another file must be on the disk before it does.
@@ -78,9 +78,9 @@ impl RecordingFile {
                 writer.sync()?;
             }
             fs::rename(&aside, path)?;
-            Ok((held, writer))
+            Ok((locked, writer))
         };
-        let begun = begin().and_then(|(held, writer)| Ok((Syncing::begin(held, folder)?, writer)));
+        let begun = begin().and_then(|(locked, writer)| Ok((Syncing::begin(locked, folder)?, writer)));
         let (syncing, writer) = begun.map_err(|e| {
             let _ = fs::remove_file(&aside);
             failed(e)

@@ -183,7 +183,7 @@ pub(super) enum Kind {
     Passed,
     /// What the program did before the step that led to a frame.
     Input,
-    /// The last frame whose state is kept, how many chunks are whole, their frames and places, then those of the inputs.
+    /// The last frame whose state is kept, how many chunks are whole, their frames and offsets, then those of the inputs.
     Index,
 }
 
@@ -252,8 +252,8 @@ pub(super) fn trailer(index: u64, identity: u32) -> Vec<u8> {
     out
 }
 
-/// Where the index is; none if this is not the end of this recording.
-pub(super) fn index_place(trailer: &[u8; TRAILER], identity: u32) -> Option<u64> {
+/// The offset of the index; none if this is not the end of this recording.
+pub(super) fn index_offset(trailer: &[u8; TRAILER], identity: u32) -> Option<u64> {
     let whole = trailer[12..] == *END && sum_of(identity, &trailer[..8]) == u32_at(trailer, 8);
     whole.then(|| u64_at(trailer, 0))
 }

@@ -27,19 +27,19 @@ pub struct Recording<R> {
     source: R,
     header: Header,
     identity: u32,
-    /// Frame and place of the chunks that stand for themselves.
+    /// Frame and offset of the chunks that stand for themselves.
     index: Vec<[u64; 2]>,
-    /// Frame and place of what a program did.
+    /// Frame and offset of what a program did.
     inputs: Vec<[u64; 2]>,
     order: Order,
     ending: Ending,
     /// Where the chunks of frames end.
     end: u64,
-    /// The last frame whose hash was read, and the place of the chunk behind it.
+    /// The last frame whose hash was read, and the offset of the chunk behind it.
     hashed: Option<(u64, u64)>,
     /// The last chunk of frames without states whose hashes were read: its first frame, and they.
     passed: (u64, Vec<u64>),
-    /// The last frame whose state was read, and the place of the chunk behind it.
+    /// The last frame whose state was read, and the offset of the chunk behind it.
     read: Option<(u64, u64)>,
     state: Vec<u8>,
 }
@@ -109,11 +109,11 @@ impl<R: Read + Seek> Recording<R> {
             return Ok(*hash);
         }
         let [whole, at] = self.index[self.index.partition_point(|[first, _]| *first <= frame) - 1];
-        let mut place = self.hashed.filter(|(read, _)| (whole..frame).contains(read)).map_or(at, |(_, behind)| behind);
+        let mut offset = self.hashed.filter(|(read, _)| (whole..frame).contains(read)).map_or(at, |(_, behind)| behind);
         loop {
-            let (head, behind) = self.frame_chunk(place, frame)?;
+            let (head, behind) = self.frame_chunk(offset, frame)?;
             if head.kind == Kind::Passed && frame - head.frame < 1 + head.payload / 8 {
-                let damaged = RecordingError::Damaged { from: place, to: behind };
+                let damaged = RecordingError::Damaged { from: offset, to: behind };
                 let payload = self.payload(&head)?.filter(|payload| payload.len().is_multiple_of(8)).ok_or(damaged)?;
                 let others = payload.as_chunks::<8>().0.iter().map(|hash| u64::from_le_bytes(*hash));
                 self.passed = (head.frame, core::iter::once(head.hash).chain(others).collect());
@@ -125,7 +125,7 @@ impl<R: Read + Seek> Recording<R> {
                 self.hashed = Some((frame, behind));
                 return Ok(head.hash);
             }
-            place = behind;
+            offset = behind;
         }
     }
 
@@ -145,14 +145,14 @@ impl<R: Read + Seek> Recording<R> {
     /// [`RecordingError`] if there is no such input, or if its chunk is damaged.
     pub fn input(&mut self, number: usize) -> Result<Vec<u8>, RecordingError> {
         let frames = self.frames();
-        let Some([frame, place]) = self.inputs.get(number).copied() else {
+        let Some([frame, offset]) = self.inputs.get(number).copied() else {
             return Err(RecordingError::no_frame(number as u64, &frames));
         };
-        let damaged = |to: u64| RecordingError::Damaged { from: place, to };
-        let head = self.chunk_head(place)?.ok_or(damaged(place + CHUNK as u64))?;
-        let behind = (place + CHUNK as u64).saturating_add(head.payload);
+        let damaged = |to: u64| RecordingError::Damaged { from: offset, to };
+        let head = self.chunk_head(offset)?.ok_or(damaged(offset + CHUNK as u64))?;
+        let behind = (offset + CHUNK as u64).saturating_add(head.payload);
         if head.kind != Kind::Input || head.frame != frame || behind > self.end {
-            return Err(damaged(place + CHUNK as u64));
+            return Err(damaged(offset + CHUNK as u64));
         }
         self.payload(&head)?.ok_or(damaged(behind))
     }
@@ -174,48 +174,48 @@ impl<R: Read + Seek> Recording<R> {
         if self.kept(frame)? != frame {
             return Err(RecordingError::NotKept { frame, every: self.header.every });
         }
-        let [whole, place] = self.index[self.index.partition_point(|[first, _]| *first <= frame) - 1];
-        let (mut next, mut place) = match self.read {
+        let [whole, offset] = self.index[self.index.partition_point(|[first, _]| *first <= frame) - 1];
+        let (mut next, mut offset) = match self.read {
             Some((read, _)) if read == frame => return Ok(&self.state),
             Some((read, behind)) if (whole..frame).contains(&read) => (self.order.next_kept(read), behind),
-            _ => (whole, place),
+            _ => (whole, offset),
         };
         self.read = None;
         loop {
-            place = self.apply(next, place, next == whole)?;
+            offset = self.apply(next, offset, next == whole)?;
             if next == frame {
-                self.read = Some((frame, place));
+                self.read = Some((frame, offset));
                 return Ok(&self.state);
             }
             next = self.order.next_kept(next);
         }
     }
 
-    /// The head of the chunk of a frame or input at a place, up to a given frame; and the place behind it.
-    fn frame_chunk(&mut self, place: u64, until: u64) -> Result<(ChunkHead, u64), RecordingError> {
-        let damaged = RecordingError::Damaged { from: place, to: place + CHUNK as u64 };
-        let head = self.chunk_head(place)?.ok_or_else(|| damaged.clone())?;
-        let behind = (place + CHUNK as u64).saturating_add(head.payload);
+    /// The head of the chunk of a frame or input at an offset, up to a given frame; and the offset behind it.
+    fn frame_chunk(&mut self, offset: u64, until: u64) -> Result<(ChunkHead, u64), RecordingError> {
+        let damaged = RecordingError::Damaged { from: offset, to: offset + CHUNK as u64 };
+        let head = self.chunk_head(offset)?.ok_or_else(|| damaged.clone())?;
+        let behind = (offset + CHUNK as u64).saturating_add(head.payload);
         if head.kind == Kind::Index || head.frame > until || behind > self.end {
             return Err(damaged);
         }
         Ok((head, behind))
     }
 
-    /// Goes to the state of a frame by the first chunk of a state from a place on; returns the place behind it.
-    fn apply(&mut self, frame: u64, mut place: u64, whole: bool) -> Result<u64, RecordingError> {
+    /// Goes to the state of a frame by the first chunk of a state from an offset on; returns the offset behind it.
+    fn apply(&mut self, frame: u64, mut offset: u64, whole: bool) -> Result<u64, RecordingError> {
         let (head, behind) = loop {
-            let (head, behind) = self.frame_chunk(place, frame)?;
+            let (head, behind) = self.frame_chunk(offset, frame)?;
             // What came before the frame is read by those who do it again.
             if !matches!(head.kind, Kind::Input | Kind::Passed) {
                 break (head, behind);
             }
-            place = behind;
+            offset = behind;
         };
-        let damaged = |to: u64| RecordingError::Damaged { from: place, to };
+        let damaged = |to: u64| RecordingError::Damaged { from: offset, to };
         let kind = if whole { Kind::Whole } else { Kind::Difference };
         if head.kind != kind || head.frame != frame {
-            return Err(damaged(place + CHUNK as u64));
+            return Err(damaged(offset + CHUNK as u64));
         }
         if whole {
             self.state.clear();
@@ -227,10 +227,10 @@ impl<R: Read + Seek> Recording<R> {
         Ok(behind)
     }
 
-    /// The head of the chunk at a place; none where there is no whole one.
-    fn chunk_head(&mut self, place: u64) -> Result<Option<ChunkHead>, RecordingError> {
+    /// The head of the chunk at an offset; none where there is no whole one.
+    fn chunk_head(&mut self, offset: u64) -> Result<Option<ChunkHead>, RecordingError> {
         let mut bytes = [0; CHUNK];
-        self.source.seek(SeekFrom::Start(place))?;
+        self.source.seek(SeekFrom::Start(offset))?;
         match self.source.read_exact(&mut bytes) {
             Ok(()) => Ok(ChunkHead::read(&bytes, self.identity)),
             Err(error) if error.kind() == ErrorKind::UnexpectedEof => Ok(None),
@@ -244,11 +244,11 @@ impl<R: Read + Seek> Recording<R> {
         self.source.seek(SeekFrom::Start(end))?;
         let mut trailer = [0; TRAILER];
         self.source.read_exact(&mut trailer)?;
-        let Some(place) = format::index_place(&trailer, self.identity).filter(|place| *place >= first) else {
+        let Some(offset) = format::index_offset(&trailer, self.identity).filter(|offset| *offset >= first) else {
             return Ok(false);
         };
-        let Some(head) = self.chunk_head(place)?.filter(|head| head.kind == Kind::Index) else { return Ok(false) };
-        if place.saturating_add(CHUNK as u64).saturating_add(head.payload) != end {
+        let Some(head) = self.chunk_head(offset)?.filter(|head| head.kind == Kind::Index) else { return Ok(false) };
+        if offset.saturating_add(CHUNK as u64).saturating_add(head.payload) != end {
             return Ok(false);
         }
         let Some(payload) = self.payload(&head)? else { return Ok(false) };
@@ -261,32 +261,32 @@ impl<R: Read + Seek> Recording<R> {
         // An input may come after the last frame: the run has ended before its step.
         let ordered = index.is_sorted_by(|a, b| a[0] < b[0] && a[1] < b[1])
             && inputs.is_sorted_by(|a, b| a[0] <= b[0] && a[1] < b[1])
-            && index.iter().all(|[frame, at]| *frame <= kept && (first..place).contains(at))
-            && inputs.iter().all(|[_, at]| (first..place).contains(at));
+            && index.iter().all(|[frame, at]| *frame <= kept && (first..offset).contains(at))
+            && inputs.iter().all(|[_, at]| (first..offset).contains(at));
         let every = self.header.every;
         let order = match index.first() {
             Some([begin, _]) => head.frame.checked_sub(1).and_then(|last| Order::ended(every, *begin, last, kept)),
             None => Some(Order::new(every)).filter(|_| inputs.is_empty()),
         };
         let Some(order) = order.filter(|_| rest.is_empty() && ordered) else { return Ok(false) };
-        (self.index, self.inputs, self.order, self.end) = (index, inputs, order, place);
+        (self.index, self.inputs, self.order, self.end) = (index, inputs, order, offset);
         Ok(true)
     }
 
     /// Goes from chunk to chunk, up to the end or to what is no chunk.
     fn scan(&mut self, first: u64, length: u64) -> Result<(), RecordingError> {
-        let mut place = first;
+        let mut offset = first;
         self.ending = loop {
-            let left = length - place;
+            let left = length - offset;
             if left < CHUNK as u64 {
                 break Ending::Open { lost: left };
             }
-            let damaged = |to: u64| Ending::Damaged(RecordingError::Damaged { from: place, to });
-            let Some(head) = self.chunk_head(place)? else { break damaged(place + CHUNK as u64) };
+            let damaged = |to: u64| Ending::Damaged(RecordingError::Damaged { from: offset, to });
+            let Some(head) = self.chunk_head(offset)? else { break damaged(offset + CHUNK as u64) };
             if head.payload > left - CHUNK as u64 {
                 break Ending::Open { lost: left };
             }
-            let behind = place + CHUNK as u64 + head.payload;
+            let behind = offset + CHUNK as u64 + head.payload;
             let fits = match head.kind {
                 // Its end is missing, or is not one, else there would have been no need to come here.
                 Kind::Index if length - behind < TRAILER as u64 => break Ending::Open { lost: left },
@@ -297,16 +297,16 @@ impl<R: Read + Seek> Recording<R> {
                 Kind::Whole | Kind::Difference => self.order.keep(head.frame),
             };
             if !fits {
-                break damaged(place + CHUNK as u64);
+                break damaged(offset + CHUNK as u64);
             }
             match head.kind {
-                Kind::Input => self.inputs.push([head.frame, place]),
-                Kind::Whole => self.index.push([head.frame, place]),
+                Kind::Input => self.inputs.push([head.frame, offset]),
+                Kind::Whole => self.index.push([head.frame, offset]),
                 _ => {}
             }
-            place = behind;
+            offset = behind;
         };
-        self.end = place;
+        self.end = offset;
         Ok(())
     }
 }

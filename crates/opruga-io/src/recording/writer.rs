@@ -19,15 +19,15 @@ pub struct Writer<W> {
     /// The chunk of frames without states that others may still join: where it begins in that, its first frame and the hash of that.
     passed: Option<(usize, u64, u64)>,
     /// The bytes of the file, with those not given to it yet.
-    place: u64,
+    offset: u64,
     /// The last state that was kept.
     previous: Vec<u8>,
     order: Order,
     /// States from the last that stands for itself on.
     group: u64,
-    /// Frame and place of the chunks that stand for themselves.
+    /// Frame and offset of the chunks that stand for themselves.
     index: Vec<[u64; 2]>,
-    /// Frame and place of the inputs.
+    /// Frame and offset of the inputs.
     inputs: Vec<[u64; 2]>,
 }
 
@@ -41,7 +41,7 @@ impl<W: Target> Writer<W> {
         let mut writer = Writer {
             out: Counted { inner: target, bytes: 0 },
             identity,
-            place: pending.len() as u64,
+            offset: pending.len() as u64,
             pending,
             passed: None,
             previous: Vec::new(),
@@ -91,7 +91,7 @@ impl<W: Target> Writer<W> {
         let begun = self.group > 0 && self.group < GROUP;
         let kind = if begun && self.previous.len() == state.len() { Kind::Difference } else { Kind::Whole };
         if kind == Kind::Whole {
-            self.index.push([frame, self.place]);
+            self.index.push([frame, self.offset]);
             self.previous.clear();
             self.group = 0;
         }
@@ -112,7 +112,7 @@ impl<W: Target> Writer<W> {
             return Err(out_of_order(frame));
         }
         self.end_passed();
-        self.inputs.push([frame, self.place]);
+        self.inputs.push([frame, self.offset]);
         let from = self.begin();
         self.pending.extend_from_slice(bytes);
         self.end(from, Kind::Input, frame, bytes.len() as u64, 0);
@@ -132,7 +132,7 @@ impl<W: Target> Writer<W> {
         let payload_sum = crc32fast::hash(payload);
         let chunk = ChunkHead { kind, frame, state, payload: payload.len() as u64, hash, payload_sum };
         head.copy_from_slice(&chunk.to_bytes(self.identity));
-        self.place += (self.pending.len() - from) as u64;
+        self.offset += (self.pending.len() - from) as u64;
     }
 
     /// Gives all frames so far to the system: from then on they outlive the process.
@@ -168,7 +168,7 @@ impl<W: Target> Writer<W> {
     /// Those of the target.
     pub fn finish(&mut self) -> io::Result<()> {
         self.end_passed();
-        let place = self.place;
+        let offset = self.offset;
         let from = self.begin();
         self.pending.extend(self.order.last_kept().unwrap_or(u64::MAX).to_le_bytes());
         self.pending.extend((self.index.len() as u64).to_le_bytes());
@@ -176,7 +176,7 @@ impl<W: Target> Writer<W> {
         self.pending.extend(numbers.flat_map(|n| n.to_le_bytes()));
         let bytes = self.pending.len() - from - format::CHUNK;
         self.end(from, Kind::Index, self.order.frames().end, bytes as u64, 0);
-        self.pending.extend(format::trailer(place, self.identity));
+        self.pending.extend(format::trailer(offset, self.identity));
         self.flush()?;
         self.sync()
     }

@@ -6,7 +6,7 @@ use super::lifetimes::Lifetimes;
 use super::moments::{Frames, Set};
 use super::pins;
 use super::reader::{Reader, join};
-use super::{parameters, parts, place_of, selectors};
+use super::{location_of, parameters, parts, selectors};
 use crate::document::{Data, Node};
 use crate::problem::SceneError;
 use opruga_core::spec::{Values, nearest};
@@ -86,7 +86,7 @@ pub(crate) fn commands<const D: usize>(
         let lasts = actions.iter().any(Action::lasts);
         if values.kind() == "drag" && node.get("until").is_none() && values.rows("path").len() == 1 {
             let error = SceneError::of(CommandError::NoEnd { at }).path(join(path, "until"));
-            reader.report(node.place, error);
+            reader.report(node.location, error);
         } else if until < at || until == at && lasts && reader.sound_since(before, path) {
             let key = if node.get("until").is_some() { "until" } else { "path" };
             let about = match (until < at, lasts) {
@@ -94,14 +94,14 @@ pub(crate) fn commands<const D: usize>(
                 (true, true) => CommandError::LastsNegative { until, at },
                 (false, _) => CommandError::EndsAtOnce { until, at },
             };
-            reader.report(place_of(node, key), SceneError::of(about).path(join(path, key)));
+            reader.report(location_of(node, key), SceneError::of(about).path(join(path, key)));
         }
         if let Some(frames) = frames
             && reader.sound_since(before, path)
             && frames.command(reader, node, path, at, lasts.then_some(until))
             && let [Action::Set { path: parameter, .. }] = actions.as_slice()
         {
-            sets.push(Set { at, parameter: parameter.clone(), place: place_of(node, "at"), path: path.clone() });
+            sets.push(Set { at, parameter: parameter.clone(), location: location_of(node, "at"), path: path.clone() });
         }
         if reader.sound_since(before, &join(path, "at")) {
             lifetimes.add(at, (*node, path), &actions, bodies.later.get(&number).map(|(k, _)| *k), bodies);
@@ -129,15 +129,16 @@ fn actions<const D: usize>(
     Some(match values.kind() {
         "drag" => {
             let body = bodies.reference(reader, node, path);
-            let (held, facet) = held(reader, node, path)?;
+            let (grabbed, facet) = grabbed_node(reader, node, path)?;
             let body = body?;
-            if let (Some(k), Some(blueprint)) = (held, bodies.list.get(body)) {
+            if let (Some(k), Some(blueprint)) = (grabbed, bodies.list.get(body)) {
                 let only = Selector::Nodes(vec![k]);
-                selectors::check(reader, place_of(node, "node"), &join(path, "node"), &only, blueprint).then_some(())?;
+                selectors::check(reader, location_of(node, "node"), &join(path, "node"), &only, blueprint)
+                    .then_some(())?;
             }
             vec![Action::Drag {
                 body,
-                node: held,
+                node: grabbed,
                 facet,
                 stiffness: values.number("stiffness"),
                 path: values.rows("path").to_vec(),
@@ -180,7 +181,7 @@ fn actions<const D: usize>(
             });
             let integrator = reader.integrator(node, path);
             if reader.count() == before && models.is_none() && integrator.is_none() {
-                reader.report(node.place, SceneError::of(CommandError::ChangesNothing {}).path(path));
+                reader.report(node.location, SceneError::of(CommandError::ChangesNothing {}).path(path));
             }
             let change = |body| Action::Change { body, models: models.clone(), integrator: integrator.clone() };
             targets?.into_iter().map(|(body, _)| change(body)).collect()
@@ -193,7 +194,7 @@ fn actions<const D: usize>(
             let name = values.text("body")?;
             // Copies go one by one: their common name is that of no body.
             if !bodies.names.contains_key(name) && !known.added.contains(&name) {
-                bodies.unknown(reader, place_of(node, "body"), join(path, "body"), name, known.added);
+                bodies.unknown(reader, location_of(node, "body"), join(path, "body"), name, known.added);
                 return None;
             }
             vec![Action::Remove { name: name.to_string() }]
@@ -201,8 +202,8 @@ fn actions<const D: usize>(
     })
 }
 
-/// What a drag holds: a node or the nearest one, and whether it is a point of a facet.
-fn held(reader: &mut Reader<'_>, node: &Node, path: &str) -> Option<(Option<u32>, bool)> {
+/// What a drag grabs: a node or the nearest one, and whether it is a point of a facet.
+fn grabbed_node(reader: &mut Reader<'_>, node: &Node, path: &str) -> Option<(Option<u32>, bool)> {
     const WORDS: [&str; 2] = ["nearest", "nearest_facet"];
     let Some(value) = node.get("node") else { return Some((None, false)) };
     let here = join(path, "node");
@@ -212,7 +213,7 @@ fn held(reader: &mut Reader<'_>, node: &Node, path: &str) -> Option<(Option<u32>
         Data::Text(word) => {
             let about = FieldError::Word { field: "node".into(), value: value.shown() };
             let closest = nearest(word, WORDS.into_iter());
-            reader.report(value.place, SceneError::of(about).path(here).allows(Wanted::Node).nearest(closest));
+            reader.report(value.location, SceneError::of(about).path(here).allows(Wanted::Node).nearest(closest));
             None
         }
         Data::Integer(..) => Some((Some(reader.natural(value, &here)?), false)),

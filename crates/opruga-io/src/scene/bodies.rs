@@ -6,10 +6,10 @@ use super::copies::{Copies, copies, write_out};
 use super::errors::{BodyError, Part, SceneAllowed, SceneHint, Wanted};
 use super::names::{Names, What};
 use super::reader::{Reader, join};
-use super::shape::{self, ShapePlace};
+use super::shape::{self, ShapeLocation};
 use super::velocities::{self, Velocities};
-use super::{pins, place_of, selectors};
-use crate::document::{Data, Node, Place};
+use super::{location_of, pins, selectors};
+use crate::document::{Data, Location, Node};
 use crate::problem::{SceneError, visible};
 use crate::shapes::Loaded;
 use opruga_core::spec::{Role, Values};
@@ -35,7 +35,7 @@ struct Draft<'n, const D: usize> {
     mass: Option<Mass>,
     integrator: Option<Values>,
     models: Vec<Values>,
-    pins: Vec<pins::Placed<D>>,
+    pins: Vec<pins::Located<D>>,
     contact: Option<Values>,
     copies: Option<Copies<D>>,
     /// Whether nothing is wrong with its nodes: what selects them can be checked.
@@ -105,7 +105,7 @@ pub(crate) fn later<const D: usize>(reader: &mut Reader<'_>, commands: &[(&Node,
             continue;
         };
         if let Some(error) = names.take(&body.name, (), |_| None) {
-            reader.report(place_of(at, "name"), error.path(join(&path, "name")));
+            reader.report(location_of(at, "name"), error.path(join(&path, "name")));
         }
         let time = match node.get("at").map(|n| &n.data) {
             Some(Data::Number(x, _)) => *x,
@@ -175,11 +175,11 @@ fn draft<'n, const D: usize>(
     let contact = node.get("contact").map(|at| reader.fields(at, &join(&path, "contact"), &schema::BODY_CONTACT, None));
     if values.flag("fixed") {
         let everything = PinBlueprint { select: Selector::All, axes: [true; D], motion: Vec::new() };
-        pins.push((everything, node.place, join(&path, "fixed")));
+        pins.push((everything, node.location, join(&path, "fixed")));
     }
     let copies = match node.get("copies") {
         Some(at) if !may_copy => {
-            reader.report(at.place, SceneError::of(BodyError::NoCopies {}).path(join(&path, "copies")));
+            reader.report(at.location, SceneError::of(BodyError::NoCopies {}).path(join(&path, "copies")));
             None
         }
         Some(at) => copies(reader, at, &join(&path, "copies")),
@@ -213,7 +213,7 @@ fn draft<'n, const D: usize>(
 /// Names stand in paths and in the heads of tables: they keep clear of what separates those.
 pub(crate) fn check_name(reader: &mut Reader<'_>, node: &Node, path: &str, name: &str) {
     let Some(fault) = validity::name_fault(name) else { return };
-    reader.report(node.place, SceneError::of(fault).path(path).value(visible(name)));
+    reader.report(node.location, SceneError::of(fault).path(path).value(visible(name)));
 }
 
 /// The densities of the cells of a mesh by their name in its file.
@@ -250,12 +250,12 @@ fn mass(reader: &mut Reader<'_>, node: &Node, path: &str, values: &Values) -> Op
         [] if values.flag("fixed") => Some(Mass::Node(1.0)),
         [] if reader.misspelt(node, &schema::BODY, None).iter().any(|meant| WORDS.contains(&meant.as_str())) => None,
         [] => {
-            reader.report(node.place, SceneError::of(BodyError::NoMass {}).path(join(path, "mass")));
+            reader.report(node.location, SceneError::of(BodyError::NoMass {}).path(join(path, "mass")));
             None
         }
         several => {
             let about = BodyError::SeveralMasses { first: several[0].into(), second: several[1].into() };
-            reader.report(place_of(node, several[1]), SceneError::of(about).path(join(path, several[1])));
+            reader.report(location_of(node, several[1]), SceneError::of(about).path(join(path, several[1])));
             None
         }
     }
@@ -265,15 +265,15 @@ fn mass(reader: &mut Reader<'_>, node: &Node, path: &str, values: &Values) -> Op
 fn duplicate_names<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, D>]) {
     let mut names = Names::of(What::Bodies);
     for draft in drafts.iter().filter(|draft| !draft.name.is_empty()) {
-        let place = place_of(draft.node, "name");
+        let location = location_of(draft.node, "name");
         let source = reader.source;
-        let line = |first: &Place| match first {
-            Place::Bytes(at, _) => Some(source.position(*at).0),
-            Place::Override(_) => None,
+        let line = |first: &Location| match first {
+            Location::Bytes(at, _) => Some(source.position(*at).0),
+            Location::Override(_) => None,
         };
-        if let Some(error) = names.take(&draft.name, place, line) {
+        if let Some(error) = names.take(&draft.name, location, line) {
             let error = error.path(join(&draft.path, "name"));
-            reader.report(place, error.advice(SceneHint::OwnName {}));
+            reader.report(location, error.advice(SceneHint::OwnName {}));
         }
     }
 }
@@ -296,7 +296,7 @@ fn within_limits<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, D>
         let (copies, models) = (draft.copies.map_or(1, |c| c.total()) as f64, draft.models.len() as f64);
         if let Err(error) = cost.add::<D>(copies, nodes, models, &reader.options.limits) {
             let key = if draft.copies.is_some() { "copies" } else { "shape" };
-            reader.report(place_of(draft.node, key), error.path(join(&draft.path, key)));
+            reader.report(location_of(draft.node, key), error.path(join(&draft.path, key)));
             return false;
         }
     }
@@ -308,7 +308,7 @@ fn of_wanted_cells<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>
     let (simplices, order) = (draft.values.flag("simplices"), draft.values.integer("order"));
     let key = if order == Some(2) { "order" } else { "simplices" };
     let refuse = |reader: &mut Reader<'_>, error: SceneError| {
-        reader.report(place_of(draft.node, key), error.path(join(&draft.path, key)));
+        reader.report(location_of(draft.node, key), error.path(join(&draft.path, key)));
         None
     };
     if (simplices || order == Some(2)) && mesh.cells.is_empty() {
@@ -351,32 +351,35 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
     }
     let shape = draft.shape.as_ref()?;
     let transform = shapes::Transform { scale: draft.values.number("scale").unwrap_or(1.0), rotation: &draft.rotation };
-    let place =
-        ShapePlace { name: &draft.name, place: place_of(draft.node, "shape"), path: join(&draft.path, "shape") };
+    let shape_location = ShapeLocation {
+        name: &draft.name,
+        location: location_of(draft.node, "shape"),
+        path: join(&draft.path, "shape"),
+    };
     let vast = draft.node.get("shape").and_then(|shape| shape.entries().iter().find(|entry| is_vast(&entry.value)));
     if let Some(entry) = vast {
-        let path = join(&place.path, &entry.key);
+        let path = join(&shape_location.path, &entry.key);
         let about = BodyError::Vast { field: entry.key.clone(), value: entry.value.shown() };
-        reader.report(entry.value.place, SceneError::of(about).path(path));
+        reader.report(entry.value.location, SceneError::of(about).path(path));
         return None;
     }
     if let Some(scale) = draft.node.get("scale").filter(|node| is_vast(node)) {
         let about = BodyError::Vast { field: "scale".into(), value: scale.shown() };
-        reader.report(scale.place, SceneError::of(about).path(join(&draft.path, "scale")));
+        reader.report(scale.location, SceneError::of(about).path(join(&draft.path, "scale")));
         return None;
     }
     if let Some(scale) = draft.node.get("scale").filter(|_| transform.scale < SHORTEST) {
         let error = SceneError::of(BodyError::Tiny { value: scale.shown() });
-        reader.report(scale.place, error.path(join(&draft.path, "scale")));
+        reader.report(scale.location, error.path(join(&draft.path, "scale")));
         return None;
     }
-    let mesh: Mesh<D> = shape::mesh(reader, shape, draft.loaded.as_ref(), &transform, &place)?;
+    let mesh: Mesh<D> = shape::mesh(reader, shape, draft.loaded.as_ref(), &transform, &shape_location)?;
     if mesh.positions.iter().flatten().any(|x| x.abs() > LONGEST) {
         // Its own lengths are fair.
         let key = if draft.node.get("scale").is_some() { "scale" } else { "shape" };
         let node = draft.node.get(key).unwrap_or(draft.node);
         let error = SceneError::of(BodyError::MadeVast { field: key, value: node.shown() });
-        reader.report(node.place, error.path(join(&draft.path, key)));
+        reader.report(node.location, error.path(join(&draft.path, key)));
         return None;
     }
     let mut mesh = of_wanted_cells(reader, draft, mesh)?;
@@ -387,7 +390,7 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
         Err(error) => {
             let [velocity, of_nodes] = Velocities::<D>::OF_NODES;
             let node = draft.node.get(velocity).unwrap_or(draft.node);
-            reader.report(place_of(node, of_nodes), error.path(join(&join(&draft.path, velocity), of_nodes)));
+            reader.report(location_of(node, of_nodes), error.path(join(&join(&draft.path, velocity), of_nodes)));
             return None;
         }
     };
@@ -399,7 +402,7 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
     };
     if let (Some(Mass::Density(_)), Some(about), None) = (&draft.mass, thin, draft.node.get("thickness")) {
         let error = SceneError::of(about).path(join(&draft.path, "thickness"));
-        reader.report(place_of(draft.node, "density"), error);
+        reader.report(location_of(draft.node, "density"), error);
         return None;
     }
     let mass = match (&draft.mass, draft.values.text("density_of_cells")) {
@@ -407,7 +410,7 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
             Ok(densities) => Mass::DensityOfCells(densities),
             Err(error) => {
                 let error = error.path(join(&draft.path, "density_of_cells"));
-                reader.report(place_of(draft.node, "density_of_cells"), error);
+                reader.report(location_of(draft.node, "density_of_cells"), error);
                 return None;
             }
         },
@@ -429,8 +432,8 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
         pins: draft.pins.iter().map(|(pin, _, _)| pin.clone()).collect(),
         contact: draft.contact.clone(),
     };
-    for (pin, place, path) in &draft.pins {
-        selectors::check(reader, *place, path, &pin.select, &body);
+    for (pin, location, path) in &draft.pins {
+        selectors::check(reader, *location, path, &pin.select, &body);
     }
     pins::conflicts(reader, &draft.pins, &body);
     Some(body)

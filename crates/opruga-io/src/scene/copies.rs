@@ -36,7 +36,7 @@ pub(super) fn copies<const D: usize>(reader: &mut Reader<'_>, node: &Node, path:
     if items.is_empty() || items.len() > D {
         let about = FieldError::Length { field: "count".into(), count: items.len(), value: count.shown() };
         let error = SceneError::of(about).path(here).allows(SceneAllowed::Counts { dimension: D });
-        reader.report(count.place, error);
+        reader.report(count.location, error);
         return None;
     }
     let mut number = [1u32; D];

@@ -3,7 +3,7 @@
 use super::errors::{FieldError, SceneHint};
 use super::reader::Reader;
 use super::scene;
-use crate::document::{Data, Entry, Node, Place};
+use crate::document::{Data, Entry, Location, Node};
 use crate::problem::{SceneError, visible};
 use opruga_core::spec::nearest;
 use opruga_world::blueprint::AnyBlueprint;
@@ -19,7 +19,7 @@ enum Dimension {
 
 /// Everything below the format of a scene. Where its dimension is not known, what is wrong with the rest in either.
 pub(super) fn read(reader: &mut Reader<'_>, root: &Node) -> Option<AnyBlueprint> {
-    match said(reader, root) {
+    match dimension_of(reader, root) {
         Dimension::Known(dimension) => within(reader, root, dimension),
         Dimension::Wrong(key, Some(likely)) => within(reader, &as_if(root, &key, likely), likely),
         Dimension::Wrong(key, None) => {
@@ -37,12 +37,12 @@ fn within(reader: &mut Reader<'_>, root: &Node, dimension: usize) -> Option<AnyB
     }
 }
 
-fn said(reader: &mut Reader<'_>, root: &Node) -> Dimension {
+fn dimension_of(reader: &mut Reader<'_>, root: &Node) -> Dimension {
     match root.get("dimension").map(|node| (&node.data, node)) {
         Some((Data::Integer(Some(d @ (2 | 3)), _), _)) => Dimension::Known(*d as usize),
         Some((_, node)) => {
             let error = SceneError::of(FieldError::WrongDimension { value: node.shown() }).path("dimension");
-            reader.report(node.place, error);
+            reader.report(node.location, error);
             Dimension::Wrong("dimension".into(), likely(node))
         }
         None => {
@@ -53,11 +53,11 @@ fn said(reader: &mut Reader<'_>, root: &Node) -> Dimension {
             };
             let keys = root.entries().iter().map(|entry| entry.key.as_str()).filter(|key| !known(key));
             let Some(entry) = nearest("dimension", keys).and_then(|key| root.entry(&key)) else {
-                reader.report(Place::Bytes(0, 0), error);
+                reader.report(Location::Bytes(0, 0), error);
                 return Dimension::Wrong(String::new(), None);
             };
             let key = visible(&entry.key);
-            reader.report(entry.place, error.value(key.clone()).advice(SceneHint::Misspelt { word: key }));
+            reader.report(entry.location, error.value(key.clone()).advice(SceneHint::Misspelt { word: key }));
             Dimension::Wrong(entry.key.clone(), likely(&entry.value))
         }
     }
@@ -74,13 +74,13 @@ fn likely(node: &Node) -> Option<usize> {
     [2, 3].into_iter().find(|dimension| *dimension as f64 == number)
 }
 
-/// The same scene with a dimension in the place of what a key says.
+/// The same scene with a dimension instead of what a key says.
 fn as_if(root: &Node, key: &str, dimension: usize) -> Node {
     let mut root = root.clone();
-    let value = Node { place: root.place, data: Data::Integer(Some(dimension as i64), dimension.to_string()) };
+    let value = Node { location: root.location, data: Data::Integer(Some(dimension as i64), dimension.to_string()) };
     if let Data::Table(entries) = &mut root.data {
         entries.retain(|entry| entry.key != key);
-        entries.push(Entry { key: "dimension".into(), place: root.place, value });
+        entries.push(Entry { key: "dimension".into(), location: root.location, value });
     }
     root
 }
@@ -106,7 +106,7 @@ fn wrong_in_both(reader: &mut Reader<'_>, root: &Node, key: &str) {
         let mut error = error;
         error.allowed = error.allowed.filter(|_| allowed);
         error.hint = error.hint.filter(|_| hint);
-        // It has its place already.
-        reader.report(Place::Bytes(0, 0), error);
+        // It has its location already.
+        reader.report(Location::Bytes(0, 0), error);
     }
 }

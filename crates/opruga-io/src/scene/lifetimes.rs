@@ -2,7 +2,7 @@
 
 use super::body_list::Bodies;
 use super::errors::CommandError;
-use super::place_of;
+use super::location_of;
 use super::reader::{Reader, join};
 use crate::document::Node;
 use crate::problem::{SceneError, visible};
@@ -74,13 +74,13 @@ impl<'n> Lifetimes<'n> {
                 };
                 if let Some(k) = missing {
                     let body = bodies.list.get(k).map_or(String::new(), |body| visible(&body.name));
-                    let told = match (coming.get(&k), gone.get(&k)) {
+                    let fault = match (coming.get(&k), gone.get(&k)) {
                         (Some(added), _) => Some(CommandError::BeforeAdded { at, body, added: *added }),
                         (_, Some(removed)) => Some(CommandError::AfterRemoved { at, body, removed: *removed }),
                         _ => None,
                     };
-                    if let Some(about) = told {
-                        reader.report(place_of(node, "at"), SceneError::of(about).path(join(&path, "at")));
+                    if let Some(about) = fault {
+                        reader.report(location_of(node, "at"), SceneError::of(about).path(join(&path, "at")));
                         continue;
                     }
                 }

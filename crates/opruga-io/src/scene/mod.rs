@@ -27,7 +27,7 @@ mod velocities;
 pub mod written;
 
 use crate::catalogue::Catalogue;
-use crate::document::{self, Node, Place};
+use crate::document::{self, Location, Node};
 use crate::files::Files;
 pub use crate::limits::Limits;
 use crate::overrides;
@@ -156,7 +156,7 @@ pub fn read_file(
     read(&bytes, &file, catalogue, &options)
 }
 
-/// What another parser of TOML says of bytes of a scene that it refuses, as an error at their place.
+/// What another parser of TOML says of bytes of a scene that it refuses, as an error at their location.
 pub fn not_toml(text: &str, file: &str, reason: &str, bytes: core::ops::Range<usize>) -> SceneError {
     let error = SceneError::of(TextError::Syntax { reason: reason.into() });
     Source { file, text }.mark(error, bytes.start, bytes.end)
@@ -224,19 +224,20 @@ fn scene<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Option<Bluepri
     if reader.count() == 0 {
         return Some(whole);
     }
-    // What has no errors of its own; loads go by the place of their body.
-    let mut place = 0;
-    let places: Vec<Option<usize>> = (0..whole.bodies.len())
+    // What has no errors of its own; loads go by the index of their body.
+    let mut sound_count = 0;
+    let sound_indices: Vec<Option<usize>> = (0..whole.bodies.len())
         .map(|k| {
             let sound = !bodies.unsound.contains(&k);
-            place += usize::from(sound);
-            sound.then(|| place - 1)
+            sound_count += usize::from(sound);
+            sound.then(|| sound_count - 1)
         })
         .collect();
-    let loads = whole.loads.into_iter().filter_map(|load| Some(LoadBlueprint { body: places[load.body]?, ..load }));
+    let loads =
+        whole.loads.into_iter().filter_map(|load| Some(LoadBlueprint { body: sound_indices[load.body]?, ..load }));
     founded.then(|| Blueprint {
         // Their pins stay: without them statics would miss what holds a body. One that selects what is not there holds nothing.
-        bodies: whole.bodies.into_iter().zip(&places).filter_map(|(body, place)| place.map(|_| body)).collect(),
+        bodies: whole.bodies.into_iter().zip(&sound_indices).filter_map(|(body, index)| index.map(|_| body)).collect(),
         colliders: sound_colliders,
         loads: loads.collect(),
         commands: Vec::new(),
@@ -262,7 +263,7 @@ fn time(reader: &mut Reader<'_>, root: &Node) -> Time {
         && let Some(fault) = validity::time_fault(&time)
     {
         let at = node.get(fault.field).unwrap_or(node);
-        reader.report(at.place, SceneError::of(fault.about).path(join("time", fault.field)));
+        reader.report(at.location, SceneError::of(fault.about).path(join("time", fault.field)));
     }
     time
 }
@@ -296,7 +297,7 @@ fn contact<const D: usize>(reader: &mut Reader<'_>, root: &Node, bodies: &Bodies
                 let about = BlueprintFault::NoMember { group: visible(group), known: listed(groups()) };
                 let closest = nearest(pair.text(field).unwrap_or(""), groups());
                 let error = SceneError::of(about).path(join(&path, field)).nearest(closest);
-                reader.report(place_of(item, field), error);
+                reader.report(location_of(item, field), error);
             }
         }
         pairs.push(pair);
@@ -316,7 +317,7 @@ fn picture<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Pictured<D> 
         (low, _) => {
             let (one, other) = if low { ("low", "high") } else { ("high", "low") };
             let error = SceneError::of(ReferenceError::OneCorner { one, other }).path(join("picture", other));
-            reader.report(place_of(node, one), error);
+            reader.report(location_of(node, one), error);
             None
         }
     };
@@ -325,12 +326,12 @@ fn picture<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Pictured<D> 
     {
         let (low, high) = (format!("{low:?}"), format!("{high:?}"));
         let error = SceneError::of(ReferenceError::EmptyBox { low, high }).path("picture.high");
-        reader.report(place_of(node, "high"), error);
+        reader.report(location_of(node, "high"), error);
     }
     let angles = ["azimuth", "elevation"];
     if let Some(name) = angles.into_iter().find(|name| D == 2 && given(name)) {
         let error = SceneError::of(ReferenceError::Camera { field: name }).path(join("picture", name));
-        reader.report(place_of(node, name), error);
+        reader.report(location_of(node, name), error);
     }
     Pictured {
         panels: values.integer("panels").map(|panels| panels as u32),
@@ -340,7 +341,7 @@ fn picture<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Pictured<D> 
     }
 }
 
-/// The place of a value, or of the table that lacks it.
-pub(crate) fn place_of(node: &Node, key: &str) -> Place {
-    node.get(key).map_or(node.place, |n| n.place)
+/// The location of a value, or of the table that lacks it.
+pub(crate) fn location_of(node: &Node, key: &str) -> Location {
+    node.get(key).map_or(node.location, |n| n.location)
 }

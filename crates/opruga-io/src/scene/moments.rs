@@ -1,9 +1,9 @@
 //! When commands begin and end: with a frame, the first that begins at their time or later. What never comes about by that is told of.
 
 use super::errors::{CommandError, SceneHint};
-use super::place_of;
+use super::location_of;
 use super::reader::{Reader, join};
-use crate::document::{Data, Node, Place};
+use crate::document::{Data, Location, Node};
 use crate::problem::{SceneError, visible};
 use opruga_world::blueprint::Time;
 use std::collections::BTreeMap;
@@ -20,7 +20,7 @@ impl Frames {
     pub(super) fn of(root: &Node, time: &Time) -> Frames {
         let end = root.get("time").and_then(|time| time.get("seconds"));
         let end = end.filter(|node| {
-            matches!(node.place, Place::Bytes(..)) && matches!(node.data, Data::Number(..) | Data::Integer(..))
+            matches!(node.location, Location::Bytes(..)) && matches!(node.data, Data::Number(..) | Data::Integer(..))
         });
         Frames { length: time.frame, end: end.map(|_| time.seconds) }
     }
@@ -51,7 +51,7 @@ impl Frames {
             _ => return true,
         };
         let about = about.path(join(path, key));
-        reader.notice(place_of(node, key), about);
+        reader.notice(location_of(node, key), about);
         false
     }
 
@@ -66,7 +66,7 @@ impl Frames {
                 let (parameter, first, second) = (visible(&set.parameter), before.at, set.at);
                 let about = SceneError::of(CommandError::SetAgain { parameter, first, second });
                 let about = about.path(join(&before.path, "at")).advice(self.rule());
-                reader.notice(before.place, about);
+                reader.notice(before.location, about);
             }
         }
     }
@@ -81,7 +81,7 @@ pub(super) struct Set {
     pub(super) at: f64,
     pub(super) parameter: String,
     /// Where its time stands.
-    pub(super) place: Place,
+    pub(super) location: Location,
     /// The path of the command.
     pub(super) path: String,
 }

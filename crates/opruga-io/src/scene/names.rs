@@ -15,7 +15,7 @@ pub(super) enum What {
 /// two bodies apart that differ by that alone, so both are one name here.
 pub(super) struct Names<P> {
     what: What,
-    /// The decomposed form (NFD) of a name → the name as it was written first, and its place.
+    /// The decomposed form (NFD) of a name → the name as it was written first, and its location.
     seen: BTreeMap<String, (String, P)>,
 }
 
@@ -27,10 +27,15 @@ impl<P> Names<P> {
 
     /// Takes a name up; one that is there already, or prints like one that is, gives an error with its value. `line` gives
     /// the line of the first one, where it has one.
-    pub(super) fn take(&mut self, name: &str, place: P, line: impl FnOnce(&P) -> Option<usize>) -> Option<SceneError> {
+    pub(super) fn take(
+        &mut self,
+        name: &str,
+        location: P,
+        line: impl FnOnce(&P) -> Option<usize>,
+    ) -> Option<SceneError> {
         let form: String = crate::canonical::decomposed(name);
         let Some((first, at)) = self.seen.get(&form) else {
-            self.seen.insert(form, (name.to_string(), place));
+            self.seen.insert(form, (name.to_string(), location));
             return None;
         };
         let (same, line, own) = (first == name, line(at), visible(name));

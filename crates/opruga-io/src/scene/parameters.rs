@@ -2,7 +2,7 @@
 
 use super::body_list::Bodies;
 use super::errors::{CommandError, SceneAllowed, SceneHint};
-use super::place_of;
+use super::location_of;
 use super::reader::{Reader, join, listed};
 use crate::catalogue;
 use crate::catalogue::Catalogue;
@@ -49,7 +49,7 @@ pub(crate) fn check<const D: usize>(
             Ok(value) => Some(value),
             Err((value, allowed)) => {
                 let error = SceneError::of(CommandError::CannotBe { parameter: visible(parameter), value });
-                reader.report(place_of(node, "value"), error.path(join(path, "value")).allows(allowed));
+                reader.report(location_of(node, "value"), error.path(join(path, "value")).allows(allowed));
                 None
             }
         },
@@ -66,7 +66,7 @@ pub(crate) fn check<const D: usize>(
                 Some(words) => error.allowed(words),
                 None => error,
             };
-            reader.report(place_of(node, "path"), error);
+            reader.report(location_of(node, "path"), error);
             None
         }
     }
@@ -172,10 +172,10 @@ fn resolve<const D: usize>(
                 "body.NAME.integrator.FIELD",
             ];
             const HEADS: [&str; 6] = ["world", "contact", "time", "integrator", "collider", "body"];
-            let near =
+            let closest =
                 nearest(parts.first().unwrap_or(&""), HEADS.into_iter()).filter(|n| Some(&n.as_str()) != parts.first());
             let about = CommandError::NotAParameter { parameter: visible(parameter) };
-            Err(Lost { about, allowed: Some(FORMS.join(", ")), nearest: near, is_kind: false })
+            Err(Lost { about, allowed: Some(FORMS.join(", ")), nearest: closest, is_kind: false })
         }
     }
 }

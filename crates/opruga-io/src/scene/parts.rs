@@ -2,7 +2,7 @@
 
 use super::body_list::Bodies;
 use super::errors::ReferenceError;
-use super::place_of;
+use super::location_of;
 use super::reader::{Reader, join};
 use crate::document::Node;
 use crate::problem::{SceneError, visible};
@@ -48,7 +48,7 @@ pub(super) fn hold_cells<const D: usize>(
     let name = visible(body.common_name());
     if body.mesh.cells.is_empty() {
         let error = SceneError::of(ReferenceError::NoCellsToLoad { body: name }).path(join(path, "kind"));
-        reader.report(place_of(node, "kind"), error);
+        reader.report(location_of(node, "kind"), error);
         return false;
     }
     report(reader, node, path, ReferenceError::NoCell { body: name });
@@ -61,5 +61,5 @@ fn report(reader: &mut Reader<'_>, node: &Node, path: &str, about: ReferenceErro
     if let Some(select) = node.get("select") {
         error = error.value(select.shown());
     }
-    reader.report(place_of(node, "select"), error);
+    reader.report(location_of(node, "select"), error);
 }

@@ -2,8 +2,8 @@
 
 use super::errors::BodyError;
 use super::reader::{Reader, join};
-use super::{place_of, selectors};
-use crate::document::{Node, Place};
+use super::{location_of, selectors};
+use crate::document::{Location, Node};
 use crate::problem::SceneError;
 use opruga_core::spec::Values;
 use opruga_core::system::along_path;
@@ -12,55 +12,55 @@ use opruga_world::schema;
 use opruga_world::selection::longest_side;
 use std::collections::BTreeMap;
 
-/// A pin with the place of its selector in the file and its path.
-pub(crate) type Placed<const D: usize> = (PinBlueprint<D>, Place, String);
+/// A pin with the location of its selector in the file and its path.
+pub(crate) type Located<const D: usize> = (PinBlueprint<D>, Location, String);
 
 /// Which axes the letters name; all where there are none.
 pub(crate) fn axes<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str, values: &Values) -> [bool; D] {
     let Some(letters) = values.text("axes") else { return [true; D] };
     if D == 2 && letters.contains('z') {
         let error = SceneError::of(BodyError::Axes { letters: letters.into() }).path(join(path, "axes"));
-        reader.report(place_of(node, "axes"), error);
+        reader.report(location_of(node, "axes"), error);
     }
     core::array::from_fn(|a| letters.contains(['x', 'y', 'z'][a]))
 }
 
 /// Reads a pin.
-pub(super) fn pin<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str) -> Option<Placed<D>> {
+pub(super) fn pin<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str) -> Option<Located<D>> {
     let values = reader.fields(node, path, &schema::PIN, None);
     let axes = axes(reader, node, path, &values);
     node.get("select")?;
     let select = selectors::of(reader, node, path)?;
     let motion = values.rows("motion").to_vec();
-    Some((PinBlueprint { select, axes, motion }, place_of(node, "select"), join(path, "select")))
+    Some((PinBlueprint { select, axes, motion }, location_of(node, "select"), join(path, "select")))
 }
 
 /// Reports pins that hold a node along the same axis and lead it to different places: both are named, once for each pair.
-pub(super) fn conflicts<const D: usize>(reader: &mut Reader<'_>, pins: &[Placed<D>], body: &BodyBlueprint<D>) {
+pub(super) fn conflicts<const D: usize>(reader: &mut Reader<'_>, pins: &[Located<D>], body: &BodyBlueprint<D>) {
     // Pins that all stand still hold a node where it is, however many they are.
     if pins.iter().all(|(pin, ..)| pin.motion.is_empty()) {
         return;
     }
     let size = longest_side(&body.mesh);
     let mut holders: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
-    let mut told: Vec<[usize; 2]> = Vec::new();
-    for (number, (pin, place, path)) in pins.iter().enumerate() {
+    let mut reported: Vec<[usize; 2]> = Vec::new();
+    for (number, (pin, location, path)) in pins.iter().enumerate() {
         for node in pin.select.resolve(&body.mesh, &body.translation) {
             let others = holders.entry(node).or_default();
             for &other in others.iter() {
                 let (first, at, first_path) = &pins[other];
-                if told.contains(&[other, number]) {
+                if reported.contains(&[other, number]) {
                     continue;
                 }
                 let Some((time, axis)) = parted(first, pin, size) else { continue };
-                told.push([other, number]);
+                reported.push([other, number]);
                 let line = match at {
-                    Place::Bytes(start, _) => Some(reader.source.position(*start).0),
-                    Place::Override(_) => None,
+                    Location::Bytes(start, _) => Some(reader.source.position(*start).0),
+                    Location::Override(_) => None,
                 };
                 let (body, pin, axis) = (body.name.clone(), first_path.clone(), ["x", "y", "z"][axis]);
                 let about = BodyError::PinnedTwice { node, body, pin, line, axis, time };
-                reader.report(*place, SceneError::of(about).path(path.as_str()));
+                reader.report(*location, SceneError::of(about).path(path.as_str()));
             }
             others.push(number);
         }

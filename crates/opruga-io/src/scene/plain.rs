@@ -37,7 +37,7 @@ impl Reader<'_> {
                     let closest = nearest(text, words.iter().copied());
                     let error =
                         SceneError::of(about).path(path).allows(range.describe(self.dimension)).nearest(closest);
-                    self.report(node.place, error);
+                    self.report(node.location, error);
                     return None;
                 }
                 _ => return self.refuse_type(node, path, range),
@@ -48,7 +48,7 @@ impl Reader<'_> {
                 if row.iter().all(|x| *x == 0.0) {
                     let about = FieldError::Is { field: name.into(), value: node.shown() };
                     let error = SceneError::of(about).path(path).allows(range.describe(self.dimension));
-                    self.report(node.place, error);
+                    self.report(node.location, error);
                     return None;
                 }
                 Value::Numbers(row)
@@ -67,7 +67,7 @@ impl Reader<'_> {
             Err((_, allowed)) => {
                 let field = if name.is_empty() { name_of(path) } else { name.into() };
                 let error = SceneError::of(FieldError::Is { field, value: node.shown() });
-                self.report(node.place, error.path(path).allows(allowed));
+                self.report(node.location, error.path(path).allows(allowed));
                 None
             }
         }
@@ -82,7 +82,7 @@ impl Reader<'_> {
         {
             error = error.advice(SceneHint::NoQuotes {});
         }
-        self.report(node.place, error);
+        self.report(node.location, error);
         None
     }
 
@@ -96,7 +96,7 @@ impl Reader<'_> {
                     false => FieldError::TooLarge { field, value },
                 };
                 let error = SceneError::of(about).path(path).allows(range.describe(self.dimension));
-                self.report(node.place, error);
+                self.report(node.location, error);
                 None
             }
             Data::Number(x, _) => Some(*x + 0.0),
@@ -126,7 +126,7 @@ impl Reader<'_> {
             _ => {
                 let about = FieldError::Is { field: name_of(path), value: node.shown() };
                 let error = SceneError::of(about).path(path).allows(allowed);
-                self.report(node.place, hint.map_or(error.clone(), |hint| error.advice(hint)));
+                self.report(node.location, hint.map_or(error.clone(), |hint| error.advice(hint)));
                 None
             }
         }
@@ -138,7 +138,7 @@ impl Reader<'_> {
         if items.len() != length {
             let about = FieldError::Length { field: name_of(path), count: items.len(), value: node.shown() };
             let error = SceneError::of(about).path(path).allows(range.describe(self.dimension));
-            self.report(node.place, error);
+            self.report(node.location, error);
             return None;
         }
         let before = self.count();
@@ -171,7 +171,7 @@ impl Reader<'_> {
             {
                 let about = FieldError::NotRising { time: row[0], before: last[0], value: item.shown() };
                 let error = SceneError::of(about).path(here).allows(range.describe(self.dimension));
-                self.report(item.place, error);
+                self.report(item.location, error);
             }
             rows.push(row);
         }
@@ -186,7 +186,7 @@ impl Reader<'_> {
             let name = path.rsplit('.').next().unwrap_or(path);
             let about = FieldError::Lists { field: visible(name), value: node.shown() };
             let error = SceneError::of(about).path(path).allows(range.describe(self.dimension));
-            self.report(node.place, error);
+            self.report(node.location, error);
             return None;
         }
         let before = self.count();
@@ -226,7 +226,7 @@ impl Reader<'_> {
         }
         let angle = read.iter().flatten().map(|x| x.abs()).fold(0.0, |most: f64, x| if x > most { x } else { most });
         if !spins && angle > LARGEST_ANGLE {
-            self.report(node.place, SceneError::of(FieldError::Angle { value: node.shown() }).path(path));
+            self.report(node.location, SceneError::of(FieldError::Angle { value: node.shown() }).path(path));
             return zero;
         }
         read.unwrap_or(zero)

@@ -5,7 +5,7 @@ use super::body_list::Bodies;
 use super::errors::{ReferenceError, Wanted};
 use super::names::{Names, What};
 use super::reader::{Reader, join, listed};
-use super::{place_of, selectors};
+use super::{location_of, selectors};
 use crate::document::{Data, Node};
 use crate::problem::{SceneError, visible};
 use opruga_core::spec::{Role, Spec, nearest, quoted};
@@ -26,7 +26,7 @@ pub(crate) fn probes<const D: usize>(
         if let Some(at) = node.get("name").filter(|_| values.text("name").is_some()) {
             bodies::check_name(reader, at, &join(&path, "name"), &name);
             if let Some(error) = names.take(&name, (), |_| None) {
-                reader.report(at.place, error.path(join(&path, "name")));
+                reader.report(at.location, error.path(join(&path, "name")));
             }
         }
         let record = recorded(reader, node, &path);
@@ -51,20 +51,20 @@ fn recorded(reader: &mut Reader<'_>, node: &Node, path: &str) -> Vec<Recorded> {
     };
     if items.is_empty() {
         let error = SceneError::of(ReferenceError::RecordsNothing {}).path(here.clone()).allowed(listed(words()));
-        reader.report(value.place, error);
+        reader.report(value.location, error);
     }
     let mut out: Vec<Recorded> = Vec::new();
     for (k, item) in items.iter().enumerate() {
-        let place = join(&here, &k.to_string());
+        let item_path = join(&here, &k.to_string());
         match item.text().and_then(|text| Recorded::ALL.iter().find(|(w, _)| *w == text)) {
             Some((word, recorded)) if out.contains(recorded) => {
-                reader.report(item.place, SceneError::of(ReferenceError::RecordedTwice { word }).path(place));
+                reader.report(item.location, SceneError::of(ReferenceError::RecordedTwice { word }).path(item_path));
             }
             Some((_, recorded)) => out.push(*recorded),
             None => {
                 let closest = nearest(item.text().unwrap_or(""), words());
-                let error = SceneError::of(ReferenceError::Records { value: item.shown() }).path(place);
-                reader.report(item.place, error.allowed(listed(words())).nearest(closest));
+                let error = SceneError::of(ReferenceError::Records { value: item.shown() }).path(item_path);
+                reader.report(item.location, error.allowed(listed(words())).nearest(closest));
             }
         }
     }
@@ -101,5 +101,5 @@ fn refuse_without_cells<const D: usize>(
     }
     let kinds: Vec<&str> = models.iter().filter(|spec| knows(spec)).map(|spec| spec.kind).collect();
     let about = ReferenceError::NoStress { word, body: visible(body.common_name()), kinds: quoted(&kinds) };
-    reader.report(place_of(node, "record"), SceneError::of(about).path(join(path, "record")));
+    reader.report(location_of(node, "record"), SceneError::of(about).path(join(path, "record")));
 }

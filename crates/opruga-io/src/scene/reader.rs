@@ -3,7 +3,7 @@
 use super::Options;
 use super::errors::{FieldError, Part, SceneAllowed, SceneHint, Wanted};
 use crate::catalogue::{Catalogue, find};
-use crate::document::{Data, Entry, Node, Place};
+use crate::document::{Data, Entry, Location, Node};
 use crate::problem::{MOST_SHOWN, Notice, SceneError, visible};
 use crate::source::Source;
 use opruga_core::spec::{ChoiceError, Default, Spec, Values, nearest, quoted};
@@ -55,22 +55,22 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Adds an error with its place.
-    pub(crate) fn report(&mut self, place: Place, error: SceneError) {
+    /// Adds an error with its location.
+    pub(crate) fn report(&mut self, location: Location, error: SceneError) {
         if self.errors.len() >= MOST_SHOWN {
             self.more += 1;
             return;
         }
-        let error = self.placed(place, error);
+        let error = self.located(location, error);
         self.errors.push(error);
     }
 
     /// Adds an error that is made only if it will be listed: words that are near to another one take time to find.
-    fn report_lazily(&mut self, place: Place, error: impl FnOnce() -> SceneError) {
+    fn report_lazily(&mut self, location: Location, error: impl FnOnce() -> SceneError) {
         if self.errors.len() >= MOST_SHOWN {
             self.more += 1;
         } else {
-            self.report(place, error());
+            self.report(location, error());
         }
     }
 
@@ -104,38 +104,38 @@ impl<'a> Reader<'a> {
         self.more == 0 && !self.errors.iter().skip(before).any(about)
     }
 
-    /// Adds a notice with its place; with `strict` an error, unless it tells of what the scene asks for.
-    pub(crate) fn notice(&mut self, place: Place, about: SceneError) {
+    /// Adds a notice with its location; with `strict` an error, unless it tells of what the scene asks for.
+    pub(crate) fn notice(&mut self, location: Location, about: SceneError) {
         if self.options.strict && !Notice::is_asked_for(about.code) {
-            return self.report(place, about);
+            return self.report(location, about);
         }
-        // The first of each kind carries the place, the others are counted.
+        // The first of each kind carries the location, the others are counted.
         if let Some(first) =
             self.notices.iter_mut().find(|n| n.about.code == about.code && n.about.message == about.message)
         {
             first.count += 1;
         } else if self.notices.len() < MOST_SHOWN {
-            let about = self.placed(place, about);
+            let about = self.located(location, about);
             self.notices.push(Notice { about, count: 1 });
         } else {
             self.more_notices += 1;
         }
     }
 
-    fn placed(&self, place: Place, error: SceneError) -> SceneError {
+    fn located(&self, location: Location, error: SceneError) -> SceneError {
         if !error.file.is_empty() {
-            return error; // it has a place in another file
+            return error; // it has a location in another file
         }
-        match place {
-            Place::Bytes(start, end) => self.source.mark(error, start, end),
-            Place::Override(k) => {
+        match location {
+            Location::Bytes(start, end) => self.source.mark(error, start, end),
+            Location::Override(k) => {
                 let (path, value) = self.options.overrides.get(k).cloned().unwrap_or_default();
                 SceneError { file: crate::overrides::named(&path, &value), ..error }
             }
         }
     }
 
-    /// Errors in the order of their places, and notices.
+    /// Errors in the order of their locations, and notices.
     pub(crate) fn finish(mut self) -> (Vec<SceneError>, Vec<Notice>) {
         self.errors.sort_by_key(|e| (e.line.unwrap_or(0), e.column.unwrap_or(0)));
         let of_file = |count| SceneError { file: self.source.file.to_string(), ..SceneError::and_more(count) };
@@ -155,17 +155,17 @@ impl<'a> Reader<'a> {
             Some(node) if node.text() == Some(schema::FORMAT) => {}
             Some(node) => {
                 let about = FieldError::Format { value: node.shown(), readable };
-                self.report(node.place, SceneError::of(about).path("format"));
+                self.report(node.location, SceneError::of(about).path("format"));
                 return false;
             }
             None => {
-                let near = nearest("format", root.entries().iter().map(|e| e.key.as_str()));
+                let misspelt = nearest("format", root.entries().iter().map(|e| e.key.as_str()));
                 let error = SceneError::of(FieldError::NoFormat { readable }).path("format");
-                let error = error.advice(match near {
+                let error = error.advice(match misspelt {
                     Some(word) => SceneHint::Misspelt { word: visible(&word) },
                     None => SceneHint::BeginFormat { format: schema::FORMAT },
                 });
-                self.report(Place::Bytes(0, 0), error);
+                self.report(Location::Bytes(0, 0), error);
                 return false;
             }
         }
@@ -187,7 +187,7 @@ impl<'a> Reader<'a> {
                 if let Some(value) = self.plain(&entry.value, &here, field.name, &field.range)
                     && let Err(e) = values.set(section.spec, field.name, value, self.dimension)
                 {
-                    self.report(entry.value.place, SceneError::of(e).path(here));
+                    self.report(entry.value.location, SceneError::of(e).path(here));
                 }
             } else if !names().any(|n| n == entry.key) {
                 self.unknown_field(node, entry, &here, section, tag);
@@ -212,8 +212,8 @@ impl<'a> Reader<'a> {
             let mut error = SceneError::of(about).path(visible(here)).nearest(nearest(&entry.key, names()));
             error.allowed = Some(listed(names()));
             // The field was one of the kind that an override has put another in the place of.
-            if let Some(Place::Override(_)) = tag.and_then(|tag| node.get(tag)).map(|kind| kind.place)
-                && let (Place::Bytes(..), Some((table, _))) = (entry.place, here.rsplit_once('.'))
+            if let Some(Location::Override(_)) = tag.and_then(|tag| node.get(tag)).map(|kind| kind.location)
+                && let (Location::Bytes(..), Some((table, _))) = (entry.location, here.rsplit_once('.'))
             {
                 // An integrator may be a word alone; others are tables with all that has no default.
                 let table = table.to_string();
@@ -230,8 +230,8 @@ impl<'a> Reader<'a> {
         match self.options.lenient {
             // Each has a message of its own: behind the last that is listed there is nothing to look for.
             true if self.notices.len() >= MOST_SHOWN => self.more_notices += 1,
-            true => self.notice(entry.place, error()),
-            false => self.report_lazily(entry.place, error),
+            true => self.notice(entry.location, error()),
+            false => self.report_lazily(entry.location, error),
         }
     }
 
@@ -254,7 +254,7 @@ impl<'a> Reader<'a> {
             let (field, value) = (field.name, entry.value.shown());
             let about = FieldError::NoEffect { field, condition: condition.text(), value };
             let about = SceneError::of(about).path(join(path, field));
-            self.notice(entry.place, about);
+            self.notice(entry.location, about);
         }
     }
 
@@ -278,17 +278,17 @@ impl<'a> Reader<'a> {
         if let Some(field) = section.spec.fields.iter().find(|f| f.name == missing[0] && missing.len() == 1) {
             error = error.allows(field.range.describe(self.dimension)).hint(field.documentation);
         }
-        self.report(node.place, error);
+        self.report(node.location, error);
     }
 
     /// Reports choices between fields of which none or several are given, but for those that a misspelt name means.
     fn choices(&mut self, node: &Node, path: &str, spec: &'static Spec, meant: &[String]) {
         for set in spec.choices().filter(|set| !set.iter().any(|name| meant.iter().any(|m| m == name))) {
             let given: Vec<&&str> = set.iter().filter(|name| node.get(name).is_some()).collect();
-            let (place, name) = match given.as_slice() {
+            let (location, name) = match given.as_slice() {
                 [_] => continue,
-                [] => (node.place, set[0]),
-                [_, second, ..] => (super::place_of(node, second), **second),
+                [] => (node.location, set[0]),
+                [_, second, ..] => (super::location_of(node, second), **second),
             };
             let about = match given.as_slice() {
                 [] => ChoiceError::None { fields: quoted(set) },
@@ -298,7 +298,7 @@ impl<'a> Reader<'a> {
                 }
             };
             let allowed = SceneAllowed::OneOf { fields: set.join(", ") };
-            self.report(place, SceneError::of(about).path(join(path, name)).allows(allowed));
+            self.report(location, SceneError::of(about).path(join(path, name)).allows(allowed));
         }
     }
 
@@ -311,10 +311,10 @@ impl<'a> Reader<'a> {
             return None;
         };
         if !spec.dimensions.contains(&self.dimension) {
-            let place = super::place_of(node, "kind");
+            let location = super::location_of(node, "kind");
             let dimensions = spec.dimensions.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");
             let about = FieldError::KindDimension { kind: spec.kind, dimension: self.dimension, dimensions };
-            self.report(place, SceneError::of(about).path(join(path, "kind")));
+            self.report(location, SceneError::of(about).path(join(path, "kind")));
             return None;
         }
         Some(self.fields(node, path, &Section { spec, children: &[] }, Some("kind")))
@@ -326,8 +326,8 @@ impl<'a> Reader<'a> {
         let list = self.catalogue.integrators.clone();
         let here = join(path, "integrator");
         let Data::Text(_) = &value.data else { return self.kind_table(value, &here, Part::Integrator, &list) };
-        let kind = Entry { key: "kind".into(), place: value.place, value: value.clone() };
-        let table = Node { place: value.place, data: Data::Table(vec![kind]) };
+        let kind = Entry { key: "kind".into(), location: value.location, value: value.clone() };
+        let table = Node { location: value.location, data: Data::Table(vec![kind]) };
         self.kind_table(&table, &here, Part::Integrator, &list)
     }
 
@@ -340,7 +340,7 @@ impl<'a> Reader<'a> {
         let here = join(path, tag);
         let Some(value) = node.get(tag) else {
             let error = SceneError::of(FieldError::NoTag { tag: tag.into(), table: what });
-            self.report(node.place, error.path(here).allowed(listed(words.iter().copied())));
+            self.report(node.location, error.path(here).allowed(listed(words.iter().copied())));
             return None;
         };
         let Some(word) = value.text() else {
@@ -354,7 +354,7 @@ impl<'a> Reader<'a> {
             .path(here)
             .allowed(listed(words.iter().copied()))
             .nearest(nearest(word, words.iter().copied()));
-        self.report(value.place, error);
+        self.report(value.location, error);
         None
     }
 
@@ -391,7 +391,7 @@ impl<'a> Reader<'a> {
         {
             error = error.advice(SceneHint::NoQuotes {});
         }
-        self.report(node.place, error);
+        self.report(node.location, error);
     }
 }
 

@@ -3,7 +3,7 @@
 use super::body_list::Bodies;
 use super::errors::{ReferenceError, SceneAllowed, SceneHint, Wanted};
 use super::reader::{Reader, join, listed};
-use crate::document::{Data, Node, Place};
+use crate::document::{Data, Location, Node};
 use crate::problem::{SceneError, visible};
 use opruga_core::spec::nearest;
 use opruga_world::blueprint::BodyBlueprint;
@@ -17,7 +17,7 @@ impl<const D: usize> Bodies<D> {
         self.reference(reader, table, path).map(|body| vec![(body, [0.0; D])])
     }
 
-    /// The place of the body that `body = …` of a table names.
+    /// The index of the body that `body = …` of a table names.
     pub(crate) fn reference(&self, reader: &mut Reader<'_>, table: &Node, path: &str) -> Option<usize> {
         let node = table.get("body")?;
         let here = join(path, "body");
@@ -30,14 +30,14 @@ impl<const D: usize> Bodies<D> {
                 }
                 if self.broken.is_empty() {
                     let error = SceneError::of(ReferenceError::NoBodyAt { index: *k }).path(here);
-                    reader.report(node.place, self.with_allowed(error));
+                    reader.report(node.location, self.with_allowed(error));
                 }
                 None
             }
             Data::Text(name) => match self.names.get(name) {
                 Some(k) => Some(*k),
                 None => {
-                    self.unknown(reader, node.place, here, name, &[]);
+                    self.unknown(reader, node.location, here, name, &[]);
                     None
                 }
             },
@@ -54,7 +54,14 @@ impl<const D: usize> Bodies<D> {
     }
 
     /// Reports a name that no body has.
-    pub(crate) fn unknown(&self, reader: &mut Reader<'_>, place: Place, path: String, name: &str, others: &[&str]) {
+    pub(crate) fn unknown(
+        &self,
+        reader: &mut Reader<'_>,
+        location: Location,
+        path: String,
+        name: &str,
+        others: &[&str],
+    ) {
         if self.broken.iter().any(|b| b.is_empty() || b == name || name.starts_with(&format!("{b}["))) {
             return; // the body is there, but has errors of its own
         }
@@ -71,7 +78,7 @@ impl<const D: usize> Bodies<D> {
                 self.names.keys().map(String::as_str).filter(|n| !n.ends_with(']')).chain(others.iter().copied()),
             )),
         };
-        reader.report(place, error);
+        reader.report(location, error);
     }
 
     /// The error with the bodies that there are.

@@ -3,7 +3,7 @@
 use super::body_list::Bodies;
 use super::errors::{ReferenceError, SceneHint, Wanted};
 use super::reader::{Reader, join, listed};
-use crate::document::{Data, Node, Place};
+use crate::document::{Data, Location, Node};
 use crate::problem::{SceneError, visible};
 use opruga_core::spec::{Allowed, nearest};
 use opruga_world::blueprint::{BodyBlueprint, Selector};
@@ -31,7 +31,7 @@ fn one<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str) -> Opti
     };
     if entries.len() != 1 {
         let about = ReferenceError::Keys { count: entries.len(), value: node.shown() };
-        reader.report(node.place, SceneError::of(about).path(path).allowed(listed(words())));
+        reader.report(node.location, SceneError::of(about).path(path).allowed(listed(words())));
         return None;
     }
     let (key, value) = (entries[0].key.as_str(), &entries[0].value);
@@ -41,7 +41,7 @@ fn one<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str) -> Opti
             let rows = reader.rows(value, &here, D, false, &Allowed::Points)?;
             let [a, b] = rows.as_slice() else {
                 let about = ReferenceError::Corners { count: rows.len(), value: value.shown() };
-                reader.report(value.place, SceneError::of(about).path(here));
+                reader.report(value.location, SceneError::of(about).path(here));
                 return None;
             };
             Selector::Box(fixed(a), fixed(b))
@@ -59,7 +59,7 @@ fn one<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str) -> Opti
                 let normal: [f64; D] = values.vector("normal");
                 if normal.iter().all(|n| *n == 0.0) {
                     let error = SceneError::of(ReferenceError::NoNormal {}).path(join(&here, "normal"));
-                    reader.report(super::place_of(value, "normal"), error);
+                    reader.report(super::location_of(value, "normal"), error);
                     return None;
                 }
                 Selector::HalfSpace { point: values.vector("point"), normal }
@@ -85,7 +85,7 @@ fn one<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str) -> Opti
         "boundary" | "all" => {
             if !matches!(value.data, Data::Boolean(true)) {
                 let about = ReferenceError::NotTrue { field: key.into(), value: value.shown() };
-                reader.report(value.place, SceneError::of(about).path(here));
+                reader.report(value.location, SceneError::of(about).path(here));
                 return None;
             }
             if key == "all" { Selector::All } else { Selector::Boundary }
@@ -97,7 +97,7 @@ fn one<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str) -> Opti
             };
             if items.is_empty() {
                 let error = SceneError::of(ReferenceError::NoSelectors { field: key.into() });
-                reader.report(value.place, error.path(here));
+                reader.report(value.location, error.path(here));
                 return None;
             }
             let sets: Vec<Option<Selector<D>>> =
@@ -111,7 +111,7 @@ fn one<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str) -> Opti
                 .path(visible(&here))
                 .allowed(listed(words()))
                 .nearest(nearest(key, words()));
-            reader.report(entries[0].place, error);
+            reader.report(entries[0].location, error);
             return None;
         }
     })
@@ -124,7 +124,7 @@ fn fixed<const D: usize>(row: &[f64]) -> [f64; D] {
 /// Refuses a selector that names nodes or groups that are not there, or that selects nothing.
 pub(crate) fn check<const D: usize>(
     reader: &mut Reader<'_>,
-    place: Place,
+    location: Location,
     path: &str,
     selector: &Selector<D>,
     body: &BodyBlueprint<D>,
@@ -138,7 +138,7 @@ pub(crate) fn check<const D: usize>(
     let is_empty = fault == SelectorFault::Nothing;
     let error = SceneError::of(fault.about(body, &visible)).path(path).nearest(closest);
     if !is_empty {
-        reader.report(place, error);
+        reader.report(location, error);
         return false;
     }
     let (low, high) = selection::extent(&body.mesh);
@@ -147,7 +147,7 @@ pub(crate) fn check<const D: usize>(
         format!("{x:?}")
     };
     let (low, high) = (corner(low), corner(high));
-    reader.report(place, error.advice(SceneHint::Extent { low, high }));
+    reader.report(location, error.advice(SceneHint::Extent { low, high }));
     false
 }
 
@@ -161,8 +161,8 @@ pub(crate) fn of_body<const D: usize>(
 ) -> Option<Selector<D>> {
     let selector = of(reader, table, path)?;
     let body = bodies.list.get(body?)?;
-    let place = super::place_of(table, "select");
-    check(reader, place, &join(path, "select"), &selector, body).then_some(selector)
+    let location = super::location_of(table, "select");
+    check(reader, location, &join(path, "select"), &selector, body).then_some(selector)
 }
 
 /// Reads the selector of a table that names one or more bodies, and checks it on each of them.
@@ -174,11 +174,11 @@ pub(crate) fn of_bodies<const D: usize>(
     targets: Option<Vec<(usize, [f64; D])>>,
 ) -> Option<Vec<(usize, Selector<D>)>> {
     let selector = of(reader, table, path)?;
-    let place = super::place_of(table, "select");
+    let location = super::location_of(table, "select");
     let mut out = Vec::new();
     for (body, offset) in targets? {
         let selector = selector.moved(offset);
-        if !check(reader, place, &join(path, "select"), &selector, bodies.list.get(body)?) {
+        if !check(reader, location, &join(path, "select"), &selector, bodies.list.get(body)?) {
             return None;
         }
         out.push((body, selector));

@@ -2,12 +2,12 @@
 
 use super::errors::{BodyError, Part, SceneAllowed, SceneHint};
 use super::reader::{Reader, join};
-use super::{Options, place_of};
+use super::{Options, location_of};
 use crate::catalogue::Catalogue;
-use crate::document::{Data, Entry, Node, Place};
+use crate::document::{Data, Entry, Location, Node};
 use crate::overrides;
 use crate::problem::{Notice, SceneError, visible};
-use crate::shapes::{Loaded, told};
+use crate::shapes::{Loaded, loss_notices};
 use crate::source::Source;
 use opruga_core::spec::Values;
 use opruga_mesh::outline::OutlineError;
@@ -15,10 +15,10 @@ use opruga_mesh::{Mesh, MeshError};
 use opruga_world::shapes;
 
 /// Where a shape stands in the scene.
-pub(super) struct ShapePlace<'a> {
+pub(super) struct ShapeLocation<'a> {
     /// The name of its body.
     pub(super) name: &'a str,
-    pub(super) place: Place,
+    pub(super) location: Location,
     pub(super) path: String,
 }
 
@@ -37,13 +37,13 @@ pub(super) fn loaded<const D: usize>(
     match crate::shapes::load(shape, D, &mut |name| reader.file(name)) {
         Ok(loaded) => {
             for notice in &loaded.notices {
-                reader.notice(at.place, notice.clone().path(&here));
+                reader.notice(at.location, notice.clone().path(&here));
             }
             Some(loaded)
         }
         Err(problem) => {
             let field = join(&here, problem.field);
-            reader.report(place_of(at, problem.field), problem.about.path(field));
+            reader.report(location_of(at, problem.field), problem.about.path(field));
             None
         }
     }
@@ -55,7 +55,7 @@ pub(super) fn mesh<const D: usize>(
     shape: &Values,
     loaded: Option<&Loaded>,
     transform: &shapes::Transform<'_>,
-    at: &ShapePlace<'_>,
+    at: &ShapeLocation<'_>,
 ) -> Option<Mesh<D>> {
     let made = match loaded {
         Some(loaded) => loaded.mesh::<D>(transform),
@@ -66,16 +66,16 @@ pub(super) fn mesh<const D: usize>(
     let (mesh, notices) = match made {
         Ok(made) => made,
         Err(error) => {
-            reader.report(at.place, error.path(&at.path));
+            reader.report(at.location, error.path(&at.path));
             return None;
         }
     };
     for notice in notices {
-        reader.notice(at.place, notice.path(&at.path));
+        reader.notice(at.location, notice.path(&at.path));
     }
     // Large factors may leave the range of numbers.
     if let Some(x) = mesh.positions.iter().flatten().find(|x| !x.is_finite()) {
-        reader.report(at.place, SceneError::of(BodyError::NotFiniteShape { value: *x }).path(&at.path));
+        reader.report(at.location, SceneError::of(BodyError::NotFiniteShape { value: *x }).path(&at.path));
         return None;
     }
     Some(mesh)
@@ -103,7 +103,7 @@ fn generated<const D: usize>(
     if made.flipped {
         notices.push(SceneError::of(BodyError::Clockwise { body: visible(name) }));
     }
-    notices.extend(made.loss.map(|loss| told::lost_volume(&made.mesh, loss, 1.0)));
+    notices.extend(made.loss.map(|loss| loss_notices::lost_volume(&made.mesh, loss, 1.0)));
     Ok((made.mesh, notices))
 }
 
@@ -119,12 +119,12 @@ pub fn of_fields(
     let (source, options) = (Source { file: kind, text: "" }, Options::default());
     let catalogue = Catalogue { models: Vec::new(), integrators: Vec::new(), colliders: Vec::new() };
     let options = Options { overrides: fields.to_vec(), ..options };
-    let mut table = Node { place: Place::Bytes(0, 0), data: Data::Table(Vec::new()) };
+    let mut table = Node { location: Location::Bytes(0, 0), data: Data::Table(Vec::new()) };
     overrides::apply_all(&mut table, &options.overrides)?;
-    let word = Node { place: Place::Bytes(0, 0), data: Data::Text(kind.to_string()) };
+    let word = Node { location: Location::Bytes(0, 0), data: Data::Text(kind.to_string()) };
     if let Data::Table(entries) = &mut table.data {
         entries.retain(|entry| entry.key != "kind");
-        entries.push(Entry { key: "kind".into(), place: word.place, value: word });
+        entries.push(Entry { key: "kind".into(), location: word.location, value: word });
     }
     let mut reader = Reader::new(&source, &catalogue, &options, Vec::new());
     reader.dimension = dimension;

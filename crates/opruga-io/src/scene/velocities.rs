@@ -1,7 +1,7 @@
 //! The velocity of a body at the start: one vector, or a field.
 
 use super::errors::{BodyError, SceneAllowed, SceneHint};
-use super::place_of;
+use super::location_of;
 use super::reader::{Reader, join};
 use crate::document::{Data, Node};
 use crate::problem::{SceneError, visible};
@@ -41,7 +41,7 @@ pub(super) fn at_the_start<const D: usize>(reader: &mut Reader<'_>, node: &Node,
     if let Some(spin) = value.get("angular") {
         let angular = join(&here, "angular");
         if node.get("angular_velocity").is_some() {
-            reader.report(spin.place, SceneError::of(BodyError::TwoSpins { value: spin.shown() }).path(angular));
+            reader.report(spin.location, SceneError::of(BodyError::TwoSpins { value: spin.shown() }).path(angular));
             return out;
         }
         out.angular = reader.turn(Some(spin), &angular);
@@ -56,7 +56,7 @@ pub(super) fn at_the_start<const D: usize>(reader: &mut Reader<'_>, node: &Node,
         let about = BodyError::Gradient { count: rows.len(), dimension: D, value: value_shown };
         let hint = if D == 2 { SceneHint::Gradient {} } else { SceneHint::GradientInSpace {} };
         let error = SceneError::of(about).path(join(&here, "gradient")).advice(hint);
-        reader.report(place_of(value, "gradient"), error);
+        reader.report(location_of(value, "gradient"), error);
     }
     out
 }
@@ -110,7 +110,7 @@ impl<const D: usize> Velocities<D> {
         // They turn as positions do, about zero.
         let mut turned = Mesh::<D> { positions: rows, ..Mesh::default() };
         let refused = |problem| SceneError::of(BodyError::Rotation { problem });
-        shapes::place(&mut turned, &shapes::Transform { scale: 1.0, rotation }).map_err(refused)?;
+        shapes::apply_transform(&mut turned, &shapes::Transform { scale: 1.0, rotation }).map_err(refused)?;
         match turned.positions.iter().flatten().find(|x| !x.is_finite()) {
             Some(x) => Err(SceneError::of(BodyError::Turned { name: shown(), value: *x })),
             None => Ok(Arc::from(turned.positions)),

@@ -26,8 +26,8 @@ pub(super) fn read<'a>(bytes: &[u8], shape: &Values) -> Result<Drawing<'a>, Scen
         let (inside, most) = (inside.to_string(), format!("{most:.3}"));
         return Err(SceneError::of(LetterError::NoPixel { inside, most, threshold }));
     }
-    let (places, painted, rules, notices) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    Ok(Drawing { curves, y_down: true, source: None, places, painted, rules, notices })
+    let (spans, painted, rules, notices) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    Ok(Drawing { curves, y_down: true, source: None, spans, painted, rules, notices })
 }
 
 /// Gives the values of the pixels, from 0 to 1, row by row, with a border of zeros on all sides; returns the largest.
@@ -83,7 +83,7 @@ fn pixels(
     Ok(most)
 }
 
-/// Contours while rows come in: the steps from one line of the grid to the next, with their places.
+/// Contours while rows come in: the steps from one line of the grid to the next, with their points.
 struct Lines {
     threshold: f64,
     /// The row before, and how many rows there have been.
@@ -129,13 +129,13 @@ impl Lines {
             let (top, bottom, left, right) = (line(x, y, 0), line(x, y + 1, 0), line(x, y, 1), line(x + 1, y, 1));
             let mut go = |from: u64, to: u64| {
                 let (fx, fy) = (x as f64, y as f64);
-                let place = match from {
+                let point = match from {
                     _ if from == top => [fx + crossing(values[0], values[1]), fy],
                     _ if from == bottom => [fx + crossing(values[3], values[2]), (y + 1) as f64],
                     _ if from == left => [fx, fy + crossing(values[0], values[3])],
                     _ => [(x + 1) as f64, fy + crossing(values[1], values[2])],
                 };
-                self.steps.push((from, to, place));
+                self.steps.push((from, to, point));
             };
             // Seen with y down, the inside lies to the right of each step.
             match code {
@@ -178,8 +178,8 @@ impl Lines {
             contour.clear();
             let mut at = start;
             while !std::mem::replace(&mut taken[at], true) {
-                let (_, to, place) = self.steps[at];
-                contour.push(place);
+                let (_, to, point) = self.steps[at];
+                contour.push(point);
                 let Ok(next) = self.steps.binary_search_by_key(&to, |step| step.0) else { break };
                 at = next;
             }

@@ -165,11 +165,12 @@ impl Curves {
         let turn = (0..n).map(|k| side(k, corners[(k + 2) % n])).find(|turn| *turn != 0.0).unwrap_or(0.0).signum();
         let inside = |p: Point| (0..n).all(|k| turn * side(k, p) >= -within);
         let convex = n > 2 && turn != 0.0 && corners.iter().all(|p| (0..n).all(|k| turn * side(k, *p) >= 0.0));
-        let held = |segment: &Segment| match *segment {
+        let segment_inside = |segment: &Segment| match *segment {
             Segment::Line(to) => inside(to),
             Segment::Cubic(p, q, to) => [p, q, to].into_iter().all(inside),
         };
-        convex && other.contours.iter().all(|contour| inside(contour.start) && contour.segments.iter().all(held))
+        convex
+            && other.contours.iter().all(|contour| inside(contour.start) && contour.segments.iter().all(segment_inside))
     }
 
     /// How many points lines and curves join; one that repeats the start of its contour is not counted twice.
@@ -315,12 +316,17 @@ impl Curves {
         let pieces = larger((angle.abs() / core::f64::consts::FRAC_PI_4).ceil(), 1.0);
         let step = angle / pieces;
         let handle = 4.0 / 3.0 * libm::tan(0.25 * step);
-        let place = |c: f64, s: f64| [center[0] + cos * rx * c - sin * ry * s, center[1] + sin * rx * c + cos * ry * s];
+        let point_at =
+            |c: f64, s: f64| [center[0] + cos * rx * c - sin * ry * s, center[1] + sin * rx * c + cos * ry * s];
         for k in 0..pieces as u32 {
             let (a, b) = (first + f64::from(k) * step, first + f64::from(k + 1) * step);
             let (ca, sa, cb, sb) = (libm::cos(a), libm::sin(a), libm::cos(b), libm::sin(b));
-            let end = if f64::from(k + 1) == pieces { to } else { place(cb, sb) };
-            self.cubic_to(place(ca - handle * sa, sa + handle * ca), place(cb + handle * sb, sb - handle * cb), end);
+            let end = if f64::from(k + 1) == pieces { to } else { point_at(cb, sb) };
+            self.cubic_to(
+                point_at(ca - handle * sa, sa + handle * ca),
+                point_at(cb + handle * sb, sb - handle * cb),
+                end,
+            );
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::curves::{Curves, larger};
 use super::errors::{ShapeError, ShapeHint, ShapeNotice};
 use super::rules::{self, Rule};
-use super::{Content, Loaded, Problem, told};
+use super::{Content, Loaded, Problem, loss_notices};
 use crate::budget::{LimitHint, OUTLINES, POINTS};
 use crate::problem::SceneError;
 use crate::scene::shown;
@@ -23,7 +23,7 @@ pub(super) struct Drawing<'a> {
     pub(super) y_down: bool,
     /// The file, if it is a text, and where each part stands in it.
     pub(super) source: Option<&'a Source<'a>>,
-    pub(super) places: Vec<(usize, usize)>,
+    pub(super) spans: Vec<(usize, usize)>,
     /// The colours of the parts, if they are wanted: red, green, blue, opacity.
     pub(super) painted: Vec<Option<[u8; 4]>>,
     /// By which rule each part is filled; the even-odd rule where this is silent and nothing else is usual.
@@ -34,7 +34,7 @@ pub(super) struct Drawing<'a> {
 impl Drawing<'_> {
     /// An error at a part of the drawing.
     fn at(&self, part: u32, error: SceneError) -> SceneError {
-        match (self.source, self.places.get(part as usize)) {
+        match (self.source, self.spans.get(part as usize)) {
             (Some(source), Some((from, to))) => source.mark(error, *from, *to),
             _ => error,
         }
@@ -83,7 +83,7 @@ impl Outline {
             Inside::Triangles(spacing) => outline::filled(&self.rings, spacing).map_err(|e| refused(&e))?,
             Inside::Squares(spacing) => (outline::squares(&self.rings, spacing).map_err(|e| refused(&e))?, None),
         };
-        let thin = thin.map(|thin| told::thin(&mesh, &thin));
+        let thin = thin.map(|thin| loss_notices::thin(&mesh, &thin));
         if !self.painted.is_empty() {
             outline::carry(&mut mesh, &self.rings, &self.painted).map_err(|e| refused(&e))?;
         }
@@ -122,15 +122,15 @@ pub(super) fn loaded(mut drawing: Drawing<'_>, shape: &Values) -> Result<Loaded,
     if let Some(how) = how {
         let together = outline::joined(&rings, how);
         // Parts in their colours stay seen, one over another.
-        drawing.notices.extend(told_of_overlap(&rings, &together, how).filter(|_| painted.is_empty()));
+        drawing.notices.extend(overlap_notice(&rings, &together, how).filter(|_| painted.is_empty()));
         rings = together;
     }
     // What is left of borders that nearly coincide.
     rings.retain(|ring| ring.area().abs() > 1e-12 * extent * extent || shape.text("overlap") == Some("refuse"));
-    let mut rings = place(rings, &mut painted, &drawing, shape)?;
+    let mut rings = scale_and_center(rings, &mut painted, &drawing, shape)?;
     if how.is_none()
         && !drawing.rules.is_empty()
-        && let Some((part, notice)) = told::nested(&rings)
+        && let Some((part, notice)) = loss_notices::nested(&rings)
     {
         let notice = drawing.at(part, notice);
         drawing.notices.push(notice);
@@ -164,7 +164,7 @@ pub(super) fn loaded(mut drawing: Drawing<'_>, shape: &Values) -> Result<Loaded,
     let rings = outline::resampled(&before, spacing).map_err(|e| {
         Problem::new("spacing", refused(&e).value(spacing.to_string()).advice(ShapeHint::FinerOutline {}))
     })?;
-    drawing.notices.extend(told::thinned(given, &before, &rings, spacing));
+    drawing.notices.extend(loss_notices::thinned(given, &before, &rings, spacing));
     let outline = Outline { rings, inside, painted };
     Ok(Loaded { notices: drawing.notices, content: Content::Outline(outline) })
 }
@@ -196,7 +196,7 @@ fn encloses_more(ring: &Ring, least: f64) -> bool {
 }
 
 /// How many outlines are no more as they were since they cross, touch or cover one another.
-fn told_of_overlap(rings: &[Ring], together: &[Ring], how: Overlap) -> Option<SceneError> {
+fn overlap_notice(rings: &[Ring], together: &[Ring], how: Overlap) -> Option<SceneError> {
     let (count, left) = (changed(rings, together), together.len());
     let notice = match how {
         Overlap::Union => ShapeNotice::Union { count, left },
@@ -210,16 +210,16 @@ fn changed(rings: &[Ring], together: &[Ring]) -> usize {
     let Some((low, high)) = outline::bounds(rings) else { return 0 };
     let extent = larger(high[0] - low[0], high[1] - low[1]);
     // Joining keeps coordinates on a grid of 2⁻³⁰ of the extent.
-    let near = 1e-7 * extent;
+    let tolerance = 1e-7 * extent;
     let mut kept: Vec<(f64, &Ring)> = together.iter().map(|ring| (ring.area().abs(), ring)).collect();
     kept.sort_by(|a, b| a.0.total_cmp(&b.0));
     let same_box = |a: &Ring, b: &Ring| {
         let corners = |ring: &Ring| outline::bounds(core::slice::from_ref(ring)).unwrap_or_default();
         let ((a, b), (c, d)) = (corners(a), corners(b));
-        (0..2).all(|axis| (a[axis] - c[axis]).abs() <= near && (b[axis] - d[axis]).abs() <= near)
+        (0..2).all(|axis| (a[axis] - c[axis]).abs() <= tolerance && (b[axis] - d[axis]).abs() <= tolerance)
     };
     let is_kept = |ring: &Ring| {
-        let (area, off) = (ring.area().abs(), near * extent);
+        let (area, off) = (ring.area().abs(), tolerance * extent);
         let first = kept.partition_point(|(other, _)| *other < area - off);
         kept[first..].iter().take_while(|(other, _)| *other <= area + off).any(|(_, other)| same_box(ring, other))
     };
@@ -238,8 +238,8 @@ fn painted(colours: &[Option<[u8; 4]>], rings: &[Ring]) -> Vec<Painted> {
     all
 }
 
-/// Turns holes the other way and brings the drawing to its size and place.
-fn place(
+/// Turns holes the other way and brings the drawing to its size and position.
+fn scale_and_center(
     mut rings: Vec<Ring>,
     painted: &mut [Painted],
     drawing: &Drawing<'_>,

@@ -12,7 +12,7 @@ use super::gltf_errors::{GltfError, GltfNotice};
 use super::gltf_json::{Accessor, Asset, Buffer, Mesh, Node, Primitive, Root, View};
 use super::json::{Raw, parse, refuse, span};
 use super::surface_errors::{SurfaceError, SurfaceNotice};
-use super::triangles::{Places, Triangles};
+use super::triangles::{Locations, Triangles};
 use crate::base64;
 use crate::budget::{INSTANCES, LimitHint};
 use crate::problem::{SceneError, visible};
@@ -130,17 +130,17 @@ pub(super) fn read<'a>(
             }
         }
     }
-    let mut tell = |count: usize, notice: fn(usize) -> AnyMessage| {
+    let mut report = |count: usize, notice: fn(usize) -> AnyMessage| {
         if count > 0 {
             reader.found.notices.push(SceneError::of(notice(count)));
         }
     };
-    tell(reader.others, |count| SurfaceNotice::Strokes { count }.into());
-    tell(scenes.saturating_sub(1), |count| GltfNotice::Scenes { count }.into());
-    tell(reader.skinned, |count| GltfNotice::Skins { count }.into());
-    tell(reader.morphed, |count| GltfNotice::Morphs { count }.into());
-    tell(animations, |count| GltfNotice::Animations { count }.into());
-    reader.found.places = Places::Lines(reader.starts);
+    report(reader.others, |count| SurfaceNotice::Strokes { count }.into());
+    report(scenes.saturating_sub(1), |count| GltfNotice::Scenes { count }.into());
+    report(reader.skinned, |count| GltfNotice::Skins { count }.into());
+    report(reader.morphed, |count| GltfNotice::Morphs { count }.into());
+    report(animations, |count| GltfNotice::Animations { count }.into());
+    reader.found.locations = Locations::Lines(reader.starts);
     Ok(reader.found)
 }
 
@@ -224,10 +224,10 @@ impl<'a> Reader<'a, '_, '_, '_> {
     /// Counts rows that are drawn: as many as the file can hold, and some that stand there once and are drawn again.
     fn draw(&mut self, more: u64, at: Raw<'_>) -> Result<(), SceneError> {
         self.drawn = self.drawn.saturating_add(more);
-        let held: usize = self.buffers.iter().flatten().map(|bytes| bytes.len()).sum();
-        let held = (held + self.source.text.len()) as u64 / LEAST_BYTES;
+        let available: usize = self.buffers.iter().flatten().map(|bytes| bytes.len()).sum();
+        let available = (available + self.source.text.len()) as u64 / LEAST_BYTES;
         INSTANCES
-            .check_beside(self.drawn, held)
+            .check_beside(self.drawn, available)
             .map_err(|e| refuse(self.source, at.get(), e.advice(LimitHint::Instances)))
     }
 
@@ -244,11 +244,11 @@ impl<'a> Reader<'a, '_, '_, '_> {
             }
         }
         self.morphed += usize::from(!primitive.targets.is_empty());
-        let Some(place) = primitive.attributes.get("POSITION") else {
+        let Some(index) = primitive.attributes.get("POSITION") else {
             return Err(self.refuse(raw, GltfError::NoPosition {}));
         };
         let first = self.found.positions.len();
-        let rows = self.accessor(*place, "VEC3", &[5126])?;
+        let rows = self.accessor(*index, "VEC3", &[5126])?;
         for p in &rows {
             let q = core::array::from_fn(|i| (0..3).map(|k| map[i][k] * p[k]).sum::<f64>() + map[i][3]);
             if q.iter().any(|x: &f64| !x.is_finite()) {
@@ -259,8 +259,8 @@ impl<'a> Reader<'a, '_, '_, '_> {
         }
         let count = self.found.positions.len() - first;
         let indices: Vec<u32> = match primitive.indices {
-            Some(place) => {
-                self.accessor(place, "SCALAR", &[5121, 5123, 5125])?.into_iter().map(|row| row[0] as u32).collect()
+            Some(index) => {
+                self.accessor(index, "SCALAR", &[5121, 5123, 5125])?.into_iter().map(|row| row[0] as u32).collect()
             }
             None => (0..count as u32).collect(),
         };

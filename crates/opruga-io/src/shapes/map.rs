@@ -105,7 +105,7 @@ pub(super) fn read<'a>(source: &'a Source<'a>, shape: &'a Values) -> Result<Draw
         _ => globe::lay_out(&mut reader.polygons, reader.arcs.is_some()),
     };
     let mut curves = Curves::default();
-    let mut places = Vec::new();
+    let mut spans = Vec::new();
     let project = projection(source, &reader.polygons, shape)?;
     for (part, (rings, raw)) in reader.polygons.iter().enumerate() {
         let mut polygon = Curves::of_part(part as u32);
@@ -113,14 +113,14 @@ pub(super) fn read<'a>(source: &'a Source<'a>, shape: &'a Values) -> Result<Draw
             polygon.polygon(&ring.iter().map(|p| project(*p)).collect::<Vec<_>>());
         }
         curves.append(polygon, &super::curves::IDENTITY);
-        places.push(span(source, raw.get()));
+        spans.push(span(source, raw.get()));
     }
     let mut notices = Vec::new();
     if reader.others > 0 {
         notices.push(SceneError::of(MapNotice::PointsAndLines { count: reader.others }));
     }
-    notices.extend(reader.told(&laid_out));
-    Ok(Drawing { curves, y_down: false, source: Some(source), places, painted: Vec::new(), rules: Vec::new(), notices })
+    notices.extend(reader.notices(&laid_out));
+    Ok(Drawing { curves, y_down: false, source: Some(source), spans, painted: Vec::new(), rules: Vec::new(), notices })
 }
 
 /// The arcs of a topology, in degrees.
@@ -272,8 +272,8 @@ impl<'a> Reader<'a, '_> {
                     let mut points: Vec<Point> = Vec::new();
                     for index in parse::<Vec<i64>>(self.source, ring.get())? {
                         // ~k is arc k backwards.
-                        let (place, backwards) = if index < 0 { (!index, true) } else { (index, false) };
-                        let Some(arc) = usize::try_from(place).ok().and_then(|k| arcs.get(k)) else {
+                        let (arc_index, backwards) = if index < 0 { (!index, true) } else { (index, false) };
+                        let Some(arc) = usize::try_from(arc_index).ok().and_then(|k| arcs.get(k)) else {
                             let n = arcs.len() as i64;
                             let error = SceneError::of(MapError::NoArc { arc: index, least: -n, most: n - 1 });
                             return Err(refuse(self.source, geometry.get(), error));
@@ -319,22 +319,22 @@ impl<'a> Reader<'a, '_> {
     }
 
     /// What was done that the map does not say by itself.
-    fn told(&self, done: &globe::LaidOut) -> Vec<SceneError> {
-        let mut told = Vec::new();
-        let mut tell = |count: usize, notice: fn(usize) -> MapNotice| {
+    fn notices(&self, done: &globe::LaidOut) -> Vec<SceneError> {
+        let mut notices = Vec::new();
+        let mut report = |count: usize, notice: fn(usize) -> MapNotice| {
             if count > 0 {
-                told.push(SceneError::of(notice(count)));
+                notices.push(SceneError::of(notice(count)));
             }
         };
-        tell(self.empty, |count| MapNotice::Empty { count });
-        tell(done.over, |count| MapNotice::Over { count });
-        tell(done.cut, |count| MapNotice::Cut { count });
-        tell(done.beside, |count| MapNotice::Beside { count });
-        tell(done.polar, |count| MapNotice::Polar { count });
+        report(self.empty, |count| MapNotice::Empty { count });
+        report(done.over, |count| MapNotice::Over { count });
+        report(done.cut, |count| MapNotice::Cut { count });
+        report(done.beside, |count| MapNotice::Beside { count });
+        report(done.polar, |count| MapNotice::Polar { count });
         if let (2.., Some(name)) = (self.meant, self.wanted) {
-            told.push(SceneError::of(MapNotice::Features { count: self.meant, feature: visible(name) }));
+            notices.push(SceneError::of(MapNotice::Features { count: self.meant, feature: visible(name) }));
         }
-        told
+        notices
     }
 
     /// Why no polygon was found.

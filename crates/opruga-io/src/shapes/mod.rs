@@ -20,6 +20,7 @@ mod gltf;
 mod gltf_errors;
 mod gltf_json;
 mod json;
+pub(crate) mod loss_notices;
 mod map;
 mod obj;
 mod ply;
@@ -40,7 +41,6 @@ mod svg_units;
 mod svg_viewport;
 mod svg_xml;
 mod text;
-pub(crate) mod told;
 mod triangles;
 mod volume;
 
@@ -259,11 +259,11 @@ impl Loaded {
         transform: &Transform<'_>,
     ) -> Result<(Mesh<D>, Vec<SceneError>), SceneError> {
         let refuse = |error: MeshError| SceneError::of(OutlineError::Mesh { error });
-        let mut told = Vec::new();
+        let mut notices = Vec::new();
         let made: Box<dyn Any> = match &self.content {
             Content::Outline(outline) => {
                 let (mesh, thin) = outline.mesh()?;
-                told.extend(thin);
+                notices.extend(thin);
                 Box::new(mesh)
             }
             Content::Surface { mesh, remesh, filling } => {
@@ -271,7 +271,7 @@ impl Loaded {
                     None => (**mesh).clone(),
                     Some(length) => {
                         let made = remeshing::remeshed(mesh, *length)?;
-                        told.extend(told::remeshed(&made, mesh, *length, transform.scale));
+                        notices.extend(loss_notices::remeshed(&made, mesh, *length, transform.scale));
                         made
                     }
                 };
@@ -279,7 +279,7 @@ impl Loaded {
                     None => surface,
                     Some(filling) => {
                         let (body, loss) = filling.of(&surface).map_err(refuse)?;
-                        told.extend(loss.map(|loss| told::lost_volume(&body, loss, transform.scale)));
+                        notices.extend(loss.map(|loss| loss_notices::lost_volume(&body, loss, transform.scale)));
                         body
                     }
                 })
@@ -290,7 +290,7 @@ impl Loaded {
         let Ok(mut mesh) = made.downcast::<Mesh<D>>() else {
             return Err(SceneError::of(ShapeError::Dimension { dimension: D }));
         };
-        shapes::place(&mut mesh, transform).map_err(refuse)?;
-        Ok((*mesh, told))
+        shapes::apply_transform(&mut mesh, transform).map_err(refuse)?;
+        Ok((*mesh, notices))
     }
 }

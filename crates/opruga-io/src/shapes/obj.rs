@@ -9,7 +9,7 @@
 //! Wavefront Technologies, Object Files, version 3.0.
 
 use super::surface_errors::{ObjError, ObjNotice, SurfaceNotice};
-use super::triangles::{Places, Triangles};
+use super::triangles::{Locations, Triangles};
 use crate::meshes::NumberHint;
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
@@ -247,7 +247,7 @@ impl Statements {
                 found.groups.insert(name, nodes);
             }
         }
-        found.places = Places::Lines(lines);
+        found.locations = Locations::Lines(lines);
         Ok(found)
     }
 }

@@ -7,7 +7,7 @@
 //! G. Turk, The PLY Polygon File Format (1994).
 
 use super::surface_errors::{PlyError, PlyNotice, SurfaceError};
-use super::triangles::{Places, Triangles};
+use super::triangles::{Locations, Triangles};
 use crate::meshes::cut_line;
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
@@ -98,9 +98,9 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Triangles, SceneError> {
         return Err(values.of_file(PlyError::NoElement { element: if seen_vertices { "face" } else { "vertex" } }));
     }
     values.check_end()?;
-    found.places = match format {
-        Format::Text => Places::Lines(starts.into_iter().map(|start| start as u32).collect()),
-        Format::Little | Format::Big => Places::Starts(starts),
+    found.locations = match format {
+        Format::Text => Locations::Lines(starts.into_iter().map(|start| start as u32).collect()),
+        Format::Little | Format::Big => Locations::Starts(starts),
     };
     Ok(found)
 }

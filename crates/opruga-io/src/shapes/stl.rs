@@ -9,7 +9,7 @@
 
 use super::obj::number;
 use super::surface_errors::{StlError, StlNotice, SurfaceError};
-use super::triangles::{Places, Triangles};
+use super::triangles::{Locations, Triangles};
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
 
@@ -49,7 +49,7 @@ pub(super) fn read_binary(bytes: &[u8]) -> Result<Triangles, SceneError> {
     let mut found = Triangles {
         soup: true,
         single: true,
-        places: Places::Bytes { first: HEAD, each: EACH },
+        locations: Locations::Bytes { first: HEAD, each: EACH },
         ..Triangles::default()
     };
     found.positions.reserve_exact(3 * count);
@@ -75,7 +75,7 @@ pub(super) fn read_binary(bytes: &[u8]) -> Result<Triangles, SceneError> {
             |d: usize| f32::from_le_bytes([record[4 * d], record[4 * d + 1], record[4 * d + 2], record[4 * d + 3]]);
         normals.compare([0, 1, 2].map(|d| f64::from(float(d))), &found.positions);
     }
-    found.notices.extend(normals.told());
+    found.notices.extend(normals.notices());
     Ok(found)
 }
 
@@ -101,7 +101,7 @@ impl Normals {
         self.against += usize::from((0..3).map(|d| own[d] * normal[d]).sum::<f64>() < 0.0);
     }
 
-    fn told(&self) -> Vec<SceneError> {
+    fn notices(&self) -> Vec<SceneError> {
         let broken = (self.broken > 0).then_some(StlNotice::Broken { count: self.broken });
         let against = (self.against > 0).then_some(StlNotice::Against { count: self.against });
         broken.into_iter().chain(against).map(SceneError::of).collect()
@@ -189,7 +189,7 @@ pub(super) fn read_text(source: &Source<'_>) -> Result<Triangles, SceneError> {
         let wanted = if state == "facet" { "endsolid" } else { state };
         return Err(source.mark(SceneError::of(StlError::Ends { wanted }), end, end));
     }
-    found.notices.extend(normals.told());
-    found.places = Places::Lines(lines);
+    found.notices.extend(normals.notices());
+    found.locations = Locations::Lines(lines);
     Ok(found)
 }

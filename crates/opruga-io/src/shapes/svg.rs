@@ -86,8 +86,8 @@ pub(super) fn read<'a>(source: &'a Source<'a>, id: Option<&str>, colours: bool) 
     notice(reader.fills.gradients, |count| SvgNotice::Gradients { count });
     notice(reader.fills.styled, |count| SvgNotice::Styled { count });
     let (painted, rules) = (reader.fills.painted, reader.fills.rules);
-    let (curves, places) = (reader.curves, reader.places);
-    Ok(Drawing { curves, y_down: true, source: Some(source), places, painted, rules, notices })
+    let (curves, spans) = (reader.curves, reader.spans);
+    Ok(Drawing { curves, y_down: true, source: Some(source), spans, painted, rules, notices })
 }
 
 pub(super) struct Reader<'a, 'd> {
@@ -96,7 +96,7 @@ pub(super) struct Reader<'a, 'd> {
     pub(super) sheets: &'d Sheets,
     pub(super) curves: Curves,
     /// Where each part stands in the file.
-    places: Vec<(usize, usize)>,
+    spans: Vec<(usize, usize)>,
     pub(super) fills: Fills<'a, 'd>,
     /// Width and height that per cent refer to; none where the drawing does not say.
     pub(super) canvas: Option<Point>,
@@ -125,7 +125,7 @@ impl<'a, 'd> Reader<'a, 'd> {
             document,
             sheets,
             curves: Curves::default(),
-            places: Vec::new(),
+            spans: Vec::new(),
             fills,
             canvas: None,
             open: 0,
@@ -156,8 +156,8 @@ impl<'a, 'd> Reader<'a, 'd> {
     pub(super) fn named(&self, node: Node<'_, '_>, id: &str) -> Result<Node<'d, 'a>, SceneError> {
         match self.sheets.index.named(self.document, id) {
             [None, _] => {
-                let near = nearest(id, self.sheets.index.ids());
-                Err(self.error(node, SvgError::UnknownId { id: visible(id) }).nearest(near))
+                let suggestion = nearest(id, self.sheets.index.ids());
+                Err(self.error(node, SvgError::UnknownId { id: visible(id) }).nearest(suggestion))
             }
             [Some(first), None] => Ok(first),
             [_, Some(second)] => Err(self.error(second, SvgError::SameId { id: visible(id) })),
@@ -287,7 +287,7 @@ impl<'a, 'd> Reader<'a, 'd> {
             }
             "use" => self.used(node, &map, path, fill)?,
             "path" | "rect" | "circle" | "ellipse" | "polygon" | "polyline" => {
-                let (mut curves, empty) = (Curves::of_part(self.places.len() as u32), self.empty);
+                let (mut curves, empty) = (Curves::of_part(self.spans.len() as u32), self.empty);
                 match name {
                     "path" => self.path(node, &mut curves)?,
                     "rect" => self.rectangle(node, &mut curves)?,
@@ -298,14 +298,14 @@ impl<'a, 'd> Reader<'a, 'd> {
                     path.pop();
                     return Ok(());
                 }
-                let parts = OUTLINES.check(self.places.len() as u64 + 1);
+                let parts = OUTLINES.check(self.spans.len() as u64 + 1);
                 parts.and(sheets.index.points(curves.points())).map_err(|e| self.marked(node, e))?;
                 self.unfilled += usize::from(!fill.filled);
                 self.strokes += usize::from(fill.filled && sheets.has_stroke(node));
                 self.fills.paint(fill);
                 self.curves.append(curves, &map);
                 let range = node.range();
-                self.places.push((range.start, range.end));
+                self.spans.push((range.start, range.end));
             }
             "line" => self.unfilled += 1,
             "image" => self.images += 1,

@@ -133,11 +133,11 @@ impl<'a, 'd> Fills<'a, 'd> {
             Ok(Paint::Inherit | Paint::ContextFill) => Ok((around.filled.then_some(around.colour), 1.0)),
             Ok(Paint::CurrentColor) => {
                 // `color` is inherited.
-                let near = node.ancestors().find_map(|n| self.sheets.style(n, "color"));
-                match near.map(str::parse::<Color>) {
+                let inherited = node.ancestors().find_map(|n| self.sheets.style(n, "color"));
+                match inherited.map(str::parse::<Color>) {
                     None => Ok(plain(Color::black())),
                     Some(Ok(colour)) => Ok(plain(colour)),
-                    Some(Err(_)) => Err(self.refused(node, near.unwrap_or(""))),
+                    Some(Err(_)) => Err(self.refused(node, inherited.unwrap_or(""))),
                 }
             }
             Ok(Paint::Color(colour)) => Ok(plain(colour)),

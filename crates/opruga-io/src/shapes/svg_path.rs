@@ -33,7 +33,7 @@ impl<'c> Pen<'c> {
     /// Draws one segment.
     pub(super) fn draw(&mut self, segment: PathSegment) {
         let from = self.at;
-        let place = |abs: bool, x: f64, y: f64| if abs { [x, y] } else { [from[0] + x, from[1] + y] };
+        let point = |abs: bool, x: f64, y: f64| if abs { [x, y] } else { [from[0] + x, from[1] + y] };
         // A smooth curve mirrors the control point of the curve of its own kind before it.
         let mirrored = |cubic: bool| match self.control {
             Some((p, kind)) if kind == cubic => [2.0 * from[0] - p[0], 2.0 * from[1] - p[1]],
@@ -48,38 +48,38 @@ impl<'c> Pen<'c> {
         }
         match segment {
             PathSegment::MoveTo { abs, x, y } => {
-                let to = place(abs, x, y);
+                let to = point(abs, x, y);
                 self.leave();
                 self.curves.move_to(to);
                 self.at = to;
                 self.begun = true;
                 draws = false;
             }
-            PathSegment::LineTo { abs, x, y } => self.line(place(abs, x, y)),
+            PathSegment::LineTo { abs, x, y } => self.line(point(abs, x, y)),
             PathSegment::HorizontalLineTo { abs, x } => self.line([if abs { x } else { from[0] + x }, from[1]]),
             PathSegment::VerticalLineTo { abs, y } => self.line([from[0], if abs { y } else { from[1] + y }]),
             PathSegment::CurveTo { abs, x1, y1, x2, y2, x, y } => {
-                let (p, q) = (place(abs, x1, y1), place(abs, x2, y2));
-                self.cubic(p, q, place(abs, x, y));
+                let (p, q) = (point(abs, x1, y1), point(abs, x2, y2));
+                self.cubic(p, q, point(abs, x, y));
                 control = Some((q, true));
             }
             PathSegment::SmoothCurveTo { abs, x2, y2, x, y } => {
-                let (p, q) = (mirrored(true), place(abs, x2, y2));
-                self.cubic(p, q, place(abs, x, y));
+                let (p, q) = (mirrored(true), point(abs, x2, y2));
+                self.cubic(p, q, point(abs, x, y));
                 control = Some((q, true));
             }
             PathSegment::Quadratic { abs, x1, y1, x, y } => {
-                let p = place(abs, x1, y1);
-                self.quadratic(p, place(abs, x, y));
+                let p = point(abs, x1, y1);
+                self.quadratic(p, point(abs, x, y));
                 control = Some((p, false));
             }
             PathSegment::SmoothQuadratic { abs, x, y } => {
                 let p = mirrored(false);
-                self.quadratic(p, place(abs, x, y));
+                self.quadratic(p, point(abs, x, y));
                 control = Some((p, false));
             }
             PathSegment::EllipticalArc { abs, rx, ry, x_axis_rotation, large_arc, sweep, x, y } => {
-                let to = place(abs, x, y);
+                let to = point(abs, x, y);
                 self.curves.arc_to([rx, ry], x_axis_rotation / 180.0 * core::f64::consts::PI, large_arc, sweep, to);
                 self.at = to;
             }

@@ -50,13 +50,13 @@ struct Rule {
     selectors: Vec<Selector>,
     /// Names of elements, `.class` and `#id` that it may be about, where its selectors are not read.
     perhaps: Vec<String>,
-    said: Vec<Said>,
+    declarations: Vec<Declaration>,
     /// Where its sheet stands in the file.
     sheet: (usize, usize),
 }
 
 #[derive(Debug)]
-struct Said {
+struct Declaration {
     name: String,
     value: String,
     important: bool,
@@ -103,9 +103,9 @@ impl Sheets {
     fn read(&mut self, text: &str, sheet: (usize, usize), conditional: bool) {
         let mut around: Vec<Block> = Vec::new();
         let mut start = 0;
-        for (place, mark) in text.match_indices(['{', '}', ';']) {
-            let piece = text[start..place].trim();
-            start = place + 1;
+        for (position, mark) in text.match_indices(['{', '}', ';']) {
+            let piece = text[start..position].trim();
+            start = position + 1;
             let elsewhere = around.iter().any(|block| matches!(block, Block::Elsewhere));
             match (mark, around.last()) {
                 ("{", _) if elsewhere || ELSEWHERE.iter().any(|word| piece.starts_with(word)) => {
@@ -118,14 +118,17 @@ impl Sheets {
                     around.push(Block::Rule);
                 }
                 (_, Some(Block::Rule)) => {
-                    if let (Some(rule), Some(said)) = (self.rules.last_mut(), Said::read(piece)) {
-                        rule.said.push(said);
+                    if let (Some(rule), Some(declaration)) = (self.rules.last_mut(), Declaration::read(piece)) {
+                        rule.declarations.push(declaration);
                     }
                 }
                 // Another file could say anything about any element.
-                (";", None) if piece.starts_with("@import") => {
-                    self.rules.push(Rule { selectors: Vec::new(), perhaps: vec!["*".into()], said: Vec::new(), sheet })
-                }
+                (";", None) if piece.starts_with("@import") => self.rules.push(Rule {
+                    selectors: Vec::new(),
+                    perhaps: vec!["*".into()],
+                    declarations: Vec::new(),
+                    sheet,
+                }),
                 _ => {}
             }
             if mark == "}" {
@@ -146,10 +149,10 @@ impl Sheets {
         let obeyed = self.obeyed(node);
         let mut best = own;
         for (weight, number) in obeyed.iter() {
-            for said in self.rules[*number].said.iter().filter(|said| said.name == name) {
-                let key = (said.important, false, *weight, *number);
+            for declaration in self.rules[*number].declarations.iter().filter(|declaration| declaration.name == name) {
+                let key = (declaration.important, false, *weight, *number);
                 if best.is_none_or(|(least, _)| key >= least) {
-                    best = Some((key, said.value.as_str()));
+                    best = Some((key, declaration.value.as_str()));
                 }
             }
         }
@@ -166,12 +169,12 @@ impl Sheets {
         }
         let mut known = self.styles.borrow_mut();
         let own = known.entry(node.id().get_usize()).or_insert_with(|| {
-            let mut said = BTreeMap::new();
+            let mut declarations = BTreeMap::new();
             for (word, value) in pieces {
                 let from = value.as_ptr() as usize - text.as_ptr() as usize;
-                said.entry(word.trim().to_string()).or_insert((from, from + value.len()));
+                declarations.entry(word.trim().to_string()).or_insert((from, from + value.len()));
             }
-            said
+            declarations
         });
         let (from, to) = *own.get(name)?;
         Some(without_importance(&text[from..to]))
@@ -201,8 +204,12 @@ impl Sheets {
         let mut about = false;
         for rule in self.rules.iter().filter(|rule| rule.perhaps.iter().any(|word| fits(word, node))) {
             about = true;
-            let Some(said) = rule.said.iter().find(|said| changes_outlines(&said.name, &said.value)) else { continue };
-            let error = SvgError::Style { property: visible(&said.name), value: visible(&said.value) };
+            let Some(declaration) =
+                rule.declarations.iter().find(|declaration| changes_outlines(&declaration.name, &declaration.value))
+            else {
+                continue;
+            };
+            let error = SvgError::Style { property: visible(&declaration.name), value: visible(&declaration.value) };
             return Err(source.mark(SceneError::of(error), rule.sheet.0, rule.sheet.1));
         }
         Ok(about)
@@ -222,15 +229,15 @@ impl Rule {
                 }
             }
         }
-        Rule { selectors, perhaps, said: Vec::new(), sheet }
+        Rule { selectors, perhaps, declarations: Vec::new(), sheet }
     }
 }
 
-impl Said {
-    fn read(piece: &str) -> Option<Said> {
+impl Declaration {
+    fn read(piece: &str) -> Option<Declaration> {
         let (name, value) = piece.split_once(':')?;
         let (value, important) = without_importance(value);
-        Some(Said { name: name.trim().to_string(), value: value.to_string(), important })
+        Some(Declaration { name: name.trim().to_string(), value: value.to_string(), important })
     }
 }
 
@@ -274,10 +281,10 @@ impl Selector {
             [.., (last, _)] if !all(last, node) => false,
             parts => {
                 // From the outermost element inwards: how many parts have been met anywhere above, and by the parent.
-                let mut way: Vec<Node<'_, '_>> = node.ancestors().filter(Node::is_element).collect();
-                way.reverse();
+                let mut lineage: Vec<Node<'_, '_>> = node.ancestors().filter(Node::is_element).collect();
+                lineage.reverse();
                 let (mut above, mut parent) = (vec![false; parts.len()], vec![false; parts.len()]);
-                for element in way {
+                for element in lineage {
                     let met = |(k, (words, child)): (usize, &(Vec<String>, bool))| {
                         let before = k == 0 || if *child { parent[k - 1] } else { above[k - 1] };
                         before && all(words, element)

@@ -43,8 +43,8 @@ impl Sheets {
 
     /// Whether an element is there but cannot be seen. Visibility is inherited, and may come back.
     pub(super) fn is_hidden(&self, node: Node<'_, '_>) -> bool {
-        let said = |node| self.style(node, "visibility").filter(|value| *value != "inherit");
-        matches!(node.ancestors().find_map(said), Some("hidden" | "collapse"))
+        let inherited = |node| self.style(node, "visibility").filter(|value| *value != "inherit");
+        matches!(node.ancestors().find_map(inherited), Some("hidden" | "collapse"))
     }
 
     /// Whether an element and all that is in it is fully transparent.
@@ -62,11 +62,11 @@ impl Sheets {
 
     /// Whether a stroke would be drawn along an element, which makes it larger by half of its width. Strokes are inherited.
     pub(super) fn has_stroke(&self, node: Node<'_, '_>) -> bool {
-        let said =
+        let inherited =
             |name: &str| node.ancestors().find_map(|node| self.style(node, name).filter(|value| *value != "inherit"));
         let nothing = |value: &str| value.trim_end_matches(|c: char| c == '%' || c.is_alphabetic()).parse() == Ok(0.0);
-        let drawn = said("stroke").is_some_and(|paint| !matches!(paint, "none" | "transparent"));
-        drawn && !["stroke-width", "stroke-opacity"].into_iter().any(|name| said(name).is_some_and(nothing))
+        let drawn = inherited("stroke").is_some_and(|paint| !matches!(paint, "none" | "transparent"));
+        drawn && !["stroke-width", "stroke-opacity"].into_iter().any(|name| inherited(name).is_some_and(nothing))
     }
 }
 

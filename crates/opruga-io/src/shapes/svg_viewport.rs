@@ -42,8 +42,8 @@ impl Reader<'_, '_> {
         let own = node.tag_name().name() == "svg";
         let [x, y] = if own { [self.number(node, "x", 0.0)?, self.number(node, "y", 0.0)?] } else { [0.0; 2] };
         let side = |name: &str, axis: usize| {
-            let says = |node: &Node<'_, '_>| node.attribute(name).is_some_and(|value| value.trim() != "auto");
-            match used_by.filter(says).or_else(|| Some(node).filter(says)) {
+            let has_size = |node: &Node<'_, '_>| node.attribute(name).is_some_and(|value| value.trim() != "auto");
+            match used_by.filter(has_size).or_else(|| Some(node).filter(has_size)) {
                 Some(from) => self.size(from, name).map(Some),
                 None => Ok(self.canvas.map(|canvas| canvas[axis])),
             }

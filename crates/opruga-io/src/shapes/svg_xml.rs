@@ -31,8 +31,8 @@ pub(super) fn document<'a>(source: &Source<'a>) -> Result<Document<'a>, SceneErr
 
 /// What the XML reader refuses.
 fn syntax(source: &Source<'_>, error: &roxmltree::Error) -> SceneError {
-    let place = error.pos();
-    let at = source.offset(place.row as usize, place.col as usize);
+    let position = error.pos();
+    let at = source.offset(position.row as usize, position.col as usize);
     let text = error.to_string();
     let reason = visible(text.split(" at ").next().unwrap_or(&text));
     let found = visible(&source.text[at..].chars().take(1).collect::<String>());

@@ -41,24 +41,24 @@ struct Pen {
 }
 
 impl Pen {
-    fn place(&self, x: f32, y: f32) -> [f64; 2] {
+    fn point(&self, x: f32, y: f32) -> [f64; 2] {
         [self.from + f64::from(x), f64::from(y)]
     }
 }
 
 impl OutlineBuilder for Pen {
     fn move_to(&mut self, x: f32, y: f32) {
-        self.start = self.place(x, y);
+        self.start = self.point(x, y);
         self.curves.move_to(self.start);
     }
     fn line_to(&mut self, x: f32, y: f32) {
-        self.curves.line_to(self.place(x, y));
+        self.curves.line_to(self.point(x, y));
     }
     fn quad_to(&mut self, x1: f32, y1: f32, x: f32, y: f32) {
-        self.curves.quadratic_to(self.place(x1, y1), self.place(x, y));
+        self.curves.quadratic_to(self.point(x1, y1), self.point(x, y));
     }
     fn curve_to(&mut self, x1: f32, y1: f32, x2: f32, y2: f32, x: f32, y: f32) {
-        self.curves.cubic_to(self.place(x1, y1), self.place(x2, y2), self.place(x, y));
+        self.curves.cubic_to(self.point(x1, y1), self.point(x2, y2), self.point(x, y));
     }
     fn close(&mut self) {
         self.curves.line_to(self.start);
@@ -111,6 +111,6 @@ pub(super) fn read<'a>(file: &str, bytes: &[u8], shape: &Values) -> Result<Drawi
         let error = if empty { LetterError::EmptyText {} } else { LetterError::NoLetters { text: visible(text) } };
         return Err(Problem::new("text", SceneError::of(error)));
     }
-    let (places, painted, rules, notices) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    Ok(Drawing { curves: pen.curves, y_down: false, source: None, places, painted, rules, notices })
+    let (spans, painted, rules, notices) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    Ok(Drawing { curves: pen.curves, y_down: false, source: None, spans, painted, rules, notices })
 }

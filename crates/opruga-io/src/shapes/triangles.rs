@@ -3,7 +3,7 @@
 use super::curves::larger;
 use super::errors::ShapeHint;
 use super::surface_errors::{FaceProblem, SurfaceError, SurfaceNotice};
-use super::{Content, Loaded, Problem, told};
+use super::{Content, Loaded, Problem, loss_notices};
 use crate::meshes::MeshFileError;
 use crate::problem::SceneError;
 use crate::rounding::Stored;
@@ -14,7 +14,7 @@ use opruga_mesh::{FaceError, Mesh, MeshError, cut_face};
 use opruga_world::shapes;
 use std::collections::BTreeMap;
 
-/// Faces whose corners lie this part of their size off their plane are told: another cut would give another surface.
+/// Faces whose corners lie this part of their size off their plane are reported: another cut would give another surface.
 const BENT: f64 = 0.02;
 /// A triangle whose area is below this part of its longest edge squared is refused.
 const THIN: f64 = 1e-10;
@@ -31,7 +31,7 @@ pub(super) struct Triangles {
     pub(super) positions: Vec<[f64; 3]>,
     pub(super) triangles: Vec<[u32; 3]>,
     /// Where each triangle stands in the file.
-    pub(super) places: Places,
+    pub(super) locations: Locations,
     /// Named sets of vertices.
     pub(super) groups: BTreeMap<String, Vec<u32>>,
     /// What the file has rounded away, where positions are not as they stand in it.
@@ -56,7 +56,7 @@ pub(super) struct Polygons {
 
 /// Where triangles stand in a file.
 #[derive(Debug, Default)]
-pub(super) enum Places {
+pub(super) enum Locations {
     /// Only their numbers are known.
     #[default]
     Numbers,
@@ -110,8 +110,8 @@ impl Triangles {
 
     /// An error at a triangle.
     fn at(&self, source: Option<&Source<'_>>, triangle: u32, error: SceneError) -> SceneError {
-        match (&self.places, source) {
-            (Places::Lines(lines), Some(source)) => match lines.get(triangle as usize) {
+        match (&self.locations, source) {
+            (Locations::Lines(lines), Some(source)) => match lines.get(triangle as usize) {
                 Some(from) => {
                     let from = *from as usize;
                     let end = source.text[from..].find('\n').map_or(source.text.len(), |k| from + k);
@@ -119,8 +119,8 @@ impl Triangles {
                 }
                 None => error,
             },
-            (Places::Bytes { first, each }, _) => at_byte(error, (first + each * triangle as usize) as u64),
-            (Places::Starts(starts), _) => match starts.get(triangle as usize) {
+            (Locations::Bytes { first, each }, _) => at_byte(error, (first + each * triangle as usize) as u64),
+            (Locations::Starts(starts), _) => match starts.get(triangle as usize) {
                 Some(byte) => at_byte(error, *byte),
                 None => error,
             },
@@ -168,7 +168,7 @@ pub(super) fn loaded(
     }
     let stored = found.stored.unwrap_or_else(|| found.as_stored());
     let mut notices = std::mem::take(&mut found.notices);
-    notices.extend(stored.told().map_err(named)?);
+    notices.extend(stored.warning().map_err(named)?);
     notices.extend(found.cut());
     weld(&mut found, source, shape, &mut notices).map_err(named)?;
     let given = found.triangles.len();
@@ -199,9 +199,9 @@ pub(super) fn loaded(
         compare(&mesh, &found, of_file, source, shape, &mut notices).map_err(named)?;
     }
     if shape.number("size").is_none() {
-        notices.extend(odd_scale(&mesh));
+        notices.extend(unusual_scale(&mesh));
     }
-    place(&mut mesh, shape).map_err(named)?;
+    scale_and_center(&mut mesh, shape).map_err(named)?;
     let filling = match shapes::filling(shape) {
         Ok(Some(_)) if mesh.facets.is_empty() => {
             let filling = shape.text("filling").unwrap_or("").to_string();
@@ -237,7 +237,7 @@ fn slivers(mesh: &Mesh<3>) -> Option<SceneError> {
 }
 
 /// A surface whose file is probably not in metres.
-fn odd_scale(mesh: &Mesh<3>) -> Option<SceneError> {
+fn unusual_scale(mesh: &Mesh<3>) -> Option<SceneError> {
     let (low, high) = mesh.bounds();
     let extent = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, larger);
     if (USUAL[0]..=USUAL[1]).contains(&extent) {
@@ -390,11 +390,11 @@ fn flipped(notices: &mut Vec<SceneError>, count: usize) {
 
 /// What the topology of a surface forbids.
 fn refused(mesh: &Mesh<3>, found: &Triangles, source: Option<&Source<'_>>, error: MeshError) -> SceneError {
-    let place = |node: u32| mesh.positions[node as usize].map(number).join(", ");
+    let coordinates = |node: u32| mesh.positions[node as usize].map(number).join(", ");
     match error {
         MeshError::Open { loops, nodes } => {
-            let positions: Vec<String> = nodes.iter().take(8).map(|n| format!("({})", place(*n))).collect();
-            let hint = match told::seams(mesh) {
+            let positions: Vec<String> = nodes.iter().take(8).map(|n| format!("({})", coordinates(*n))).collect();
+            let hint = match loss_notices::seams(mesh) {
                 0 => ShapeHint::CapOrSheet {},
                 count => ShapeHint::Weld { count },
             };
@@ -402,7 +402,7 @@ fn refused(mesh: &Mesh<3>, found: &Triangles, source: Option<&Source<'_>>, error
         }
         MeshError::NonManifoldEdges { edges } => {
             let positions: Vec<String> =
-                edges.iter().take(8).map(|[a, b]| format!("({}) – ({})", place(*a), place(*b))).collect();
+                edges.iter().take(8).map(|[a, b]| format!("({}) – ({})", coordinates(*a), coordinates(*b))).collect();
             SceneError::of(SurfaceError::CrowdedEdges { count: edges.len(), positions: positions.join("; ") })
         }
         MeshError::NonOrientable { facet } => found.at(source, facet, SceneError::of(SurfaceError::OneSided { facet })),
@@ -410,8 +410,8 @@ fn refused(mesh: &Mesh<3>, found: &Triangles, source: Option<&Source<'_>>, error
     }
 }
 
-/// Brings the surface upright, to its size and to its place.
-fn place(mesh: &mut Mesh<3>, shape: &Values) -> Result<(), SceneError> {
+/// Brings the surface upright, to its size and to its position.
+fn scale_and_center(mesh: &mut Mesh<3>, shape: &Values) -> Result<(), SceneError> {
     if shape.text("up") == Some("z") {
         mesh.positions.iter_mut().for_each(|p| *p = [p[0], p[2], -p[1]]);
     }

@@ -322,7 +322,7 @@ fn what_is_wrong_with_vtk_xml_is_told_with_its_line() {
 fn scene_of(dimension: usize, shape: &str, files: &[(&str, Vec<u8>)]) -> Result<AnyBlueprint, Vec<SceneError>> {
     let head = HEAD.replace("dimension = 2", &format!("dimension = {dimension}"));
     let text = format!("{head}[[body]]\nname = \"it\"\nmass = 1\nshape = {{ {shape} }}\n");
-    let files = Files::held(files.iter().map(|(name, bytes)| (name.to_string(), Arc::from(bytes.clone()))));
+    let files = Files::in_memory(files.iter().map(|(name, bytes)| (name.to_string(), Arc::from(bytes.clone()))));
     let options = scene::Options { files, ..scene::Options::default() };
     scene::read(text.as_bytes(), "scene.toml", &catalogue(), &options).map(|read| read.0)
 }

@@ -95,7 +95,7 @@ fn survives(&Sample { dimension, name, shape, .. }: &Sample, bytes: &[u8]) -> bo
     let limits = Limits { nodes: 20_000, memory_bytes: 64 << 20, ..Limits::default() };
     let beside = [("a.node", NODES), ("a.ele", CELLS)].into_iter().filter(|(file, _)| *file != name);
     let files = beside.chain([(name, bytes)]).map(|(file, bytes)| (file.to_string(), Arc::from(bytes)));
-    let files = Files::held(files);
+    let files = Files::in_memory(files);
     match read(text.as_bytes(), "scene.toml", &catalogue(), &Options { limits, files, ..Options::default() }) {
         Ok((AnyBlueprint::Plane(b), _)) => sound(&b.bodies[0].mesh),
         Ok((AnyBlueprint::Space(b), _)) => sound(&b.bodies[0].mesh),

@@ -58,7 +58,7 @@ fn by_differences<const D: usize>(nodes: &[[f64; D]], at: [f64; 4]) -> f64 {
 }
 
 /// Places inside a cell, and on its edges.
-fn places(is_box: bool, dimension: usize) -> Vec<[f64; 4]> {
+fn sample_points(is_box: bool, dimension: usize) -> Vec<[f64; 4]> {
     const STEPS: usize = 8;
     let mut out = Vec::new();
     for code in 0..(STEPS + 1).pow(dimension as u32) {
@@ -80,7 +80,7 @@ fn agrees<const D: usize>(reference: &[[f64; D]], amount: f64, state: &mut u64) 
     let net = Net::of(&nodes).expect("a cell");
     let least = least_jacobian(&nodes).expect("a cell");
     let mut sampled = f64::INFINITY;
-    for at in places(nodes.len() == 1 << D, D) {
+    for at in sample_points(nodes.len() == 1 << D, D) {
         let expected = by_differences(&nodes, at);
         assert!((net.value(at) - expected).abs() < 1e-11, "{at:?}: {} {expected}", net.value(at));
         sampled = if expected < sampled { expected } else { sampled };

@@ -6,8 +6,8 @@ use crate::skin::{Area, Skin};
 use crate::{Mesh, MeshError};
 use std::collections::BTreeMap;
 
-/// Each cell covers so many places of the grid on average at most: compact ones cover four. It keeps the grid about as large as the body.
-const MOST_PLACES: f64 = 16.0;
+/// Each cell covers so many bins of the grid on average at most: compact ones cover four. It keeps the grid about as large as the body.
+const MOST_BINS: f64 = 16.0;
 
 /// An area that is to be painted on a body.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -116,7 +116,7 @@ enum Carrier {
     Square([u32; 4]),
 }
 
-/// Cells by the places of a grid that their boxes cover.
+/// Cells by the bins of a grid that their boxes cover.
 struct Grid<'m> {
     cells: &'m [Carrier],
     positions: &'m [[f64; 2]],
@@ -124,7 +124,7 @@ struct Grid<'m> {
     side: f64,
     /// Columns and rows.
     counts: [i64; 2],
-    places: BTreeMap<(i64, i64), Vec<u32>>,
+    bins: BTreeMap<(i64, i64), Vec<u32>>,
 }
 
 impl<'m> Grid<'m> {
@@ -140,63 +140,63 @@ impl<'m> Grid<'m> {
                 widest += (to[a] - from[a]) / (2 * cells.len()) as f64;
             }
         }
-        // About as wide as a cell, but no more places than a few for each.
+        // About as wide as a cell, but no more bins than a few for each.
         let least = distance(low, high) / (2.0 * (cells.len() as f64).sqrt() + 1.0);
         let side = if widest > least { widest } else { least };
         let counts = core::array::from_fn(|a| ((high[a] - low[a]) / side).floor() as i64);
-        let mut grid = Grid { cells, positions, low, side, counts, places: BTreeMap::new() };
-        // Long slanting cells cover many places: fewer and wider ones then, down to one.
-        while grid.covered(&boxes) > MOST_PLACES * cells.len() as f64 && grid.counts != [0; 2] {
+        let mut grid = Grid { cells, positions, low, side, counts, bins: BTreeMap::new() };
+        // Long slanting cells cover many bins: fewer and wider ones then, down to one.
+        while grid.covered(&boxes) > MOST_BINS * cells.len() as f64 && grid.counts != [0; 2] {
             grid.side *= 2.0;
             grid.counts = core::array::from_fn(|a| ((high[a] - low[a]) / grid.side).floor() as i64);
         }
         for (number, (from, to)) in boxes.iter().enumerate() {
-            let (from, to) = (grid.place(*from), grid.place(*to));
+            let (from, to) = (grid.bin(*from), grid.bin(*to));
             for i in from.0..=to.0 {
                 for j in from.1..=to.1 {
-                    grid.places.entry((i, j)).or_default().push(number as u32);
+                    grid.bins.entry((i, j)).or_default().push(number as u32);
                 }
             }
         }
         Some(grid)
     }
 
-    /// How many places boxes cover, each counted as often.
+    /// How many bins boxes cover, each counted as often.
     fn covered(&self, boxes: &[([f64; 2], [f64; 2])]) -> f64 {
         let of = |(from, to): &([f64; 2], [f64; 2])| {
-            let (from, to) = (self.place(*from), self.place(*to));
+            let (from, to) = (self.bin(*from), self.bin(*to));
             (to.0 - from.0 + 1) as f64 * (to.1 - from.1 + 1) as f64
         };
         boxes.iter().map(of).sum()
     }
 
-    fn place(&self, p: [f64; 2]) -> (i64, i64) {
+    fn bin(&self, p: [f64; 2]) -> (i64, i64) {
         let along = |a: usize| {
-            let place = ((p[a] - self.low[a]) / self.side).floor() as i64;
-            place.clamp(0, self.counts[a])
+            let bin = ((p[a] - self.low[a]) / self.side).floor() as i64;
+            bin.clamp(0, self.counts[a])
         };
         (along(0), along(1))
     }
 
     /// The nodes that carry a point and their weights: of the cell in which its least weight is largest, among those near it.
     fn carrier(&self, point: [f64; 2]) -> ([u32; 4], [f64; 4]) {
-        let (i, j) = self.place(point);
+        let (i, j) = self.bin(point);
         let widest = if self.counts[0] > self.counts[1] { self.counts[0] } else { self.counts[1] };
         let mut best = (f64::NEG_INFINITY, ([0; 4], [1.0, 0.0, 0.0, 0.0]));
         for reach in 0..=widest + 1 {
-            // The places at this distance: nearer ones have been looked at.
+            // The bins at this distance: nearer ones have been looked at.
             let columns = (i - reach..=i + reach).filter(|column| (0..=self.counts[0]).contains(column));
             let ring = columns.flat_map(|column| {
                 let step = if (column - i).abs() == reach { 1 } else { 2 * reach };
                 (j - reach..=j + reach).step_by(step.max(1) as usize).map(move |row| (column, row))
             });
-            for cell in ring.filter_map(|place| self.places.get(&place)).flatten() {
+            for cell in ring.filter_map(|bin| self.bins.get(&bin)).flatten() {
                 let weighed = self.weigh(&self.cells[*cell as usize], point);
                 if weighed.0 > best.0 {
                     best = weighed;
                 }
             }
-            // A cell that holds the point is found at once; one near it within a place more than the first was.
+            // A cell that holds the point is found at once; one near it within a bin more than the first was.
             if best.0 >= 0.0 || best.0 > f64::NEG_INFINITY && reach > 0 {
                 break;
             }

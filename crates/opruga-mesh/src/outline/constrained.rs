@@ -89,12 +89,14 @@ fn coarse_to_fine<V: HasPosition<Scalar = f64>>(
     let mut triangulation = ConstrainedDelaunayTriangulation::new();
     let mut handles: Vec<Option<FixedVertexHandle>> = vec![None; points.len()];
     let mut numbers = Vec::with_capacity(points.len());
-    for (number, near) in outer_corners(points).map(|number| (number, None)).into_iter().chain(halvings(points.len())) {
+    for (number, neighbour) in
+        outer_corners(points).map(|number| (number, None)).into_iter().chain(halvings(points.len()))
+    {
         if handles[number].is_some() {
             continue;
         }
         let point = shrink(points[number]);
-        let made = match near.and_then(|near: usize| handles[near]) {
+        let made = match neighbour.and_then(|neighbour: usize| handles[neighbour]) {
             Some(hint) => triangulation.insert_with_hint(point, hint),
             None => triangulation.insert(point),
         };
@@ -152,8 +154,8 @@ mod tests {
     fn halvings_name_every_number_once_and_after_its_neighbour() {
         for count in [0usize, 1, 2, 3, 7, 8, 9, 100] {
             let mut seen = vec![false; count];
-            for (number, near) in halvings(count) {
-                assert!(!seen[number] && near.is_none_or(|near| seen[near]), "{number} of {count}");
+            for (number, neighbour) in halvings(count) {
+                assert!(!seen[number] && neighbour.is_none_or(|neighbour| seen[neighbour]), "{number} of {count}");
                 seen[number] = true;
             }
             assert!(seen.iter().all(|seen| *seen), "{count}");

@@ -20,18 +20,18 @@ messages! {
         "shape.no_area" #[error("there is no closed outline")]
         Empty {},
         /// A ring has too few points or encloses no area: how many points it has, and the first.
-        "shape.no_area" #[error("an outline encloses no area: {}, the first at {}", counted(*points as u64, "point", "points"), at(place))]
-        #[value("{}", place.map(number).join(", "))]
-        NoArea { part: u32, points: usize, place: [f64; 2] },
+        "shape.no_area" #[error("an outline encloses no area: {}, the first at {}", counted(*points as u64, "point", "points"), at(position))]
+        #[value("{}", position.map(number).join(", "))]
+        NoArea { part: u32, points: usize, position: [f64; 2] },
         /// A coordinate is infinite or not a number.
         "scene.not_finite" #[error("a coordinate is {value}")] #[value("{value}")]
         NotFinite { part: u32, value: f64 },
         /// Two edges of these parts cross, touch or overlap, roughly there.
-        "shape.crossing" #[error("{what} near {}", at(place))] #[value("{}", place.map(number).join(", "))]
-        Meeting { what: MeetingOf, parts: [u32; 2], place: [f64; 2] },
+        "shape.crossing" #[error("{what} near {}", at(position))] #[value("{}", position.map(number).join(", "))]
+        Meeting { what: MeetingOf, parts: [u32; 2], position: [f64; 2] },
         /// At the wanted spacing of nodes \[m\] edges of these parts cross: the outline has features that are finer.
-        "shape.spacing" #[error("with nodes {} m apart edges cross near {}", number(*spacing), at(place))] #[value("{spacing}")]
-        TooCoarse { spacing: f64, parts: [u32; 2], place: [f64; 2] },
+        "shape.spacing" #[error("with nodes {} m apart edges cross near {}", number(*spacing), at(position))] #[value("{spacing}")]
+        TooCoarse { spacing: f64, parts: [u32; 2], position: [f64; 2] },
         /// Filling with nodes at this distance \[m\] would take, or took, too many nodes.
         "limit.nodes" #[error("filled with nodes {} m apart the outline would have about {nodes} nodes", number(*spacing))] #[value("{spacing}")]
         TooFine { spacing: f64, nodes: u64 },
@@ -49,7 +49,7 @@ impl OutlineError {
     /// That edges of two parts meet.
     pub(super) fn meeting(parts: [u32; 2], point: [f64; 2]) -> OutlineError {
         let what = if parts[0] == parts[1] { MeetingOf::Itself } else { MeetingOf::Others };
-        OutlineError::Meeting { what, parts, place: point }
+        OutlineError::Meeting { what, parts, position: point }
     }
 }
 
@@ -62,7 +62,7 @@ impl From<MeshError> for OutlineError {
     }
 }
 
-/// A place in a sentence.
-fn at(place: &[f64; 2]) -> String {
-    format!("({}, {})", number(place[0]), number(place[1]))
+/// A position in a sentence.
+fn at(position: &[f64; 2]) -> String {
+    format!("({}, {})", number(position[0]), number(position[1]))
 }

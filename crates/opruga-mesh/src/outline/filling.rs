@@ -47,7 +47,7 @@ pub fn filled(rings: &[Ring], spacing: f64) -> Result<(Mesh<2>, Option<Thin>), O
 
     // The library wants numbers of ordinary size: the drawing is brought to the unit square and back.
     let shrink = |p: [f64; 2]| Point2::new((p[0] - low[0]) / extent, (p[1] - low[1]) / extent);
-    let failed = |part: u32, place| OutlineError::TooCoarse { spacing, parts: [part; 2], place };
+    let failed = |part: u32, position| OutlineError::TooCoarse { spacing, parts: [part; 2], position };
     let (mut triangulation, given) = constrained(rings, &lattice(rings, low, high, spacing), shrink, failed)?;
     let parameters = RefinementParameters::<f64>::new()
         .with_angle_limit(AngleLimit::from_radius_to_shortest_edge_ratio(RADIUS_TO_EDGE))
@@ -71,18 +71,18 @@ pub fn filled(rings: &[Ring], spacing: f64) -> Result<(Mesh<2>, Option<Thin>), O
     if !used[..border.len()].iter().all(|u| *u) {
         return Err(failed(0, low));
     }
-    let mut places = vec![[0.0; 2]; used.len()];
+    let mut vertices = vec![[0.0; 2]; used.len()];
     for vertex in triangulation.vertices() {
         let p = vertex.position();
-        places[number(vertex.fix().index())] = [low[0] + p.x * extent, low[1] + p.y * extent];
+        vertices[number(vertex.fix().index())] = [low[0] + p.x * extent, low[1] + p.y * extent];
     }
     // Points of the rings keep their bits.
-    places[..border.len()].copy_from_slice(&border);
+    vertices[..border.len()].copy_from_slice(&border);
     let mut numbers = vec![0u32; used.len()];
     let mut positions = Vec::new();
-    for (index, place) in places.into_iter().enumerate().filter(|(index, _)| used[*index]) {
+    for (index, vertex) in vertices.into_iter().enumerate().filter(|(index, _)| used[*index]) {
         numbers[index] = positions.len() as u32;
-        positions.push(place);
+        positions.push(vertex);
     }
     triangles.iter_mut().flatten().for_each(|node| *node = numbers[*node as usize]);
     for triangle in &mut triangles {
@@ -105,7 +105,7 @@ pub(crate) fn triangles_between(rings: &[Ring]) -> Result<Vec<[u32; 3]>, Outline
     let (low, high) = super::bounds(rings).ok_or(OutlineError::Empty {})?;
     let extent = distance(low, high);
     let shrink = |p: [f64; 2]| Point2::new((p[0] - low[0]) / extent, (p[1] - low[1]) / extent);
-    let failed = |part: u32, place| OutlineError::TooCoarse { spacing: extent, parts: [part; 2], place };
+    let failed = |part: u32, position| OutlineError::TooCoarse { spacing: extent, parts: [part; 2], position };
     let (mut triangulation, given) = constrained(rings, &[], shrink, failed)?;
     // A refinement that may add nothing tells which triangles lie outside.
     let nothing = RefinementParameters::<f64>::new().with_max_additional_vertices(0).exclude_outer_faces(true);
@@ -120,7 +120,7 @@ fn lattice(rings: &[Ring], low: [f64; 2], high: [f64; 2], spacing: f64) -> Vec<[
     // Edges by the cells of a grid that they run through.
     let cell = |x: f64| (x / spacing).floor() as i64;
     let edges: Vec<([f64; 2], [f64; 2])> = rings.iter().flat_map(Ring::edges).collect();
-    let mut near: BTreeMap<(i64, i64), Vec<usize>> = BTreeMap::new();
+    let mut edges_by_cell: BTreeMap<(i64, i64), Vec<usize>> = BTreeMap::new();
     for (number, (a, b)) in edges.iter().enumerate() {
         let range = |axis: usize| {
             let (p, q) = (cell(a[axis] - low[axis]), cell(b[axis] - low[axis]));
@@ -128,7 +128,7 @@ fn lattice(rings: &[Ring], low: [f64; 2], high: [f64; 2], spacing: f64) -> Vec<[
         };
         for i in range(0) {
             for j in range(1) {
-                near.entry((i, j)).or_default().push(number);
+                edges_by_cell.entry((i, j)).or_default().push(number);
             }
         }
     }
@@ -136,7 +136,7 @@ fn lattice(rings: &[Ring], low: [f64; 2], high: [f64; 2], spacing: f64) -> Vec<[
         let (i, j) = (cell(point[0] - low[0]), cell(point[1] - low[1]));
         let around = (i - 1..=i + 1).flat_map(|i| (j - 1..=j + 1).map(move |j| (i, j)));
         around
-            .filter_map(|key| near.get(&key))
+            .filter_map(|key| edges_by_cell.get(&key))
             .flatten()
             .all(|edge| distance_to_segment(point, edges[*edge]) >= CLEARANCE * spacing)
     };
@@ -170,8 +170,8 @@ fn lattice(rings: &[Ring], low: [f64; 2], high: [f64; 2], spacing: f64) -> Vec<[
         crossings.sort_by(f64::total_cmp);
         let shift = if row % 2 == 0 { 0.0 } else { 0.5 };
         for inside in crossings.chunks_exact(2) {
-            let place = |x: f64| ((x - middle) / spacing - shift).floor() as i64;
-            for k in place(inside[0])..=place(inside[1]) + 1 {
+            let column = |x: f64| ((x - middle) / spacing - shift).floor() as i64;
+            for k in column(inside[0])..=column(inside[1]) + 1 {
                 let x = middle + (k as f64 + shift) * spacing;
                 if inside[0] <= x && x < inside[1] && clear([x, y]) {
                     points.push([x, y]);

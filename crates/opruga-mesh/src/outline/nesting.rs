@@ -14,8 +14,8 @@ type Meeting = ([u32; 2], [f64; 2]);
 /// themselves or one another.
 pub fn nest(rings: &mut [Ring]) -> Result<usize, OutlineError> {
     check(rings)?;
-    if let Some((parts, place)) = meeting(rings)? {
-        return Err(OutlineError::meeting(parts, place));
+    if let Some((parts, point)) = meeting(rings)? {
+        return Err(OutlineError::meeting(parts, point));
     }
     let mut turned = 0;
     let around = around(rings);
@@ -34,7 +34,7 @@ pub fn nest(rings: &mut [Ring]) -> Result<usize, OutlineError> {
 /// Whether a ring lies inside an odd number of others; what is known of each is kept.
 fn is_hole(number: usize, around: &[Option<usize>], known: &mut [Option<bool>]) -> bool {
     // Outwards to a ring of which it is known, and back: rings may lie in one another by the thousand.
-    let (mut way, mut at) = (Vec::new(), number);
+    let (mut path, mut at) = (Vec::new(), number);
     let mut hole = loop {
         match (known[at], around[at]) {
             (Some(hole), _) => break hole,
@@ -43,12 +43,12 @@ fn is_hole(number: usize, around: &[Option<usize>], known: &mut [Option<bool>]) 
                 break false;
             }
             (None, Some(outer)) => {
-                way.push(at);
+                path.push(at);
                 at = outer;
             }
         }
     };
-    for ring in way.into_iter().rev() {
+    for ring in path.into_iter().rev() {
         hole = !hole;
         known[ring] = Some(hole);
     }
@@ -69,12 +69,12 @@ fn check(rings: &[Ring]) -> Result<(), OutlineError> {
             // The halves of a figure of eight enclose as much as they take away: what is wrong is that they cross.
             if area == 0.0
                 && !is_on_a_line(ring)
-                && let Some((parts, place)) = meeting(core::slice::from_ref(ring))?
+                && let Some((parts, point)) = meeting(core::slice::from_ref(ring))?
             {
-                return Err(OutlineError::meeting(parts, place));
+                return Err(OutlineError::meeting(parts, point));
             }
-            let place = ring.points.first().copied().unwrap_or([0.0; 2]);
-            return Err(OutlineError::NoArea { part: ring.part, points: ring.points.len(), place });
+            let first = ring.points.first().copied().unwrap_or([0.0; 2]);
+            return Err(OutlineError::NoArea { part: ring.part, points: ring.points.len(), position: first });
         }
     }
     Ok(())
@@ -83,9 +83,9 @@ fn check(rings: &[Ring]) -> Result<(), OutlineError> {
 /// Whether all points of a ring lie on one line.
 fn is_on_a_line(ring: &Ring) -> bool {
     let Some(first) = ring.points.first() else { return true };
-    let way = |p: &[f64; 2]| [p[0] - first[0], p[1] - first[1]];
-    let Some(along) = ring.points.iter().map(way).find(|way| *way != [0.0; 2]) else { return true };
-    ring.points.iter().map(way).all(|way| along[0] * way[1] - along[1] * way[0] == 0.0)
+    let offset = |p: &[f64; 2]| [p[0] - first[0], p[1] - first[1]];
+    let Some(along) = ring.points.iter().map(offset).find(|offset| *offset != [0.0; 2]) else { return true };
+    ring.points.iter().map(offset).all(|offset| along[0] * offset[1] - along[1] * offset[0] == 0.0)
 }
 
 /// The parts of the first two edges that meet, and about where.
@@ -97,11 +97,11 @@ pub(super) fn meeting(rings: &[Ring]) -> Result<Option<Meeting>, MeshError> {
     let Some([p, q]) = first_meeting(&all)? else { return Ok(None) };
     let ends = |(ring, edge): (usize, usize)| (all[ring][edge], all[ring][(edge + 1) % all[ring].len()]);
     let ((a, b), (c, d)) = (ends(p), ends(q));
-    Ok(Some(([rings[p.0].part, rings[q.0].part], crossing_place(a, b, c, d))))
+    Ok(Some(([rings[p.0].part, rings[q.0].part], crossing_point(a, b, c, d))))
 }
 
 /// Where two edges cross: a common end, or where their lines do; for parallel ones an end of one that lies on the other.
-fn crossing_place(a: [f64; 2], b: [f64; 2], c: [f64; 2], d: [f64; 2]) -> [f64; 2] {
+fn crossing_point(a: [f64; 2], b: [f64; 2], c: [f64; 2], d: [f64; 2]) -> [f64; 2] {
     let (u, v) = ([b[0] - a[0], b[1] - a[1]], [d[0] - c[0], d[1] - c[1]]);
     if let Some(common) = [c, d].into_iter().find(|end| *end == a || *end == b) {
         return common;

@@ -24,12 +24,12 @@ pub fn resampled(rings: &[Ring], spacing: f64) -> Result<Vec<Ring>, OutlineError
     let coarse: Vec<Ring> = rings.iter().zip(&touching).map(|(ring, fixed)| resample(ring, fixed, spacing)).collect();
     for (ring, before) in coarse.iter().zip(rings) {
         if ring.area() * before.area() <= 0.0 {
-            let place = ring.points.first().copied().unwrap_or([0.0; 2]);
-            return Err(OutlineError::NoArea { part: ring.part, points: ring.points.len(), place });
+            let first = ring.points.first().copied().unwrap_or([0.0; 2]);
+            return Err(OutlineError::NoArea { part: ring.part, points: ring.points.len(), position: first });
         }
     }
     match super::nesting::meeting(&coarse)? {
-        Some((parts, place)) => Err(OutlineError::TooCoarse { spacing, parts, place }),
+        Some((parts, position)) => Err(OutlineError::TooCoarse { spacing, parts, position }),
         None => Ok(coarse),
     }
 }

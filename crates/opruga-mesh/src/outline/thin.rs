@@ -28,7 +28,7 @@ pub struct Thin {
     /// The smallest angle of all [°].
     pub angle: f64,
     /// Where that is [m].
-    pub place: [f64; 2],
+    pub position: [f64; 2],
     /// Why.
     pub cause: Cause,
 }
@@ -36,34 +36,34 @@ pub struct Thin {
 impl Thin {
     /// Those of the filling of rings; none where all angles are as promised.
     pub(super) fn of(mesh: &Mesh<2>, rings: &[Ring], spacing: f64, complete: bool) -> Option<Thin> {
-        let (mut count, mut angle, mut place) = (0, f64::INFINITY, [0.0; 2]);
+        let (mut count, mut angle, mut position) = (0, f64::INFINITY, [0.0; 2]);
         for triangle in &mesh.cells.triangles {
             let corners = triangle.map(|node| mesh.positions[node as usize]);
             let angles = [0, 1, 2].map(|k| turn(corners[k], corners[(k + 1) % 3], corners[(k + 2) % 3]));
             count += usize::from(angles.iter().any(|angle| *angle < SMALLEST_ANGLE - ROUNDING));
             for (own, at) in angles.into_iter().zip(corners) {
                 if own < angle {
-                    (angle, place) = (own, at);
+                    (angle, position) = (own, at);
                 }
             }
         }
-        let cause = || match sharpest_near(rings, place, spacing) {
+        let cause = || match sharpest_corner(rings, position, spacing) {
             Some(corner) if corner < SMALLEST_ANGLE + SMALLEST_ANGLE => Cause::Corner(corner),
             _ if complete => Cause::Finer,
             _ => Cause::Unfinished,
         };
-        (count > 0).then(|| Thin { count, angle, place, cause: cause() })
+        (count > 0).then(|| Thin { count, angle, position, cause: cause() })
     }
 }
 
-/// The sharpest inner corner of the rings within a spacing of a place [°].
-fn sharpest_near(rings: &[Ring], place: [f64; 2], spacing: f64) -> Option<f64> {
+/// The sharpest inner corner of the rings within a spacing of a position [°].
+fn sharpest_corner(rings: &[Ring], position: [f64; 2], spacing: f64) -> Option<f64> {
     let mut sharpest: Option<f64> = None;
     for ring in rings {
         let n = ring.points.len();
         for k in 0..n {
             let point = ring.points[k];
-            if distance(point, place) <= spacing {
+            if distance(point, position) <= spacing {
                 // Rings run with the inside on their left.
                 let angle = turn(point, ring.points[(k + 1) % n], ring.points[(k + n - 1) % n]);
                 let angle = if angle < 0.0 { angle + 360.0 } else { angle };

@@ -16,7 +16,7 @@ pub(super) fn apart(rings: &[Ring]) -> Vec<Ring> {
     let corners = Corners::of(rings);
     let mut next = corners.next.clone();
     let mut moved = corners.points.clone();
-    for here in corners.at_places().into_values().filter(|here| here.len() > 1) {
+    for here in corners.by_position().into_values().filter(|here| here.len() > 1) {
         // By their direction; of equal ones the first comes last, where it is looked for.
         let mut leaving: Vec<(f64, usize)> =
             here.iter().map(|corner| (corners.direction(*corner, corners.next[*corner]), *corner)).collect();
@@ -54,30 +54,30 @@ pub(super) fn touching(rings: &[Ring]) -> Vec<Vec<usize>> {
     let mut found = vec![Vec::new(); rings.len()];
     let Some((low, high)) = bounds(rings) else { return found };
     // Somewhat more than two corners that have been taken apart can be from one another.
-    let near = 4.0 * distance(low, high) * APART;
+    let tolerance = 4.0 * distance(low, high) * APART;
     // Two that are near share a column of one of two gratings, and lie one after another in it.
-    for shift in [0.0, near] {
+    for shift in [0.0, tolerance] {
         let mut order: Vec<(f64, f64, usize, usize)> = Vec::new();
         for (number, ring) in rings.iter().enumerate() {
-            let column = |x: f64| ((x - low[0] + shift) / (2.0 * near)).floor();
-            order.extend(ring.points.iter().enumerate().map(|(place, p)| (column(p[0]), p[1], number, place)));
+            let column = |x: f64| ((x - low[0] + shift) / (2.0 * tolerance)).floor();
+            order.extend(ring.points.iter().enumerate().map(|(index, p)| (column(p[0]), p[1], number, index)));
         }
         order.sort_unstable_by(|p, q| p.0.total_cmp(&q.0).then(p.1.total_cmp(&q.1)).then((p.2, p.3).cmp(&(q.2, q.3))));
-        for (k, &(column, y, ring, place)) in order.iter().enumerate() {
-            let later = order[k + 1..].iter().take_while(|later| later.0 == column && later.1 - y <= near);
+        for (k, &(column, y, ring, index)) in order.iter().enumerate() {
+            let later = order[k + 1..].iter().take_while(|later| later.0 == column && later.1 - y <= tolerance);
             for &(_, _, other, beside) in later {
                 let n = rings[ring].points.len();
-                let neighbours = ring == other && [1, n - 1].contains(&place.abs_diff(beside));
-                if !neighbours && distance(rings[ring].points[place], rings[other].points[beside]) <= near {
-                    found[ring].push(place);
+                let neighbours = ring == other && [1, n - 1].contains(&index.abs_diff(beside));
+                if !neighbours && distance(rings[ring].points[index], rings[other].points[beside]) <= tolerance {
+                    found[ring].push(index);
                     found[other].push(beside);
                 }
             }
         }
     }
-    for places in &mut found {
-        places.sort_unstable();
-        places.dedup();
+    for indices in &mut found {
+        indices.sort_unstable();
+        indices.dedup();
     }
     found
 }
@@ -103,14 +103,14 @@ impl Corners {
         all
     }
 
-    /// Corners by their place.
-    fn at_places(&self) -> BTreeMap<[u64; 2], Vec<usize>> {
-        let mut places: BTreeMap<[u64; 2], Vec<usize>> = BTreeMap::new();
+    /// Corners by their position.
+    fn by_position(&self) -> BTreeMap<[u64; 2], Vec<usize>> {
+        let mut corners: BTreeMap<[u64; 2], Vec<usize>> = BTreeMap::new();
         for (corner, point) in self.points.iter().enumerate() {
             // −0 is 0.
-            places.entry(point.map(|x| (x + 0.0).to_bits())).or_default().push(corner);
+            corners.entry(point.map(|x| (x + 0.0).to_bits())).or_default().push(corner);
         }
-        places
+        corners
     }
 
     /// The angle of the way from one corner to another [rad].

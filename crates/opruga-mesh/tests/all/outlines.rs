@@ -51,9 +51,9 @@ fn rings_in_rings_are_holes_and_islands_whichever_way_they_run() {
 #[test]
 fn rings_that_cross_or_touch_are_refused_with_the_place() {
     let mut rings = vec![square(0.0, 2.0, 3), square(1.0, 3.0, 7)];
-    let Err(OutlineError::Meeting { parts, place, .. }) = outline::nest(&mut rings) else { panic!("they cross") };
+    let Err(OutlineError::Meeting { parts, position, .. }) = outline::nest(&mut rings) else { panic!("they cross") };
     assert_eq!(parts, [3, 7]);
-    assert!([[2.0, 1.0], [1.0, 2.0]].contains(&place), "{place:?}");
+    assert!([[2.0, 1.0], [1.0, 2.0]].contains(&position), "{position:?}");
     let mut touching = vec![square(0.0, 1.0, 0), square(1.0, 2.0, 1)];
     assert!(matches!(outline::nest(&mut touching), Err(OutlineError::Meeting { .. })));
     let mut eight = vec![Ring { points: vec![[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 1.0]], part: 0 }];
@@ -361,7 +361,7 @@ fn thin_triangles_are_told_with_their_cause() {
     let wedge = ring(&[[0.0, 0.0], [10.0, 0.0], [10.0, 10.0 * 15f64.to_radians().tan()]]);
     let rings = outline::resampled(&[wedge], 0.5).expect("a wedge");
     let thin = outline::filled(&rings, 0.5).expect("a filling").1.expect("thin triangles");
-    assert!(thin.count > 0 && thin.angle <= 15.0 + 1e-9 && thin.place[0] < 0.5, "{thin:?}");
+    assert!(thin.count > 0 && thin.angle <= 15.0 + 1e-9 && thin.position[0] < 0.5, "{thin:?}");
     assert!(matches!(thin.cause, Cause::Corner(corner) if (corner - 15.0).abs() < 1e-6), "{thin:?}");
     // A slit that is far thinner than the spacing: its corners are right angles.
     let slit =

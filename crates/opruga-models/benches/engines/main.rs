@@ -162,12 +162,12 @@ impl<'a, const D: usize> Run<'a, D> {
             view,
             scratch,
             slots: Column::default(),
-            force: Columns::zeros(view.layout.places(view.nodes)),
+            force: Columns::zeros(view.layout.index_count(view.nodes)),
         }
     }
     fn forces(&mut self, simd: Simd) {
         self.potential.prepare(simd, &self.view, &[], &mut self.scratch).unwrap();
-        let indices = self.view.layout.places(self.view.nodes);
+        let indices = self.view.layout.index_count(self.view.nodes);
         let mut power = [0.0; WIDTH];
         for start in (0..indices).step_by(TILE) {
             let range = start..(start + TILE).min(indices);
@@ -186,13 +186,13 @@ fn compare<const D: usize>(title: &str, mesh: &Mesh<D>, layout: Layout, elements
         return;
     }
     let nodes = mesh.positions.len();
-    let indices = layout.places(nodes);
+    let indices = layout.index_count(nodes);
     let (mut x, v) = (Columns::<D>::zeros(indices), Columns::<D>::zeros(indices));
     for (node, p) in mesh.positions.iter().enumerate() {
         for body in 0..layout.stride() {
             let (across, size) = (p.get(2).copied().unwrap_or(0.0), 1.0 + 1e-3 * body as f64);
             let bent = [p[0] + 0.2 * p[1] * p[1], p[1] + 0.1 * p[0] * across, across * (1.0 - 0.1 * p[0])];
-            x.set(layout.place(node, body), std::array::from_fn(|d| size * bent[d]));
+            x.set(layout.index(node, body), std::array::from_fn(|d| size * bent[d]));
         }
     }
     let view = View { x: x.slices(), v: v.slices(), nodes, layout, time: 0.0, threads: 1 };
@@ -341,7 +341,7 @@ impl<const D: usize> Sink<D> for NodeBlocks<D> {
     fn stencils(&mut self, pack: &StencilPack<'_>) {
         for lane in 0..pack.count {
             for a in 0..pack.nodes {
-                self.add(pack.place(a, lane), &pack.block(a, a, lane));
+                self.add(pack.index(a, lane), &pack.block(a, a, lane));
             }
         }
     }

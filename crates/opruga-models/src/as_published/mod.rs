@@ -72,7 +72,7 @@ struct Constants {
     factor: f64,
     gy: f64,
     pointer: Vec<Vec<f64>>,
-    held: Vec<[f64; 2]>,
+    presses: Vec<[f64; 2]>,
 }
 
 /// Memory of each body: Pressure, the number of the press whose vertex is held (from 1; 0 for none), the vertex.
@@ -122,9 +122,9 @@ impl Constants {
     fn new(values: &Values) -> Constants {
         let number = |name| values.number(name).unwrap_or(0.0);
         let pointer = values.rows("pointer").to_vec();
-        let mut held: Vec<[f64; 2]> = values.rows("held").iter().map(|row| [row[0], row[1]]).collect();
-        if let (true, Some(first), Some(last)) = (held.is_empty(), pointer.first(), pointer.last()) {
-            held.push([first[0], last[0]]);
+        let mut presses: Vec<[f64; 2]> = values.rows("held").iter().map(|row| [row[0], row[1]]).collect();
+        if let (true, Some(first), Some(last)) = (presses.is_empty(), pointer.first(), pointer.last()) {
+            presses.push([first[0], last[0]]);
         }
         Constants {
             ks: number("stiffness"),
@@ -133,12 +133,12 @@ impl Constants {
             factor: number("factor"),
             gy: number("gravity_y"),
             pointer,
-            held,
+            presses,
         }
     }
     /// The number of the press that holds at a time, from 1; 0 for none.
     fn press(&self, time: f64) -> usize {
-        self.held.iter().position(|[press, release]| *press <= time && time < *release).map_or(0, |n| n + 1)
+        self.presses.iter().position(|[press, release]| *press <= time && time < *release).map_or(0, |n| n + 1)
     }
 }
 
@@ -150,13 +150,13 @@ impl AsPublished {
     /// The published forces of a step on one body; returns its "volume".
     fn step<const D: usize>(&self, view: &View<D>, body: usize, pressure: f64, forces: &mut [f64]) -> f64 {
         let c = self.constants(body);
-        let places = forces.len() / 2;
-        let (fx, fy) = forces.split_at_mut(places);
-        let at = |node: u32| self.layout.place(node as usize, body);
+        let index_count = forces.len() / 2;
+        let (fx, fy) = forces.split_at_mut(index_count);
+        let at = |node: u32| self.layout.index(node as usize, body);
 
         // 1. Gravity, once the ramp has ended.
         for node in 0..self.nodes {
-            let p = self.layout.place(node, body);
+            let p = self.layout.index(node, body);
             fx[p] = 0.0;
             fy[p] = if pressure >= c.final_pressure { self.mass.at(p) * c.gy } else { 0.0 };
         }
@@ -201,7 +201,7 @@ impl AsPublished {
         }
         let (pointer, _) = along_path::<2>(&c.pointer, view.time);
         let away = |node: usize| {
-            let p = self.layout.place(node, body);
+            let p = self.layout.index(node, body);
             let (dx, dy) = (view.x[0][p] - pointer[0], view.x[1][p] - pointer[1]);
             (dx, dy, (dx * dx + dy * dy).sqrt())
         };
@@ -216,11 +216,11 @@ impl AsPublished {
             }
         }
         let (dx, dy, r) = away(vertex);
-        let p = self.layout.place(vertex, body);
+        let p = self.layout.index(vertex, body);
         let f = r + (view.v[0][p] * dx + view.v[1][p] * dy) / r;
-        let places = forces.len() / 2;
+        let index_count = forces.len() / 2;
         forces[p] -= dx / r * f;
-        forces[places + p] -= dy / r * f;
+        forces[index_count + p] -= dy / r * f;
         (press, vertex)
     }
 }
@@ -235,7 +235,7 @@ impl<const D: usize> Potential<D> for AsPublished {
     fn properties(&self) -> Properties {
         Properties {
             account: Account::User,
-            scratch_len: 2 * self.layout.places(self.nodes) + NUMBERS,
+            scratch_len: 2 * self.layout.index_count(self.nodes) + NUMBERS,
             forces_in_prepare: true,
             ..Properties::new(SPEC.kind, Views { energy: false, hessian: false, symmetric: false, damping: true })
         }
@@ -247,7 +247,7 @@ impl<const D: usize> Potential<D> for AsPublished {
         vec![0.0; MEMORY]
     }
     fn prepare(&self, _simd: Simd, view: &View<D>, memory: &[f64], scratch: &mut [f64]) -> Result<(), StepError> {
-        let (forces, numbers) = scratch.split_at_mut(2 * self.layout.places(self.nodes));
+        let (forces, numbers) = scratch.split_at_mut(2 * self.layout.index_count(self.nodes));
         for body in 0..self.layout.stride() {
             numbers[body] = self.step(view, body, memory[body], forces);
             if numbers[body] == 0.0 {
@@ -258,25 +258,25 @@ impl<const D: usize> Potential<D> for AsPublished {
             numbers[2 * WIDTH + body] = vertex as f64;
         }
         // v_y += F_y DT without the division by MASS (E9).
-        let places = forces.len() / 2;
+        let index_count = forces.len() / 2;
         for p in 0..self.nodes * self.layout.stride() {
-            forces[places + p] *= self.mass.at(p);
+            forces[index_count + p] *= self.mass.at(p);
         }
         Ok(())
     }
     fn add_force(&self, _simd: Simd, view: &View<D>, scratch: &[f64], tile: &mut Tile<D>) {
-        let places = self.layout.places(self.nodes);
+        let index_count = self.layout.index_count(self.nodes);
         let end = tile.range.end.min(self.nodes * self.layout.stride());
         for p in tile.range.start..end {
             for d in 0..2 {
-                let force = scratch[d * places + p];
+                let force = scratch[d * index_count + p];
                 tile.force[d][p - tile.range.start] += force;
                 tile.power[p % WIDTH] += force * view.v[d][p];
             }
         }
     }
     fn remember(&self, _simd: Simd, _view: &View<D>, _h: f64, scratch: &mut [f64], memory: &mut [f64]) -> [f64; WIDTH] {
-        let numbers = &scratch[2 * self.layout.places(self.nodes)..];
+        let numbers = &scratch[2 * self.layout.index_count(self.nodes)..];
         for body in 0..self.layout.stride() {
             // 7. The ramp.
             let goal = self.constants(body).final_pressure;
@@ -295,7 +295,7 @@ impl<const D: usize> Observe<D> for AsPublished {
         &self.springs
     }
     fn readings(&self, _view: &View<D>, scratch: &[f64], memory: &[f64], body: usize) -> Vec<Reading> {
-        let numbers = &scratch[2 * self.layout.places(self.nodes)..];
+        let numbers = &scratch[2 * self.layout.index_count(self.nodes)..];
         vec![("volume".into(), numbers[body]), ("pressure".into(), memory[body])]
     }
     fn heap_bytes(&self) -> usize {

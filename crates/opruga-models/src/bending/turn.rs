@@ -93,10 +93,10 @@ impl<const D: usize> Kernel<D, 3, 4> for Turn {
         let forward = S::splat(f64::MIN_POSITIVE).less(bent.cosine);
         let i = inverse(S::select(forward, bent.cosine, S::one()));
         let t2 = square * i * i;
-        let near = S::both(forward, t2.less(S::splat(1e-6)));
-        let near = S::both(near, p[3].abs().less_or_equal(S::zero()));
+        let nearly_straight = S::both(forward, t2.less(S::splat(1e-6)));
+        let nearly_straight = S::both(nearly_straight, p[3].abs().less_or_equal(S::zero()));
         let series = i * (S::one() - t2 * (S::splat(1.0 / 3.0) - t2 * S::splat(0.2)));
-        let ratio = S::select(near, series, excess * inverse(bent.sine));
+        let ratio = S::select(nearly_straight, series, excess * inverse(bent.sine));
         Turn::spread(p[0] * ratio, &Turn::levers(&bent, &bent.normal))
     }
 

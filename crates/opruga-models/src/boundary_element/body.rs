@@ -24,7 +24,7 @@ pub struct BoundaryElement<const D: usize> {
     skin: Skin<D>,
     exterior: bool,
     bodies: Vec<Body>,
-    /// Places of the vertices of each body.
+    /// Indices of the vertices of each body.
     indices: Vec<Vec<u32>>,
     /// What the frame follows at rest ([`Rest::follows`]).
     follows: Arc<Vec<f64>>,
@@ -67,7 +67,7 @@ impl<const D: usize> BoundaryElement<D> {
         }
         let positions: Vec<[f64; D]> = surface.points.iter().map(|x| x.map(|x| surface.size * x)).collect();
         let layout = ingredients.layout;
-        let index = |body: usize| (0..nodes).map(|node| layout.place(node, body) as u32).collect();
+        let index = |body: usize| (0..nodes).map(|node| layout.index(node, body) as u32).collect();
         let rest = if exterior {
             Rest { positions: mesh.positions.clone(), weights: vec![0.0; nodes], inertia: 0.0 }
         } else {
@@ -133,7 +133,7 @@ impl<const D: usize> BoundaryElement<D> {
         &self.bodies[body.min(self.bodies.len() - 1)]
     }
     fn forces_len(&self) -> usize {
-        D * self.layout.places(self.rest.weights.len())
+        D * self.layout.index_count(self.rest.weights.len())
     }
     /// Numbers of a state, and of all states of a body.
     fn of_state(&self) -> usize {
@@ -160,7 +160,7 @@ impl<const D: usize> BoundaryElement<D> {
     }
     fn prepare_body(&self, simd: Simd, view: &View<D>, body: usize, scratch: &mut [f64]) {
         let states = &mut scratch[self.forces_len() + body * self.of_body()..][..self.of_body()];
-        let (length, index) = (self.of_state(), |node: usize| view.layout.place(node, body));
+        let (length, index) = (self.of_state(), |node: usize| view.layout.index(node, body));
         let last = states[last_asked(states, length) * length..][self.numbers() + ASKED];
         let is_this = |state: &[f64]| {
             let mut nodes = state.chunks_exact(D).enumerate().take(self.rest.weights.len());
@@ -197,7 +197,7 @@ impl<const D: usize> BoundaryElement<D> {
         let (y, own) = own.split_at_mut(self.column);
         let (u, own) = own.split_at_mut(self.column);
         let (g, numbers) = own.split_at_mut(self.column);
-        let index = |node: usize| view.layout.place(node, body);
+        let index = |node: usize| view.layout.index(node, body);
         for (node, x) in x.chunks_exact_mut(D).enumerate().take(self.rest.weights.len()) {
             x.copy_from_slice(&view.position(index(node)));
         }

@@ -55,10 +55,10 @@ impl<const D: usize> Potential<D> for Drag {
         simd.run(Force { drag: self, view, tile });
     }
     fn damping_matrix(&self, view: &View<D>, _scratch: &[f64], sink: &mut dyn Sink<D>) {
-        for place in 0..view.nodes * view.layout.stride() {
-            let strength = self.rate.at(place) * self.mass.at(place);
+        for index in 0..view.nodes * view.layout.stride() {
+            let strength = self.rate.at(index) * self.mass.at(index);
             let block = core::array::from_fn(|i| core::array::from_fn(|j| if i == j { strength } else { 0.0 }));
-            sink.block(place, place, block);
+            sink.block(index, index, block);
         }
     }
 }
@@ -83,15 +83,15 @@ impl<const D: usize> Work for Force<'_, '_, '_, D> {
         let start = tile.range.start;
         let end = view.nodes * view.layout.stride();
         let mut power = P::from_array(*tile.power);
-        for place in tile.range.clone().step_by(WIDTH) {
-            let strength = drag.rate.load::<P>(place) * drag.mass.load::<P>(place);
-            // Places behind the last node carry nothing.
-            let strength = P::select(P::first(end.saturating_sub(place)), strength, P::zero());
+        for index in tile.range.clone().step_by(WIDTH) {
+            let strength = drag.rate.load::<P>(index) * drag.mass.load::<P>(index);
+            // Indices behind the last node carry nothing.
+            let strength = P::select(P::first(end.saturating_sub(index)), strength, P::zero());
             for d in 0..D {
-                let v = P::load(&view.v[d][place..]);
+                let v = P::load(&view.v[d][index..]);
                 let force = strength * v;
                 power += force * v;
-                let k = place - start;
+                let k = index - start;
                 (P::load(&tile.force[d][k..]) - force).store(&mut tile.force[d][k..]);
             }
         }

@@ -205,7 +205,7 @@ fn densities<const D: usize>(ingredients: &Ingredients<D>) -> Result<Vec<f64>, B
     let measure = ingredients.mesh.measure().map_err(|problem| Refusal::Measure { problem })?.value();
     let nodes = 0..ingredients.mesh.nodes();
     Ok(vec![
-        nodes.map(|node| ingredients.mass.at(ingredients.layout.place(node, 0))).sum::<f64>() / measure;
+        nodes.map(|node| ingredients.mass.at(ingredients.layout.index(node, 0))).sum::<f64>() / measure;
         ingredients.mesh.cells.len()
     ])
 }

@@ -17,7 +17,7 @@ pub(super) struct Group<'a> {
     pub(super) points: usize,
     /// Whether the law knows of rotations.
     pub(super) turns: bool,
-    pub(super) places: &'a [u32],
+    pub(super) node_indices: &'a [u32],
     pub(super) targets: &'a [u32],
     pub(super) geometry: &'a [f64],
     pub(super) boxes: &'a Boxes,

@@ -152,7 +152,7 @@ impl<const D: usize> NodalVolumes<D> {
     /// F of a cell of a body.
     fn gradient(&self, view: &View<D>, cell: usize, body: usize) -> Matrix<f64, D> {
         let nodes = self.cells[cell].nodes;
-        let at = |a: usize, i: usize| view.x[i][self.layout.place(nodes[a] as usize, body)];
+        let at = |a: usize, i: usize| view.x[i][self.layout.index(nodes[a] as usize, body)];
         let mut out = matrix::zeros::<f64, D>();
         for i in 0..D {
             for a in 1..=D {
@@ -178,14 +178,14 @@ impl<const D: usize> NodalVolumes<D> {
 
     /// Says where J − 1 of the packs of cells lies in what the cells of a solid leave.
     pub(super) fn locate(&mut self, grown_at: impl Fn(usize) -> Option<usize>) {
-        let place = |cell: u32| {
+        let offset = |cell: u32| {
             let (pack, lane) = match self.layout {
                 Layout::Single => (cell as usize / WIDTH, cell as usize % WIDTH),
                 Layout::Batch => (cell as usize, 0),
             };
             (grown_at(pack).unwrap_or(0) + lane) as u32
         };
-        self.grown = self.around.iter().map(|cell| place(*cell)).collect();
+        self.grown = self.around.iter().map(|cell| offset(*cell)).collect();
     }
 
     /// Numbers that [`NodalVolumes::press`] leaves: for every block of nodes energies and pressures.
@@ -285,7 +285,7 @@ impl<const D: usize> NodalVolumes<D> {
                 for (a, u) in &around {
                     for (b, v) in &around {
                         let block = u.map(|x| v.map(|y| factor * x * y));
-                        sink.block(self.layout.place(*a, body), self.layout.place(*b, body), block);
+                        sink.block(self.layout.index(*a, body), self.layout.index(*b, body), block);
                     }
                 }
                 around.iter().for_each(|(other, _)| seat[*other] = u32::MAX);

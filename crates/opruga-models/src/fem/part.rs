@@ -140,8 +140,8 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Part<D> for Section<E, D, N
     }
     fn heap_bytes(&self) -> usize {
         let shares: usize = self.shares.iter().map(|share| share.nodes.capacity()).sum();
-        let places = 4 * (self.places.capacity() + self.targets.capacity() + shares)
+        let list_bytes = 4 * (self.node_indices.capacity() + self.targets.capacity() + shares)
             + size_of::<Cell<N>>() * self.cells.capacity();
-        places + self.geometry.heap_bytes() + self.boxes.heap_bytes() + self.parameters.heap_bytes()
+        list_bytes + self.geometry.heap_bytes() + self.boxes.heap_bytes() + self.parameters.heap_bytes()
     }
 }

@@ -13,7 +13,7 @@ use super::section::{Section, Share};
 use super::totals::Totals;
 use super::work::{Forces, Gradients, Nodes, ViscousStress, ViscousTangents, parameters_of_points};
 use crate::materials::law::Form;
-use crate::materials::points::{MOST_PACKS, PARAMETERS, Points, Room};
+use crate::materials::points::{MOST_PACKS, PARAMETERS, PackBuffer, Points};
 use core::marker::PhantomData;
 use core::ops::Range;
 use opruga_core::error::StepError;
@@ -31,13 +31,13 @@ const MOST_BOXES: usize = 2;
 pub(super) struct Pass<'a, E, const D: usize, const N: usize> {
     section: &'a Section<E, D, N>,
     simd: Simd,
-    gradient: Room<{ MOST_PACKS * 9 * WIDTH }>,
+    gradient: PackBuffer<{ MOST_PACKS * 9 * WIDTH }>,
     /// What boxes keep.
-    kept: Room<{ MOST_BOXES * KEPT * WIDTH }>,
-    numbers: Room<{ MOST_PACKS * PARAMETERS * WIDTH }>,
-    times: Room<{ MOST_PACKS * WIDTH }>,
+    kept: PackBuffer<{ MOST_BOXES * KEPT * WIDTH }>,
+    numbers: PackBuffer<{ MOST_PACKS * PARAMETERS * WIDTH }>,
+    times: PackBuffer<{ MOST_PACKS * WIDTH }>,
     /// Pressures of cells whose nodes resist volume.
-    pressures: Room<{ MOST_PACKS * WIDTH }>,
+    pressures: PackBuffer<{ MOST_PACKS * WIDTH }>,
 }
 
 /// What a matrix is made of: tangents at the points, or what damping adds.
@@ -52,11 +52,11 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
         let mut pass = Pass {
             section,
             simd,
-            gradient: Room([0.0; MOST_PACKS * 9 * WIDTH]),
-            kept: Room([0.0; MOST_BOXES * KEPT * WIDTH]),
-            numbers: Room([0.0; MOST_PACKS * PARAMETERS * WIDTH]),
-            times: Room([0.0; MOST_PACKS * WIDTH]),
-            pressures: Room([0.0; MOST_PACKS * WIDTH]),
+            gradient: PackBuffer([0.0; MOST_PACKS * 9 * WIDTH]),
+            kept: PackBuffer([0.0; MOST_BOXES * KEPT * WIDTH]),
+            numbers: PackBuffer([0.0; MOST_PACKS * PARAMETERS * WIDTH]),
+            times: PackBuffer([0.0; MOST_PACKS * WIDTH]),
+            pressures: PackBuffer([0.0; MOST_PACKS * WIDTH]),
         };
         // What holds for all elements is written once.
         if section.uniform && section.packs() > 0 {
@@ -103,11 +103,11 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
         force: &mut [f64],
     ) -> Result<(), StepError> {
         let (section, simd) = (self.section, self.simd);
-        let mut rate = Room([0.0; MOST_PACKS * 9 * WIDTH]);
-        let mut kept_rate = Room([0.0; MOST_BOXES * KEPT * WIDTH]);
-        let mut stress = Room([0.0; MOST_PACKS * 9 * WIDTH]);
-        let mut density = Room([0.0; MOST_PACKS * WIDTH]);
-        let mut power = Room([0.0; MOST_PACKS * WIDTH]);
+        let mut rate = PackBuffer([0.0; MOST_PACKS * 9 * WIDTH]);
+        let mut kept_rate = PackBuffer([0.0; MOST_BOXES * KEPT * WIDTH]);
+        let mut stress = PackBuffer([0.0; MOST_PACKS * 9 * WIDTH]);
+        let mut density = PackBuffer([0.0; MOST_PACKS * WIDTH]);
+        let mut power = PackBuffer([0.0; MOST_PACKS * WIDTH]);
         for group in section.groups(share, MOST_PACKS) {
             self.deform(&group, positions, pressures);
             let points = self.points(&group);
@@ -172,17 +172,17 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
         to: &mut dyn FnMut(usize, &StencilPack<'_>),
     ) {
         let (section, simd) = (self.section, self.simd);
-        let mut tangent = Room([0.0; MOST_PACKS * 81 * WIDTH]);
+        let mut tangent = PackBuffer([0.0; MOST_PACKS * 81 * WIDTH]);
         let tangent = &mut tangent.0;
-        let mut stress = Room([0.0; MOST_PACKS * 9 * WIDTH]);
-        let mut density = Room([0.0; MOST_PACKS * WIDTH]);
+        let mut stress = PackBuffer([0.0; MOST_PACKS * 9 * WIDTH]);
+        let mut density = PackBuffer([0.0; MOST_PACKS * WIDTH]);
         let mut blocks = vec![0.0; N * N * D * D * WIDTH];
         for group in section.groups(share, TANGENTS) {
-            let mut places = [[[0; WIDTH]; N]; TANGENTS];
+            let mut indices = [[[0; WIDTH]; N]; TANGENTS];
             let mut wanted = [false; TANGENTS];
             for pack in 0..group.packs {
-                places[pack] = section.places(group.first + pack);
-                wanted[pack] = places[pack].as_flattened().iter().any(|place| rows.contains(&(*place as usize)));
+                indices[pack] = section.indices(group.first + pack);
+                wanted[pack] = indices[pack].as_flattened().iter().any(|index| rows.contains(&(*index as usize)));
             }
             if wanted == [false; TANGENTS] {
                 continue;
@@ -250,8 +250,8 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
                     }
                 }
                 let count = group.present(group.first + pack);
-                let places = places[pack].as_flattened();
-                to(group.first + pack, &StencilPack { nodes: N, count, places, blocks });
+                let indices = indices[pack].as_flattened();
+                to(group.first + pack, &StencilPack { nodes: N, count, indices, blocks });
             }
         }
     }
@@ -259,10 +259,10 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
     /// Stress and volume ratio of the cells of a share, of one body.
     pub(super) fn cell_states(mut self, share: &Share, positions: Nodes<'_, D>, body: usize, out: &mut Vec<CellState>) {
         let (section, simd, turns) = (self.section, self.simd, self.section.law.turns());
-        let mut in_space = Room([0.0; MOST_PACKS * 9 * WIDTH]);
-        let mut stress = Room([0.0; MOST_PACKS * 9 * WIDTH]);
-        let mut density = Room([0.0; MOST_PACKS * WIDTH]);
-        let mut across = Room([1.0; MOST_PACKS * WIDTH]);
+        let mut in_space = PackBuffer([0.0; MOST_PACKS * 9 * WIDTH]);
+        let mut stress = PackBuffer([0.0; MOST_PACKS * 9 * WIDTH]);
+        let mut density = PackBuffer([0.0; MOST_PACKS * WIDTH]);
+        let mut across = PackBuffer([1.0; MOST_PACKS * WIDTH]);
         for group in section.groups(share, 1) {
             self.deform(&group, positions, Pressures::default());
             let points = self.points(&group);
@@ -280,7 +280,7 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
             for l in 0..WIDTH {
                 let (element, of) = section.item(group.first, l);
                 let Some(cell) = section.cells.get(element).filter(|_| of == body) else { continue };
-                let at = |node: u32, axis: usize| positions.columns[axis][section.layout.place(node as usize, body)];
+                let at = |node: u32, axis: usize| positions.columns[axis][section.layout.index(node as usize, body)];
                 let (mut measure, mut sum, mut now) = (0.0, [[0.0; 3]; 3], 0.0);
                 let mut smallest = f64::INFINITY;
                 // What is no number stays.
@@ -369,10 +369,10 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> StencilPacks<D> for Matrice
     fn stencils(&self) -> usize {
         self.section.cells.len() * self.section.layout.stride()
     }
-    fn are_at(&self, places: &[u32]) -> bool {
-        let packs = places.chunks(N * WIDTH);
+    fn are_at(&self, indices: &[u32]) -> bool {
+        let packs = indices.chunks(N * WIDTH);
         packs.len() == self.section.packs()
-            && packs.enumerate().all(|(pack, places)| self.section.places(pack).as_flattened() == places)
+            && packs.enumerate().all(|(pack, indices)| self.section.indices(pack).as_flattened() == indices)
     }
     fn deliver(&self, rows: &Range<usize>, to: &mut dyn FnMut(usize, &StencilPack<'_>)) {
         let stride = self.section.layout.stride();

@@ -72,12 +72,12 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Means<'_, E, D, N>
                     sum += match self.group.layout {
                         Layout::Single => {
                             let start = ((self.group.first + k) * N + a) * WIDTH + offset;
-                            let places = &self.group.places[start..start + P::Part::NUMBERS];
-                            P::Part::gather_rows(self.nodes.rows, places)[ROW - 1]
+                            let rows = &self.group.node_indices[start..start + P::Part::NUMBERS];
+                            P::Part::gather_rows(self.nodes.rows, rows)[ROW - 1]
                         }
                         Layout::Batch => {
-                            let place = self.group.places[(self.group.first + k) * N + a] as usize;
-                            P::Part::load(&self.pressures.of(place / WIDTH)[offset..])
+                            let index = self.group.node_indices[(self.group.first + k) * N + a] as usize;
+                            P::Part::load(&self.pressures.of(index / WIDTH)[offset..])
                         }
                     };
                 }

@@ -43,9 +43,9 @@ pub(super) struct Section<E, const D: usize, const N: usize> {
     /// Points of an element where the law is asked.
     pub(super) points: usize,
     pub(super) shares: Vec<Share>,
-    /// Where elements find their nodes: N packs of rows of the share for every pack of elements of one body, N places for every
+    /// Where elements find their nodes: N packs of rows of the share for every pack of elements of one body, N indices for every
     /// element of eight.
-    pub(super) places: Vec<u32>,
+    pub(super) node_indices: Vec<u32>,
     /// For eight bodies the N rows of the share for every element.
     pub(super) targets: Vec<u32>,
     /// (∂X/∂ξ)⁻¹ row by row and the measure [m³], point by point; in packs for one body. Boxes have their own.
@@ -121,7 +121,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
 
         // As many elements in both layouts, whatever the material of the other bodies.
         let shares = shares(&cells, packs, lanes, (SHARE / E::POINTS).max(1) * WIDTH / lanes);
-        let mut places = vec![0; packs * N * lanes];
+        let mut node_indices = vec![0; packs * N * lanes];
         let mut targets = vec![0; if layout == Layout::Batch { packs * N } else { 0 }];
         for share in &shares {
             for pack in share.first..share.first + share.packs {
@@ -131,9 +131,9 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
                         if layout == Layout::Batch {
                             targets[pack * N + a] = row;
                         }
-                        places[(pack * N + a) * lanes + lane] = match layout {
+                        node_indices[(pack * N + a) * lanes + lane] = match layout {
                             Layout::Single => row,
-                            Layout::Batch => layout.place(*node as usize, 0) as u32,
+                            Layout::Batch => layout.index(*node as usize, 0) as u32,
                         };
                     }
                 }
@@ -184,7 +184,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
             cells,
             points,
             shares,
-            places,
+            node_indices,
             targets,
             geometry,
             boxes,
@@ -217,7 +217,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
             count: self.cells.len(),
             points: self.points,
             turns: self.law.turns(),
-            places: &self.places,
+            node_indices: &self.node_indices,
             targets: &self.targets,
             geometry: &self.geometry,
             boxes: &self.boxes,
@@ -233,14 +233,14 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
         (share.first..end).step_by(together).map(move |first| self.group(first, together.min(end - first)))
     }
 
-    /// The places of the nodes of a pack, by node and lane.
-    pub(super) fn places(&self, pack: usize) -> [[u32; WIDTH]; N] {
+    /// The indices of the nodes of a pack, by node and lane.
+    pub(super) fn indices(&self, pack: usize) -> [[u32; WIDTH]; N] {
         let mut out = [[0; WIDTH]; N];
         for l in 0..WIDTH {
             let (element, body) = self.item(pack, l);
             let nodes = self.cells[element.min(self.cells.len() - 1)].nodes;
             for a in 0..N {
-                out[a][l] = self.layout.place(nodes[a] as usize, body) as u32;
+                out[a][l] = self.layout.index(nodes[a] as usize, body) as u32;
             }
         }
         out
@@ -301,7 +301,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
         (0..WIDTH).filter(|l| energy[*l].is_nan()).find_map(|l| {
             let (element, body) = self.item(pack, l);
             let cell = self.cells.get(element)?;
-            let at = cell.nodes.map(|n| view.position(self.layout.place(n as usize, body)));
+            let at = cell.nodes.map(|n| view.position(self.layout.index(n as usize, body)));
             at.iter().flatten().all(|x| x.is_finite()).then(|| {
                 let refusal = Refusal::NoThicknessLeft { cell: cell.number, time: view.time };
                 StepError::of(super::SPEC.kind, refusal)

@@ -59,7 +59,7 @@ struct Task {
 enum Sums {
     /// All of them one after the other from here on.
     Whole(usize),
-    /// For every node in rows of several shares: where its list begins, and the lists of places [`ROW`] by [`ROW`].
+    /// For every node in rows of several shares: where its list begins, and the lists of indices [`ROW`] by [`ROW`].
     Listed { start: Vec<u32>, rows: Vec<u32> },
 }
 
@@ -178,7 +178,7 @@ impl<const D: usize> Potential<D> for Solid<D> {
             }
             (Layout::Batch, sums) => {
                 for node in range.start / WIDTH..(range.end / WIDTH).min(self.nodes) {
-                    let place = node * WIDTH - range.start;
+                    let first = node * WIDTH - range.start;
                     let mut sum = [[0.0; WIDTH]; D];
                     let mut add = |from: usize| {
                         for (sum, force) in sum.iter_mut().zip(scratch[from..].chunks_exact(WIDTH)) {
@@ -195,7 +195,7 @@ impl<const D: usize> Potential<D> for Solid<D> {
                         }
                     }
                     for d in 0..D {
-                        for (to, sum) in tile.force[d][place..place + WIDTH].iter_mut().zip(&sum[d]) {
+                        for (to, sum) in tile.force[d][first..first + WIDTH].iter_mut().zip(&sum[d]) {
                             *to += sum;
                         }
                     }

@@ -67,18 +67,18 @@ pub(super) fn gather<R: Register, const D: usize, const N: usize>(
     let mut x = [[R::zero(); D]; N];
     match group.layout {
         Layout::Single => {
-            let places = &group.places[pack * N * WIDTH..(pack + 1) * N * WIDTH];
+            let indices = &group.node_indices[pack * N * WIDTH..(pack + 1) * N * WIDTH];
             for a in 0..N {
-                let of_node = &places[a * WIDTH + offset..a * WIDTH + offset + R::NUMBERS];
+                let of_node = &indices[a * WIDTH + offset..a * WIDTH + offset + R::NUMBERS];
                 let row = R::gather_rows(nodes.rows, of_node);
                 x[a].copy_from_slice(&row[..D]);
             }
         }
         Layout::Batch => {
-            let places = &group.places[pack * N..(pack + 1) * N];
+            let indices = &group.node_indices[pack * N..(pack + 1) * N];
             for a in 0..N {
                 for d in 0..D {
-                    x[a][d] = R::load(&nodes.columns[d][places[a] as usize + offset..]);
+                    x[a][d] = R::load(&nodes.columns[d][indices[a] as usize + offset..]);
                 }
             }
         }
@@ -96,7 +96,7 @@ pub(super) fn scatter<P: Pack, const D: usize, const N: usize>(
 ) {
     match group.layout {
         Layout::Single => {
-            let places = &group.places[pack * N * WIDTH..(pack + 1) * N * WIDTH];
+            let indices = &group.node_indices[pack * N * WIDTH..(pack + 1) * N * WIDTH];
             // Whole rows: one addition of four numbers.
             let mut rows = [[[0.0; ROW]; WIDTH]; N];
             for a in 0..N {
@@ -110,7 +110,7 @@ pub(super) fn scatter<P: Pack, const D: usize, const N: usize>(
             }
             for l in 0..group.present(pack) {
                 for a in 0..N {
-                    let start = places[a * WIDTH + l] as usize * ROW;
+                    let start = indices[a * WIDTH + l] as usize * ROW;
                     let node = &mut force[start..start + ROW];
                     for i in 0..ROW {
                         node[i] += rows[a][l][i];
@@ -222,8 +222,8 @@ impl<E, const D: usize, const N: usize> Forces<'_, E, D, N> {
     #[inline(always)]
     fn fetch(&self, pack: usize) {
         if self.group.layout == Layout::Single {
-            let (places, numbers) = (N * WIDTH, self.group.points * (D * D + 1) * WIDTH);
-            fetch_early(self.group.places, pack * places..(pack + 1) * places);
+            let (index_count, numbers) = (N * WIDTH, self.group.points * (D * D + 1) * WIDTH);
+            fetch_early(self.group.node_indices, pack * index_count..(pack + 1) * index_count);
             fetch_early(self.group.geometry, pack * numbers..(pack + 1) * numbers);
         }
     }

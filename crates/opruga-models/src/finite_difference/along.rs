@@ -31,7 +31,7 @@ const MEAN: usize = 5;
 pub(super) struct Along {
     layout: Layout,
     nodes: usize,
-    /// By place of the node.
+    /// By index of the node.
     numbers: [Parameter; NUMBERS],
     /// EA [N], EI [N·m²] and the retardation time τ [s] of each body.
     section: [Parameter; 3],
@@ -242,7 +242,7 @@ struct Walker<'a, P, const D: usize> {
     v: Strip<'a, D>,
     numbers: [RepeatStrip<'a>; NUMBERS],
     section: Section<P>,
-    /// The last place from which a pack can be read.
+    /// The last index from which a pack can be read.
     end: usize,
     g: [P; D],
     rate: [P; D],
@@ -258,7 +258,7 @@ fn back<R: Register, const BATCH: bool>(now: R, previous: R) -> R {
 }
 
 impl<P: Pack, const D: usize> Walker<'_, P, D> {
-    /// One part of eight nodes from place `k` of the strips on: the forces on the nodes one back, and what damping takes. Register by
+    /// One part of eight nodes from index `k` of the strips on: the forces on the nodes one back, and what damping takes. Register by
     /// register: what a bend computes with fits the registers of any processor.
     #[inline(always)]
     fn step<const BATCH: bool, const DAMPED: bool>(&mut self, k: usize, part: usize) -> ([P::Part; D], P::Part) {

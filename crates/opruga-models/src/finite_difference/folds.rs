@@ -60,7 +60,7 @@ impl Folds {
     pub(super) fn found<const D: usize>(&self, view: &View<D>) -> Count {
         let mut count = 0;
         for body in 0..view.layout.stride() {
-            let at = |node: u32| view.position(view.layout.place(node as usize, body));
+            let at = |node: u32| view.position(view.layout.index(node as usize, body));
             let short = self.edges.iter().filter(|([a, b], rest)| {
                 let arm = minus(&at(*a), &at(*b));
                 dot(&arm, &arm) < TURNING_POINT * rest

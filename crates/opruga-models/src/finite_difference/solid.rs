@@ -174,7 +174,7 @@ pub(super) struct Hexahedron;
 const EDGES: [[[usize; 2]; 4]; 3] =
     [[[0, 1], [3, 2], [4, 5], [7, 6]], [[0, 3], [1, 2], [4, 7], [5, 6]], [[0, 4], [1, 5], [3, 7], [2, 6]]];
 
-/// The two edges of each of two axes on a face, by their place in [`EDGES`].
+/// The two edges of each of two axes on a face, by their index in [`EDGES`].
 type Face = [[usize; 2]; 2];
 
 /// For the axes (0, 1), (0, 2), (1, 2) both opposite faces.

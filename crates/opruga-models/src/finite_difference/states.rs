@@ -30,8 +30,8 @@ impl<const D: usize> Cells<D> {
         let cells = self.nodes.chunks_exact(corners).zip(&self.spacings).enumerate();
         let state = |(cell, (nodes, spacing)): (usize, (&[u32], &[f64; D]))| {
             let x = |corner: usize| -> [f64; D] {
-                let place = view.layout.place(nodes[corner] as usize, body);
-                core::array::from_fn(|d| view.x[d][place])
+                let index = view.layout.index(nodes[corner] as usize, body);
+                core::array::from_fn(|d| view.x[d][index])
             };
             let at: Vec<[f64; D]> = (0..corners).map(x).collect();
             self.state(cell as u32, &at, spacing, elastic)

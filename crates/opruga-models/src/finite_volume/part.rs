@@ -5,7 +5,7 @@ use super::cells::Cells;
 use super::kernels::{Contract, Gradients, Group, Positions, Tractions};
 use super::refusals::Refusal;
 use crate::materials::law::Law;
-use crate::materials::points::{MOST_PACKS, PARAMETERS, Points, Room};
+use crate::materials::points::{MOST_PACKS, PARAMETERS, PackBuffer, Points};
 use core::fmt::Debug;
 use opruga_core::potential::{CellState, Definiteness, Sink, StencilPack};
 use opruga_core::state::{Layout, View};
@@ -80,9 +80,9 @@ impl<C: Cell<D, N>, const D: usize, const N: usize> Part<D> for Cells<C, D, N> {
         energy: &mut [f64],
     ) -> Result<(), Refusal> {
         let positions = Positions { rows, columns: view.x };
-        let mut gradient = Room([0.0; MOST_PACKS * 9 * WIDTH]);
-        let mut stress = Room([0.0; MOST_POINTS * 9 * WIDTH]);
-        let mut density = Room([0.0; MOST_PACKS * WIDTH]);
+        let mut gradient = PackBuffer([0.0; MOST_PACKS * 9 * WIDTH]);
+        let mut stress = PackBuffer([0.0; MOST_POINTS * 9 * WIDTH]);
+        let mut density = PackBuffer([0.0; MOST_PACKS * WIDTH]);
         let points = points_together::<C, D, N>();
         for group in groups::<C, D, N>(self.packs()) {
             for q in (0..C::POINTS).step_by(points) {
@@ -113,7 +113,7 @@ impl<C: Cell<D, N>, const D: usize, const N: usize> Part<D> for Cells<C, D, N> {
 
     fn tangent(&self, matter: &Matter<D>, positions: Positions<'_, D>, keep: Definiteness, sink: &mut dyn Sink<D>) {
         let simd = Simd::best();
-        let mut gradient = Room([0.0; MOST_PACKS * 9 * WIDTH]);
+        let mut gradient = PackBuffer([0.0; MOST_PACKS * 9 * WIDTH]);
         let mut tangent = vec![0.0; MOST_PACKS * 81 * WIDTH];
         let mut blocks = vec![0.0; N * N * D * D * WIDTH];
         let stride = self.layout.stride() as u32;
@@ -135,7 +135,7 @@ impl<C: Cell<D, N>, const D: usize, const N: usize> Part<D> for Cells<C, D, N> {
                 }
             }
             if C::SIMPLEX {
-                sink.stencils(&StencilPack { nodes: N, count, places: indices.as_flattened(), blocks: &blocks });
+                sink.stencils(&StencilPack { nodes: N, count, indices: indices.as_flattened(), blocks: &blocks });
                 continue;
             }
             for lane in 0..count {
@@ -153,11 +153,11 @@ impl<C: Cell<D, N>, const D: usize, const N: usize> Part<D> for Cells<C, D, N> {
     fn cell_states(&self, matter: &Matter<D>, positions: Positions<'_, D>, body: usize, out: &mut Vec<CellState>) {
         let simd = Simd::best();
         let turns = matter.law.turns();
-        let mut gradient = Room([0.0; MOST_PACKS * 9 * WIDTH]);
-        let mut raised = Room([0.0; MOST_PACKS * 9 * WIDTH]);
-        let mut stress = Room([0.0; MOST_PACKS * 9 * WIDTH]);
-        let mut density = Room([0.0; MOST_PACKS * WIDTH]);
-        let mut across = Room([1.0; MOST_PACKS * WIDTH]);
+        let mut gradient = PackBuffer([0.0; MOST_PACKS * 9 * WIDTH]);
+        let mut raised = PackBuffer([0.0; MOST_PACKS * 9 * WIDTH]);
+        let mut stress = PackBuffer([0.0; MOST_PACKS * 9 * WIDTH]);
+        let mut density = PackBuffer([0.0; MOST_PACKS * WIDTH]);
+        let mut across = PackBuffer([1.0; MOST_PACKS * WIDTH]);
         let points = points_together::<C, D, N>();
         for pack in 0..self.packs() {
             let mut sums = [([[0.0; 3]; 3], 0.0, f64::INFINITY); WIDTH];

@@ -135,8 +135,8 @@ impl<const D: usize> Potential<D> for Springs {
         let bodies = self.layout.stride();
         for (spring, &[a, b]) in self.table.pairs().iter().enumerate() {
             for body in 0..bodies {
-                let (a, b) = (self.layout.place(a as usize, body), self.layout.place(b as usize, body));
-                let at = self.layout.place(spring, body);
+                let (a, b) = (self.layout.index(a as usize, body), self.layout.index(b as usize, body));
+                let at = self.layout.index(spring, body);
                 let (xa, xb) = (view.position(a), view.position(b));
                 let d: [f64; D] = core::array::from_fn(|i| xa[i] - xb[i]);
                 let (length, inverse) = law::length(&d);
@@ -168,8 +168,8 @@ impl<const D: usize> Potential<D> for Springs {
     fn damping_matrix(&self, view: &View<D>, _scratch: &[f64], sink: &mut dyn Sink<D>) {
         for (spring, &[a, b]) in self.table.pairs().iter().enumerate() {
             for body in 0..self.layout.stride() {
-                let (a, b) = (self.layout.place(a as usize, body), self.layout.place(b as usize, body));
-                let c = self.damping.at(self.layout.place(spring, body));
+                let (a, b) = (self.layout.index(a as usize, body), self.layout.index(b as usize, body));
+                let c = self.damping.at(self.layout.index(spring, body));
                 let (xa, xb) = (view.position(a), view.position(b));
                 let d: [f64; D] = core::array::from_fn(|i| xa[i] - xb[i]);
                 let (_, inverse) = law::length(&d);

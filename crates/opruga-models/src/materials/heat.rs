@@ -14,7 +14,7 @@
 //! Theor. Appl. Mech. 28–29 (2002); for small strain Timoshenko, Goodier, *Theory of elasticity*, chapter 13.
 
 use super::law::Law;
-use super::points::{MOST_PACKS, PARAMETERS, Points, Room};
+use super::points::{MOST_PACKS, PARAMETERS, PackBuffer, Points};
 use opruga_core::potential::Definiteness;
 use opruga_math::{Simd, WIDTH};
 
@@ -58,12 +58,12 @@ fn power(turns: bool) -> i32 {
 
 impl<const D: usize> Heated<D> {
     /// What is left of the deformation gradients.
-    fn elastic(points: &Points<'_>) -> Room<{ MOST_PACKS * 9 * WIDTH }> {
-        let mut room = Room([0.0; MOST_PACKS * 9 * WIDTH]);
+    fn elastic(points: &Points<'_>) -> PackBuffer<{ MOST_PACKS * 9 * WIDTH }> {
+        let mut out = PackBuffer([0.0; MOST_PACKS * 9 * WIDTH]);
         let count = points.count * D * D * WIDTH;
-        room.0[..count].copy_from_slice(&points.gradient[..count]);
-        scale(points, D * D, -1, &mut room.0);
-        room
+        out.0[..count].copy_from_slice(&points.gradient[..count]);
+        scale(points, D * D, -1, &mut out.0);
+        out
     }
 }
 
@@ -98,17 +98,17 @@ impl<const D: usize> Law<D> for Heated<D> {
 
 impl HeatedSlice {
     /// Deformation gradients of space: nothing moves across the plane, where 1/g is left.
-    fn raised(points: &Points<'_>) -> Room<{ MOST_PACKS * 9 * WIDTH }> {
-        let mut room = Room([0.0; MOST_PACKS * 9 * WIDTH]);
+    fn raised(points: &Points<'_>) -> PackBuffer<{ MOST_PACKS * 9 * WIDTH }> {
+        let mut out = PackBuffer([0.0; MOST_PACKS * 9 * WIDTH]);
         for point in 0..points.count {
             for (k, at) in [0, 1, 3, 4].into_iter().enumerate() {
-                room.0[(point * 9 + at) * WIDTH..][..WIDTH]
+                out.0[(point * 9 + at) * WIDTH..][..WIDTH]
                     .copy_from_slice(&points.gradient[(point * 4 + k) * WIDTH..][..WIDTH]);
             }
-            room.0[(point * 9 + 8) * WIDTH..][..WIDTH].fill(1.0);
+            out.0[(point * 9 + 8) * WIDTH..][..WIDTH].fill(1.0);
         }
-        scale(points, 9, -1, &mut room.0);
-        room
+        scale(points, 9, -1, &mut out.0);
+        out
     }
 
     /// Puts what the law of the plane says in the place of what that of space says, where a point has not grown: a body is under
@@ -133,7 +133,7 @@ impl HeatedSlice {
 impl Law<2> for HeatedSlice {
     fn stress(&self, simd: Simd, points: Points<'_>, energy: &mut [f64], stress: &mut [f64]) {
         let gradient = HeatedSlice::raised(&points);
-        let mut in_space = Room([0.0; MOST_PACKS * 9 * WIDTH]);
+        let mut in_space = PackBuffer([0.0; MOST_PACKS * 9 * WIDTH]);
         self.space.stress(simd, Points { gradient: &gradient.0, ..points }, energy, &mut in_space.0);
         for point in 0..points.count {
             for (k, at) in [0, 1, 3, 4].into_iter().enumerate() {
@@ -145,7 +145,7 @@ impl Law<2> for HeatedSlice {
         scale(&points, 1, power, energy);
         scale(&points, 4, power - 1, stress);
         if HeatedSlice::has_cold(&points) {
-            let mut cold = (Room([0.0; MOST_PACKS * WIDTH]), Room([0.0; MOST_PACKS * 4 * WIDTH]));
+            let mut cold = (PackBuffer([0.0; MOST_PACKS * WIDTH]), PackBuffer([0.0; MOST_PACKS * 4 * WIDTH]));
             self.plane.stress(simd, points, &mut cold.0.0, &mut cold.1.0);
             HeatedSlice::keep_what_is_cold(&points, 1, &cold.0.0, energy);
             HeatedSlice::keep_what_is_cold(&points, 4, &cold.1.0, stress);
@@ -153,7 +153,7 @@ impl Law<2> for HeatedSlice {
     }
     fn tangent(&self, simd: Simd, points: Points<'_>, keep: Definiteness, tangent: &mut [f64]) {
         let gradient = HeatedSlice::raised(&points);
-        let mut in_space = Room([0.0; MOST_PACKS * 81 * WIDTH]);
+        let mut in_space = PackBuffer([0.0; MOST_PACKS * 81 * WIDTH]);
         self.space.tangent(simd, Points { gradient: &gradient.0, ..points }, keep, &mut in_space.0);
         // A part of a matrix without negative eigenvalues has none either.
         for point in 0..points.count {
@@ -166,7 +166,7 @@ impl Law<2> for HeatedSlice {
         }
         scale(&points, 16, power(self.turns()) - 2, tangent);
         if HeatedSlice::has_cold(&points) {
-            let mut cold = Room([0.0; MOST_PACKS * 16 * WIDTH]);
+            let mut cold = PackBuffer([0.0; MOST_PACKS * 16 * WIDTH]);
             self.plane.tangent(simd, points, keep, &mut cold.0);
             HeatedSlice::keep_what_is_cold(&points, 16, &cold.0, tangent);
         }

@@ -4,7 +4,7 @@
 //! stresses of them, elements make forces of these: two calls for 64 points cost less than a nanosecond per point.
 
 use super::material::Material;
-use super::points::{INVARIANTS, MOST_PACKS, PRINCIPAL, Points, Room, read, write_matrix, write_tangent};
+use super::points::{INVARIANTS, MOST_PACKS, PRINCIPAL, PackBuffer, Points, read, write_matrix, write_tangent};
 use super::principal_frame::{Clamp, Frames, InFrame, OutOfFrame};
 use core::fmt::Debug;
 use opruga_core::potential::Definiteness;
@@ -54,7 +54,7 @@ impl<M: Material<D>, const D: usize> Law<D> for Lift<M> {
         match keep {
             Definiteness::Exact => simd.run(Tangents::<M, D> { points, tangent, material: self.0 }),
             Definiteness::Clamped => {
-                let mut principal = Room([0.0; MOST_PACKS * PRINCIPAL * 9 * WIDTH]);
+                let mut principal = PackBuffer([0.0; MOST_PACKS * PRINCIPAL * 9 * WIDTH]);
                 self.principal(simd, points, &mut principal.0);
                 simd.run(OutOfFrame::<D> { count: points.count, principal: &principal.0, tangent });
             }

@@ -2,7 +2,7 @@
 
 use super::law::Law;
 use super::material::Tangent;
-use super::points::{MOST_PACKS, PARAMETERS, Points, Room, read_matrix, write_matrix};
+use super::points::{MOST_PACKS, PARAMETERS, PackBuffer, Points, read_matrix, write_matrix};
 use opruga_core::potential::Definiteness;
 use opruga_math::{Lane, Pack, Register, Simd, WIDTH, Work, symmetric};
 
@@ -21,12 +21,12 @@ const FOUND: f64 = 1e-12;
 
 /// Packs of points in space.
 struct Space {
-    gradient: Room<{ MOST_PACKS * 9 * WIDTH }>,
-    energy: Room<{ MOST_PACKS * WIDTH }>,
-    stress: Room<{ MOST_PACKS * 9 * WIDTH }>,
-    tangent: Room<{ MOST_PACKS * 81 * WIDTH }>,
+    gradient: PackBuffer<{ MOST_PACKS * 9 * WIDTH }>,
+    energy: PackBuffer<{ MOST_PACKS * WIDTH }>,
+    stress: PackBuffer<{ MOST_PACKS * 9 * WIDTH }>,
+    tangent: PackBuffer<{ MOST_PACKS * 81 * WIDTH }>,
     /// 1 where the thickness is still sought.
-    open: Room<{ MOST_PACKS * WIDTH }>,
+    open: PackBuffer<{ MOST_PACKS * WIDTH }>,
 }
 
 impl PlaneStress {
@@ -62,11 +62,11 @@ impl PlaneStress {
 impl Space {
     fn new() -> Space {
         Space {
-            gradient: Room([0.0; MOST_PACKS * 9 * WIDTH]),
-            energy: Room([0.0; MOST_PACKS * WIDTH]),
-            stress: Room([0.0; MOST_PACKS * 9 * WIDTH]),
-            tangent: Room([0.0; MOST_PACKS * 81 * WIDTH]),
-            open: Room([0.0; MOST_PACKS * WIDTH]),
+            gradient: PackBuffer([0.0; MOST_PACKS * 9 * WIDTH]),
+            energy: PackBuffer([0.0; MOST_PACKS * WIDTH]),
+            stress: PackBuffer([0.0; MOST_PACKS * 9 * WIDTH]),
+            tangent: PackBuffer([0.0; MOST_PACKS * 81 * WIDTH]),
+            open: PackBuffer([0.0; MOST_PACKS * WIDTH]),
         }
     }
 }

@@ -7,9 +7,9 @@ use opruga_math::{Register, WIDTH};
 /// Packs of points that are looked at together, at most.
 pub(crate) const MOST_PACKS: usize = 9;
 
-/// Room for some packs of points.
+/// Memory for some packs of points.
 #[repr(align(64))]
-pub(crate) struct Room<const SIZE: usize>(pub(crate) [f64; SIZE]);
+pub(crate) struct PackBuffer<const SIZE: usize>(pub(crate) [f64; SIZE]);
 
 /// Numbers at a point: those of [`Parameters`], and the growth by heat.
 pub(crate) const PARAMETERS: usize = 4;

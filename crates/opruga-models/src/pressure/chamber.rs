@@ -109,11 +109,11 @@ impl<const D: usize> Work for Push<'_, '_, D> {
     #[inline(always)]
     fn run<P: Pack>(self) {
         let (gauge, tile): (P, _) = (of_bodies(self.layout, self.gauge), self.tile);
-        let places = self.area.len() / D;
-        for place in tile.range.clone().step_by(WIDTH) {
-            let k = place - tile.range.start;
+        let index_count = self.area.len() / D;
+        for index in tile.range.clone().step_by(WIDTH) {
+            let k = index - tile.range.start;
             for d in 0..D {
-                let force = P::load(&tile.force[d][k..]) + gauge * P::load(&self.area[d * places + place..]);
+                let force = P::load(&tile.force[d][k..]) + gauge * P::load(&self.area[d * index_count + index..]);
                 force.store(&mut tile.force[d][k..]);
             }
         }
@@ -166,10 +166,10 @@ impl Boundary {
         }
     }
 
-    /// ∂V/∂x of every node of the boundary of one body (per depth in the plane), place by place.
+    /// ∂V/∂x of every node of the boundary of one body (per depth in the plane), index by index.
     pub(super) fn slope<const D: usize>(&self, view: &View<D>, body: usize) -> Vec<(usize, [f64; D])> {
         let mut slope: std::collections::BTreeMap<usize, [f64; D]> = std::collections::BTreeMap::new();
-        let at = |node: u32| view.layout.place(node as usize, body);
+        let at = |node: u32| view.layout.index(node as usize, body);
         match self {
             Boundary::Plane(edges) => {
                 for &[a, b] in edges.pairs() {
@@ -216,7 +216,7 @@ impl Boundary {
         factor: f64,
         sink: &mut dyn Sink<D>,
     ) {
-        let at = |node: u32| view.layout.place(node as usize, body);
+        let at = |node: u32| view.layout.index(node as usize, body);
         match self {
             Boundary::Plane(edges) => edges.pairs().iter().for_each(|pair| second_of_pair(pair.map(at), factor, sink)),
             Boundary::Space(rings) => {
@@ -256,7 +256,7 @@ impl Boundary {
     pub(super) fn area_len<const D: usize>(&self, layout: Layout, nodes: usize) -> usize {
         match self {
             Boundary::Plane(_) => 0,
-            Boundary::Space(_) | Boundary::Curved(_) => D * layout.places(nodes),
+            Boundary::Space(_) | Boundary::Curved(_) => D * layout.index_count(nodes),
         }
     }
 
@@ -290,7 +290,7 @@ impl NodeRings {
                 neighbour[at] = ring.get(slot).or(ring.first()).copied().unwrap_or(0);
             }
         }
-        let follow = |places: &[u32]| places.windows(2).all(|pair| pair[1] == pair[0] + 1);
+        let follow = |indices: &[u32]| indices.windows(2).all(|pair| pair[1] == pair[0] + 1);
         let together = neighbour.chunks(WIDTH).map(follow).collect();
         let longest = |pack: usize| {
             let nodes = pack * WIDTH..nodes.min((pack + 1) * WIDTH);
@@ -302,19 +302,19 @@ impl NodeRings {
     /// V = Σ xᵢ·∂V/∂xᵢ / 3 with ∂V/∂xᵢ = ⅙ Σ x_k × x_{k+1} around the ring of node i.
     #[inline(always)]
     fn volume<P: Pack, const D: usize>(&self, view: &View<D>, origin: &[P; D], area: &mut [f64]) -> P {
-        let places = view.layout.places(view.nodes);
+        let index_count = view.layout.index_count(view.nodes);
         let end = view.nodes * view.layout.stride();
         let mut sum = OrderedSum::<P>::new(view.layout);
         let sixth = P::splat(1.0 / 6.0);
-        for place in (0..places).step_by(WIDTH) {
+        for index in (0..index_count).step_by(WIDTH) {
             let mut total = [P::zero(); 3];
-            let first = self.neighbour_position::<P, D>(view, origin, place, 0);
+            let first = self.neighbour_position::<P, D>(view, origin, index, 0);
             let mut previous = first;
-            let pack = place / WIDTH;
+            let pack = index / WIDTH;
             let width = self.widths[if view.layout == Layout::Single { pack } else { pack / WIDTH }] as usize;
             for slot in 1..=width {
                 let next =
-                    if slot == width { first } else { self.neighbour_position::<P, D>(view, origin, place, slot) };
+                    if slot == width { first } else { self.neighbour_position::<P, D>(view, origin, index, slot) };
                 total[0] += previous[1] * next[2] - previous[2] * next[1];
                 total[1] += previous[2] * next[0] - previous[0] * next[2];
                 total[2] += previous[0] * next[1] - previous[1] * next[0];
@@ -323,10 +323,10 @@ impl NodeRings {
             let mut product = P::zero();
             for d in 0..3 {
                 let vector = total[d] * sixth;
-                vector.store(&mut area[d * places + place..]);
-                product += vector * (P::load(&view.x[d][place..]) - origin[d]);
+                vector.store(&mut area[d * index_count + index..]);
+                product += vector * (P::load(&view.x[d][index..]) - origin[d]);
             }
-            sum.add(place, end, product);
+            sum.add(index, end, product);
         }
         sum.total() * P::splat(1.0 / 3.0)
     }
@@ -336,26 +336,26 @@ impl NodeRings {
         &self,
         view: &View<D>,
         origin: &[P; D],
-        place: usize,
+        index: usize,
         slot: usize,
     ) -> [P; 3] {
         let mut out = [P::zero(); 3];
         match view.layout {
             Layout::Single => {
-                let at = (place / WIDTH * self.width + slot) * WIDTH;
-                let places = &self.neighbour[at..at + WIDTH];
+                let at = (index / WIDTH * self.width + slot) * WIDTH;
+                let neighbours = &self.neighbour[at..at + WIDTH];
                 if self.together[at / WIDTH] {
                     for d in 0..3 {
-                        out[d] = P::load(&view.x[d][places[0] as usize..]) - origin[d];
+                        out[d] = P::load(&view.x[d][neighbours[0] as usize..]) - origin[d];
                     }
                 } else {
                     for d in 0..3 {
-                        out[d] = P::gather(view.x[d], places) - origin[d];
+                        out[d] = P::gather(view.x[d], neighbours) - origin[d];
                     }
                 }
             }
             Layout::Batch => {
-                let node = place / WIDTH;
+                let node = index / WIDTH;
                 let at = (node / WIDTH * self.width + slot) * WIDTH + node % WIDTH;
                 let from = self.neighbour[at] as usize * WIDTH;
                 for d in 0..3 {

@@ -48,10 +48,10 @@ const CAP: [Term; 20] = [
     ([3, 4, 5], 16.0 / 15.0),
 ];
 
-/// Nodes of a side by their place in it, and the weight of their product.
+/// Nodes of a side by their index in it, and the weight of their product.
 type Term = ([usize; 3], f64);
 
-/// Facets by the places of their nodes in a side.
+/// Facets by the indices of their nodes in a side.
 type Facets = [[usize; 3]];
 
 /// The ways in which the facets of a side of cells may have been cut, and what it adds to the volume; none of a straight side.
@@ -115,13 +115,13 @@ impl CurvedSides {
     ) -> f64 {
         // Far from the origin no digits are lost.
         let origin = at(self.nodes[0]);
-        let near = |node: u32| {
+        let relative = |node: u32| {
             let x = at(node);
             core::array::from_fn::<f64, D, _>(|d| x[d] - origin[d])
         };
         let mut sum = 0.0;
         for (nodes, weight) in &self.terms {
-            let x = nodes.map(near);
+            let x = nodes.map(relative);
             if D == 2 {
                 let half = 0.5 * weight;
                 sum += half * (x[0][0] * x[1][1] - x[0][1] * x[1][0]);
@@ -146,37 +146,37 @@ impl CurvedSides {
 
     /// The volume of one of the bodies; ∂V/∂x is added to `area`, column by column.
     pub(super) fn volume_of<const D: usize>(&self, view: &View<D>, body: usize, area: &mut [f64]) -> f64 {
-        let places = area.len() / D;
-        let place = |node: u32| view.layout.place(node as usize, body);
+        let index_count = area.len() / D;
+        let index = |node: u32| view.layout.index(node as usize, body);
         self.volume(
-            |node| view.position(place(node)),
+            |node| view.position(index(node)),
             |node, vector| {
                 for d in 0..D {
-                    area[d * places + place(node)] += vector[d];
+                    area[d * index_count + index(node)] += vector[d];
                 }
             },
         )
     }
 }
 
-/// Delivers `factor` times the second derivatives of ½ xₐ × x_b of a pair of places in the plane.
-pub(super) fn second_of_pair<const D: usize>(places: [usize; 2], factor: f64, sink: &mut dyn Sink<D>) {
+/// Delivers `factor` times the second derivatives of ½ xₐ × x_b of a pair of indices in the plane.
+pub(super) fn second_of_pair<const D: usize>(indices: [usize; 2], factor: f64, sink: &mut dyn Sink<D>) {
     let mut block = [[0.0; D]; D];
     (block[0][1], block[1][0]) = (0.5 * factor, -0.5 * factor);
     let transposed = core::array::from_fn(|i| core::array::from_fn(|j| block[j][i]));
-    sink.block(places[0], places[1], block);
-    sink.block(places[1], places[0], transposed);
+    sink.block(indices[0], indices[1], block);
+    sink.block(indices[1], indices[0], transposed);
 }
 
-/// Delivers `factor` times the second derivatives of ⅙ xₐ·(x_b × x_c) of three places: ∂²/∂xₐ∂x_b = −⅙ [x_c]×, cyclically.
+/// Delivers `factor` times the second derivatives of ⅙ xₐ·(x_b × x_c) of three indices: ∂²/∂xₐ∂x_b = −⅙ [x_c]×, cyclically.
 pub(super) fn second_of_triple<const D: usize>(
     view: &View<D>,
-    places: [usize; 3],
+    indices: [usize; 3],
     factor: f64,
     sink: &mut dyn Sink<D>,
 ) {
     for k in 0..3 {
-        let [a, b, c] = [places[k], places[(k + 1) % 3], places[(k + 2) % 3]];
+        let [a, b, c] = [indices[k], indices[(k + 1) % 3], indices[(k + 2) % 3]];
         let x = view.position(c).map(|v| v * factor / 6.0);
         let mut block = [[0.0; D]; D];
         for d in 0..3 {

@@ -19,8 +19,8 @@ impl<const D: usize> Matching<D> {
             for body in 0..layout.stride() {
                 let own = clusters.slots_start[node] as usize..clusters.slots_start[node + 1] as usize;
                 let mass: f64 =
-                    clusters.slots_of[own].iter().map(|slot| clusters.mass[layout.place(*slot as usize, body)]).sum();
-                let index = layout.place(node, body);
+                    clusters.slots_of[own].iter().map(|slot| clusters.mass[layout.index(*slot as usize, body)]).sum();
+                let index = layout.index(node, body);
                 let strength = self.law.stiffness.at(body) * mass;
                 sink.block(index, index, matrix::scaled(&matrix::identity(), strength));
             }
@@ -46,13 +46,13 @@ impl<const D: usize> Matching<D> {
         let (stiffness, share) = (self.law.stiffness.at(body), self.law.share.at(body));
         let first = clusters.range(cluster).start;
         let slots = first..first + clusters.count[cluster] as usize;
-        let at = layout.place(cluster, body);
+        let at = layout.index(cluster, body);
         // Σ u·δx of a number of every slot along an axis, or of a vector of it.
         let mut deliver = |c: f64, of_slot: &dyn Fn(usize) -> [f64; D]| {
             part.clear();
             part.extend(slots.clone().map(|slot| {
-                let mass = clusters.mass[layout.place(slot, body)];
-                (clusters.indices[slot] as usize + body, of_slot(layout.place(slot, body)).map(|x| mass * x))
+                let mass = clusters.mass[layout.index(slot, body)];
+                (clusters.indices[slot] as usize + body, of_slot(layout.index(slot, body)).map(|x| mass * x))
             }));
             sink.low_rank(c, part);
         };

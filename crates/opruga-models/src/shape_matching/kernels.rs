@@ -23,7 +23,7 @@ pub(super) struct Stored {
 
 impl Stored {
     pub(super) fn of<const D: usize>(clusters: &Clusters<D>) -> Stored {
-        let stride = clusters.layout.places(clusters.len());
+        let stride = clusters.layout.index_count(clusters.len());
         let size = D * clusters.columns;
         let (goal, moments, rotation) = (D, D + size, D + 2 * size);
         Stored { stride, goal, moments, rotation, forces: (rotation + D * D) * stride }
@@ -55,7 +55,7 @@ impl Stored {
         cluster: usize,
         body: usize,
     ) -> f64 {
-        scratch[column * self.stride + clusters.layout.place(cluster, body)]
+        scratch[column * self.stride + clusters.layout.index(cluster, body)]
     }
 }
 

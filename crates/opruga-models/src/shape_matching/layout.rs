@@ -51,7 +51,7 @@ impl<const D: usize> Clusters<D> {
         }
         let slots = start[start.len() - 1] as usize;
         let columns = if quadratic { D + D * (D + 1) / 2 } else { D };
-        let column = |items: usize| Column::zeros(layout.places(items) + WIDTH);
+        let column = |items: usize| Column::zeros(layout.index_count(items) + WIDTH);
         let mut out = Clusters {
             layout,
             nodes,
@@ -82,18 +82,18 @@ impl<const D: usize> Clusters<D> {
             let positions: Vec<[f64; D]> = list.iter().map(|node| mesh.positions[*node as usize]).collect();
             for body in 0..stride {
                 let share = |node: &u32| {
-                    let whole = ingredients.mass.at(layout.place(*node as usize, body));
+                    let whole = ingredients.mass.at(layout.index(*node as usize, body));
                     whole / f64::from(times[*node as usize])
                 };
                 let masses: Vec<f64> = list.iter().map(share).collect();
                 let shape = Shape::new(&positions, &masses, quadratic);
-                let at = layout.place(cluster, body);
+                let at = layout.index(cluster, body);
                 out.inverse_mass[at] = 1.0 / shape.mass;
                 for d in 0..D * D {
                     out.frame[d][at] = shape.frame[d / D][d % D];
                 }
                 for (k, mass) in masses.iter().enumerate() {
-                    let at = layout.place(first + k, body);
+                    let at = layout.index(first + k, body);
                     out.mass[at] = *mass;
                     for (to, from) in out.phi.iter_mut().zip(&shape.columns) {
                         to[at] = from[k];

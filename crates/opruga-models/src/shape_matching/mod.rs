@@ -258,7 +258,7 @@ impl<const D: usize> Matching<D> {
     /// Whether the fitted map of a cluster turns its rest shape inside out.
     fn is_mirrored(&self, scratch: &[f64], cluster: usize, body: usize) -> bool {
         let (clusters, stored) = (&self.clusters, self.stored);
-        let at = clusters.layout.place(cluster, body);
+        let at = clusters.layout.index(cluster, body);
         let mut map = [[0.0; D]; D];
         let mut frame = [[0.0; D]; D];
         for d in 0..D {

@@ -86,7 +86,7 @@ impl<const D: usize> Pieces<D> {
             |node: usize| -> [f64; D] { core::array::from_fn(|d| mesh.positions[node][d] - mesh.positions[origin][d]) };
         let reach = (0..count).map(|node| offset_of(node).iter().map(|q| q * q).sum::<f64>()).fold(0.0, larger);
         let mut smallest = f64::INFINITY;
-        for at in (0..clusters.len()).map(|cluster| layout.place(cluster, 0)) {
+        for at in (0..clusters.len()).map(|cluster| layout.index(cluster, 0)) {
             for k in 0..D {
                 let own = clusters.frame[k * D + k][at];
                 let square = own * own * clusters.inverse_mass[at];
@@ -130,7 +130,7 @@ impl<const D: usize> Pieces<D> {
         let mut row_of: Vec<u32> = piece_of.iter().map(|piece| piece * rows as u32).collect();
         row_of.resize(count.next_multiple_of(WIDTH), 0);
 
-        let padded = layout.places(count);
+        let padded = layout.index_count(count);
         let mut out = Pieces {
             origin,
             nodes: members.concat(),
@@ -145,8 +145,8 @@ impl<const D: usize> Pieces<D> {
             mass: Column::zeros(padded + WIDTH),
             offset: core::array::from_fn(|_| Column::zeros(count + WIDTH)),
             weights: Column::zeros(if layout == Layout::Single { count * WIDTH } else { 0 }),
-            inverse: (0..D * D).map(|_| Column::zeros(layout.places(clusters.len()) + WIDTH)).collect(),
-            center: core::array::from_fn(|_| Column::zeros(layout.places(clusters.len()) + WIDTH)),
+            inverse: (0..D * D).map(|_| Column::zeros(layout.index_count(clusters.len()) + WIDTH)).collect(),
+            center: core::array::from_fn(|_| Column::zeros(layout.index_count(clusters.len()) + WIDTH)),
         };
         for node in 0..count {
             let own = offset_of(node);
@@ -154,7 +154,7 @@ impl<const D: usize> Pieces<D> {
                 out.offset[d][node] = own[d];
             }
             for body in 0..layout.stride() {
-                let at = layout.place(node, body);
+                let at = layout.index(node, body);
                 out.mass[at] = ingredients.mass.at(at);
             }
         }
@@ -180,7 +180,7 @@ impl<const D: usize> Pieces<D> {
         for cluster in 0..clusters.len() {
             let first = clusters.range(cluster).start;
             for body in 0..layout.stride() {
-                let at = layout.place(cluster, body);
+                let at = layout.index(cluster, body);
                 let mut frame = [[0.0; D]; D];
                 let mut center = [0.0; D];
                 for d in 0..D {
@@ -189,7 +189,7 @@ impl<const D: usize> Pieces<D> {
                     }
                     for slot in first..first + clusters.count[cluster] as usize {
                         let node = clusters.indices[slot] as usize / layout.stride();
-                        center[d] += clusters.mass[layout.place(slot, body)] * self.offset[d][node];
+                        center[d] += clusters.mass[layout.index(slot, body)] * self.offset[d][node];
                     }
                     self.center[d][at] = center[d] * clusters.inverse_mass[at];
                 }

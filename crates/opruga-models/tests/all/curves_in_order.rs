@@ -18,7 +18,7 @@ fn forces<const D: usize>(mesh: &Mesh<D>, values: &Values) -> (Vec<f64>, f64) {
         system.state.v.set(node, core::array::from_fn(|d| 0.1 * ((node * 5 + d * 3) % 11) as f64));
     }
     let (view, member) = (system.view(Stage::Current, 0.0), &system.members[0]);
-    let padded = system.layout.places(system.nodes);
+    let padded = system.layout.index_count(system.nodes);
     let (mut force, mut slots, mut power) = (Columns::<D>::zeros(padded), Column::default(), [0.0; WIDTH]);
     for start in (0..padded).step_by(TILE) {
         let range = start..(start + TILE).min(padded);

@@ -42,7 +42,7 @@ fn compare<const D: usize>(mesh: &Mesh<D>, parts: &[Part<D>]) {
     system.plan(1);
     system.advance(Stage::Current, 0.0, 1.0, None, &Record).unwrap();
 
-    let places = system.places();
+    let places = system.index_count();
     let mut whole: [Vec<f64>; D] = core::array::from_fn(|_| vec![0.0; places + WIDTH]);
     let (mut power, mut slots) = ([0.0; WIDTH], Column::default());
     let view: View<D> = system.view(Stage::Current, 0.0);

@@ -11,7 +11,7 @@
 mod gradients;
 
 use crate::Indefinite;
-use crate::blocks::{Block, held, inverse_of_positive, product};
+use crate::blocks::{Block, constrained_block, inverse_of_positive, product};
 use crate::matrix::BlockMatrix;
 use opruga_core::threads::{each, each_block};
 use opruga_math::{Column, ROW, Simd, WIDTH};
@@ -63,7 +63,7 @@ struct Piece<const D: usize> {
     start: Vec<u32>,
     /// Eight seats of columns for every eight blocks.
     column: Vec<u32>,
-    /// Their places in the matrix.
+    /// Their indices in the matrix.
     source: Vec<u32>,
     /// In single precision: half the memory to pass over, and [`Packed`] solves for corrections.
     values: Vec<f32>,
@@ -185,7 +185,7 @@ impl<const D: usize> Packed<D> {
                 let inverse = if free[node] {
                     inverse_of_positive(own)
                 } else {
-                    let inverse = inverse_of_positive(&held(own, projector));
+                    let inverse = inverse_of_positive(&constrained_block(own, projector));
                     inverse.map(|inverse| product(projector, &product(&inverse, projector)))
                 };
                 let Some(inverse) = inverse else {

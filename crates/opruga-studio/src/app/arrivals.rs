@@ -23,11 +23,11 @@ impl Studio {
             match arrived {
                 Arrived::Request(Request::Take(shape, ..)) => self.landing.push((shape, now)),
                 Arrived::Request(request) => asks.push(request),
-                Arrived::Told(severity, said) => self.keeping.tell(severity, said),
+                Arrived::Message(severity, report) => self.keeping.report(severity, report),
             }
         }
         // Not so large that nothing else is seen.
-        let size = opruga::draw::nice_length(0.3 * self.canvas.room(shown));
+        let size = opruga::draw::nice_length(0.3 * self.canvas.shorter_side(shown));
         let at = self.canvas.landing(shown, pointer);
         for (shape, since) in std::mem::take(&mut self.landing) {
             match pointer.is_some() || now - since > PATIENCE {

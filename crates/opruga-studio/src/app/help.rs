@@ -17,8 +17,8 @@ impl Studio {
             .collapsible(false)
             .anchor(Align2::CENTER_CENTER, egui::Vec2::ZERO)
             .show(ui.ctx(), |ui| {
-                let room = (ui.ctx().content_rect().width() - 60.0).clamp(120.0, 560.0);
-                ui.set_max_width(room);
+                let max_width = (ui.ctx().content_rect().width() - 60.0).clamp(120.0, 560.0);
+                ui.set_max_width(max_width);
                 egui::ScrollArea::vertical().max_height(tall).show(ui, |ui| {
                     // The bar lies beside the words.
                     Frame::new().inner_margin(Margin { right: 12, ..Margin::ZERO }).show(ui, |ui| {
@@ -27,7 +27,7 @@ impl Studio {
                                 for (text, share) in [(RichText::new(keys).strong(), 0.34), (RichText::new(what), 0.54)]
                                 {
                                     ui.scope(|ui| {
-                                        ui.set_max_width(share * room);
+                                        ui.set_max_width(share * max_width);
                                         ui.add(egui::Label::new(text.size(13.5)).wrap());
                                     });
                                 }

@@ -31,8 +31,8 @@ impl Studio {
         }
         let selected = self.canvas.selected.clone();
         if let Some(name) = selected {
-            let place = |turned: f64, scaled: f64| {
-                Request::Edit(Edit::Place(name.clone(), Placed { moved: [0.0; 3], turned, scaled }))
+            let transform = |turned: f64, scaled: f64| {
+                Request::Edit(Edit::Transform(name.clone(), Placed { moved: [0.0; 3], turned, scaled }))
             };
             let fifteen = 15f64.to_radians();
             if pressed(Modifiers::COMMAND, Key::D) {
@@ -43,10 +43,10 @@ impl Studio {
                 self.canvas.selected = None;
             }
             for (key, request) in [
-                (Key::OpenBracket, place(fifteen, 1.0)),
-                (Key::CloseBracket, place(-fifteen, 1.0)),
-                (Key::Plus, place(0.0, 1.1)),
-                (Key::Minus, place(0.0, 1.0 / 1.1)),
+                (Key::OpenBracket, transform(fifteen, 1.0)),
+                (Key::CloseBracket, transform(-fifteen, 1.0)),
+                (Key::Plus, transform(0.0, 1.1)),
+                (Key::Minus, transform(0.0, 1.0 / 1.1)),
             ] {
                 if pressed(Modifiers::NONE, key) {
                     asks.push(request);

@@ -1,7 +1,7 @@
 //! The last message, over the scene.
 
 use super::Studio;
-use crate::said::Step;
+use crate::report::Step;
 use crate::session::Request;
 use crate::shown::{Offer, Severity, Shown};
 use crate::words::{Language, Part};
@@ -11,11 +11,11 @@ use egui::{
 use opruga::draw::format_value;
 
 /// How long it stays on the screen that something was done, and how much longer for every letter behind the first sixty [s].
-const TOLD_FOR: f64 = 6.0;
+const SHOWN_FOR: f64 = 6.0;
 const TO_READ: f64 = 0.05;
 
 /// Where a message may be, what is usual first.
-const PLACES: [Align2; 6] = [
+const PIVOTS: [Align2; 6] = [
     Align2::CENTER_BOTTOM,
     Align2::CENTER_TOP,
     Align2::LEFT_BOTTOM,
@@ -32,22 +32,22 @@ const WIDTHS: [f32; 3] = [1.0, 0.6, 0.4];
 
 /// Where a message lies in what is free: by which of its sides it is held, how far down that is [0 … 1], and how wide it may be.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Place {
+pub(super) struct Placement {
     pivot: Align2,
     down: f32,
-    room: f32,
+    max_width: f32,
 }
 
-impl Default for Place {
-    fn default() -> Place {
-        Place::at(PLACES[0])
+impl Default for Placement {
+    fn default() -> Placement {
+        Placement::at(PIVOTS[0])
     }
 }
 
-impl Place {
+impl Placement {
     /// At the border.
-    fn at(pivot: Align2) -> Place {
-        Place { pivot, down: if pivot.y() == Align::BOTTOM { 1.0 } else { 0.0 }, room: 620.0 }
+    fn at(pivot: Align2) -> Placement {
+        Placement { pivot, down: if pivot.y() == Align::BOTTOM { 1.0 } else { 0.0 }, max_width: 620.0 }
     }
 
     /// The point by which it is held.
@@ -84,8 +84,8 @@ impl Heard {
     /// Who of those that say something now spoke last.
     fn last(&mut self, now: [Option<u64>; 3]) -> Option<Speaker> {
         for speaker in [Speaker::Session, Speaker::Window, Speaker::Pen] {
-            let place = speaker as usize;
-            if now[place].is_some() && now[place] != self.numbers[place] {
+            let index = speaker as usize;
+            if now[index].is_some() && now[index] != self.numbers[index] {
                 // To the end of the row, the others in their order before it.
                 self.order.sort_by_key(|other| *other == speaker);
             }
@@ -132,26 +132,27 @@ impl Studio {
             _ => words.too_small(),
         });
         let message = shown.message.as_ref().filter(|message| message.number != self.closed);
-        let of_window = self.keeping.message().map(|_| self.keeping.told());
+        let of_window = self.keeping.message().map(|_| self.keeping.message_count());
         let now = [message.map(|message| message.number), of_window, pen.map(|_| 0)];
         let Some(speaker) = self.heard.last(now) else { return };
-        // What was only told, and was not read to its end when something else was said, is over.
-        let told = |severity: Severity, offer: bool| severity == Severity::Told && !offer;
+        // A mere notice that was not read to its end when another message came is over.
+        let is_notice = |severity: Severity, offer: bool| severity == Severity::Done && !offer;
         if speaker != Speaker::Session
-            && let Some(message) = message.filter(|message| told(message.severity, message.offer.is_some()))
+            && let Some(message) = message.filter(|message| is_notice(message.severity, message.offer.is_some()))
         {
             self.closed = message.number;
         }
-        if speaker != Speaker::Window && self.keeping.message().is_some_and(|(_, severity)| told(*severity, false)) {
+        if speaker != Speaker::Window && self.keeping.message().is_some_and(|(_, severity)| is_notice(*severity, false))
+        {
             self.keeping.forget_message();
         }
         let message = message.filter(|_| speaker == Speaker::Session);
         let (text, severity, offer) = match (speaker, pen, message, self.keeping.message()) {
             (Speaker::Pen, Some(text), ..) => (text.to_string(), Severity::Refused, None),
             (Speaker::Session, _, Some(message), _) => {
-                (words.said(&message.said), message.severity, message.offer.clone())
+                (words.report(&message.report), message.severity, message.offer.clone())
             }
-            (Speaker::Window, _, _, Some((said, severity))) => (words.said(said), *severity, None),
+            (Speaker::Window, _, _, Some((report, severity))) => (words.report(report), *severity, None),
             _ => return,
         };
         let takes = message.and_then(|message| message.frame_seconds);
@@ -164,16 +165,16 @@ impl Studio {
         let free = self.free_for_messages(rect, shown);
         let heard = format!("{speaker:?} {:?}: {}", now[speaker as usize], spoken.text);
         let time = ui.input(|i| i.time);
-        if self.told.0 != heard {
+        if self.last_message.0 != heard {
             // Bodies move: where it was put when it came, there it stays.
-            let place = self.least_hiding(&spoken.text, ui, free, rect.width(), shown);
-            self.told = (heard, time, place);
+            let placement = self.least_hiding(&spoken.text, ui, free, rect.width(), shown);
+            self.last_message = (heard, time, placement);
         }
-        let long = TOLD_FOR + TO_READ * spoken.text.chars().count().saturating_sub(60) as f64;
+        let long = SHOWN_FOR + TO_READ * spoken.text.chars().count().saturating_sub(60) as f64;
         // A menu that is open is what Escape closes first.
         let escape =
             !egui::Popup::is_any_open(ui.ctx()) && ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape));
-        if escape || !spoken.refused && spoken.offer.is_none() && time - self.told.1 > long {
+        if escape || !spoken.refused && spoken.offer.is_none() && time - self.last_message.1 > long {
             self.forget(speaker, number);
             return;
         }
@@ -194,32 +195,32 @@ impl Studio {
     }
 
     /// Where a text hides least of the bodies; on more lines, where that hides less.
-    fn least_hiding(&self, text: &str, ui: &Ui, free: Rect, width: f32, shown: &Shown) -> Place {
+    fn least_hiding(&self, text: &str, ui: &Ui, free: Rect, width: f32, shown: &Shown) -> Placement {
         let covered = self.canvas.covered(shown);
         let widest = (width - 120.0).clamp(120.0, 620.0);
-        let places = WIDTHS.map(|share| {
-            let room = (share * widest).max(120.0);
-            let galley = ui.painter().layout(text.to_string(), FontId::proportional(13.0), edge(false), room);
+        let placements = WIDTHS.map(|share| {
+            let max_width = (share * widest).max(120.0);
+            let galley = ui.painter().layout(text.to_string(), FontId::proportional(13.0), edge(false), max_width);
             let size = galley.size() + Vec2::new(16.0, 48.0);
-            let (hidden, place) = place(free, size, &covered);
-            (hidden, Place { room, ..place })
+            let (hidden, placement) = placement(free, size, &covered);
+            (hidden, Placement { max_width, ..placement })
         });
-        places.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default().1
+        placements.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default().1
     }
 
     /// The message with its buttons.
     fn show_message(&mut self, ui: &Ui, spoken: &Spoken, free: Rect, undo: Option<&Step>, asks: &mut Vec<Request>) {
-        let place = self.told.2;
+        let placement = self.last_message.2;
         egui::Area::new(egui::Id::unique("message"))
-            .pivot(place.pivot)
-            .fixed_pos(place.point(free))
+            .pivot(placement.pivot)
+            .fixed_pos(placement.point(free))
             .order(egui::Order::Middle)
             .show(ui.ctx(), |ui| {
                 Frame::popup(ui.style())
                     .stroke(Stroke::new(1.5, edge(spoken.refused)))
                     .corner_radius(CornerRadius::same(6))
                     .show(ui, |ui| {
-                        ui.set_max_width(place.room);
+                        ui.set_max_width(placement.max_width);
                         let lines: Vec<&str> = spoken.text.lines().collect();
                         let short = lines.iter().take(8).copied().collect::<Vec<_>>().join("\n");
                         let monospaced = lines.len() > 1;
@@ -268,22 +269,22 @@ fn edge(refused: bool) -> Color32 {
     if refused { Color32::from_rgb(214, 80, 60) } else { Color32::from_rgb(60, 140, 110) }
 }
 
-/// The place of a message of this size that hides least of what is there, and how much that is [square points].
-fn place(free: Rect, size: Vec2, covered: &[Rect]) -> (f32, Place) {
-    let hidden = |place: &Place| {
-        let place = place.pivot.anchor_size(place.point(free), size).intersect(free);
-        let over =
-            |other: &Rect| Some(other.intersect(place)).filter(Rect::is_positive).map_or(0.0, |both| both.area());
+/// The placement of a message of this size that hides least of what is there, and how much that is [square points].
+fn placement(free: Rect, size: Vec2, covered: &[Rect]) -> (f32, Placement) {
+    let hidden = |placement: &Placement| {
+        let rect = placement.pivot.anchor_size(placement.point(free), size).intersect(free);
+        let over = |other: &Rect| Some(other.intersect(rect)).filter(Rect::is_positive).map_or(0.0, |both| both.area());
         covered.iter().map(over).sum::<f32>()
     };
     // Bodies that lie apart leave strips free between them.
     let most = (1.0 - size.y / free.height().max(1.0)).max(0.0);
     let heights = (1..HEIGHTS).map(|k| f32::from(k) / f32::from(HEIGHTS) * most);
     let between = heights.flat_map(|down| {
-        [Align2::CENTER_TOP, Align2::LEFT_TOP, Align2::RIGHT_TOP].map(|pivot| Place { down, ..Place::at(pivot) })
+        [Align2::CENTER_TOP, Align2::LEFT_TOP, Align2::RIGHT_TOP]
+            .map(|pivot| Placement { down, ..Placement::at(pivot) })
     });
-    let all = PLACES.into_iter().map(Place::at).chain(between);
-    all.map(|place| (hidden(&place), place)).min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default()
+    let all = PIVOTS.into_iter().map(Placement::at).chain(between);
+    all.map(|placement| (hidden(&placement), placement)).min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default()
 }
 
 /// Units that stand behind numbers in messages.
@@ -293,11 +294,11 @@ const UNITS: [&str; 12] = ["s", "ms", "m", "kg", "N", "J", "Pa", "Hz", "%", "rad
 fn unbroken(text: &str) -> String {
     let mut whole = String::with_capacity(text.len() + 8);
     let mut last = "";
-    for (place, word) in text.split(' ').enumerate() {
+    for (index, word) in text.split(' ').enumerate() {
         let unit = word.trim_end_matches(['.', ',', ';', ':', ')']);
         let together =
             word == "=" || last == "=" || last.ends_with(|c: char| c.is_ascii_digit()) && UNITS.contains(&unit);
-        if place > 0 {
+        if index > 0 {
             whole.push(if together { '\u{a0}' } else { ' ' });
         }
         whole.push_str(word);
@@ -332,19 +333,19 @@ mod tests {
         let body = |left: f32, top: f32, right: f32, bottom: f32| {
             Rect::from_min_max(Pos2::new(left, top), Pos2::new(right, bottom))
         };
-        let place = |free: Rect, size: Vec2, covered: &[Rect]| super::place(free, size, covered).1;
-        assert_eq!(place(free, size, &[]), Place::at(Align2::CENTER_BOTTOM));
-        assert_eq!(place(free, size, &[body(400.0, 200.0, 600.0, 400.0)]), Place::at(Align2::CENTER_BOTTOM));
+        let placement = |free: Rect, size: Vec2, covered: &[Rect]| super::placement(free, size, covered).1;
+        assert_eq!(placement(free, size, &[]), Placement::at(Align2::CENTER_BOTTOM));
+        assert_eq!(placement(free, size, &[body(400.0, 200.0, 600.0, 400.0)]), Placement::at(Align2::CENTER_BOTTOM));
         // A flat body on the floor, one that hangs from above too, and one that fills the window but for a corner.
         let flat = body(200.0, 540.0, 800.0, 600.0);
-        assert_eq!(place(free, size, &[flat]), Place::at(Align2::CENTER_TOP));
+        assert_eq!(placement(free, size, &[flat]), Placement::at(Align2::CENTER_TOP));
         let hanging = body(300.0, 60.0, 700.0, 200.0);
         let lying = body(300.0, 540.0, 500.0, 600.0);
-        assert_eq!(place(free, size, &[lying, hanging]), Place::at(Align2::RIGHT_BOTTOM));
-        assert_eq!(place(free, size, &[body(0.0, 0.0, 980.0, 520.0)]), Place::at(Align2::CENTER_BOTTOM));
+        assert_eq!(placement(free, size, &[lying, hanging]), Placement::at(Align2::RIGHT_BOTTOM));
+        assert_eq!(placement(free, size, &[body(0.0, 0.0, 980.0, 520.0)]), Placement::at(Align2::CENTER_BOTTOM));
         // Two scenes one above the other, with a strip between.
         let scenes = [body(0.0, 60.0, 980.0, 260.0), body(0.0, 380.0, 980.0, 600.0)];
-        let (hidden, between) = super::place(free, size, &scenes);
+        let (hidden, between) = super::placement(free, size, &scenes);
         assert_eq!(hidden, 0.0);
         let strip = between.pivot.anchor_size(between.point(free), size);
         assert!(scenes.iter().all(|scene| !scene.intersects(strip)) && free.contains_rect(strip), "{strip:?}");

@@ -65,9 +65,9 @@ pub(super) fn paint(look: &Look<'_>, flat: &Flat, longest: &Longest, project: &d
 
 /// A line with a head of this length.
 pub(super) fn arrow(painter: &Painter, from: Pos2, to: Pos2, stroke: Stroke, long: f32) {
-    let way = to - from;
+    let offset = to - from;
     painter.line_segment([from, to], stroke);
-    let back = way.normalized() * long.min(0.5 * way.length());
+    let back = offset.normalized() * long.min(0.5 * offset.length());
     let side = Vec2::new(-back.y, back.x) * 0.45;
     let head = vec![to, to - back + side, to - back - side];
     painter.add(Shape::convex_polygon(head, stroke.color, Stroke::NONE));
@@ -105,18 +105,18 @@ pub(super) fn key(look: &Look<'_>, longest: &Longest, points_of: Option<f64>, wo
         })
         .collect();
     let wide = rows.iter().map(|(_, long, _)| *long).fold(0.0, f32::max);
-    let mut places = Vec::new();
+    let mut grounds = Vec::new();
     for (row, (kind, long, text)) in rows.into_iter().enumerate() {
         let start = Pos2::new(rect.left() + 14.0, base - 17.0 * row as f32);
         let galley = painter.layout_no_wrap(text, FontId::proportional(12.0), paper.ink);
-        let place = Align2::LEFT_CENTER.anchor_size(start + Vec2::new(wide + 8.0, 0.0), galley.size());
-        let ground = Rect::from_min_max(Pos2::new(start.x - 4.0, place.top()), place.max + Vec2::new(4.0, 0.0));
+        let text_rect = Align2::LEFT_CENTER.anchor_size(start + Vec2::new(wide + 8.0, 0.0), galley.size());
+        let ground = Rect::from_min_max(Pos2::new(start.x - 4.0, text_rect.top()), text_rect.max + Vec2::new(4.0, 0.0));
         painter.rect_filled(ground, 3.0, paper.background.gamma_multiply(0.7));
         arrow(painter, start, start + Vec2::new(long, 0.0), Stroke::new(1.5, ink(kind, paper)), 6.0);
-        painter.galley(place.min, galley, paper.ink);
-        places.push(ground);
+        painter.galley(text_rect.min, galley, paper.ink);
+        grounds.push(ground);
     }
-    places
+    grounds
 }
 
 #[cfg(test)]

@@ -19,15 +19,15 @@ impl Canvas {
         if beside || !self.seen_in(rect, shown).is_empty() {
             return None;
         }
-        let ways = shown.extents.iter().filter_map(|extent| {
+        let offsets = shown.extents.iter().filter_map(|extent| {
             let [low, high] = extent.corners;
-            self.way_to(shown, rect, [0, 1, 2].map(|d| 0.5 * (low[d] + high[d])))
+            self.offset_to(shown, rect, [0, 1, 2].map(|d| 0.5 * (low[d] + high[d])))
         });
-        ways.min_by(|a, b| a.length_sq().total_cmp(&b.length_sq()))
+        offsets.min_by(|a, b| a.length_sq().total_cmp(&b.length_sq()))
     }
 
-    /// The way on the screen from its middle to a point; in space across what is seen, as a point may be behind the camera.
-    fn way_to(&self, shown: &Shown, rect: Rect, point: [f64; 3]) -> Option<Vec2> {
+    /// The offset on the screen from its middle to a point; in space across what is seen, as a point may be behind the camera.
+    fn offset_to(&self, shown: &Shown, rect: Rect, point: [f64; 3]) -> Option<Vec2> {
         if shown.dimension != 3 {
             return Some(self.flat.to_screen(rect, point, shown.picture.y_down) - rect.center());
         }
@@ -39,7 +39,7 @@ impl Canvas {
 
     /// An arrow at the border where no body is in sight, and a button that shows them all again.
     pub(super) fn point_to_bodies(&mut self, ui: &Ui, shown: &Shown, legend: Option<Rect>, language: Language) {
-        let (Some(way), Some(rect)) = (self.away(shown), self.rect) else { return };
+        let (Some(offset), Some(rect)) = (self.away(shown), self.rect) else { return };
         // A file that is about to be dropped has a hint of its own.
         if !ui.input(|i| i.raw.hovered_files.is_empty()) {
             return;
@@ -54,7 +54,7 @@ impl Canvas {
         if let Some(legend) = legend.filter(|legend| legend.left() - free.left() > size.x + 2.0 * ARROW + 8.0) {
             free.max.x = legend.left() - 4.0;
         }
-        let (tip, middle) = places(free, way, size);
+        let (tip, middle) = tip_and_middle(free, offset, size);
         let bubble = Rect::from_center_size(middle, size);
         let area = egui::Area::new(Id::unique("where the bodies are"))
             .order(Order::Middle)
@@ -64,27 +64,27 @@ impl Canvas {
         if area.inner.clicked() {
             self.fit();
         }
-        let ahead = if way.length_sq() > 0.0 { way.normalized() } else { Vec2::DOWN };
+        let ahead = if offset.length_sq() > 0.0 { offset.normalized() } else { Vec2::DOWN };
         arrows::arrow(&ui.painter_at(rect), tip - ARROW * ahead, tip, Stroke::new(4.0, RUBBER), 0.5 * ARROW);
         self.written.push(bubble.union(Rect::from_center_size(tip, Vec2::splat(ARROW))));
     }
 }
 
 /// The tip of the arrow at the border of what is free, and the middle of a bubble of this size behind it.
-fn places(free: Rect, way: Vec2, size: Vec2) -> (Pos2, Pos2) {
-    let ahead = if way.length_sq() > 0.0 { way.normalized() } else { Vec2::DOWN };
+fn tip_and_middle(free: Rect, offset: Vec2, size: Vec2) -> (Pos2, Pos2) {
+    let ahead = if offset.length_sq() > 0.0 { offset.normalized() } else { Vec2::DOWN };
     let far = |half: Vec2| {
         let along = |half: f32, ahead: f32| if ahead == 0.0 { f32::MAX } else { (half / ahead).abs() };
         along(half.x, ahead.x).min(along(half.y, ahead.y))
     };
-    let room = 0.5 * free.size().max(Vec2::ZERO);
-    let tip = free.center() + far(room) * ahead;
+    let half_free = 0.5 * free.size().max(Vec2::ZERO);
+    let tip = free.center() + far(half_free) * ahead;
     // The arrow is between the bubble and the border, at its side or above or below it.
     let back = 0.5 * size + Vec2::splat(ARROW + 2.0);
-    let sideways = (ahead.x / room.x.max(1.0)).abs() > (ahead.y / room.y.max(1.0)).abs();
+    let sideways = (ahead.x / half_free.x.max(1.0)).abs() > (ahead.y / half_free.y.max(1.0)).abs();
     let back =
         if sideways { Vec2::new(back.x * ahead.x.signum(), 0.0) } else { Vec2::new(0.0, back.y * ahead.y.signum()) };
-    let half = (0.5 * size).min(room);
+    let half = (0.5 * size).min(half_free);
     (tip, (tip - back).clamp(free.min + half, free.max - half))
 }
 
@@ -97,16 +97,17 @@ mod tests {
     fn the_arrow_points_to_the_bodies_and_its_bubble_is_in_sight() {
         let free = Rect::from_min_max(Pos2::new(8.0, 60.0), Pos2::new(392.0, 300.0));
         let size = Vec2::new(220.0, 30.0);
-        for way in [[900.0, 0.0], [-900.0, 20.0], [0.0, 1e5], [3.0, -5000.0], [-1e5, -1e5], [700.0, 690.0], [0.0, 0.0]]
+        for offset in
+            [[900.0, 0.0], [-900.0, 20.0], [0.0, 1e5], [3.0, -5000.0], [-1e5, -1e5], [700.0, 690.0], [0.0, 0.0]]
         {
-            let way = Vec2::from(way);
-            let (tip, middle) = places(free, way, size);
+            let offset = Vec2::from(offset);
+            let (tip, middle) = tip_and_middle(free, offset, size);
             let bubble = Rect::from_center_size(middle, size);
-            assert!(free.expand(0.5).contains(tip) && free.contains_rect(bubble), "{way:?}: {tip:?} {bubble:?}");
-            assert!(!bubble.expand(ARROW).contains(tip), "{way:?}: {tip:?} {bubble:?}");
-            assert!((tip - middle).dot(way) >= 0.0, "{way:?}: {tip:?} {bubble:?}");
+            assert!(free.expand(0.5).contains(tip) && free.contains_rect(bubble), "{offset:?}: {tip:?} {bubble:?}");
+            assert!(!bubble.expand(ARROW).contains(tip), "{offset:?}: {tip:?} {bubble:?}");
+            assert!((tip - middle).dot(offset) >= 0.0, "{offset:?}: {tip:?} {bubble:?}");
             let border = [tip.x - free.left(), free.right() - tip.x, tip.y - free.top(), free.bottom() - tip.y];
-            assert!(border.iter().any(|far| far.abs() < 0.5), "{way:?}: {tip:?}");
+            assert!(border.iter().any(|far| far.abs() < 0.5), "{offset:?}: {tip:?}");
         }
     }
 
@@ -116,9 +117,9 @@ mod tests {
             positions: vec![[x, 0.0, 0.0], [x + 1.0, 1.0, 0.0]],
             ..Default::default()
         };
-        let shown = |places: &[f64]| Shown {
+        let shown = |xs: &[f64]| Shown {
             dimension: 2,
-            extents: places.iter().map(|x| Extent::of(&body(*x))).collect(),
+            extents: xs.iter().map(|x| Extent::of(&body(*x))).collect(),
             ..Default::default()
         };
         let rect = Rect::from_min_size(Pos2::ZERO, Vec2::new(600.0, 500.0));
@@ -126,8 +127,8 @@ mod tests {
         assert_eq!(canvas.away(&shown(&[0.0])), None);
         assert_eq!(canvas.away(&shown(&[0.0, 50.0])), None, "one of them is seen");
         assert_eq!(canvas.away(&shown(&[])), None, "there is none");
-        let way = canvas.away(&shown(&[90.0, -40.0])).expect("they are out of sight");
-        assert!(way.x < 0.0 && way.y.abs() < 0.1 * way.x.abs(), "the nearest one: {way:?}");
+        let offset = canvas.away(&shown(&[90.0, -40.0])).expect("they are out of sight");
+        assert!(offset.x < 0.0 && offset.y.abs() < 0.1 * offset.x.abs(), "the nearest one: {offset:?}");
         // Nearer than its own size, all of the screen is within it.
         let mut near = Canvas { rect: Some(rect), ..Default::default() };
         near.flat.zoom(1e4, rect, rect.center() + Vec2::new(50.0, -50.0), false);

@@ -24,11 +24,11 @@ fn vertex(pos: Pos2, color: Color32) -> Vertex {
     Vertex { pos, uv: WHITE_UV, color }
 }
 
-/// The direction of a way on the screen. Points are thousands, and neither so far apart nor so near that a square would leave the range
+/// The direction of a vector on the screen. Points are thousands, and neither so far apart nor so near that a square would leave the range
 /// of numbers.
-fn unit(way: Vec2) -> Vec2 {
-    let long = way.length_sq().sqrt();
-    if long > 0.0 { way / long } else { Vec2::ZERO }
+fn unit(vector: Vec2) -> Vec2 {
+    let long = vector.length_sq().sqrt();
+    if long > 0.0 { vector / long } else { Vec2::ZERO }
 }
 
 /// A mesh that grows, and the one that was shown last.
@@ -109,12 +109,12 @@ impl Brush {
 
     /// A straight line whose colour goes from one to the other.
     pub(crate) fn line(&mut self, [from, to]: [Pos2; 2], width: f32, [a, b]: [Color32; 2]) {
-        let way = to - from;
-        let long = way.length();
+        let vector = to - from;
+        let long = vector.length();
         if long <= 1e-3 {
             return;
         }
-        let side = Vec2::new(-way.y, way.x) / long;
+        let side = Vec2::new(-vector.y, vector.x) / long;
         let first = self.mesh.vertices.len() as u32;
         self.across(from, side, width, a);
         self.across(to, side, width, b);
@@ -126,19 +126,19 @@ impl Brush {
         let mut line = std::mem::take(&mut self.line);
         line.clear();
         let joined = if self.soft > 0.0 { JOINED } else { JOINED_HARD };
-        let near = joined * joined;
+        let joined_squared = joined * joined;
         for point in points {
-            if line.last().is_none_or(|last: &(Pos2, Color32)| (point.0 - last.0).length_sq() > near) {
+            if line.last().is_none_or(|last: &(Pos2, Color32)| (point.0 - last.0).length_sq() > joined_squared) {
                 line.push(point);
             }
         }
-        while line.len() > 1 && (line[line.len() - 1].0 - line[0].0).length_sq() <= near {
+        while line.len() > 1 && (line[line.len() - 1].0 - line[0].0).length_sq() <= joined_squared {
             line.pop();
         }
         if line.len() > LONG {
             let beside = if self.soft > 0.0 { BESIDE } else { BESIDE_HARD };
             let screen = self.screen.unwrap_or(Rect::EVERYTHING).expand(2.0 * width);
-            let detail = Detail { near: joined, beside, colour: ALIKE, screen };
+            let detail = Detail { merge_distance: joined, beside, colour: ALIKE, screen };
             detail.seen(line.iter().copied(), &mut self.kept);
             for (to, from) in self.kept.iter().enumerate() {
                 line[to] = line[*from as usize];
@@ -160,11 +160,11 @@ impl Brush {
         let rows = if self.soft > 0.0 { 4 } else { 2 };
         self.mesh.vertices.reserve(count * rows);
         self.mesh.indices.reserve(count * 6 * (rows - 1));
-        let way = |from: Pos2, to: Pos2| unit(to - from);
-        let mut before = way(line[count - 1].0, line[0].0);
+        let direction = |from: Pos2, to: Pos2| unit(to - from);
+        let mut before = direction(line[count - 1].0, line[0].0);
         let next = line[1..].iter().chain([&line[0]]);
         for ((at, color), (next, _)) in line.iter().zip(next) {
-            let after = way(*at, *next);
+            let after = direction(*at, *next);
             // Across the middle of both directions, so long that the band keeps its width.
             let sum = Vec2::new(-before.y - after.y, before.x + after.x);
             let square = sum.length_sq();
@@ -188,10 +188,10 @@ impl Brush {
         let inner = if self.soft > 0.0 { (radius - 0.5 * self.soft).max(0.2) } else { radius };
         self.corner(at, color);
         for k in 0..count {
-            let way = Vec2::angled(std::f32::consts::TAU * k as f32 / count as f32);
-            self.corner(at + way * inner, color);
+            let direction = Vec2::angled(std::f32::consts::TAU * k as f32 / count as f32);
+            self.corner(at + direction * inner, color);
             if self.soft > 0.0 {
-                self.corner(at + way * (radius + 0.5 * self.soft), Color32::TRANSPARENT);
+                self.corner(at + direction * (radius + 0.5 * self.soft), Color32::TRANSPARENT);
             }
         }
         let rows = if self.soft > 0.0 { 2 } else { 1 };

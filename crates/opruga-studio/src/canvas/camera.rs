@@ -34,8 +34,8 @@ impl Flat {
         let wide = (view.high[0] - view.low[0]).max(1e-9) * 1.25;
         let tall = (view.high[1] - view.low[1]).max(1e-9) * 1.1;
         let high = rect.height() - BORDER - tools - self.foot;
-        let room = [f64::from((rect.width() - BORDER).max(8.0)), f64::from(high.max(8.0))];
-        self.scale = (room[0] / wide).min(room[1] / tall);
+        let available = [f64::from((rect.width() - BORDER).max(8.0)), f64::from(high.max(8.0))];
+        self.scale = (available[0] / wide).min(available[1] / tall);
         let up = if view.y_down { -0.5 } else { 0.5 };
         self.center = [view.center()[0], view.center()[1] + up * f64::from(tools - self.foot) / self.scale];
     }
@@ -77,8 +77,8 @@ impl Flat {
                 // Away from everything: the view keeps its size and goes along.
                 let over = [seen[0] + edge - low, high - seen[1] + edge];
                 if high - low + 2.0 * edge < seen[1] - seen[0] && over.iter().any(|over| *over > 0.0) {
-                    let way = if over[1] > 0.0 { over[1] } else { -over[0] };
-                    (view.low[d], view.high[d]) = (view.low[d] + way, view.high[d] + way);
+                    let shift = if over[1] > 0.0 { over[1] } else { -over[0] };
+                    (view.low[d], view.high[d]) = (view.low[d] + shift, view.high[d] + shift);
                     wider = true;
                 }
                 continue;

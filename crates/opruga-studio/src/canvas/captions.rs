@@ -30,15 +30,15 @@ impl Captions {
         // Beside the legend, which the lower ones do not reach where the scenes stand next to one another.
         let free = legend.map_or(second.right(), |legend| legend.left());
         let beside_legend = (free - second.left() - 30.0).max(40.0);
-        let room = if below { beside_legend } else { (second.width() - 40.0).max(40.0) };
-        let mut caption = |spot: Pos2, align: Align2, text: String, ink: Color32, room: f32| {
-            let galley = painter.layout(text, FontId::proportional(12.5), ink, room);
-            let place = align.anchor_size(spot, galley.size());
-            all.push((place, galley, ink));
-            place
+        let wrap_width = if below { beside_legend } else { (second.width() - 40.0).max(40.0) };
+        let mut caption = |spot: Pos2, align: Align2, text: String, ink: Color32, wrap_width: f32| {
+            let galley = painter.layout(text, FontId::proportional(12.5), ink, wrap_width);
+            let text_rect = align.anchor_size(spot, galley.size());
+            all.push((text_rect, galley, ink));
+            text_rect
         };
         let low = |rect: Rect| rect.center_bottom() - Vec2::new(0.0, 8.0);
-        caption(low(first), Align2::CENTER_BOTTOM, language.as_it_is().into(), paper.ink, room);
+        caption(low(first), Align2::CENTER_BOTTOM, language.as_it_is().into(), paper.ink, wrap_width);
         let words: Vec<String> = beside.differences.iter().map(|difference| language.difference(difference)).collect();
         let words = if words.is_empty() { language.no_difference().into() } else { words.join(", ") };
         let far = match (beside.distances, beside.center) {
@@ -52,11 +52,11 @@ impl Captions {
         };
         let high = second.left_top() + Vec2::new(14.0, 10.0);
         let (spot, align) = if below { (high, Align2::LEFT_TOP) } else { (low(second), Align2::CENTER_BOTTOM) };
-        let told = caption(spot, align, format!("{words}{far}"), paper.ink, room);
+        let summary = caption(spot, align, format!("{words}{far}"), paper.ink, wrap_width);
         if let Some(reason) = &beside.stopped {
-            let text = format!("{}\n{}", language.right_stopped(), language.said(reason));
+            let text = format!("{}\n{}", language.right_stopped(), language.report(reason));
             let middle = Pos2::new(0.5 * (second.left() + free), second.top() + 70.0);
-            let under = Pos2::new(told.left(), told.bottom() + 12.0);
+            let under = Pos2::new(summary.left(), summary.bottom() + 12.0);
             let (spot, align) = if below { (under, Align2::LEFT_TOP) } else { (middle, Align2::CENTER_TOP) };
             caption(spot, align, text, Color32::from_rgb(230, 110, 60), beside_legend);
         }
@@ -64,8 +64,8 @@ impl Captions {
     }
 
     /// What they take.
-    pub(super) fn places(&self) -> Vec<Rect> {
-        self.0.iter().map(|(place, ..)| ground(*place)).collect()
+    pub(super) fn rects(&self) -> Vec<Rect> {
+        self.0.iter().map(|(text_rect, ..)| ground(*text_rect)).collect()
     }
 
     /// Writes them, and draws the line between the two scenes.
@@ -76,14 +76,14 @@ impl Captions {
         } else {
             painter.hline(second.x_range(), second.top(), border);
         }
-        for (place, galley, ink) in self.0 {
-            painter.rect_filled(ground(place), 5.0, paper.background.gamma_multiply(0.85));
-            painter.galley(place.min, galley, ink);
+        for (text_rect, galley, ink) in self.0 {
+            painter.rect_filled(ground(text_rect), 5.0, paper.background.gamma_multiply(0.85));
+            painter.galley(text_rect.min, galley, ink);
         }
     }
 }
 
 /// What is behind a caption.
-fn ground(place: Rect) -> Rect {
-    place.expand2(Vec2::new(7.0, 4.0))
+fn ground(text_rect: Rect) -> Rect {
+    text_rect.expand2(Vec2::new(7.0, 4.0))
 }

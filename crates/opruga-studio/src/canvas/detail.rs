@@ -7,7 +7,7 @@ use egui::{Color32, Pos2, Rect, Vec2};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Detail {
     /// Points nearer to one another than this are one [points of the screen].
-    pub(crate) near: f32,
+    pub(crate) merge_distance: f32,
     /// By how much a line may pass beside points that are left away [points of the screen].
     pub(crate) beside: f32,
     /// By how much a colour may differ from that where the line begins, of 255.
@@ -39,16 +39,16 @@ impl Piece {
     /// Whether it may reach to one more point.
     fn takes(&mut self, point: (Pos2, Color32), detail: &Detail) -> bool {
         self.outside &= detail.outside(point.0);
-        let way = point.0 - self.from.0;
-        let long = way.length();
+        let offset = point.0 - self.from.0;
+        let long = offset.length();
         let [a, b] = [self.from.1, point.1].map(|colour| colour.to_array());
-        let free = !std::mem::replace(&mut self.begun, true) || long <= detail.near;
+        let free = !std::mem::replace(&mut self.begun, true) || long <= detail.merge_distance;
         let alike = free || a.iter().zip(b).all(|(a, b)| a.abs_diff(b) <= detail.colour);
         // What goes back has a tip that would be lost.
         self.straight &= alike && long.is_finite() && long >= self.far - detail.beside;
         self.far = self.far.max(long);
-        if self.straight && long > detail.near {
-            let ahead = way / long;
+        if self.straight && long > detail.merge_distance {
+            let ahead = offset / long;
             let sine = (detail.beside / long).min(1.0);
             let cosine = (1.0 - sine * sine).sqrt();
             let turned = |sine: f32| Vec2::new(cosine * ahead.x - sine * ahead.y, sine * ahead.x + cosine * ahead.y);
@@ -73,16 +73,16 @@ impl Detail {
         u8::from(at.x < min.x) | u8::from(at.x > max.x) << 1 | u8::from(at.y < min.y) << 2 | u8::from(at.y > max.y) << 3
     }
 
-    /// The places of the points of a closed line that are needed, in their order.
+    /// The indices of the points of a closed line that are needed, in their order.
     pub(crate) fn seen(&self, line: impl Iterator<Item = (Pos2, Color32)>, kept: &mut Vec<u32>) {
         kept.clear();
         let mut piece: Option<(Piece, (Pos2, Color32), u32)> = None;
-        for (place, point) in line.enumerate() {
-            let place = place as u32;
+        for (index, point) in line.enumerate() {
+            let index = index as u32;
             match &mut piece {
                 None => {
-                    kept.push(place);
-                    piece = Some((Piece::new(point, self), point, place));
+                    kept.push(index);
+                    piece = Some((Piece::new(point, self), point, index));
                 }
                 Some((now, last, end)) => {
                     if !now.takes(point, self) {
@@ -90,12 +90,12 @@ impl Detail {
                         now.takes(point, self);
                         kept.push(*end);
                     }
-                    (*last, *end) = (point, place);
+                    (*last, *end) = (point, index);
                 }
             }
         }
         if let Some((now, last, end)) = piece
-            && (last.0 - now.from.0).length() > self.near
+            && (last.0 - now.from.0).length() > self.merge_distance
         {
             kept.push(end);
         }
@@ -103,7 +103,12 @@ impl Detail {
 
     /// The same with twice as much left away.
     fn rougher(self) -> Detail {
-        Detail { near: 2.0 * self.near, beside: 2.0 * self.beside, colour: self.colour.saturating_mul(2), ..self }
+        Detail {
+            merge_distance: 2.0 * self.merge_distance,
+            beside: 2.0 * self.beside,
+            colour: self.colour.saturating_mul(2),
+            ..self
+        }
     }
 }
 
@@ -138,10 +143,10 @@ pub(crate) fn corners(
     loop {
         let mut seen = |line: &Vec<u32>| {
             detail.seen(line.iter().map(&of), kept);
-            kept.iter().map(|place| line[*place as usize]).collect::<Vec<u32>>()
+            kept.iter().map(|index| line[*index as usize]).collect::<Vec<u32>>()
         };
         let lines: Vec<Vec<u32>> = closed.iter().map(&mut seen).filter(|line| line.len() >= 3).collect();
-        if lines.iter().map(Vec::len).sum::<usize>() <= MOST_CORNERS || detail.near > 64.0 {
+        if lines.iter().map(Vec::len).sum::<usize>() <= MOST_CORNERS || detail.merge_distance > 64.0 {
             return lines;
         }
         detail = detail.rougher();
@@ -156,7 +161,7 @@ mod tests {
 
     fn detail() -> Detail {
         let screen = Rect::from_min_size(Pos2::ZERO, Vec2::new(1000.0, 800.0));
-        Detail { near: 0.4, beside: 0.1, colour: 6, screen }
+        Detail { merge_distance: 0.4, beside: 0.1, colour: 6, screen }
     }
 
     fn circle(count: usize, radius: f32) -> Vec<(Pos2, Color32)> {
@@ -174,9 +179,9 @@ mod tests {
     fn distance(at: Pos2, line: &[(Pos2, Color32)], kept: &[u32]) -> f32 {
         let ends = (0..kept.len()).map(|k| [k, (k + 1) % kept.len()].map(|k| line[kept[k] as usize].0));
         let far = |[a, b]: [Pos2; 2]| {
-            let (way, to) = (b - a, at - a);
-            let share = (way.dot(to) / way.length_sq().max(1e-12)).clamp(0.0, 1.0);
-            (to - way * share).length()
+            let (offset, to) = (b - a, at - a);
+            let share = (offset.dot(to) / offset.length_sq().max(1e-12)).clamp(0.0, 1.0);
+            (to - offset * share).length()
         };
         ends.map(far).fold(f32::MAX, f32::min)
     }
@@ -209,7 +214,7 @@ mod tests {
         // There and back along one line: the tip.
         let spike: Vec<_> = (0..=100).chain((0..100).rev()).map(|k| at(k as f32, 100.0)).collect();
         let tip = kept(&detail(), &spike);
-        assert!(tip.iter().any(|place| (*place as i32 - 100).abs() <= 1), "{tip:?}");
+        assert!(tip.iter().any(|index| (*index as i32 - 100).abs() <= 1), "{tip:?}");
         // A straight line that changes its colour.
         let green = Color32::from_rgb(0, 200, 0);
         let two: Vec<_> = (0..200).map(|k| (Pos2::new(k as f32, 9.0), if k < 90 { RED } else { green })).collect();

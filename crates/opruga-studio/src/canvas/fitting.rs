@@ -2,7 +2,7 @@
 
 use super::camera::with_floors;
 use super::{Canvas, Doing};
-use crate::said::Said;
+use crate::report::Report;
 use crate::shown::Shown;
 use egui::Rect;
 use opruga::WorldError;
@@ -30,7 +30,7 @@ impl Canvas {
 
     /// Looks as at first where a body has just exploded and nobody has moved the view: what there is to be seen is where it was.
     fn stay_if_exploded(&mut self, shown: &Shown, rect: Rect) {
-        let exploded = shown.message.as_ref().filter(|message| matches!(message.said, Said::Exploded(_)));
+        let exploded = shown.message.as_ref().filter(|message| matches!(message.report, Report::Exploded(_)));
         let number = exploded.map(|message| message.number);
         if std::mem::replace(&mut self.exploded, number) != number
             && number.is_some()
@@ -45,8 +45,8 @@ impl Canvas {
     fn fit_if_lost(&mut self, shown: &Shown, rect: Rect) {
         let failed = shown.message.as_ref().filter(|message| {
             matches!(
-                message.said,
-                Said::World(WorldError::Diverged { .. } | WorldError::Step { .. } | WorldError::NotConverged { .. })
+                message.report,
+                Report::World(WorldError::Diverged { .. } | WorldError::Step { .. } | WorldError::NotConverged { .. })
             )
         });
         let Some(number) = failed.map(|message| message.number).filter(|number| self.failed != Some(*number)) else {
@@ -192,9 +192,10 @@ mod tests {
         assert!(canvas.flat.scale < first.scale, "it widens for a body that leaves it");
         let exploded =
             crate::exploded::Exploded { body: "ball".into(), integrator: "explicit_euler".into(), unstable: true };
-        let said = Said::Exploded(exploded);
-        let text = said.to_string();
-        let message = Message { number: 3, severity: Severity::Refused, said, text, offer: None, frame_seconds: None };
+        let report = Report::Exploded(exploded);
+        let text = report.to_string();
+        let message =
+            Message { number: 3, severity: Severity::Refused, report, text, offer: None, frame_seconds: None };
         let mut lost = Shown { message: Some(message), ..ball(0.0, 20.0) };
         lost.extents[0].corners = [[-80.0, -70.0, 0.0], [90.0, 85.0, 0.0]];
         for _ in 0..5 {
@@ -209,9 +210,10 @@ mod tests {
         seen(&mut canvas, &ball(0.0, 20.0));
         let first = canvas.flat.scale;
         let error = WorldError::Diverged { body: "ball".into(), node: 0, time: 0.2, last: 0.1, range: None };
-        let said = Said::World(error);
-        let text = said.to_string();
-        let message = Message { number: 3, severity: Severity::Refused, said, text, offer: None, frame_seconds: None };
+        let report = Report::World(error);
+        let text = report.to_string();
+        let message =
+            Message { number: 3, severity: Severity::Refused, report, text, offer: None, frame_seconds: None };
         let lost = Shown { message: Some(message), ..ball(5e5, 20.0) };
         seen(&mut canvas, &lost);
         assert!(RECT.contains(canvas.on_screen(&lost, [5e5, 0.5, 0.0]).expect("a place")));

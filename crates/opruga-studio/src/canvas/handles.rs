@@ -13,7 +13,7 @@ const REACH: f32 = 12.0;
 /// How far the box stands away from the body, and the handle for turns from the box [points].
 const MARGIN: f32 = 8.0;
 const STALK: f32 = 24.0;
-/// A turn in space for each point of the way of the pointer [rad].
+/// A turn in space for each point of the displacement of the pointer [rad].
 const TURN: f32 = 0.01;
 /// The least and the largest factor of one stroke.
 const FACTORS: [f32; 2] = [0.1, 10.0];
@@ -25,9 +25,9 @@ enum Kind {
     Scale,
 }
 
-/// A handle that is held.
+/// A handle that the pointer has grabbed.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Held {
+pub(super) struct GrabbedHandle {
     kind: Kind,
     name: String,
     middle: Pos2,
@@ -36,7 +36,7 @@ pub(super) struct Held {
     space: bool,
 }
 
-impl Held {
+impl GrabbedHandle {
     pub(super) fn lead(&mut self, at: Pos2) {
         self.now = at;
     }
@@ -58,7 +58,7 @@ impl Held {
         let turned = f64::from(turned) * if dimension == 2 && !y_down { -1.0 } else { 1.0 };
         let still = turned.abs() < 1e-3 && (scaled - 1.0).abs() < 1e-3;
         let placed = Placed { moved: [0.0; 3], turned, scaled: f64::from(scaled) };
-        (!still).then(|| Request::Edit(Edit::Place(self.name, placed)))
+        (!still).then(|| Request::Edit(Edit::Transform(self.name, placed)))
     }
 }
 
@@ -78,10 +78,10 @@ impl Handles {
     }
 
     /// The handle that a press takes.
-    pub(super) fn at(self, at: Pos2) -> Option<Held> {
+    pub(super) fn at(self, at: Pos2) -> Option<GrabbedHandle> {
         let kind = [Kind::Turn, Kind::Scale].into_iter().find(|kind| self.spot(*kind).distance(at) < REACH)?;
         let Handles { name, around, space } = self;
-        Some(Held { kind, name, middle: around.center(), from: at, now: at, space })
+        Some(GrabbedHandle { kind, name, middle: around.center(), from: at, now: at, space })
     }
 
     /// Draws the box and its handles.
@@ -98,10 +98,10 @@ impl Canvas {
     /// The handles of the selected body, with the tool that moves bodies.
     pub(super) fn handles(&self, shown: &Shown, rect: Rect) -> Option<Handles> {
         let name = self.selected.clone().filter(|_| self.tool == Tool::Shift)?;
-        let place = shown.bodies.iter().position(|body| body.name == name)?;
+        let index = shown.bodies.iter().position(|body| body.name == name)?;
         let lens = self.scales.as_ref().and_then(|scales| self.space.lens(scales, rect));
         let mut around = Rect::NOTHING;
-        for point in &shown.picture.bodies.get(place)?.positions {
+        for point in &shown.picture.bodies.get(index)?.positions {
             if let Some(at) = self.project(lens.as_ref(), shown, rect, *point) {
                 around.extend_with(at);
             }
@@ -115,30 +115,30 @@ impl Canvas {
 /// Draws where a body would come: as it is seen now, turned and scaled about the middle of its box.
 pub(super) fn ghost(
     painter: &Painter,
-    held: &Held,
+    grabbed: &GrabbedHandle,
     body: &BodyPicture,
     project: &dyn Fn([f64; 3]) -> Option<Pos2>,
     paper: &Paper,
 ) {
-    let (turned, scaled) = held.change();
-    let turn = egui::emath::Rot2::from_angle(if held.space { 0.0 } else { turned });
+    let (turned, scaled) = grabbed.change();
+    let turn = egui::emath::Rot2::from_angle(if grabbed.space { 0.0 } else { turned });
     let lines: &[[u32; 2]] = match &body.facets {
         Facets::Edges(edges) if !edges.is_empty() => edges,
         _ => &body.segments,
     };
     let at = |node: u32| {
         let seen = project(body.positions[node as usize])?;
-        Some(held.middle + turn * ((seen - held.middle) * scaled))
+        Some(grabbed.middle + turn * ((seen - grabbed.middle) * scaled))
     };
     for [a, b] in lines.iter().take(4_000) {
         if let (Some(from), Some(to)) = (at(*a), at(*b)) {
             painter.line_segment([from, to], Stroke::new(1.2, paper.soft));
         }
     }
-    let text = match held.kind {
+    let text = match grabbed.kind {
         Kind::Turn => format!("{:.0}°", f64::from(turned).to_degrees()),
         Kind::Scale => format!("× {scaled:.2}"),
     };
-    let spot = held.now + Vec2::new(14.0, -12.0);
+    let spot = grabbed.now + Vec2::new(14.0, -12.0);
     painter.text(spot, egui::Align2::LEFT_BOTTOM, text, egui::FontId::proportional(14.0), paper.ink);
 }

@@ -30,15 +30,15 @@ impl<'a> Named<'a> {
 pub(super) fn names(painter: &Painter, named: &[Named<'_>], paper: &Paper, taken: &[Rect]) {
     let mut taken = taken.to_vec();
     let compared = if named.len() <= FEW { named } else { &[] };
-    for (place, body) in named.iter().enumerate() {
-        let others = compared.iter().enumerate().filter(|(other, _)| *other != place);
+    for (index, body) in named.iter().enumerate() {
+        let others = compared.iter().enumerate().filter(|(other, _)| *other != index);
         let others: Vec<Rect> = others.map(|(_, other)| other.rect).collect();
         let galley = painter.layout_no_wrap(body.text.to_string(), FontId::proportional(12.0), paper.ink);
-        let Some(place) = free(body.rect, body.middle, galley.size(), &taken, &others) else { continue };
-        let ground = place.expand2(Vec2::new(4.0, 1.0));
+        let Some(text_rect) = free(body.rect, body.middle, galley.size(), &taken, &others) else { continue };
+        let ground = text_rect.expand2(Vec2::new(4.0, 1.0));
         taken.push(ground);
         painter.rect_filled(ground, 3.0, paper.background.gamma_multiply(0.6));
-        painter.galley(place.min, galley, paper.ink);
+        painter.galley(text_rect.min, galley, paper.ink);
     }
 }
 
@@ -52,11 +52,11 @@ fn free(body: Rect, middle: f32, size: Vec2, taken: &[Rect], others: &[Rect]) ->
     let row = Vec2::new(0.0, size.y + 4.0);
     let aside = [0.25, -0.25, 0.5, -0.5].map(|share| below.translate(Vec2::new(share * size.x, 0.0)));
     let farther = [above, right, left, below.translate(row), above.translate(-row), below.translate(2.0 * row)];
-    let free = |place: &Rect| taken.iter().all(|other| !other.intersects(place.expand2(Vec2::new(4.0, 1.0))));
-    let mut places = std::iter::once(below).chain(aside).chain(farther).filter(free);
-    let first = places.next()?;
-    let off = |place: &Rect| !others.iter().any(|other| other.intersects(*place));
-    Some(std::iter::once(first).chain(places).find(off).unwrap_or(first))
+    let free = |rect: &Rect| taken.iter().all(|other| !other.intersects(rect.expand2(Vec2::new(4.0, 1.0))));
+    let mut candidates = std::iter::once(below).chain(aside).chain(farther).filter(free);
+    let first = candidates.next()?;
+    let off = |rect: &Rect| !others.iter().any(|other| other.intersects(*rect));
+    Some(std::iter::once(first).chain(candidates).find(off).unwrap_or(first))
 }
 
 /// The hint for the first pull, above a body.

@@ -17,14 +17,14 @@ fn drawn(shown: &Shown, body: &BodyPicture) -> bool {
 }
 
 /// Where the legend is: its bar of colours, what they mean, and all that it takes.
-struct Places {
+struct LegendLayout {
     bar: Rect,
     name: Arc<Galley>,
     whole: Rect,
 }
 
 /// Where the legend is; nowhere where nothing has colours that mean something.
-fn places(look: &Look<'_>, tools: Option<Rect>, language: Language) -> Option<Places> {
+fn legend_layout(look: &Look<'_>, tools: Option<Rect>, language: Language) -> Option<LegendLayout> {
     let Look { painter, shown, rect, paper, .. } = *look;
     let legend = shown.picture.legend.as_ref()?;
     if shown.picture.bodies.iter().all(|body| drawn(shown, body) || body.scalar.iter().all(|s| !s.is_finite())) {
@@ -37,9 +37,9 @@ fn places(look: &Look<'_>, tools: Option<Rect>, language: Language) -> Option<Pl
     let below = over.map_or(rect.top(), |tools| tools.bottom());
     let unit = if legend.unit.is_empty() { String::new() } else { format!(" [{}]", legend.unit) };
     let left = if over.is_some() { rect.left() } else { tools.map_or(rect.left(), |tools| tools.right()) };
-    let room = (rect.right() - 24.0 - left).clamp(NAME[0], NAME[1]);
+    let max_width = (rect.right() - 24.0 - left).clamp(NAME[0], NAME[1]);
     let text = format!("{}{unit}", language.quantity(&legend.label));
-    let mut job = LayoutJob::simple(text, FontId::proportional(12.0), paper.ink, room);
+    let mut job = LayoutJob::simple(text, FontId::proportional(12.0), paper.ink, max_width);
     job.halign = Align::RIGHT;
     let name = painter.layout_job(job);
     // A name of two lines moves the bar down.
@@ -50,16 +50,16 @@ fn places(look: &Look<'_>, tools: Option<Rect>, language: Language) -> Option<Pl
         Pos2::new(left, bar.top() - 28.0 - more),
         Pos2::new(rect.right() - 4.0, bar.bottom() + 12.0),
     );
-    Some(Places { bar, name, whole })
+    Some(LegendLayout { bar, name, whole })
 }
 
 /// Where the legend is.
-pub(super) fn place(look: &Look<'_>, tools: Option<Rect>, language: Language) -> Option<Rect> {
-    places(look, tools, language).map(|places| places.whole)
+pub(super) fn bounds(look: &Look<'_>, tools: Option<Rect>, language: Language) -> Option<Rect> {
+    legend_layout(look, tools, language).map(|layout| layout.whole)
 }
 
-/// Where nothing that is seen has what the colours shall tell, and is grey for it, says so.
-pub(super) fn say_why_there_is_none(look: &Look<'_>, tools: Option<Rect>, language: Language) {
+/// Writes that nothing that is seen has what the colours are to show, where all is grey for that reason.
+pub(super) fn explain_absence(look: &Look<'_>, tools: Option<Rect>, language: Language) {
     let Look { painter, shown, rect, paper, .. } = *look;
     let Some(legend) = &shown.picture.legend else { return };
     if shown.picture.bodies.iter().all(|body| drawn(shown, body)) {
@@ -68,16 +68,16 @@ pub(super) fn say_why_there_is_none(look: &Look<'_>, tools: Option<Rect>, langua
     let text = language.nothing_has_it().replace("{}", language.quantity(&legend.label));
     let below = tools.filter(|tools| tools.intersects(rect)).map_or(rect.top(), |tools| tools.bottom());
     let galley = painter.layout(text, FontId::proportional(12.0), paper.soft, (0.6 * rect.width()).max(NAME[0]));
-    let place = Align2::RIGHT_TOP.anchor_size(Pos2::new(rect.right() - 12.0, below + 12.0), galley.size());
-    painter.rect_filled(place.expand(4.0), 4.0, paper.background.gamma_multiply(0.7));
-    painter.galley(place.min, galley, paper.soft);
+    let text_rect = Align2::RIGHT_TOP.anchor_size(Pos2::new(rect.right() - 12.0, below + 12.0), galley.size());
+    painter.rect_filled(text_rect.expand(4.0), 4.0, paper.background.gamma_multiply(0.7));
+    painter.galley(text_rect.min, galley, paper.soft);
 }
 
 /// What the colours mean.
 pub(super) fn paint(look: &Look<'_>, tools: Option<Rect>, language: Language) {
     let Look { painter, shown, rect, paper, range, .. } = *look;
     let Some(legend) = &shown.picture.legend else { return };
-    let Some(Places { bar, name, whole: behind }) = places(look, tools, language) else { return };
+    let Some(LegendLayout { bar, name, whole: behind }) = legend_layout(look, tools, language) else { return };
     // A long name is wider than the bar with its figures: what is below it beside these is not hidden.
     let side = behind.with_min_x(bar.left() - 24.0);
     let above = behind.with_max_y(bar.top() - 4.0);
@@ -114,11 +114,11 @@ pub(super) fn paint(look: &Look<'_>, tools: Option<Rect>, language: Language) {
         painter
             .line_segment([Pos2::new(bar.right(), y), Pos2::new(bar.right() + 4.0, y)], Stroke::new(1.0, paper.soft));
         let spot = Pos2::new(bar.right() + 7.0, y);
-        let (text, room) = (figure(tick), behind.right() - spot.x);
+        let (text, max_width) = (figure(tick), behind.right() - spot.x);
         let laid = |size: f32| painter.layout_no_wrap(text.clone(), FontId::proportional(size), paper.ink);
         let mut galley = laid(SIZE);
-        if galley.size().x > room {
-            galley = laid(SIZE * room / galley.size().x);
+        if galley.size().x > max_width {
+            galley = laid(SIZE * max_width / galley.size().x);
         }
         painter.galley(spot - Vec2::new(0.0, 0.5 * galley.size().y), galley, paper.ink);
     }
@@ -167,7 +167,8 @@ mod tests {
                         let range = [0.0, 1.0];
                         let look =
                             Look { painter, shown: &shown, rect, paper: &paper, show: Default::default(), range };
-                        let Places { bar, name, whole } = places(&look, Some(tools), language).expect("a legend");
+                        let LegendLayout { bar, name, whole } =
+                            legend_layout(&look, Some(tools), language).expect("a legend");
                         let at = Vec2::new(rect.right() - 10.0, bar.top() - 8.0 - name.size().y);
                         let named = name.rect.translate(at);
                         let told = format!("{label}, {language:?}, {rect:?}: {named:?} of {whole:?}");

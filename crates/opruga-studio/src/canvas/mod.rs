@@ -47,7 +47,7 @@ enum Doing {
     /// A body is taken elsewhere, from this point of the world; in space so far behind the point that is looked at.
     Shifting(String, [f64; 3], f64),
     /// A body is turned or scaled by one of its handles.
-    Handling(handles::Held),
+    Handling(handles::GrabbedHandle),
     /// An outline is drawn.
     Drawing(Vec<[f64; 2]>),
 }
@@ -130,8 +130,8 @@ impl Canvas {
 
     /// Shows the selected body alone.
     pub fn focus(&mut self, shown: &Shown) {
-        let place = shown.bodies.iter().position(|body| Some(&body.name) == self.selected.as_ref());
-        let Some(body) = place.and_then(|place| shown.picture.bodies.get(place)) else { return };
+        let index = shown.bodies.iter().position(|body| Some(&body.name) == self.selected.as_ref());
+        let Some(body) = index.and_then(|index| shown.picture.bodies.get(index)) else { return };
         let picture = opruga::draw::Picture { bodies: vec![body.clone()], ..opruga::draw::Picture::default() };
         let Ok(view) = View::fit([&opruga::draw::Picture { dimension: shown.dimension, ..picture }]) else { return };
         self.fitted_size = None;
@@ -157,7 +157,7 @@ impl Canvas {
     }
 
     /// The shorter side of what is seen [m].
-    pub fn room(&self, shown: &Shown) -> f64 {
+    pub fn shorter_side(&self, shown: &Shown) -> f64 {
         let side = self.rect.map_or(600.0, |rect| f64::from(rect.width().min(rect.height())));
         if shown.dimension == 3 { self.space.eye().map_or(2.0, |eye| eye.radius) } else { self.flat.metres(side) }
     }
@@ -247,16 +247,16 @@ impl Canvas {
         let range = self.range.unwrap_or([0.0, 1.0]);
         let look = Look { painter: &painter, shown, rect, paper: &paper, show: self.wanted, range };
         // Side by side both have the same colours: the legend stands with the second one.
-        let taken = if other.is_none() { legend::place(&look, self.tools, language) } else { None };
+        let taken = if other.is_none() { legend::bounds(&look, self.tools, language) } else { None };
         self.written = taken.into_iter().collect();
         let pair = other.zip(shown.beside.as_ref());
         let both = ui.painter_at(whole);
         let mut of_right = None;
         let captions = pair.map(|(other, beside)| {
-            of_right = legend::place(&Look { shown: &beside.right, rect: other, ..look }, self.tools, language);
+            of_right = legend::bounds(&Look { shown: &beside.right, rect: other, ..look }, self.tools, language);
             Captions::of(&both, &paper, [rect, other], of_right, beside, language)
         });
-        let captioned = captions.as_ref().map(Captions::places).unwrap_or_default();
+        let captioned = captions.as_ref().map(Captions::rects).unwrap_or_default();
         self.written.extend(of_right.iter().chain(&captioned));
         self.arrows.follow(shown);
         self.paint(ui, &look, shown, false, &self.written.clone());
@@ -268,7 +268,7 @@ impl Canvas {
         if taken.is_some() {
             legend::paint(&look, self.tools, language);
         } else if other.is_none() && is_seen {
-            legend::say_why_there_is_none(&look, self.tools, language);
+            legend::explain_absence(&look, self.tools, language);
         }
         if is_seen {
             let under = under.as_ref().filter(|_| !beside);
@@ -329,8 +329,8 @@ impl Canvas {
         let Some(selected) = self.selected.as_ref().filter(|selected| !there(selected)) else { return };
         // From name to name, what came later first.
         let mut names = vec![selected.clone()];
-        let mut place = 0;
-        while let Some(name) = names.get(place).cloned() {
+        let mut index = 0;
+        while let Some(name) = names.get(index).cloned() {
             let later = shown.renamed.iter().rev().filter(|(old, _)| *old == name).map(|(_, new)| new);
             let earlier = shown.renamed.iter().rev().filter(|(_, new)| *new == name).map(|(old, _)| old);
             for other in later.chain(earlier) {
@@ -338,7 +338,7 @@ impl Canvas {
                     names.push(other.clone());
                 }
             }
-            place += 1;
+            index += 1;
         }
         let only = || (shown.bodies.len() == 1).then(|| shown.bodies[0].name.clone());
         if let Some(name) = names.into_iter().find(there).or_else(only) {

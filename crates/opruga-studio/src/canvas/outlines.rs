@@ -46,14 +46,14 @@ pub(crate) struct Outline {
 pub(crate) struct Part {
     /// The nodes of the line and of its holes.
     pub(crate) nodes: Vec<u32>,
-    /// The triangles between them, each by three places among these nodes.
+    /// The triangles between them, each by three indices into these nodes.
     pub(crate) triangles: Vec<[u32; 3]>,
 }
 
 impl Part {
     /// The triangles by the numbers of their nodes in the body.
     fn of_body(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
-        self.triangles.iter().map(|corners| corners.map(|place| self.nodes[place as usize]))
+        self.triangles.iter().map(|corners| corners.map(|index| self.nodes[index as usize]))
     }
 }
 
@@ -69,9 +69,9 @@ impl Outlines {
     }
 
     /// The outline of a body now. In a crowd a fold may be seen some pictures later.
-    pub(crate) fn of(&mut self, place: usize, body: &BodyPicture) -> &Outline {
-        if self.known.len() <= place {
-            self.known.resize_with(place + 1, || None);
+    pub(crate) fn of(&mut self, index: usize, body: &BodyPicture) -> &Outline {
+        if self.known.len() <= index {
+            self.known.resize_with(index + 1, || None);
         }
         let edges: &[[u32; 2]] = match &body.facets {
             Facets::Edges(edges) => edges,
@@ -79,8 +79,8 @@ impl Outlines {
         };
         let counts = [body.positions.len(), edges.len(), body.segments.len()];
         let groups = self.known.len().div_ceil(LOOKED_AT).max(1);
-        let its_turn = place % groups == self.turn % groups;
-        let slot = &mut self.known[place];
+        let its_turn = index % groups == self.turn % groups;
+        let slot = &mut self.known[index];
         if slot.as_ref().is_none_or(|outline| outline.counts != counts) {
             *slot = None;
         }
@@ -120,7 +120,7 @@ fn fits(body: &BodyPicture, outline: &Outline) -> bool {
 
 /// Twice the area within a line; negative where that runs clockwise.
 fn enclosed(body: &BodyPicture, line: &[u32]) -> f64 {
-    let point = |place: usize| body.positions[line[place % line.len()] as usize];
+    let point = |index: usize| body.positions[line[index % line.len()] as usize];
     (0..line.len()).map(|k| (point(k), point(k + 1))).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum()
 }
 
@@ -135,24 +135,24 @@ fn loops(edges: &[[u32; 2]]) -> (Vec<Vec<u32>>, Vec<[u32; 2]>) {
     edges.iter().rev().for_each(|[a, b]| next.entry(*a).or_default().push(*b));
     let (mut closed, mut open) = (Vec::new(), Vec::new());
     while let Some(first) = next.first_key_value().map(|(node, _)| *node) {
-        let mut way = vec![first];
-        let mut places: HashMap<u32, usize> = HashMap::from([(first, 0)]);
-        while let Some(&last) = way.last() {
+        let mut path = vec![first];
+        let mut indices: HashMap<u32, usize> = HashMap::from([(first, 0)]);
+        while let Some(&last) = path.last() {
             let Some(ends) = next.get_mut(&last) else {
                 // A dead end: what leads there closes nothing.
-                places.remove(&last);
-                way.pop();
-                open.extend(way.last().map(|before| [*before, last]));
+                indices.remove(&last);
+                path.pop();
+                open.extend(path.last().map(|before| [*before, last]));
                 continue;
             };
             let Some(node) = ends.pop() else { break };
             if ends.is_empty() {
                 next.remove(&last);
             }
-            if let Some(&place) = places.get(&node) {
-                let line: Vec<u32> = way.drain(place + 1..).collect();
+            if let Some(&index) = indices.get(&node) {
+                let line: Vec<u32> = path.drain(index + 1..).collect();
                 line.iter().for_each(|node| {
-                    places.remove(node);
+                    indices.remove(node);
                 });
                 let line: Vec<u32> = std::iter::once(node).chain(line).collect();
                 if line.len() >= 3 {
@@ -161,8 +161,8 @@ fn loops(edges: &[[u32; 2]]) -> (Vec<Vec<u32>>, Vec<[u32; 2]>) {
                     open.extend((0..line.len()).map(|k| [line[k], line[(k + 1) % line.len()]]));
                 }
             } else {
-                places.insert(node, way.len());
-                way.push(node);
+                indices.insert(node, path.len());
+                path.push(node);
             }
         }
     }
@@ -200,7 +200,7 @@ pub(crate) fn fill(body: &BodyPicture, lines: &[Vec<u32>]) -> Vec<Part> {
         let mut triangles = Vec::with_capacity(found.len() / 3);
         for corners in found.chunks_exact(3) {
             let mut triangle = [0, 1, 2].map(|k| corners[k]);
-            if area(triangle.map(|place| body.positions[nodes[place as usize] as usize])) < 0.0 {
+            if area(triangle.map(|index| body.positions[nodes[index as usize] as usize])) < 0.0 {
                 triangle.swap(1, 2);
             }
             triangles.push(triangle);

@@ -11,7 +11,7 @@ use egui::{Pos2, Rect, Stroke, Vec2};
 use opruga::draw::Lens;
 
 impl Canvas {
-    /// The place of a point in the window; in space none behind the camera.
+    /// The position of a point in the window; in space none behind the camera.
     pub(super) fn project(&self, lens: Option<&Lens>, shown: &Shown, rect: Rect, point: [f64; 3]) -> Option<Pos2> {
         if shown.dimension == 3 {
             let ([x, y], _) = lens?.see(point)?;
@@ -46,8 +46,8 @@ impl Canvas {
                 labelled.filter_map(|body| Named::of(&body.label, body.positions.iter().filter_map(|p| project(*p))));
             labels::names(painter, &named.collect::<Vec<_>>(), paper, &taken);
         }
-        for (_, _, place) in &shown.pins {
-            if let Some(at) = project(*place) {
+        for (_, _, point) in &shown.pins {
+            if let Some(at) = project(*point) {
                 plane::pin(painter, at, paper);
             }
         }
@@ -62,8 +62,8 @@ impl Canvas {
             }
         }
         let body = |name: &str| {
-            let place = shown.bodies.iter().position(|body| body.name == name)?;
-            shown.picture.bodies.get(place)
+            let index = shown.bodies.iter().position(|body| body.name == name)?;
+            shown.picture.bodies.get(index)
         };
         match &self.doing {
             Doing::Nothing => {
@@ -71,9 +71,9 @@ impl Canvas {
                     handles.paint(painter, paper);
                 }
             }
-            Doing::Handling(held) => {
+            Doing::Handling(grabbed) => {
                 if let Some(body) = self.selected.as_deref().and_then(body) {
-                    handles::ghost(painter, held, body, &project, paper);
+                    handles::ghost(painter, grabbed, body, &project, paper);
                 }
             }
             Doing::Shifting(name, start, depth) => {

@@ -6,7 +6,7 @@ use egui::{Pos2, Rect, Vec2};
 use opruga::draw::{Facets, Lens};
 
 /// How near the pointer must come to a node [points].
-const NEAR: f64 = 18.0;
+const REACH: f64 = 18.0;
 
 /// The body under the pointer.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,9 +27,9 @@ pub(crate) struct Under {
 pub(crate) fn in_plane(shown: &Shown, flat: &Flat, rect: Rect, at: Pos2) -> Option<Under> {
     let [x, y] = flat.to_world(rect, at, shown.picture.y_down);
     let pixel = flat.metres(1.0);
-    let reach = NEAR * pixel;
+    let reach = REACH * pixel;
     let mut best: Option<(f64, usize, [f64; 3])> = None;
-    for (place, (body, extent)) in shown.picture.bodies.iter().zip(&shown.extents).enumerate() {
+    for (index, (body, extent)) in shown.picture.bodies.iter().zip(&shown.extents).enumerate() {
         let [low, high] = extent.corners;
         if x < low[0] - reach || x > high[0] + reach || y < low[1] - reach || y > high[1] + reach {
             continue;
@@ -46,11 +46,11 @@ pub(crate) fn in_plane(shown: &Shown, flat: &Flat, rect: Rect, at: Pos2) -> Opti
             && best.is_none_or(|(least, ..)| square < least)
             && (square <= reach * reach || around(body, x, y))
         {
-            best = Some((square, place, point));
+            best = Some((square, index, point));
         }
     }
-    let (_, place, point) = best?;
-    let body = shown.bodies.get(place)?;
+    let (_, index, point) = best?;
+    let body = shown.bodies.get(index)?;
     Some(Under { body: body.number, name: body.name.clone(), point, distance: 0.0, pixel })
 }
 
@@ -68,18 +68,18 @@ fn around(body: &opruga::draw::BodyPicture, x: f64, y: f64) -> bool {
 pub(crate) fn in_space(shown: &Shown, lens: &Lens, rect: Rect, at: Pos2) -> Option<Under> {
     let at = at - rect.min;
     let mut best: Option<(f64, usize, [f64; 3])> = None;
-    let mut offer = |distance: f64, place: usize, point: [f64; 3]| {
+    let mut offer = |distance: f64, index: usize, point: [f64; 3]| {
         if best.is_none_or(|(least, ..)| distance < least) {
-            best = Some((distance, place, point));
+            best = Some((distance, index, point));
         }
     };
-    for (place, body) in shown.picture.bodies.iter().enumerate() {
+    for (index, body) in shown.picture.bodies.iter().enumerate() {
         let seen: Vec<Option<([f64; 2], f64)>> = body.positions.iter().map(|p| lens.see(*p)).collect();
         for (point, seen) in body.positions.iter().zip(&seen) {
             if let Some((pixel, distance)) = seen
-                && (pixel[0] - f64::from(at.x)).hypot(pixel[1] - f64::from(at.y)) < 0.5 * NEAR
+                && (pixel[0] - f64::from(at.x)).hypot(pixel[1] - f64::from(at.y)) < 0.5 * REACH
             {
-                offer(*distance, place, *point);
+                offer(*distance, index, *point);
             }
         }
         let Facets::Triangles(triangles) = &body.facets else { continue };
@@ -88,12 +88,12 @@ pub(crate) fn in_space(shown: &Shown, lens: &Lens, rect: Rect, at: Pos2) -> Opti
             let [Some(a), Some(b), Some(c)] = corners else { continue };
             if let Some(shares) = inside([a.0, b.0, c.0], at) {
                 let distance = shares[0] * a.1 + shares[1] * b.1 + shares[2] * c.1;
-                offer(distance, place, lens.point([f64::from(at.x), f64::from(at.y)], distance));
+                offer(distance, index, lens.point([f64::from(at.x), f64::from(at.y)], distance));
             }
         }
     }
-    let (distance, place, point) = best?;
-    let body = shown.bodies.get(place)?;
+    let (distance, index, point) = best?;
+    let body = shown.bodies.get(index)?;
     let [a, b] = [0.0, 1.0].map(|dx| lens.point([f64::from(at.x) + dx, f64::from(at.y)], distance));
     let pixel = a.iter().zip(&b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt();
     Some(Under { body: body.number, name: body.name.clone(), point, distance, pixel })

@@ -54,9 +54,9 @@ impl Colours {
         Colours { inks, low: range[0], factor: 255.0 / (range[1] - range[0]).max(1e-300) }
     }
     fn at(&self, scalar: f64) -> Ink {
-        let place = (scalar - self.low) * self.factor;
+        let index = (scalar - self.low) * self.factor;
         // As a byte it ends where the colours do.
-        self.inks[if place.is_nan() { 256 } else { usize::from(place as u8) }]
+        self.inks[if index.is_nan() { 256 } else { usize::from(index as u8) }]
     }
 }
 
@@ -68,7 +68,7 @@ pub(crate) struct Kept {
     /// Where the nodes of a body are on the screen, and their colours.
     at: Vec<Pos2>,
     inks: Vec<Ink>,
-    /// The corners of a large outline that are seen: their places on it.
+    /// The corners of a large outline that are seen: their indices in it.
     seen: Vec<u32>,
 }
 
@@ -105,13 +105,13 @@ pub(crate) fn paint(
     kept.brush.begin(if crowd { 0.0 } else { 1.0 / painter.ctx().pixels_per_point() }, rect);
     let map = picture.legend.as_ref().map_or(ColourMap::Viridis, |legend| legend.map);
     let map = Colours::new(map, look.range, paper);
-    for (place, (body, extent)) in picture.bodies.iter().zip(&shown.extents).enumerate() {
+    for (index, (body, extent)) in picture.bodies.iter().zip(&shown.extents).enumerate() {
         // What is out of sight is not looked at closer.
         if Rect::from_points(&extent.corners.map(project)).expand(4.0).intersects(rect) && !body.positions.is_empty() {
             kept.at.clear();
             kept.at.extend(body.positions.iter().map(|p| project(*p)));
-            let wide = selected.is_some_and(|name| shown.bodies.get(place).is_some_and(|b| b.name == name));
-            self::body(look, kept, &map, (place, body), wide, flat);
+            let wide = selected.is_some_and(|name| shown.bodies.get(index).is_some_and(|b| b.name == name));
+            self::body(look, kept, &map, (index, body), wide, flat);
         }
     }
     kept.brush.end(painter);
@@ -130,7 +130,7 @@ pub(crate) fn paint(
 /// A body whose nodes are in `kept`: what fills it, its springs, its outline, its vertices.
 fn body(look: &Look<'_>, kept: &mut Kept, map: &Colours, number: (usize, &BodyPicture), wide: bool, flat: &Flat) {
     let Look { rect, paper, shown, show, .. } = *look;
-    let (place, body) = number;
+    let (index, body) = number;
     let Kept { outlines, brush, at, inks, seen } = kept;
     if body.areas.iter().any(|area| area.colour.is_some()) {
         // The areas that it carries, in their own colours, one over another.
@@ -150,19 +150,19 @@ fn body(look: &Look<'_>, kept: &mut Kept, map: &Colours, number: (usize, &BodyPi
     }
     inks.clear();
     if body.scalar.is_empty() {
-        inks.resize(at.len(), Ink::new(colour(body.colour.unwrap_or(BODIES[place % BODIES.len()])), paper));
+        inks.resize(at.len(), Ink::new(colour(body.colour.unwrap_or(BODIES[index % BODIES.len()])), paper));
     } else {
         inks.extend(body.scalar.iter().map(|s| map.at(*s)));
     }
-    let outline = outlines.of(place, body);
-    let near: Vec<Vec<u32>> = match outline.large {
+    let outline = outlines.of(index, body);
+    let thinned: Vec<Vec<u32>> = match outline.large {
         true => outline.closed.iter().map(|line| apart(line, at)).collect(),
         false => Vec::new(),
     };
-    let closed = if outline.large { &near } else { &outline.closed };
+    let closed = if outline.large { &thinned } else { &outline.closed };
     if outline.large {
         // So many points of a surface are not told apart: those are filled that are.
-        let detail = Detail { near: 1.0, beside: 0.35, colour: 24, screen: rect };
+        let detail = Detail { merge_distance: 1.0, beside: 0.35, colour: 24, screen: rect };
         let lines = corners(closed, detail, |node| (at[*node as usize], inks[*node as usize].line), seen);
         let parts = fill(body, &lines);
         // How near it is looked at does not change the colour of its inside.
@@ -191,7 +191,7 @@ fn body(look: &Look<'_>, kept: &mut Kept, map: &Colours, number: (usize, &BodyPi
     }
     // Springs along an outline make it thick; a body that has none has the same outline without them.
     let sprung = |body: &crate::shown::BodyShown| body.models.iter().any(|model| model.spec().has_role(Role::Edges));
-    let thin = !show.springs && shown.bodies.get(place).is_some_and(sprung);
+    let thin = !show.springs && shown.bodies.get(index).is_some_and(sprung);
     let width = if wide { 3.2 } else { 2.2 } - if thin { 1.2 } else { 0.0 };
     for line in closed {
         brush.ring(line.iter().map(of), width);
@@ -353,7 +353,7 @@ pub(crate) fn rubber(look: &Look<'_>, from: Pos2, to: Pos2, force: &[f64; 3], ta
     newtons(look, to, force, taken);
 }
 
-/// The arrow of a push, as long as the way of the pointer, and its force in newtons.
+/// The arrow of a push, as long as the displacement of the pointer, and its force in newtons.
 pub(crate) fn push(look: &Look<'_>, from: Pos2, to: Pos2, force: &[f64; 3], taken: &[Rect]) {
     look.painter.circle_filled(from, 4.0, RUBBER);
     if (to - from).length() >= 2.0 {
@@ -368,34 +368,34 @@ fn newtons(look: &Look<'_>, to: Pos2, force: &[f64; 3], taken: &[Rect]) {
     let newtons = force.iter().map(|f| f * f).sum::<f64>().sqrt();
     let text = format!("{} N", format_value(newtons));
     let galley = painter.layout_no_wrap(text, FontId::proportional(14.0), RUBBER);
-    let place = beside(to, galley.size(), look.rect.shrink(6.0), taken);
-    painter.rect_filled(place.expand(3.0), 4.0, paper.background.gamma_multiply(0.85));
-    painter.galley(place.min, galley, RUBBER);
+    let text_rect = beside(to, galley.size(), look.rect.shrink(6.0), taken);
+    painter.rect_filled(text_rect.expand(3.0), 4.0, paper.background.gamma_multiply(0.85));
+    painter.galley(text_rect.min, galley, RUBBER);
 }
 
 /// Where beside a point there is room for something of this size: above to the right if that can be, else around it. A point out
 /// of sight has it at the border.
-fn beside(at: Pos2, size: Vec2, room: Rect, taken: &[Rect]) -> Rect {
-    let places = [
+fn beside(at: Pos2, size: Vec2, bounds: Rect, taken: &[Rect]) -> Rect {
+    let candidates = [
         (Align2::LEFT_BOTTOM, Vec2::new(12.0, -10.0)),
         (Align2::RIGHT_BOTTOM, Vec2::new(-12.0, -10.0)),
         (Align2::RIGHT_TOP, Vec2::new(-12.0, 10.0)),
         (Align2::LEFT_TOP, Vec2::new(12.0, 10.0)),
     ];
-    let places = places.map(|(align, way)| align.anchor_size(at + way, size));
-    let free = |place: &Rect| taken.iter().all(|other| !other.intersects(place.expand(3.0)));
+    let candidates = candidates.map(|(align, offset)| align.anchor_size(at + offset, size));
+    let free = |rect: &Rect| taken.iter().all(|other| !other.intersects(rect.expand(3.0)));
     // Where the point itself lies among other things, next to these.
     let around = taken.iter().filter(|other| other.contains(at)).flat_map(|other| {
-        let level = places[0].min;
+        let level = candidates[0].min;
         let [left, right] = [other.left() - size.x - 6.0, other.right() + 6.0].map(|x| Pos2::new(x, level.y));
         [left, right, Pos2::new(level.x, other.bottom() + 6.0)].map(|corner| Rect::from_min_size(corner, size))
     });
-    let mut all = places.into_iter().chain(around);
-    let place = all.find(|place| room.contains_rect(*place) && free(place));
-    let place = place.or_else(|| places.into_iter().find(free)).unwrap_or(places[0]);
-    let low = room.min.to_vec2();
-    let high = (room.max - size).to_vec2().max(low);
-    Rect::from_min_size(place.min.to_vec2().clamp(low, high).to_pos2(), size)
+    let mut all = candidates.into_iter().chain(around);
+    let rect = all.find(|rect| bounds.contains_rect(*rect) && free(rect));
+    let rect = rect.or_else(|| candidates.into_iter().find(free)).unwrap_or(candidates[0]);
+    let low = bounds.min.to_vec2();
+    let high = (bounds.max - size).to_vec2().max(low);
+    Rect::from_min_size(rect.min.to_vec2().clamp(low, high).to_pos2(), size)
 }
 
 /// Where a body would be set down.
@@ -423,9 +423,9 @@ pub(crate) fn credit(look: &Look<'_>) {
     let (rect, credit) = (look.rect, &look.shown.picture.credit);
     if !credit.is_empty() {
         // Beside the bar of lengths, on as many lines as that takes.
-        let room = (0.6 * rect.width()).max(120.0);
+        let wrap_width = (0.6 * rect.width()).max(120.0);
         let font = FontId::proportional(10.0);
-        let galley = look.painter.layout(credit.clone(), font, look.paper.soft, room);
+        let galley = look.painter.layout(credit.clone(), font, look.paper.soft, wrap_width);
         // Above what is written below each of two scenes.
         let foot = if look.shown.beside.is_some() { Captions::FOOT[0] } else { 0.0 };
         let spot = rect.max - galley.size() - Vec2::new(8.0, 6.0 + foot);

@@ -46,23 +46,23 @@ pub(super) fn pressed_at(ui: &Ui) -> Option<Pos2> {
     ui.input(|i| i.events.iter().rev().find_map(press))
 }
 
-/// The way of the pointer since the last picture, from the press where it `began` in it and up to where it was let go: on a slow
+/// The path of the pointer since the last picture, from the press where it `began` in it and up to where it was let go: on a slow
 /// screen many positions come with one picture.
-fn way(events: &[egui::Event], began: bool) -> Vec<Pos2> {
+fn path(events: &[egui::Event], began: bool) -> Vec<Pos2> {
     use egui::Event::{PointerButton as Button, PointerMoved};
-    let (mut way, mut down) = (Vec::new(), !began);
+    let (mut path, mut down) = (Vec::new(), !began);
     for event in events {
         match event {
-            Button { pos, button: PointerButton::Primary, pressed: true, .. } => (way, down) = (vec![*pos], true),
+            Button { pos, button: PointerButton::Primary, pressed: true, .. } => (path, down) = (vec![*pos], true),
             Button { pos, button: PointerButton::Primary, pressed: false, .. } if down => {
-                way.push(*pos);
+                path.push(*pos);
                 break;
             }
-            PointerMoved(pos) if down => way.push(*pos),
+            PointerMoved(pos) if down => path.push(*pos),
             _ => {}
         }
     }
-    way
+    path
 }
 
 impl Canvas {
@@ -171,9 +171,9 @@ impl Canvas {
                 self.space.turn(delta, shown.picture.colliders.iter().any(up));
             }
             Doing::Shifting(..) => {}
-            Doing::Handling(held) => held.lead(at),
+            Doing::Handling(grabbed) => grabbed.lead(at),
             Doing::Drawing(points) => {
-                for at in ui.input(|i| way(&i.events, began)) {
+                for at in ui.input(|i| path(&i.events, began)) {
                     let point = self.flat.to_world(rect, at + self.offset, shown.picture.y_down);
                     if points.last().is_none_or(|last| *last != point) {
                         points.push(point);
@@ -203,9 +203,9 @@ impl Canvas {
         if self.tool == Tool::Shift
             && button == PointerButton::Primary
             && !beside
-            && let Some(held) = self.handles(shown, rect).and_then(|handles| handles.at(at))
+            && let Some(grabbed) = self.handles(shown, rect).and_then(|handles| handles.at(at))
         {
-            self.doing = Doing::Handling(held);
+            self.doing = Doing::Handling(grabbed);
             return;
         }
         if self.tool == Tool::Draw && !beside && button == PointerButton::Primary {
@@ -237,13 +237,13 @@ impl Canvas {
             _ => Grip::Pull,
         };
         self.pulled |= grip == Grip::Pull;
-        // What is pinned is taken by its own place, so that the same node is found again.
+        // What is pinned is taken by its own position, so that the same node is found again.
         let pinned = pin.filter(|_| grip == Grip::Pin).map(|pin| {
             let of_left = shown.pins.iter().find(|left| (left.0, left.1) == (pin.0, pin.1));
             of_left.map_or(pin.2, |left| left.2)
         });
         let grab = match (pinned, beside) {
-            (Some(place), _) => Request::Grab(grip, under.body, place),
+            (Some(point), _) => Request::Grab(grip, under.body, point),
             (None, true) => Request::GrabBeside(grip, under.body, under.point),
             (None, false) => Request::Grab(grip, under.body, under.point),
         };
@@ -266,11 +266,11 @@ impl Canvas {
                 if let Some(end) = self.point(shown, rect, at, depth) {
                     let moved = [0, 1, 2].map(|d| end[d] - start[d]);
                     if moved.iter().any(|d| d.abs() > 1e-9) {
-                        asks.push(Request::Edit(Edit::Place(name, Placed { moved, turned: 0.0, scaled: 1.0 })));
+                        asks.push(Request::Edit(Edit::Transform(name, Placed { moved, turned: 0.0, scaled: 1.0 })));
                     }
                 }
             }
-            Doing::Handling(held) => asks.extend(held.edit(shown.dimension, shown.picture.y_down)),
+            Doing::Handling(grabbed) => asks.extend(grabbed.edit(shown.dimension, shown.picture.y_down)),
             Doing::Drawing(points) => match pen::body(&points, self.flat.metres(6.0)) {
                 Ok(table) => asks.push(Request::Edit(Edit::Add(table))),
                 Err(why) => self.refused = Some(why),
@@ -280,16 +280,16 @@ impl Canvas {
     }
 }
 
-/// The pin under the pointer, of a person or, where its nodes are those of the world, of the scene: body, node, place [m].
+/// The pin under the pointer, of a person or, where its nodes are those of the world, of the scene: body, node, position [m].
 fn pin_under(shown: &Shown, under: &Under, own_nodes: bool) -> Option<(usize, u32, [f64; 3])> {
     let own = shown.bodies.iter().position(|body| body.number == under.body);
-    let own = own.and_then(|place| shown.picture.bodies.get(place));
+    let own = own.and_then(|index| shown.picture.bodies.get(index));
     let of_scene = own.into_iter().filter(|_| own_nodes).flat_map(|body| {
-        let place = |node: &u32| Some((under.body, *node, *body.positions.get(*node as usize)?));
-        body.pinned.iter().filter_map(place)
+        let pin = |node: &u32| Some((under.body, *node, *body.positions.get(*node as usize)?));
+        body.pinned.iter().filter_map(pin)
     });
-    shown.pins.iter().copied().chain(of_scene).find(|(body, _, place)| {
-        let far: f64 = under.point.iter().zip(place).map(|(a, b)| (a - b) * (a - b)).sum();
+    shown.pins.iter().copied().chain(of_scene).find(|(body, _, point)| {
+        let far: f64 = under.point.iter().zip(point).map(|(a, b)| (a - b) * (a - b)).sum();
         under.body == *body && far.sqrt() <= 3.0 * under.pixel * 6.0
     })
 }
@@ -310,10 +310,10 @@ mod tests {
         let [a, b, c, d] = [pos2(0.0, 0.0), pos2(9.0, 0.0), pos2(9.0, 9.0), pos2(0.0, 9.0)];
         let whole =
             [Event::PointerMoved(d), button(a, true), Event::PointerMoved(b), Event::PointerMoved(c), button(d, false)];
-        assert_eq!(way(&whole, true), [a, b, c, d]);
+        assert_eq!(path(&whole, true), [a, b, c, d]);
         // In the pictures between, and in the last one, after which the pointer goes on.
-        assert_eq!(way(&whole[2..4], false), [b, c]);
-        assert_eq!(way(&[Event::PointerMoved(b), button(c, false), Event::PointerMoved(d)], false), [b, c]);
-        assert!(way(&[], false).is_empty());
+        assert_eq!(path(&whole[2..4], false), [b, c]);
+        assert_eq!(path(&[Event::PointerMoved(b), button(c, false), Event::PointerMoved(d)], false), [b, c]);
+        assert!(path(&[], false).is_empty());
     }
 }

@@ -240,13 +240,13 @@ fn fingerprint(shown: &Shown) -> u64 {
     let lines: usize = picture.bodies.iter().map(|b| b.segments.len() + usize::from(b.nodes_drawn)).sum();
     // A body that is set down elsewhere at the start is so in the same frame.
     let corners = shown.extents.iter().flat_map(|extent| extent.corners).flatten();
-    let places = corners.fold(0_u64, |sum, x| sum.rotate_left(7) ^ x.to_bits());
+    let corner_bits = corners.fold(0_u64, |sum, x| sum.rotate_left(7) ^ x.to_bits());
     let counted = map * 1_000_000_007
         + label * 1_000_003
         + lines as u64 * 1_009
         + picture.arrows.len() as u64 * 7
         + picture.bodies.len() as u64;
-    counted ^ places
+    counted ^ corner_bits
 }
 
 /// Draws what is ordered.
@@ -259,7 +259,7 @@ fn drawn(order: &Order) -> Option<Drawn> {
     picture.pulls.clear();
     picture.bodies.iter_mut().for_each(|body| body.label.clear());
     let selected = order.shown.bodies.iter().position(|body| Some(&body.name) == order.selected.as_ref());
-    if let Some(body) = selected.and_then(|place| picture.bodies.get_mut(place)) {
+    if let Some(body) = selected.and_then(|index| picture.bodies.get_mut(index)) {
         body.outlined = Some(OUTLINE);
     }
     let mut view = order.view.clone();

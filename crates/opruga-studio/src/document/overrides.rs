@@ -38,8 +38,8 @@ fn put(table: &mut dyn TableLike, parts: &[&str], value: Toml) -> Option<()> {
     }
     match item {
         Item::ArrayOfTables(tables) => {
-            let place = place_of(rest.first()?, tables.iter().map(|table| table as &dyn TableLike))?;
-            put(tables.get_mut(place)?, &rest[1..], value)
+            let index = index_of(rest.first()?, tables.iter().map(|table| table as &dyn TableLike))?;
+            put(tables.get_mut(index)?, &rest[1..], value)
         }
         Item::Value(Toml::Array(array)) => put_in(array, rest, value),
         other => put(other.as_table_like_mut()?, rest, value),
@@ -50,24 +50,24 @@ fn put(table: &mut dyn TableLike, parts: &[&str], value: Toml) -> Option<()> {
 fn put_in(array: &mut toml_edit::Array, parts: &[&str], value: Toml) -> Option<()> {
     let (head, rest) = parts.split_first()?;
     if rest.is_empty() {
-        array.replace(head.parse::<usize>().ok().filter(|place| *place < array.len())?, value);
+        array.replace(head.parse::<usize>().ok().filter(|index| *index < array.len())?, value);
         return Some(());
     }
     if array.iter().all(|entry| entry.is_inline_table()) {
         let tables = array.iter().filter_map(Toml::as_inline_table).map(|table| table as &dyn TableLike);
-        let place = place_of(head, tables)?;
-        return put(array.get_mut(place)?.as_inline_table_mut()?, rest, value);
+        let index = index_of(head, tables)?;
+        return put(array.get_mut(index)?.as_inline_table_mut()?, rest, value);
     }
     put_in(array.get_mut(head.parse().ok()?)?.as_array_mut()?, rest, value)
 }
 
-/// The place of the entry of a list that a number, or its `name`, `kind` or `do`, names.
-fn place_of<'t>(name: &str, tables: impl Iterator<Item = &'t dyn TableLike>) -> Option<usize> {
+/// The index of the entry of a list that a number, or its `name`, `kind` or `do`, names.
+fn index_of<'t>(name: &str, tables: impl Iterator<Item = &'t dyn TableLike>) -> Option<usize> {
     let label = |table: &dyn TableLike| {
         ["name", "kind", "do"].into_iter().find_map(|key| table.get(key)?.as_str().map(String::from))
     };
     let labels: Vec<Option<String>> = tables.map(label).collect();
-    let number = name.parse::<usize>().ok().filter(|place| *place < labels.len());
+    let number = name.parse::<usize>().ok().filter(|index| *index < labels.len());
     number.or_else(|| labels.iter().position(|label| label.as_deref() == Some(name)))
 }
 

@@ -11,14 +11,14 @@ impl Document {
         let seconds = |table: &Table, key: &str| {
             table.get(key).and_then(|item| item.as_float().or_else(|| item.as_integer().map(|whole| whole as f64)))
         };
-        let said = |table: &Table, key: &str, word: &str| table.get(key).and_then(Item::as_str) == Some(word);
+        let has = |table: &Table, key: &str, word: &str| table.get(key).and_then(Item::as_str) == Some(word);
         // Times in decimals may differ from those of frames by rounding.
         let rounding = 1e-9 * (next - now);
         let (mut gone, mut ended) = (0, 0);
         for number in (0..kept.min(commands.len())).rev() {
             let Some(table) = commands.get_mut(number) else { continue };
             let over = seconds(table, "until").is_some_and(|until| until <= now + rounding);
-            if !(said(table, "do", "drag") && said(table, "body", body)) || over {
+            if !(has(table, "do", "drag") && has(table, "body", body)) || over {
                 continue;
             }
             match seconds(table, "at").unwrap_or(0.0) {

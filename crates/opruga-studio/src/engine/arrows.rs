@@ -48,9 +48,9 @@ impl Living {
             return;
         }
         let mut arrows = Vec::new();
-        for (place, &body) in living.iter().enumerate() {
+        for (index, &body) in living.iter().enumerate() {
             let nodes = self.world.node_count(body);
-            if let Some(seen) = picture.bodies.get_mut(place).filter(|seen| !seen.pinned.is_empty()) {
+            if let Some(seen) = picture.bodies.get_mut(index).filter(|seen| !seen.pinned.is_empty()) {
                 seen.pinned = self.world.pinned_now(body);
             }
             let forces = if show.contacts { self.world.contact_forces(body) } else { Vec::new() };
@@ -60,7 +60,7 @@ impl Living {
                 arrows.extend(some.clone().map(|node| (ArrowKind::Velocity, x.at(node), v.at(node))));
             }
             if show.normals
-                && let Some(seen) = picture.bodies.get(place).filter(|seen| seen.positions.len() == nodes)
+                && let Some(seen) = picture.bodies.get(index).filter(|seen| seen.positions.len() == nodes)
             {
                 let normals = normals(seen);
                 arrows.extend(some.map(|node| (ArrowKind::Normal, x.at(node), normals[node])));

@@ -174,9 +174,9 @@ fn speed(ui: &mut Ui, shown: &Shown, words: Language, asks: &mut Vec<Request>) {
 fn course(ui: &mut Ui, shown: &Shown, words: Language, asks: &mut Vec<Request>) {
     let time = ui.label(words.time());
     let mut frame = shown.frames;
-    let told = shown.recorded_until.is_some() && ui.available_width() > 420.0;
-    let room = ui.available_width() - if told { 236.0 } else { 96.0 };
-    ui.spacing_mut().slider_width = room.max(40.0);
+    let shows_end = shown.recorded_until.is_some() && ui.available_width() > 420.0;
+    let available = ui.available_width() - if shows_end { 236.0 } else { 96.0 };
+    ui.spacing_mut().slider_width = available.max(40.0);
     let slider = Slider::new(&mut frame, 0..=shown.latest.max(1)).show_value(false);
     let response = ui.add(slider).labelled_by(time.id);
     if let Some(until) = shown.recorded_until {
@@ -187,18 +187,18 @@ fn course(ui: &mut Ui, shown: &Shown, words: Language, asks: &mut Vec<Request>) 
         asks.push(Request::Seek(frame));
     }
     ui.label(RichText::new(format!("{:.2} s", shown.time)).monospace());
-    if let Some(until) = shown.recorded_until.filter(|_| told) {
+    if let Some(until) = shown.recorded_until.filter(|_| shows_end) {
         let end = format!("{} {:.2} s", words.recording_until(), shown.frame * until as f64);
         ui.label(RichText::new(end).size(11.5).weak()).on_hover_text(words.recording_hint());
     }
 }
 
 /// How far a recording reaches on the way through time: a line along it, a mark at its end, and that in seconds.
-fn end_of_recording(ui: &Ui, shown: &Shown, words: Language, until: u64, way: Rect) {
+fn end_of_recording(ui: &Ui, shown: &Shown, words: Language, until: u64, slider: Rect) {
     // The handle of the slider stays within its ends.
-    let inner = way.shrink2(vec2(0.5 * way.height().min(way.width()) * 0.8, 0.0));
+    let inner = slider.shrink2(vec2(0.5 * slider.height().min(slider.width()) * 0.8, 0.0));
     let share = until as f32 / shown.latest.max(1) as f32;
-    let (x, y) = (inner.left() + share.min(1.0) * inner.width(), way.center().y);
+    let (x, y) = (inner.left() + share.min(1.0) * inner.width(), slider.center().y);
     let ink = ui.visuals().warn_fg_color;
     ui.painter().line_segment([pos2(inner.left(), y + 7.0), pos2(x, y + 7.0)], Stroke::new(2.0, ink));
     ui.painter().line_segment([pos2(x, y - 8.0), pos2(x, y + 8.0)], Stroke::new(2.0, ink));

@@ -56,9 +56,9 @@ impl Gallery {
         self.seen.clear();
         let mut chosen = None;
         let mut open = true;
-        let room = ui.ctx().content_rect();
-        let columns = (((room.width() - 80.0) / 276.0) as usize).clamp(1, 4);
-        let tall = (room.height() - 120.0).max(120.0);
+        let content = ui.ctx().content_rect();
+        let columns = (((content.width() - 80.0) / 276.0) as usize).clamp(1, 4);
+        let tall = (content.height() - 120.0).max(120.0);
         egui::Window::new(words.scenes())
             .open(&mut open)
             .collapsible(false)

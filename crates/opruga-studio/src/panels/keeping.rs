@@ -7,8 +7,8 @@ use crate::document::Document;
 use crate::engine;
 use crate::handing;
 use crate::pair;
+use crate::report::Report;
 use crate::runner::{Copied, Link};
-use crate::said::Said;
 use crate::session::Request;
 use crate::setting::Setting;
 use crate::shown::{Severity, Show};
@@ -68,16 +68,16 @@ enum Stage {
     /// The simulation was asked for the scene.
     Asked(Show, Receiver<Copied>),
     /// It is made beside the interface, of the text of this mark.
-    Made(Receiver<Result<Said, Said>>, u64),
+    Made(Receiver<Result<Report, Report>>, u64),
 }
 
 /// Files that are being made.
 #[derive(Debug, Default)]
 pub struct Keeping {
     making: Vec<Making>,
-    message: Option<(Said, Severity)>,
-    /// How much was said so far.
-    told: u64,
+    message: Option<(Report, Severity)>,
+    /// How many messages there have been.
+    message_count: u64,
     /// The files of the scene that was saved last; none where that was refused.
     saved: Option<Vec<String>>,
 }
@@ -111,7 +111,7 @@ impl Keeping {
 
     /// Looks whether something is done.
     pub fn poll(&mut self, link: &Link) {
-        let (message, told, saved) = (&mut self.message, &mut self.told, &mut self.saved);
+        let (message, message_count, saved) = (&mut self.message, &mut self.message_count, &mut self.saved);
         self.making.retain_mut(|Making { what, progress, stage }| match stage {
             Stage::Asked(show, copied) => {
                 if let Ok(copied) = copied.try_recv() {
@@ -125,16 +125,16 @@ impl Keeping {
                 let Ok(outcome) = file.try_recv() else { return true };
                 if *what == What::Scene {
                     *saved = match &outcome {
-                        Ok(Said::Written(files)) => Some(files.clone()),
+                        Ok(Report::Written(files)) => Some(files.clone()),
                         _ => None,
                     };
                     if outcome.is_ok() {
                         link.ask(Request::Saved(*mark));
                     }
                 }
-                *told += 1;
+                *message_count += 1;
                 *message = Some(match outcome {
-                    Ok(written) => (written, Severity::Told),
+                    Ok(written) => (written, Severity::Done),
                     Err(refused) => (refused, Severity::Refused),
                 });
                 false
@@ -143,19 +143,19 @@ impl Keeping {
     }
 
     /// What there is to say.
-    pub fn message(&self) -> Option<&(Said, Severity)> {
+    pub fn message(&self) -> Option<&(Report, Severity)> {
         self.message.as_ref()
     }
 
-    /// How much was said so far: the number of the message.
-    pub fn told(&self) -> u64 {
-        self.told
+    /// How many messages there have been: the number of the last one.
+    pub fn message_count(&self) -> u64 {
+        self.message_count
     }
 
-    /// Says something else in its place.
-    pub fn tell(&mut self, severity: Severity, said: Said) {
-        self.told += 1;
-        self.message = Some((said, severity));
+    /// Reports something else instead.
+    pub fn report(&mut self, severity: Severity, report: Report) {
+        self.message_count += 1;
+        self.message = Some((report, severity));
     }
 
     /// The message was read.
@@ -168,7 +168,7 @@ impl Keeping {
 ///
 /// # Errors
 /// What there is to say to the person.
-async fn write(what: What, copied: &Copied, show: Show, progress: &Progress) -> Result<Said, Said> {
+async fn write(what: What, copied: &Copied, show: Show, progress: &Progress) -> Result<Report, Report> {
     let ending = match what {
         What::Scene => "toml",
         What::Picture => "png",
@@ -178,7 +178,7 @@ async fn write(what: What, copied: &Copied, show: Show, progress: &Progress) -> 
     };
     if what != What::Scene {
         let bytes = made(what, copied, show, progress).await?;
-        return Ok(Said::Written(vec![handing::file(&copied.name, ending, &bytes)?]));
+        return Ok(Report::Written(vec![handing::file(&copied.name, ending, &bytes)?]));
     }
     let mut written = handing::scene_with_files(&copied.name, &copied.text, &copied.files, &copied.registries)?;
     // Side by side there are two scenes.
@@ -188,7 +188,7 @@ async fn write(what: What, copied: &Copied, show: Show, progress: &Progress) -> 
         let name = format!("{}-right", copied.name);
         written.extend(handing::scene_with_files(&name, &right.text(), &copied.files, &copied.registries)?);
     }
-    Ok(Said::Written(written))
+    Ok(Report::Written(written))
 }
 
 /// The bytes of a file.
@@ -196,11 +196,11 @@ async fn write(what: What, copied: &Copied, show: Show, progress: &Progress) -> 
 /// # Errors
 /// What there is to say to the person.
 #[cfg(not(target_arch = "wasm32"))]
-pub fn content(what: What, copied: &Copied, show: Show) -> Result<Vec<u8>, Said> {
+pub fn content(what: What, copied: &Copied, show: Show) -> Result<Vec<u8>, Report> {
     work::finish(made(what, copied, show, &Progress::default()))
 }
 
-async fn made(what: What, copied: &Copied, show: Show, progress: &Progress) -> Result<Vec<u8>, Said> {
+async fn made(what: What, copied: &Copied, show: Show, progress: &Progress) -> Result<Vec<u8>, Report> {
     match what {
         What::Scene => Ok(copied.text.clone().into_bytes()),
         What::Table => table(copied, progress).await,
@@ -209,13 +209,13 @@ async fn made(what: What, copied: &Copied, show: Show, progress: &Progress) -> R
 }
 
 /// The engine of the scene, from its start.
-fn again(copied: &Copied) -> Result<Box<dyn engine::Engine>, Said> {
+fn again(copied: &Copied) -> Result<Box<dyn engine::Engine>, Report> {
     let document = Document::new(&copied.name, &copied.text)?;
     let setting = Setting { registries: copied.registries.clone(), ..Setting::default() };
     pair::build(&document, copied.differences.as_deref(), &copied.files, &setting)
 }
 
-async fn table(copied: &Copied, progress: &Progress) -> Result<Vec<u8>, Said> {
+async fn table(copied: &Copied, progress: &Progress) -> Result<Vec<u8>, Report> {
     let mut engine = again(copied)?;
     let mut rows = Vec::new();
     rows.push(engine.row());
@@ -240,7 +240,7 @@ async fn table(copied: &Copied, progress: &Progress) -> Result<Vec<u8>, Said> {
     Ok(text.into_bytes())
 }
 
-async fn film(what: What, copied: &Copied, show: Show, progress: &Progress) -> Result<Vec<u8>, Said> {
+async fn film(what: What, copied: &Copied, show: Show, progress: &Progress) -> Result<Vec<u8>, Report> {
     let mut engine = again(copied)?;
     let every = ((1.0 / RATE / engine.frame_seconds()).round() as u64).max(1);
     let mut pictures: Vec<Picture> = Vec::new();
@@ -267,7 +267,7 @@ async fn film(what: What, copied: &Copied, show: Show, progress: &Progress) -> R
     match what {
         What::Picture => pictures
             .last()
-            .map_or_else(|| Err(Said::NothingToDraw), |picture| image(picture)?.to_png().map_err(Said::NotDrawn)),
+            .map_or_else(|| Err(Report::NothingToDraw), |picture| image(picture)?.to_png().map_err(Report::NotDrawn)),
         What::Film => {
             let mut writer = Mp4Writer::new(Vec::new(), [style.width, style.height], rate)?;
             let count = pictures.len();
@@ -276,7 +276,7 @@ async fn film(what: What, copied: &Copied, show: Show, progress: &Progress) -> R
                 progress.set((count + number) as u64, 2 * count as u64);
                 writer.push(&image(picture)?)?;
             }
-            writer.finish().map_err(Said::NotDrawn)
+            writer.finish().map_err(Report::NotDrawn)
         }
         _ => {
             let step = pictures.len().div_ceil(MOST_GIF_FRAMES).max(1);

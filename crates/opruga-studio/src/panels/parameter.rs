@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 /// A field of a kind in the panel of a scene of so many dimensions, in a language.
 #[derive(Clone, Copy, Debug)]
-pub struct Place<'a> {
+pub struct FieldContext<'a> {
     /// Where the interface finds it.
     pub path: &'a str,
     /// What its kind is a kind of.
@@ -35,10 +35,10 @@ pub enum Change {
     Whole(Values),
 }
 
-/// What is being set: while a slider is held it shows what the hand wants and not what came back.
+/// What is being set: while a slider is grabbed it shows what the hand wants and not what came back.
 #[derive(Debug, Default)]
 pub struct Hand {
-    held: Option<(String, Value)>,
+    grabbed: Option<(String, Value)>,
     /// The upper ends of open sliders, so that they do not run away from the hand.
     ends: BTreeMap<String, f64>,
 }
@@ -143,29 +143,30 @@ fn usual(unit: &str) -> f64 {
 }
 
 /// Shows a parameter; what is asked for if it was changed. Values that no slider can hold are shown and not changed.
-pub fn show(ui: &mut Ui, hand: &mut Hand, place: Place<'_>, now: Option<&Value>) -> Option<Change> {
-    let Place { path, part, kind, field, words, .. } = place;
-    let held = hand.held.as_ref().filter(|(held, _)| held == path).map(|(_, value)| value.clone());
-    let now = held.or_else(|| now.cloned());
+pub fn show(ui: &mut Ui, hand: &mut Hand, context: FieldContext<'_>, now: Option<&Value>) -> Option<Change> {
+    let FieldContext { path, part, kind, field, words, .. } = context;
+    let grabbed =
+        hand.grabbed.as_ref().filter(|(grabbed_path, _)| grabbed_path == path).map(|(_, value)| value.clone());
+    let now = grabbed.or_else(|| now.cloned());
     let unit = if field.unit.is_empty() { String::new() } else { format!(" [{}]", field.unit) };
     let name = words.field(part, kind, field.name);
     let label = RichText::new(format!("{name}{unit}")).size(12.0);
-    let mut about = words.sentence(part, kind, field, place.dimension);
-    let silent = place.values.and_then(|values| field.without_effect(values, place.dimension));
+    let mut about = words.sentence(part, kind, field, context.dimension);
+    let silent = context.values.and_then(|values| field.without_effect(values, context.dimension));
     if let Some(condition) = silent {
         about = format!("{about}\n{}", words.effect_only(part, kind, condition));
     }
     // What was added can be taken away again.
     let removed = |ui: &mut Ui| {
-        let (spec, values) = (place.whole?, place.values?);
+        let (spec, values) = (context.whole?, context.values?);
         let optional = field.default == Unset::Absent && companion_is_silent(spec, values, field.name);
         let pressed = optional && ui.small_button("×").on_hover_text(words.remove_value()).clicked();
-        pressed.then(|| Change::Whole(without(spec, values, &[field.name], place.dimension)))
+        pressed.then(|| Change::Whole(without(spec, values, &[field.name], context.dimension)))
     };
     let shown = |ui: &mut Ui| match (&field.range, now) {
-        (_, None) => ui.horizontal(|ui| absent(ui, place, &name, &unit, &about)).inner,
+        (_, None) => ui.horizontal(|ui| absent(ui, context, &name, &unit, &about)).inner,
         (_, Some(now @ (Value::Number(_) | Value::Integer(_)))) => {
-            let (name, removed) = ui.horizontal(|ui| (tell(ui.label(label), &about).id, removed(ui))).inner;
+            let (name, removed) = ui.horizontal(|ui| (explain(ui.label(label), &about).id, removed(ui))).inner;
             let value = match now {
                 Value::Integer(x) => {
                     number(ui, hand, path, field, name, x as f64, true).map(|x| Value::Integer(x.round() as i64))
@@ -177,7 +178,7 @@ pub fn show(ui: &mut Ui, hand: &mut Hand, place: Place<'_>, now: Option<&Value>)
         }
         (range, Some(now)) => {
             ui.horizontal(|ui| {
-                let name = tell(ui.label(label), &about).id;
+                let name = explain(ui.label(label), &about).id;
                 let value = other(ui, words, name, range, &now);
                 removed(ui).or(value.map(Change::Value))
             })
@@ -188,8 +189,8 @@ pub fn show(ui: &mut Ui, hand: &mut Hand, place: Place<'_>, now: Option<&Value>)
     ui.push_id(path, |ui| ui.add_enabled_ui(silent.is_none(), shown).inner).inner
 }
 
-/// Says something of a control, whether it can be pressed or not.
-fn tell(response: Response, about: &str) -> Response {
+/// Explains a control, whether it can be pressed or not.
+fn explain(response: Response, about: &str) -> Response {
     response.on_hover_text(about).on_disabled_hover_text(about)
 }
 
@@ -201,26 +202,26 @@ fn companion_is_silent(spec: &Spec, values: &Values, name: &str) -> bool {
 
 /// A field about which the scene is silent: a button that gives it a value, instead of another one where only one of them is
 /// given, or its name where a scene alone can.
-fn absent(ui: &mut Ui, place: Place<'_>, name: &str, unit: &str, about: &str) -> Option<Change> {
-    let Place { part, kind, field, words, .. } = place;
+fn absent(ui: &mut Ui, context: FieldContext<'_>, name: &str, unit: &str, about: &str) -> Option<Change> {
+    let FieldContext { part, kind, field, words, .. } = context;
     let start = starting(field).map(Change::Value);
-    let (start, text) = match (field.default, place.whole.zip(place.values)) {
+    let (start, text) = match (field.default, context.whole.zip(context.values)) {
         (Unset::OneOf(set), Some((spec, values))) => {
             let other =
                 set.iter().find(|other| values.get(other).is_some()).map(|other| words.field(part, kind, other));
             let text = words.instead().replacen("{}", &format!("{name}{unit}"), 1);
             let text = other.map_or(format!("+ {name}{unit}"), |other| text.replacen("{}", &other, 1));
-            (instead(spec, values, field, place.dimension).map(Change::Whole), text)
+            (instead(spec, values, field, context.dimension).map(Change::Whole), text)
         }
         _ => (start, format!("+ {name}{unit}")),
     };
     if start.is_none() {
         let about = format!("{about}\n{}", words.in_the_scene());
-        tell(ui.label(RichText::new(format!("{name}{unit}")).size(12.0).weak()), &about);
+        explain(ui.label(RichText::new(format!("{name}{unit}")).size(12.0).weak()), &about);
         return None;
     }
     let button = egui::Button::new(RichText::new(text).size(12.0)).small();
-    if tell(ui.add(button), about).clicked() { start } else { None }
+    if explain(ui.add(button), about).clicked() { start } else { None }
 }
 
 /// A slider below its name.
@@ -260,9 +261,9 @@ fn number(
     let changed = response.changed() && x != now && x.is_finite();
     if response.dragged() || response.has_focus() && changed {
         let value = if whole { Value::Integer(x.round() as i64) } else { Value::Number(x) };
-        hand.held = Some((path.to_string(), value));
-    } else if hand.held.as_ref().is_some_and(|(held, _)| held == path) {
-        hand.held = None;
+        hand.grabbed = Some((path.to_string(), value));
+    } else if hand.grabbed.as_ref().is_some_and(|(grabbed_path, _)| grabbed_path == path) {
+        hand.grabbed = None;
     }
     changed.then_some(x)
 }
@@ -376,7 +377,7 @@ mod tests {
     fn refused(text: &str, models: Vec<Values>) -> Option<String> {
         use crate::session::{Request, Session};
         let opened = Session::open("it", text, opruga::io::Files::default(), opruga::Options::default());
-        let mut session = opened.unwrap_or_else(|said| panic!("{said}\n{text}"));
+        let mut session = opened.unwrap_or_else(|report| panic!("{report}\n{text}"));
         session.handle(Request::Models(0, models));
         let message = session.shown().message.filter(|m| m.severity == crate::shown::Severity::Refused);
         message.map(|message| message.text)

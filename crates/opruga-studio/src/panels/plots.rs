@@ -12,14 +12,14 @@ use std::sync::PoisonError;
 type Curve = Vec<Vec<[f64; 2]>>;
 
 /// Shows the curves side by side; those of gas of the selected body.
-pub fn show(ui: &mut Ui, shown: &Shown, words: Language, selected: Option<&str>, room: egui::Vec2) {
+pub fn show(ui: &mut Ui, shown: &Shown, words: Language, selected: Option<&str>, available: egui::Vec2) {
     let samples = shown.samples.read().unwrap_or_else(PoisonError::into_inner);
     let selected = shown.bodies.iter().find(|body| selected == Some(body.name.as_str()));
     let readings = selected.map_or(&[][..], |body| &body.readings);
     let beside = shown.beside.is_some();
     let volume = shown.beside.as_ref().is_some_and(|beside| beside.volume.is_some());
     let count = 3 + usize::from(!readings.is_empty()) + 2 * usize::from(beside) + usize::from(volume);
-    let size = egui::vec2((room.x / count as f32 - 10.0).max(180.0), room.y);
+    let size = egui::vec2((available.x / count as f32 - 10.0).max(180.0), available.y);
     // Where one has gone back, the curves go on behind the moment that is seen.
     let now = (shown.frames < shown.latest).then_some(shown.time);
     let curve = |of: &dyn Fn(&Sample) -> Option<f64>| -> Curve {
@@ -100,10 +100,10 @@ fn thinned(points: Vec<[f64; 2]>, columns: usize) -> Vec<[f64; 2]> {
     for group in points.chunk_by(|a, b| column(a) == column(b)) {
         let ends = group.iter().enumerate().min_by(|a, b| a.1[1].total_cmp(&b.1[1]));
         let ends = ends.into_iter().chain(group.iter().enumerate().max_by(|a, b| a.1[1].total_cmp(&b.1[1])));
-        let mut places: Vec<usize> = ends.map(|(place, _)| place).chain([0, group.len() - 1]).collect();
-        places.sort_unstable();
-        places.dedup();
-        kept.extend(places.into_iter().map(|place| group[place]));
+        let mut indices: Vec<usize> = ends.map(|(index, _)| index).chain([0, group.len() - 1]).collect();
+        indices.sort_unstable();
+        indices.dedup();
+        kept.extend(indices.into_iter().map(|index| group[index]));
     }
     kept
 }

@@ -1,7 +1,7 @@
 //! The panel at the side: the body that was pressed, the world, the obstacles. All of it is made from what models,
 //! integrators, shapes and obstacles say of themselves, so that those that come later appear in it too.
 
-use super::parameter::{self, Change, Hand, Place};
+use super::parameter::{self, Change, FieldContext, Hand};
 use crate::session::{Edit, Placed, Request};
 use crate::shown::{BodyShown, Shown};
 use crate::words::{Language, Part};
@@ -88,7 +88,7 @@ impl Properties {
                     for field in obstacle.values.spec().fields {
                         let path = &format!("collider.{number}.{}", field.name);
                         let dimension = kinds.dimension;
-                        let place = Place {
+                        let context = FieldContext {
                             path,
                             part: Part::Obstacle,
                             kind,
@@ -99,7 +99,7 @@ impl Properties {
                             whole: Some(obstacle.values.spec()),
                         };
                         let unset = |_| Some(Request::Unset(path.clone()));
-                        self.set(ui, place, obstacle.values.get(field.name), asks, unset);
+                        self.set(ui, context, obstacle.values.get(field.name), asks, unset);
                     }
                 });
             }
@@ -110,13 +110,13 @@ impl Properties {
     fn set(
         &mut self,
         ui: &mut Ui,
-        place: Place<'_>,
+        context: FieldContext<'_>,
         now: Option<&Value>,
         asks: &mut Vec<Request>,
         whole: impl FnOnce(Values) -> Option<Request>,
     ) {
-        asks.extend(match parameter::show(ui, &mut self.hand, place, now) {
-            Some(Change::Value(value)) => Some(Request::Set(place.path.into(), value)),
+        asks.extend(match parameter::show(ui, &mut self.hand, context, now) {
+            Some(Change::Value(value)) => Some(Request::Set(context.path.into(), value)),
             Some(Change::Whole(values)) => whole(values),
             None => None,
         });
@@ -143,11 +143,11 @@ impl Properties {
                         _ => "",
                     };
                     // Each in a room of its own: what is below stays where it is, however many figures there are.
-                    let said = format!("{} {}{unit}", words.reading(name), opruga::draw::format_value(*x));
-                    let room = egui::Layout::left_to_right(egui::Align::Center);
-                    ui.allocate_ui_with_layout(Vec2::new(half, 14.0), room, |ui| {
+                    let text = format!("{} {}{unit}", words.reading(name), opruga::draw::format_value(*x));
+                    let layout = egui::Layout::left_to_right(egui::Align::Center);
+                    ui.allocate_ui_with_layout(Vec2::new(half, 14.0), layout, |ui| {
                         ui.set_min_width(half);
-                        ui.add(egui::Label::new(RichText::new(said).weak().size(11.5)).truncate());
+                        ui.add(egui::Label::new(RichText::new(text).weak().size(11.5)).truncate());
                     });
                 }
             });
@@ -162,7 +162,7 @@ impl Properties {
                 for field in spec.fields {
                     let path = &format!("body.{}.models.{number}.{}", body.name, field.name);
                     let dimension = kinds.dimension;
-                    let place = Place {
+                    let context = FieldContext {
                         path,
                         part: Part::Model,
                         kind: spec.kind,
@@ -172,7 +172,7 @@ impl Properties {
                         values: Some(model),
                         whole: Some(spec),
                     };
-                    self.set(ui, place, model.get(field.name), asks, |values| {
+                    self.set(ui, context, model.get(field.name), asks, |values| {
                         let mut models = body.models.clone();
                         models[number] = values;
                         Some(Request::Models(body.number, models))
@@ -195,16 +195,16 @@ impl Properties {
         });
         name(&add.response, words.add_model());
         self.shape(ui, body, kinds.dimension, words, asks);
-        let place = |turned: f64, scaled: f64| {
-            Request::Edit(Edit::Place(body.name.clone(), Placed { moved: [0.0; 3], turned, scaled }))
+        let transform = |turned: f64, scaled: f64| {
+            Request::Edit(Edit::Transform(body.name.clone(), Placed { moved: [0.0; 3], turned, scaled }))
         };
         ui.horizontal_wrapped(|ui| {
             let fifteen = 15f64.to_radians();
             for (text, key, request) in [
-                (format!("{} +15°", words.turn()), "[", place(fifteen, 1.0)),
-                ("−15°".into(), "]", place(-fifteen, 1.0)),
-                (words.scale().into(), "+", place(0.0, 1.1)),
-                (words.smaller().into(), "−", place(0.0, 1.0 / 1.1)),
+                (format!("{} +15°", words.turn()), "[", transform(fifteen, 1.0)),
+                ("−15°".into(), "]", transform(-fifteen, 1.0)),
+                (words.scale().into(), "+", transform(0.0, 1.1)),
+                (words.smaller().into(), "−", transform(0.0, 1.0 / 1.1)),
                 (words.duplicate().into(), "Ctrl D", Request::Edit(Edit::Duplicate(body.name.clone()))),
                 (words.delete().into(), "Del", Request::Edit(Edit::Delete(body.name.clone()))),
             ] {
@@ -293,7 +293,7 @@ impl Properties {
                 None => format!("integrator.{}", field.name),
             };
             let dimension = kinds.dimension;
-            let place = Place {
+            let context = FieldContext {
                 path,
                 part: Part::Integrator,
                 kind: spec.kind,
@@ -304,7 +304,7 @@ impl Properties {
                 whole: Some(spec),
             };
             let whole = |values| Some(Request::Integrator(body.map(|body| body.number), values));
-            self.set(ui, place, values.get(field.name), asks, whole);
+            self.set(ui, context, values.get(field.name), asks, whole);
         }
     }
 
@@ -318,7 +318,7 @@ impl Properties {
                 // It is another body with every value, and the same one for the person.
                 let path = &format!("shape.{}.{}", body.title, field.name);
                 let now = shape.get(field.name);
-                let place = Place {
+                let context = FieldContext {
                     path,
                     part: Part::Shape,
                     kind: spec.kind,
@@ -329,7 +329,7 @@ impl Properties {
                     whole: Some(spec),
                 };
                 let slider = matches!(field.range, Allowed::Number { .. } | Allowed::Integer { .. });
-                let value = match parameter::show(ui, &mut self.hand, place, now) {
+                let value = match parameter::show(ui, &mut self.hand, context, now) {
                     Some(Change::Value(value)) => value,
                     Some(Change::Whole(_)) => {
                         asks.push(Request::Edit(Edit::ShapeWithout(body.name.clone(), field.name)));
@@ -363,7 +363,7 @@ impl Properties {
         // A choice of one word is none.
         for field in spec.fields.iter().filter(|field| !matches!(field.range, Allowed::Choice([_]))) {
             let path = &format!("contact.{}", field.name);
-            let row = Place {
+            let row = FieldContext {
                 path,
                 part: Part::Contact,
                 kind: spec.kind,
@@ -417,8 +417,8 @@ impl Properties {
         }
         // The row is there in any case: what is below stays where it is.
         let limit = (shown.stable_step.is_finite() && shown.stable_step > 0.0).then_some(shown.stable_step);
-        let said = limit.map_or("–".into(), |limit| (shown.frame / limit).ceil().max(1.0).to_string());
-        ui.label(RichText::new(format!("{} {said}", words.stable())).weak().size(11.5));
+        let least_text = limit.map_or("–".into(), |limit| (shown.frame / limit).ceil().max(1.0).to_string());
+        ui.label(RichText::new(format!("{} {least_text}", words.stable())).weak().size(11.5));
         if let Some(limit) = limit {
             let least = (shown.frame / limit).ceil().max(1.0);
             // Where the limit lies on the rail, which has small numbers as wide as large ones.

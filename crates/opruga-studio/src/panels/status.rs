@@ -48,14 +48,14 @@ pub fn status(
         .collect();
     let rows = rows(&wide, ui.available_width());
     ui.spacing_mut().item_spacing.y = 2.0;
-    for (place, row) in rows.iter().enumerate() {
+    for (index, row) in rows.iter().enumerate() {
         ui.horizontal(|ui| {
             ui.set_height(TALL);
             ui.spacing_mut().item_spacing.x = GAP;
             for number in row.clone() {
                 let Number { text, attention, about, .. } = &numbers[number];
-                let room = Layout::left_to_right(Align::Center);
-                ui.allocate_ui_with_layout(vec2(wide[number], TALL), room, |ui| {
+                let layout = Layout::left_to_right(Align::Center);
+                ui.allocate_ui_with_layout(vec2(wide[number], TALL), layout, |ui| {
                     ui.set_min_size(vec2(wide[number], TALL));
                     // The figures behind the first are those of the frame before.
                     if busy.is_some() && number > 0 {
@@ -69,32 +69,32 @@ pub fn status(
                     }
                 });
             }
-            if place + 1 == rows.len() {
-                let mut said: Vec<(RichText, String)> = Vec::new();
+            if index + 1 == rows.len() {
+                let mut notes: Vec<(RichText, String)> = Vec::new();
                 let small = |text: String| RichText::new(text).size(SIZE);
                 if let Some((busy, prepared)) = busy {
                     let mut text = words.computing().replace("{}", &format!("{:.0}", busy.as_secs_f64()));
                     if let Some(share) = prepared {
                         text += &format!(" · {:.0} %", 100.0 * share);
                     }
-                    said.push((small(text).color(theme::attention(ui.visuals())), String::new()));
+                    notes.push((small(text).color(theme::attention(ui.visuals())), String::new()));
                 }
                 if let Some(goal) = shown.goal.filter(|_| busy.is_none()) {
                     let text = words.again().replace("{}", &format!("{goal:.2}"));
-                    said.push((small(text).color(theme::attention(ui.visuals())), String::new()));
+                    notes.push((small(text).color(theme::attention(ui.visuals())), String::new()));
                 }
                 for (what, hundredths) in making.by_ref() {
                     // Where there is little room, the name is cut.
                     let text = small(format!("{hundredths} % {}", file_name(words, what)));
-                    said.push((text.strong(), words.working().into()));
+                    notes.push((text.strong(), words.working().into()));
                 }
                 if let Some([by, device]) = drawn_by {
-                    said.push((small(by.clone()), format!("{}: {device}", words.drawn_by())));
+                    notes.push((small(by.clone()), format!("{}: {device}", words.drawn_by())));
                 }
                 if shown.recorded > 0 {
-                    said.push((small(format!("{}: {}", words.recorded(), shown.recorded)), String::new()));
+                    notes.push((small(format!("{}: {}", words.recorded(), shown.recorded)), String::new()));
                 }
-                for (text, about) in said {
+                for (text, about) in notes {
                     let response = ui.add(Label::new(text).truncate());
                     if !about.is_empty() {
                         response.on_hover_text(about);
@@ -148,17 +148,17 @@ fn numbers(shown: &Shown, words: Language, rate: Option<f64>, narrow: bool) -> V
 }
 
 /// Which numbers of these widths stand in which row; the last row has room behind them.
-fn rows(wide: &[f32], room: f32) -> Vec<core::ops::Range<usize>> {
+fn rows(wide: &[f32], available: f32) -> Vec<core::ops::Range<usize>> {
     let (mut rows, mut first, mut used) = (Vec::new(), 0, 0.0);
-    for (place, wide) in wide.iter().enumerate() {
-        if used + wide > room && used > 0.0 {
-            rows.push(first..place);
-            (first, used) = (place, 0.0);
+    for (index, wide) in wide.iter().enumerate() {
+        if used + wide > available && used > 0.0 {
+            rows.push(first..index);
+            (first, used) = (index, 0.0);
         }
         used += wide + GAP;
     }
     rows.push(first..wide.len());
-    if used + REST > room {
+    if used + REST > available {
         rows.push(wide.len()..wide.len());
     }
     rows
@@ -170,9 +170,9 @@ fn warnings(ui: &mut Ui, shown: &Shown, words: Language) {
     let Some(&(right, first)) = warnings.first() else { return };
     let others = warnings.len() - 1;
     let side = |right: bool| if right { format!("{}: ", words.on_the_right()) } else { String::new() };
-    let said = beginning(&words.warning_text(first));
+    let beginning = beginning(&words.warning_text(first));
     let more = if others > 0 { format!("  +{others}") } else { String::new() };
-    let text = RichText::new(format!("{}{} ({}){more}: {said}", side(right), words.warning(), first.count))
+    let text = RichText::new(format!("{}{} ({}){more}: {beginning}", side(right), words.warning(), first.count))
         .size(SIZE)
         .color(theme::attention(ui.visuals()));
     let all = |ui: &mut Ui| {
@@ -213,11 +213,11 @@ fn beginning(sentence: &str) -> String {
     let whole = sentence.split_whitespace().collect::<Vec<_>>().join(" ");
     let aside = [" (", "; "].into_iter().filter_map(|mark| whole.find(mark)).min();
     let first = &whole[..aside.unwrap_or(whole.len())];
-    let room = first.char_indices().nth(MOST).map_or(first.len(), |(end, _)| end);
+    let limit = first.char_indices().nth(MOST).map_or(first.len(), |(end, _)| end);
     // A word that is longer by itself is cut.
-    let end = if room < first.len() { first[..room].rfind(' ').unwrap_or(room) } else { room };
-    let said = first[..end].trim_end_matches([',', ':']);
-    if end < whole.len() { format!("{said} …") } else { whole }
+    let end = if limit < first.len() { first[..limit].rfind(' ').unwrap_or(limit) } else { limit };
+    let cut = first[..end].trim_end_matches([',', ':']);
+    if end < whole.len() { format!("{cut} …") } else { whole }
 }
 
 /// A count in six letters at most: from a million on in millions (M), from a thousand of them on in thousands of millions (G).

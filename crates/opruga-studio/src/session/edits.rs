@@ -8,7 +8,7 @@ use super::Session;
 use super::travel::Past;
 use crate::document::read;
 use crate::document::{add_table, kind_table, numbers, toml};
-use crate::said::{Said, Step};
+use crate::report::{Report, Step};
 use crate::shown::Severity;
 use opruga::core::spec::{Value, Values};
 use toml_edit::{InlineTable, Value as Toml};
@@ -29,12 +29,12 @@ pub struct Placed {
 pub enum Edit {
     /// A new body; its table as in the scene file, with a name that others may have.
     Add(InlineTable),
-    /// The same, set down with its middle at a point, or at the nearest place where it is in no other body and no obstacle \[m\].
+    /// The same, set down with its middle at a point, or at the nearest position where it is in no other body and no obstacle \[m\].
     Drop(InlineTable, [f64; 3]),
     /// A copy of a body beside it.
     Duplicate(String),
     /// Moves, turns or scales a body.
-    Place(String, Placed),
+    Transform(String, Placed),
     /// Another value of a field of its shape, such as its number of vertices.
     Shape(String, &'static str, Value),
     /// A field of its shape is given no longer.
@@ -51,18 +51,18 @@ impl Session {
     }
 
     /// Takes a document that differs at its start.
-    fn begin_with(&mut self, document: crate::document::Document, own_commands: usize) -> Result<(), Said> {
-        let held = self.held.is_some() || !self.pins_shown().is_empty();
+    fn begin_with(&mut self, document: crate::document::Document, own_commands: usize) -> Result<(), Report> {
+        let had_pins = self.grabbed.is_some() || !self.pins_shown().is_empty();
         self.take(document, own_commands, [0; 2])?;
         self.start.clone_from(&self.document);
-        if held {
-            self.tell(Severity::Told, Said::PinsLetGo, None);
+        if had_pins {
+            self.report(Severity::Done, Report::PinsLetGo, None);
         }
         Ok(())
     }
 
     /// Sets a parameter; one that is drawn by a hand in a press of a number of its own.
-    pub(super) fn set(&mut self, path: &str, value: Value, press: Option<u64>) -> Result<(), Said> {
+    pub(super) fn set(&mut self, path: &str, value: Value, press: Option<u64>) -> Result<(), Report> {
         self.branch()?;
         let past = Past { press, ..self.past(Step::Set(path.into())) };
         if self.at_start() && self.document.commands() == self.own_commands {
@@ -73,7 +73,7 @@ impl Session {
                 return Ok(());
             }
         }
-        let given = self.engine.set(path, value.clone()).map_err(Said::World)?;
+        let given = self.engine.set(path, value.clone()).map_err(Report::World)?;
         match self.document.last_set(self.engine.time(), path) {
             Some(table) => table["value"] = toml_edit::Item::Value(toml(&value)),
             None => {
@@ -86,7 +86,7 @@ impl Session {
 
     /// Gives a field of an obstacle no longer: at the start the scene is silent about it then; later it gets the value that does the
     /// same, where there is one.
-    pub(super) fn unset(&mut self, path: &str) -> Result<(), Said> {
+    pub(super) fn unset(&mut self, path: &str) -> Result<(), Report> {
         self.branch()?;
         let past = self.past(Step::Set(path.into()));
         if self.at_start() && self.document.commands() == self.own_commands {
@@ -107,7 +107,7 @@ impl Session {
             Some(Value::Numbers(list)) if matches!(field, "spin" | "rotation") => {
                 self.set(path, Value::Numbers(vec![0.0; list.len()]), None)
             }
-            _ => Err(Said::AtTheStartAlone(path.into())),
+            _ => Err(Report::AtTheStartAlone(path.into())),
         }
     }
 
@@ -116,7 +116,7 @@ impl Session {
         body: usize,
         models: Option<Vec<Values>>,
         integrator: Option<Values>,
-    ) -> Result<(), Said> {
+    ) -> Result<(), Report> {
         self.branch()?;
         let past = self.past(if models.is_some() { Step::Models } else { Step::Integrator });
         let name = self.engine.name(body).unwrap_or_default();
@@ -138,16 +138,16 @@ impl Session {
                 return Ok(());
             }
         }
-        let given = self.engine.change(body, models, integrator).map_err(Said::World)?;
+        let given = self.engine.change(body, models, integrator).map_err(Report::World)?;
         self.write(given);
         self.remember(past);
-        self.tell(Severity::Told, Said::GoesOn(name), None);
+        self.report(Severity::Done, Report::GoesOn(name), None);
         Ok(())
     }
 
     /// Gives a body the integrator of the scene again. At the start it has none of its own then; a body that moves goes on with
     /// one of its own that is the same.
-    pub(super) fn as_the_scene(&mut self, body: usize) -> Result<(), Said> {
+    pub(super) fn as_the_scene(&mut self, body: usize) -> Result<(), Report> {
         self.branch()?;
         let past = self.past(Step::Integrator);
         let name = self.engine.name(body).unwrap_or_default();
@@ -169,7 +169,7 @@ impl Session {
     }
 
     /// Another integrator for all bodies that have none of their own.
-    pub(super) fn integrator(&mut self, values: &Values) -> Result<(), Said> {
+    pub(super) fn integrator(&mut self, values: &Values) -> Result<(), Report> {
         self.branch()?;
         let past = self.past(Step::Integrator);
         if self.at_start() && self.document.commands() == self.own_commands {
@@ -191,17 +191,17 @@ impl Session {
                     // None of them, rather than some.
                     self.document = documents;
                     self.engine = self.build(&self.document)?;
-                    self.engine.rewind(&before).map_err(Said::World)?;
-                    return Err(Said::World(error));
+                    self.engine.rewind(&before).map_err(Report::World)?;
+                    return Err(Report::World(error));
                 }
             }
         }
         self.remember(past);
-        self.tell(Severity::Told, Said::AllGoOn(values.kind().into()), None);
+        self.report(Severity::Done, Report::AllGoOn(values.kind().into()), None);
         Ok(())
     }
 
-    pub(super) fn edit(&mut self, edit: &Edit) -> Result<(), Said> {
+    pub(super) fn edit(&mut self, edit: &Edit) -> Result<(), Report> {
         self.branch()?;
         match edit {
             Edit::Drop(table, at) => {
@@ -222,17 +222,18 @@ impl Session {
                 let mut table = self.table_of(name)?;
                 let copy = self.document.free_name(name);
                 table.insert("name", copy.as_str().into());
-                let (size, way) = (self.size_of(name), self.way_of(name));
-                let by = self.free_way(&table, [way[0] + 1.15 * size, way[1], way[2]]);
+                let (size, displacement) = (self.size_of(name), self.displacement_of(name));
+                let by =
+                    self.free_displacement(&table, [displacement[0] + 1.15 * size, displacement[1], displacement[2]]);
                 shift(&mut table, by, self.dimension());
                 self.exchange(Step::Duplicate, None, Some(table))?;
                 self.made(copy);
                 Ok(())
             }
-            Edit::Place(name, placed) => {
+            Edit::Transform(name, placed) => {
                 let mut table = self.table_of(name)?;
-                self.place(name, &mut table, placed)?;
-                // Handles turn and scale about the other side or the middle: what was meant is not the way of the middle.
+                self.transform(name, &mut table, placed)?;
+                // Handles turn and scale about the other side or the middle: what was meant is not the displacement of the middle.
                 let step = match placed {
                     Placed { scaled, .. } if *scaled != 1.0 => Step::Scale,
                     Placed { turned, .. } if *turned != 0.0 => Step::Turn,
@@ -243,22 +244,22 @@ impl Session {
             Edit::Shape(name, field, value) => {
                 let mut table = self.table_of(name)?;
                 let shape = table.get_mut("shape").and_then(Toml::as_inline_table_mut);
-                let shape = shape.ok_or_else(|| Said::NoShape(name.clone()))?;
+                let shape = shape.ok_or_else(|| Report::NoShape(name.clone()))?;
                 shape.insert(*field, toml(value));
-                shift(&mut table, self.way_of(name), self.dimension());
+                shift(&mut table, self.displacement_of(name), self.dimension());
                 self.exchange(Step::Shape(field), Some(name), Some(table))
             }
             Edit::ShapeWithout(name, field) => {
                 let mut table = self.table_of(name)?;
                 let shape = table.get_mut("shape").and_then(Toml::as_inline_table_mut);
-                shape.ok_or_else(|| Said::NoShape(name.clone()))?.remove(field);
-                shift(&mut table, self.way_of(name), self.dimension());
+                shape.ok_or_else(|| Report::NoShape(name.clone()))?.remove(field);
+                shift(&mut table, self.displacement_of(name), self.dimension());
                 self.exchange(Step::Shape(field), Some(name), Some(table))
             }
             Edit::Delete(name) => self.exchange(Step::Delete, Some(name), None),
             Edit::Contact(touch) => {
                 if !(self.at_start() && self.document.commands() == self.own_commands) {
-                    return Err(Said::ContactAtTheStartAlone);
+                    return Err(Report::ContactAtTheStartAlone);
                 }
                 let past = self.past(Step::Contact);
                 let mut document = self.document.clone();
@@ -279,12 +280,12 @@ impl Session {
         usize::from(self.engine.shown(&self.show).dimension)
     }
 
-    fn table_of(&self, name: &str) -> Result<InlineTable, Said> {
-        self.document.body(name).ok_or_else(|| Said::Copy(name.to_string()))
+    fn table_of(&self, name: &str) -> Result<InlineTable, Report> {
+        self.document.body(name).ok_or_else(|| Report::Copy(name.to_string()))
     }
 
     /// How far the middle of a body has gone from where it was set down [m].
-    fn way_of(&mut self, name: &str) -> [f64; 3] {
+    fn displacement_of(&mut self, name: &str) -> [f64; 3] {
         if self.at_start() {
             return [0.0; 3];
         }
@@ -304,21 +305,21 @@ impl Session {
     /// The width of a body [m].
     fn size_of(&mut self, name: &str) -> f64 {
         let shown = self.engine.shown(&self.show);
-        let place = shown.bodies.iter().position(|body| body.name == name);
-        let positions = place.map_or(&[][..], |place| &shown.picture.bodies[place].positions);
+        let index = shown.bodies.iter().position(|body| body.name == name);
+        let positions = index.map_or(&[][..], |index| &shown.picture.bodies[index].positions);
         let (low, high) = positions.iter().fold((f64::MAX, f64::MIN), |(a, b), p| (a.min(p[0]), b.max(p[0])));
         if high > low { high - low } else { 1.0 }
     }
 
     /// Writes a move, a turn about the body's middle and a factor into its table.
-    fn place(&mut self, name: &str, table: &mut InlineTable, placed: &Placed) -> Result<(), Said> {
+    fn transform(&mut self, name: &str, table: &mut InlineTable, placed: &Placed) -> Result<(), Report> {
         let dimension = self.dimension();
         let shown = self.engine.shown(&self.show);
         let number = shown.bodies.iter().find(|body| body.name == name).map(|body| body.number);
         let center = number.and_then(|number| self.engine.rest_center(number));
-        let (middle, at) = center.ok_or_else(|| Said::NoBody(name.to_string()))?;
+        let (middle, at) = center.ok_or_else(|| Report::NoBody(name.to_string()))?;
         if !(placed.scaled > 0.0 && placed.scaled.is_finite()) {
-            return Err(Said::Scaled(placed.scaled));
+            return Err(Report::Scaled(placed.scaled));
         }
         let (sin, cos) = placed.turned.sin_cos();
         // The middle of the mesh after the turn; the position makes up for what it has moved.
@@ -326,8 +327,9 @@ impl Session {
             2 => [cos * middle[0] - sin * middle[1], sin * middle[0] + cos * middle[1], 0.0],
             _ => [cos * middle[0] + sin * middle[2], middle[1], cos * middle[2] - sin * middle[0]],
         };
-        let way = self.way_of(name);
-        let position = [0, 1, 2].map(|d| at[d] + way[d] + middle[d] - placed.scaled * turned[d] + placed.moved[d]);
+        let displacement = self.displacement_of(name);
+        let position =
+            [0, 1, 2].map(|d| at[d] + displacement[d] + middle[d] - placed.scaled * turned[d] + placed.moved[d]);
         table.insert("position", Toml::Array(numbers(&position[..dimension])));
         if placed.scaled != 1.0 {
             let scale = number_of(table.get("scale")).unwrap_or(1.0) * placed.scaled;
@@ -350,7 +352,7 @@ impl Session {
     }
 
     /// Takes a body away, sets one down, or both.
-    fn exchange(&mut self, step: Step, old: Option<&str>, new: Option<InlineTable>) -> Result<(), Said> {
+    fn exchange(&mut self, step: Step, old: Option<&str>, new: Option<InlineTable>) -> Result<(), Report> {
         let past = self.past(step);
         let mut document = self.document.clone();
         if self.at_start() && document.commands() == self.own_commands {
@@ -374,7 +376,7 @@ impl Session {
         let now = self.engine.time();
         if let Some(name) = old {
             self.forget_later(name)?;
-            let given = self.engine.remove(name).map_err(Said::World)?;
+            let given = self.engine.remove(name).map_err(Report::World)?;
             self.write(given);
         }
         if let Some(mut table) = new {
@@ -386,8 +388,8 @@ impl Session {
             }
             self.document.push_command(add_table(now, &table));
             let added = match read(&self.document, &self.files, &self.setting.registries) {
-                Ok((scene, odd)) => self.engine.add_from(scene, odd).map_err(Said::World),
-                Err(errors) => Err(Said::Scene(errors)),
+                Ok((scene, scene_warnings)) => self.engine.add_from(scene, scene_warnings).map_err(Report::World),
+                Err(errors) => Err(Report::Scene(errors)),
             };
             if let Err(refusal) = added {
                 // It is said of the body that was to be another, and not of one that there never was.
@@ -399,7 +401,7 @@ impl Session {
                 return Err(refusal);
             }
             if old.is_some() {
-                self.tell(Severity::Told, Said::SetDown, None);
+                self.report(Severity::Done, Report::SetDown, None);
             }
         }
         self.remember(past);
@@ -407,12 +409,12 @@ impl Session {
     }
 
     /// Undoes the first half of what was refused in its second.
-    pub(super) fn back_to(&mut self, past: Past) -> Result<(), Said> {
+    pub(super) fn back_to(&mut self, past: Past) -> Result<(), Report> {
         let frame = past.frame;
         self.take(past.document, past.own_commands, [frame; 2])?;
         self.pins = past.pins;
         while self.goal.is_some_and(|goal| self.engine.frames() < goal) {
-            self.frame().map_err(Said::World)?;
+            self.frame().map_err(Report::World)?;
         }
         self.arrive();
         Ok(())
@@ -423,7 +425,7 @@ fn number_of(value: Option<&Toml>) -> Option<f64> {
     value.and_then(|v| v.as_float().or_else(|| v.as_integer().map(|i| i as f64)))
 }
 
-/// Moves the place of a body in its table.
+/// Moves the position of a body in its table.
 pub(super) fn shift(table: &mut InlineTable, by: [f64; 3], dimension: usize) {
     let old: Vec<f64> = table
         .get("position")

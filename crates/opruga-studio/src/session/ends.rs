@@ -1,19 +1,19 @@
 //! What attracts attention at the end of a scene: shapes are looked at there, and where time stands still behind it.
 
 use super::Session;
-use crate::said::Said;
+use crate::report::Report;
 use crate::shown::{Severity, Shown};
 use opruga::Warning;
 
-/// What was told of so far.
+/// What was reported so far.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Ends {
     /// What attracted attention at the start.
     early: Vec<Warning>,
-    /// What is odd about the shapes, and the frame from which on.
-    odd: Option<(u64, Vec<Warning>)>,
-    /// What the person was told of at the end: once is enough.
-    told: Vec<String>,
+    /// The warnings about the shapes, and the frame from which on.
+    shape_warnings: Option<(u64, Vec<Warning>)>,
+    /// The codes of what was reported to the person at the end: once is enough.
+    reported: Vec<String>,
 }
 
 impl Ends {
@@ -22,10 +22,11 @@ impl Ends {
         Ends { early, ..Ends::default() }
     }
 
-    /// Adds what is odd at the end to what attracts attention at a frame.
+    /// Adds the warnings at the end to what attracts attention at a frame.
     pub(super) fn add(&self, shown: &mut Shown) {
-        let odd = self.odd.iter().filter(|(since, _)| *since <= shown.frames).flat_map(|(_, list)| list);
-        for warning in odd {
+        let shape_warnings =
+            self.shape_warnings.iter().filter(|(since, _)| *since <= shown.frames).flat_map(|(_, list)| list);
+        for warning in shape_warnings {
             if !shown.warnings.iter().any(|other| other.code == warning.code) {
                 shown.warnings.push(warning.clone());
             }
@@ -40,14 +41,14 @@ impl Session {
             return;
         }
         let all = self.look_at_shapes();
-        let odd: Vec<Warning> = all.iter().filter(|w| !self.ends.early.contains(w)).cloned().collect();
+        let new_warnings: Vec<Warning> = all.iter().filter(|w| !self.ends.early.contains(w)).cloned().collect();
         let refused = self.message.as_ref().is_some_and(|message| message.severity == Severity::Refused);
-        // Numbers in it may differ when the end comes again: what was told is told by its code.
+        // Numbers in it may differ when the end comes again: what was reported is recognised by its code.
         let codes: Vec<String> = all.into_iter().map(|warning| warning.code.to_string()).collect();
-        if !odd.is_empty() && !refused && self.ends.told != codes {
+        if !new_warnings.is_empty() && !refused && self.ends.reported != codes {
             let time = self.engine.time();
-            self.tell(Severity::Told, Said::AtTheEnd(time, odd), None);
-            self.ends.told = codes;
+            self.report(Severity::Done, Report::AtTheEnd(time, new_warnings), None);
+            self.ends.reported = codes;
         }
     }
 
@@ -61,7 +62,7 @@ impl Session {
     /// Everything that attracts attention now.
     fn look_at_shapes(&mut self) -> Vec<Warning> {
         let all = self.engine.warnings_at_the_end();
-        self.ends.odd = Some((self.engine.frames(), all.clone()));
+        self.ends.shape_warnings = Some((self.engine.frames(), all.clone()));
         all
     }
 }

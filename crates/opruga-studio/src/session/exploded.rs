@@ -1,7 +1,7 @@
 //! A body that explodes stops time while something of it can still be seen.
 
 use super::Session;
-use crate::said::Said;
+use crate::report::Report;
 use crate::shown::Severity;
 
 impl Session {
@@ -11,6 +11,6 @@ impl Session {
         (self.playing, self.goal) = (false, None);
         self.pacing.rest();
         let offer = self.offer_after_a_failure(&exploded.body);
-        self.tell(Severity::Refused, Said::Exploded(exploded), offer);
+        self.report(Severity::Refused, Report::Exploded(exploded), offer);
     }
 }

@@ -9,7 +9,7 @@ use toml_edit::InlineTable;
 /// The lowest and the highest corner of a box [m].
 type Ends = [[f64; 3]; 2];
 
-/// How far apart tried places are, in sizes of the body, and how many of them to each side, in the plane and in space: up to six sizes
+/// How far apart tried positions are, in sizes of the body, and how many of them to each side, in the plane and in space: up to six sizes
 /// and four sizes away.
 const APART: [f64; 2] = [0.25, 0.5];
 const TRIED: [i32; 2] = [24, 8];
@@ -67,8 +67,8 @@ fn is_in(ends: &Ends, obstacle: &ColliderPicture, hollow: bool, dimension: usize
     }
 }
 
-/// The way nearest to a wanted one that is free, of those that are tried; the wanted one where none is. Of two that are equally far the
-/// higher one.
+/// The displacement nearest to a wanted one that is free, of those that are tried; the wanted one where none is. Of two that are
+/// equally far the higher one.
 fn nearest(wanted: [f64; 3], size: f64, dimension: usize, free: impl Fn([f64; 3]) -> bool) -> [f64; 3] {
     if free(wanted) {
         return wanted;
@@ -76,11 +76,11 @@ fn nearest(wanted: [f64; 3], size: f64, dimension: usize, free: impl Fn([f64; 3]
     let space = usize::from(dimension == 3);
     let (apart, most) = (APART[space] * size, TRIED[space]);
     let deep = if dimension == 3 { most } else { 0 };
-    let places = (-most..=most).flat_map(|y| (-most..=most).flat_map(move |x| (-deep..=deep).map(move |z| [x, y, z])));
-    let mut places: Vec<[i32; 3]> = places.collect();
-    places.sort_by_key(|[x, y, z]| (x * x + y * y + z * z, -y, -x, -z));
-    let ways = places.into_iter().map(|place| [0, 1, 2].map(|d| wanted[d] + apart * f64::from(place[d])));
-    ways.into_iter().find(|way| free(*way)).unwrap_or(wanted)
+    let steps = (-most..=most).flat_map(|y| (-most..=most).flat_map(move |x| (-deep..=deep).map(move |z| [x, y, z])));
+    let mut steps: Vec<[i32; 3]> = steps.collect();
+    steps.sort_by_key(|[x, y, z]| (x * x + y * y + z * z, -y, -x, -z));
+    let displacements = steps.into_iter().map(|step| [0, 1, 2].map(|d| wanted[d] + apart * f64::from(step[d])));
+    displacements.into_iter().find(|displacement| free(*displacement)).unwrap_or(wanted)
 }
 
 impl Session {
@@ -89,7 +89,7 @@ impl Session {
         let dimension = self.dimension();
         // What cannot be read is refused where it is added.
         let Some([low, high]) = self.box_of(table) else { return shift(table, at, dimension) };
-        let by = self.free_way(table, [0, 1, 2].map(|d| at[d] - 0.5 * (low[d] + high[d])));
+        let by = self.free_displacement(table, [0, 1, 2].map(|d| at[d] - 0.5 * (low[d] + high[d])));
         // To a hundredth of its size: nobody points more finely.
         let size = (0..dimension).map(|d| high[d] - low[d]).fold(0.0, f64::max);
         let unit = if size > 0.0 { 10f64.powi(size.log10().floor() as i32 - 2) } else { 0.01 };
@@ -100,8 +100,8 @@ impl Session {
         shift(table, rounded, dimension);
     }
 
-    /// The way nearest to a wanted one by which a body of this table is moved out of everything that is there.
-    pub(super) fn free_way(&mut self, table: &InlineTable, wanted: [f64; 3]) -> [f64; 3] {
+    /// The displacement nearest to a wanted one by which a body of this table is moved out of everything that is there.
+    pub(super) fn free_displacement(&mut self, table: &InlineTable, wanted: [f64; 3]) -> [f64; 3] {
         let Some(own) = self.box_of(table) else { return wanted };
         let shown = self.engine.shown(&self.show);
         let dimension = usize::from(shown.dimension);

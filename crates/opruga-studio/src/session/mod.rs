@@ -32,7 +32,7 @@ use crate::engine::Engine;
 use crate::keyframes::Keyframes;
 use crate::pacing::Pacing;
 use crate::pair;
-use crate::said::Said;
+use crate::report::Report;
 use crate::samples::Samples;
 use crate::setting::Setting;
 use crate::shape_file::Shape;
@@ -42,7 +42,7 @@ use opruga::WorldError;
 use opruga::core::spec::{Value, Values};
 use opruga::io::Files;
 use patience::Patience;
-use pointer::Held;
+use pointer::Grabbed;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::{Arc, PoisonError, RwLock, RwLockWriteGuard};
 use std::time::Duration;
@@ -165,7 +165,7 @@ pub struct Session {
     goal: Option<u64>,
     undo: Vec<Past>,
     redo: Vec<Past>,
-    held: Option<Held>,
+    grabbed: Option<Grabbed>,
     /// Pulls that ended of late.
     released: Vec<pointer::Released>,
     /// Points that are pinned, and those that were.
@@ -214,14 +214,14 @@ impl Session {
     ///
     /// # Errors
     /// Everything that is wrong with it.
-    pub fn open(name: &str, text: &str, files: Files, setting: impl Into<Setting>) -> Result<Session, Said> {
+    pub fn open(name: &str, text: &str, files: Files, setting: impl Into<Setting>) -> Result<Session, Report> {
         let setting = setting.into();
         let document = Document::unread(name, text, &files, &setting.registries, None)?;
         Session::begin(document, files, setting)
     }
 
     /// A session of a text that was read.
-    fn begin(document: Document, files: Files, setting: Setting) -> Result<Session, Said> {
+    fn begin(document: Document, files: Files, setting: Setting) -> Result<Session, Report> {
         let engine = pair::build(&document, None, &files, &setting)?;
         let mut session = Session {
             ends: ends::Ends::of(engine.warnings()),
@@ -241,7 +241,7 @@ impl Session {
             goal: None,
             undo: Vec::new(),
             redo: Vec::new(),
-            held: None,
+            grabbed: None,
             released: Vec::new(),
             pins: Vec::new(),
             playing: false,
@@ -280,7 +280,7 @@ impl Session {
             }
             Request::Step => {
                 self.playing = false;
-                if self.stops_at_the_end() { Ok(()) } else { self.frame().map_err(Said::World) }
+                if self.stops_at_the_end() { Ok(()) } else { self.frame().map_err(Report::World) }
             }
             Request::Reset => self.reset(),
             Request::Replay => {
@@ -342,9 +342,9 @@ impl Session {
                 self.message = self.message.take().filter(|message| message.severity != Severity::Refused);
             }
             Ok(()) => {}
-            Err(Said::World(WorldError::BrokenOff {})) => self.broken_off(again),
-            Err(Said::World(error)) => self.refuse(&error, Some(again)),
-            Err(said) => self.tell(Severity::Refused, said, None),
+            Err(Report::World(WorldError::BrokenOff {})) => self.broken_off(again),
+            Err(Report::World(error)) => self.refuse(&error, Some(again)),
+            Err(report) => self.report(Severity::Refused, report, None),
         }
     }
 
@@ -399,7 +399,7 @@ impl Session {
             self.look_at_the_end();
             return Ok(());
         }
-        self.lead_held();
+        self.lead_grabbed();
         self.look_at_the_clock();
         self.engine.frame()?;
         let is_new = self.engine.frames() > self.latest;
@@ -433,10 +433,10 @@ impl Session {
         }
     }
 
-    fn tell(&mut self, severity: Severity, said: Said, offer: Option<Offer>) {
+    fn report(&mut self, severity: Severity, report: Report, offer: Option<Offer>) {
         self.messages += 1;
-        let said = self.titled(said);
-        let text = Language::English.said(&said);
-        self.message = Some(Message { number: self.messages, severity, said, text, offer, frame_seconds: None });
+        let report = self.titled(report);
+        let text = Language::English.report(&report);
+        self.message = Some(Message { number: self.messages, severity, report, text, offer, frame_seconds: None });
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{Edit, Request, Session};
 use crate::document::{Document, read};
-use crate::said::Said;
+use crate::report::Report;
 use crate::shown::{Offer, Severity, Shown};
 use opruga::core::spec::{Role, Spec, Value, Values};
 use opruga::io::Files;
@@ -24,7 +24,7 @@ const NODE: [f64; 2] = [2e-8, 1e-8];
 const OVERHEAD: f64 = 5e-6;
 
 impl Session {
-    pub(super) fn accept(&mut self, offer: &Offer) -> Result<(), Said> {
+    pub(super) fn accept(&mut self, offer: &Offer) -> Result<(), Report> {
         self.message = None;
         match offer {
             Offer::HalveStep => {
@@ -45,7 +45,7 @@ impl Session {
                     };
                     match take(self, &values) {
                         // It has a stable step, and that may be a shorter one.
-                        Err(Said::World(WorldError::UnstableStep { substeps, .. }))
+                        Err(Report::World(WorldError::UnstableStep { substeps, .. }))
                             if substeps <= MOST_SUBSTEPS
                                 && self.frame_would_take(self.nodes_now(), with_a_margin(substeps)) <= TOO_LONG =>
                         {
@@ -90,13 +90,13 @@ impl Session {
         }
     }
 
-    fn go_back_a_second(&mut self) -> Result<(), Said> {
+    fn go_back_a_second(&mut self) -> Result<(), Report> {
         let second = (1.0 / self.engine.frame_seconds()).round() as u64;
         let goal = self.engine.frames().saturating_sub(second);
         self.release();
         self.seek(goal);
         while self.goal.is_some_and(|goal| self.engine.frames() < goal) {
-            self.frame().map_err(Said::World)?;
+            self.frame().map_err(Report::World)?;
         }
         self.goal = None;
         Ok(())
@@ -138,7 +138,7 @@ impl Session {
             }
             _ => None,
         };
-        self.tell(Severity::Refused, Said::World(error.clone()), offer);
+        self.report(Severity::Refused, Report::World(error.clone()), offer);
         if let Some(message) = &mut self.message {
             message.frame_seconds = frame_seconds;
         }

@@ -4,7 +4,7 @@ use super::offers::with_a_margin;
 use super::{Edit, Session};
 use crate::document::Document;
 use crate::handing::named_files;
-use crate::said::{Said, Step};
+use crate::report::{Report, Step};
 use crate::setting::Setting;
 use crate::shape_file::Shape;
 use crate::shown::Severity;
@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 impl Session {
     /// Another scene. The one before can be come back to where something was done in it.
-    pub(super) fn open_another(&mut self, name: &str, text: &str, files: Files) -> Result<(), Said> {
+    pub(super) fn open_another(&mut self, name: &str, text: &str, files: Files) -> Result<(), Report> {
         let next = Session::open(name, text, files, self.setting.clone())?;
         self.go_over_to(next, true);
         Ok(())
@@ -45,11 +45,11 @@ impl Session {
         let (Some(step), Some(before)) = (self.opening(), self.before.take()) else { return };
         self.go_over_to(*before, false);
         let time = self.engine.time();
-        self.tell(Severity::Told, Said::Undone(step, time), None);
+        self.report(Severity::Done, Report::Undone(step, time), None);
     }
 
     /// A shape from a file as one more body; a scene around it where this one has another dimension.
-    pub(super) fn take_shape(&mut self, shape: &Shape, middle: [f64; 3], size: f64) -> Result<(), Said> {
+    pub(super) fn take_shape(&mut self, shape: &Shape, middle: [f64; 3], size: f64) -> Result<(), Report> {
         let fits = (self.dimension() == 3) == shape.space;
         let files: Vec<(String, Arc<[u8]>)> = match fits {
             true => named_files(&shape.name, &shape.text, &shape.files, &self.setting.registries).into_iter().collect(),
@@ -58,19 +58,19 @@ impl Session {
         // Where it cannot be read, or is of several files, the scene around it tells or shows so.
         let [(_, bytes)] = &files[..] else { return self.open_around(shape) };
         let file = self.free_file(&shape.file, bytes);
-        let Some(body) = shape.body(&file, size) else { return Err(Said::NameOfFile(shape.file.clone())) };
+        let Some(body) = shape.body(&file, size) else { return Err(Report::NameOfFile(shape.file.clone())) };
         let before = self.files.clone();
         self.files = before.clone().with([(file, Arc::clone(bytes))]);
         let outcome = self.edit(&Edit::Drop(body, middle));
-        outcome.map_err(|said| {
+        outcome.map_err(|report| {
             self.files = before;
-            match said {
+            match report {
                 // What is said of no other file is said of this one.
-                Said::Scene(mut errors) => {
+                Report::Scene(mut errors) => {
                     errors.iter_mut().filter(|e| e.file.is_empty()).for_each(|e| e.file.clone_from(&shape.file));
-                    Said::Scene(errors)
+                    Report::Scene(errors)
                 }
-                said => said,
+                report => report,
             }
         })
     }
@@ -79,8 +79,8 @@ impl Session {
     fn free_file(&self, file: &str, bytes: &Arc<[u8]>) -> String {
         let (stem, ending) = file.rsplit_once('.').unwrap_or((file, ""));
         let numbered = |number: u32| if number == 1 { file.to_string() } else { format!("{stem}-{number}.{ending}") };
-        let free = |name: &String| match self.files.held_file(name) {
-            Some(held) => held == bytes,
+        let free = |name: &String| match self.files.file_in_memory(name) {
+            Some(other) => other == bytes,
             // The same file may lie beside the scene already.
             None => self.files.path_of(name).is_none_or(|path| !path.exists() || holds(&path, bytes)),
         };
@@ -91,11 +91,11 @@ impl Session {
     ///
     /// # Errors
     /// What is wrong with the file.
-    pub fn around(shape: &Shape, setting: &Setting) -> Result<Session, Said> {
+    pub fn around(shape: &Shape, setting: &Setting) -> Result<Session, Report> {
         let document =
             Document::unread(&shape.name, &shape.text, &shape.files, &setting.registries, Some(&shape.file))?;
         match Session::begin(document.clone(), shape.files.clone(), setting.clone()) {
-            Err(Said::World(WorldError::UnstableStep { substeps, .. })) => {
+            Err(Report::World(WorldError::UnstableStep { substeps, .. })) => {
                 let mut finer = document;
                 finer.set("time.substeps", &Value::Integer(i64::from(with_a_margin(substeps))));
                 Session::begin(finer, shape.files.clone(), setting.clone())
@@ -105,14 +105,14 @@ impl Session {
     }
 
     /// Opens the scene around a shape.
-    fn open_around(&mut self, shape: &Shape) -> Result<(), Said> {
+    fn open_around(&mut self, shape: &Shape) -> Result<(), Report> {
         let next = Session::around(shape, &self.setting)?;
         self.go_over_to(next, true);
         Ok(())
     }
 
     /// Opens a scene with so many substeps.
-    pub(super) fn open_with(&mut self, name: &str, text: &str, files: Files, substeps: u32) -> Result<(), Said> {
+    pub(super) fn open_with(&mut self, name: &str, text: &str, files: Files, substeps: u32) -> Result<(), Report> {
         let mut document = Document::new(name, text)?;
         document.set("time.substeps", &Value::Integer(i64::from(substeps)));
         self.open_another(name, &document.text(), files)
@@ -122,5 +122,5 @@ impl Session {
 /// Whether a file holds these bytes and no others.
 fn holds(path: &Path, bytes: &[u8]) -> bool {
     let long = std::fs::metadata(path).is_ok_and(|about| about.is_file() && about.len() == bytes.len() as u64);
-    long && std::fs::read(path).is_ok_and(|held| held == bytes)
+    long && std::fs::read(path).is_ok_and(|content| content == bytes)
 }

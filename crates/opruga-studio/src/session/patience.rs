@@ -1,7 +1,7 @@
 //! How long a frame may take where nobody can ask for its end meanwhile, as on a page, which has one thread.
 
 use super::{Request, Session};
-use crate::said::Said;
+use crate::report::Report;
 use crate::shown::{Offer, Severity};
 use opruga::BreakOff;
 use std::sync::{Arc, OnceLock};
@@ -67,7 +67,7 @@ impl Session {
         self.pacing.rest();
         self.refused = Some(wanted);
         let offer = Offer::Wait(self.patience.now * MORE);
-        self.tell(Severity::Refused, Said::TakesLong(self.patience.now), Some(offer));
+        self.report(Severity::Refused, Report::TakesLong(self.patience.now), Some(offer));
     }
 
     /// Waits longer, and does again what was broken off.

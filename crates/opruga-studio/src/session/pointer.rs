@@ -3,11 +3,11 @@
 use super::Session;
 use crate::document::Document;
 use crate::engine::Given;
-use crate::said::{Said, Step};
+use crate::report::{Report, Step};
 use crate::shown::Severity;
 use opruga::WorldError;
 
-/// The force of a push for each metre of the way of the pointer from where it was pressed [N/m].
+/// The force of a push for each metre of the displacement of the pointer from where it was pressed [N/m].
 const PUSH_STIFFNESS: f64 = 20.0;
 
 /// What a press of the pointer does.
@@ -15,7 +15,7 @@ const PUSH_STIFFNESS: f64 = 20.0;
 pub enum Grip {
     /// Pull the nearest node by a spring.
     Pull,
-    /// Push the nearest node by a force in proportion to the way of the pointer from the point of the press.
+    /// Push the nearest node by a force in proportion to the displacement of the pointer from the point of the press.
     Push,
     /// Pin the nearest node, or take a pinned one elsewhere.
     Pin,
@@ -23,7 +23,7 @@ pub enum Grip {
 
 /// What the pointer holds.
 #[derive(Clone, Debug)]
-pub(super) struct Held {
+pub(super) struct Grabbed {
     grip: Grip,
     body: usize,
     node: u32,
@@ -42,7 +42,7 @@ pub(super) struct Held {
     led: u64,
 }
 
-impl Held {
+impl Grabbed {
     /// The force of a push: it follows the pointer alone, wherever the node goes [N].
     fn force(&self) -> [f64; 3] {
         [0, 1, 2].map(|d| PUSH_STIFFNESS * (self.pointer[d] - self.pressed[d]))
@@ -71,7 +71,7 @@ pub(super) struct Pinned {
 }
 
 impl Pinned {
-    /// Whether it is held before a frame.
+    /// Whether it is pinned before a frame.
     fn holds(&self, frame: u64) -> bool {
         self.at <= frame && self.until.is_none_or(|until| until > frame)
     }
@@ -83,14 +83,14 @@ impl Session {
         [given.number, self.document.push_command(given.table)]
     }
 
-    pub(super) fn grab(&mut self, grip: Grip, body: usize, point: [f64; 3], beside: bool) -> Result<(), Said> {
+    pub(super) fn grab(&mut self, grip: Grip, body: usize, point: [f64; 3], beside: bool) -> Result<(), Report> {
         self.release();
         self.branch()?;
         let engine = &self.engine;
         let node = if beside { engine.nearest_beside(body, point) } else { engine.nearest(body, point) };
-        let node = node.ok_or_else(|| Said::NoBody(body.to_string()))?;
+        let node = node.ok_or_else(|| Report::NoBody(body.to_string()))?;
         let now = self.engine.frames();
-        let mut held = Held {
+        let mut grabbed = Grabbed {
             grip,
             body,
             node,
@@ -107,15 +107,15 @@ impl Session {
                 let past = self.past(Step::Pull);
                 self.take_over(body)?;
                 match self.engine.pull(body, node, point) {
-                    Ok(given) => held.command = Some(self.write(given)),
+                    Ok(given) => grabbed.command = Some(self.write(given)),
                     Err(error) => {
                         self.back_to(past)?;
-                        return Err(Said::World(error));
+                        return Err(Report::World(error));
                     }
                 }
                 self.remember(past);
             }
-            // It begins with the way of the pointer.
+            // It begins with the displacement of the pointer.
             Grip::Push => {}
             Grip::Pin => {
                 let past = self.past(Step::Pin);
@@ -128,21 +128,23 @@ impl Session {
                 self.take_over(body)?;
                 self.unpin(body, node)?;
                 let given = self.engine.pull(body, node, point)?;
-                held.command = Some(self.write(given));
+                grabbed.command = Some(self.write(given));
                 self.remember(past);
             }
         }
-        self.held = Some(held);
+        self.grabbed = Some(grabbed);
         Ok(())
     }
 
     /// The document as it is once the hand has let go of what it holds: nobody would hold it for ever.
     pub(super) fn let_go_of_all(&self) -> Document {
         let mut document = self.document.clone();
-        if let Some((held, [_, written])) = self.held.as_ref().and_then(|held| Some((held, held.command?))) {
+        if let Some((grabbed, [_, written])) =
+            self.grabbed.as_ref().and_then(|grabbed| Some((grabbed, grabbed.command?)))
+        {
             let now = self.engine.frames();
             // What has just begun acts for one frame.
-            let until = if held.since < now { self.engine.time() } else { self.time_of(now + 1) };
+            let until = if grabbed.since < now { self.engine.time() } else { self.time_of(now + 1) };
             document.end_command(written, until);
         }
         document
@@ -162,20 +164,20 @@ impl Session {
     }
 
     /// Frees a node that a person or the scene has pinned.
-    pub(super) fn let_go(&mut self, body: usize, node: u32) -> Result<(), Said> {
+    pub(super) fn let_go(&mut self, body: usize, node: u32) -> Result<(), Report> {
         // The second press of a double click holds what is freed.
         self.release();
         self.branch()?;
         let past = self.past(Step::Unpin);
-        self.unpin(body, node).map_err(Said::World)?;
+        self.unpin(body, node).map_err(Report::World)?;
         self.remember(past);
         Ok(())
     }
 
     fn unpin(&mut self, body: usize, node: u32) -> Result<(), WorldError> {
-        if let Some(place) = self.pinned(body, node) {
-            self.end(self.pins[place].command)?;
-            self.pins[place].until = Some(self.engine.frames());
+        if let Some(index) = self.pinned(body, node) {
+            self.end(self.pins[index].command)?;
+            self.pins[index].until = Some(self.engine.frames());
         } else {
             // A pin of the scene itself.
             let given = self.engine.free(body, node)?;
@@ -184,7 +186,7 @@ impl Session {
         Ok(())
     }
 
-    /// The pins of a future that is cut off: those that are held now stay.
+    /// The pins of a future that is cut off: those that are pinned now stay.
     pub(super) fn cut_pins(&mut self) {
         let now = self.engine.frames();
         self.pins.retain(|pin| pin.at < now);
@@ -200,56 +202,56 @@ impl Session {
     }
 
     pub(super) fn lead(&mut self, point: [f64; 3]) {
-        if let Some(held) = &mut self.held
+        if let Some(grabbed) = &mut self.grabbed
             && point.iter().all(|x| x.is_finite())
         {
-            held.moved |= held.pointer != point;
-            held.pointer = point;
+            grabbed.moved |= grabbed.pointer != point;
+            grabbed.pointer = point;
         }
     }
 
     /// Before a frame: the path of a pull grows by a row, a push takes its new force.
-    pub(super) fn lead_held(&mut self) {
-        let Some(mut held) = self.held.take() else { return };
-        match (held.grip, held.command) {
-            (Grip::Push, command) if held.moved => {
+    pub(super) fn lead_grabbed(&mut self) {
+        let Some(mut grabbed) = self.grabbed.take() else { return };
+        match (grabbed.grip, grabbed.command) {
+            (Grip::Push, command) if grabbed.moved => {
                 if let Some(command) = command
                     && let Err(error) = self.end(command)
                 {
                     self.refuse(&error, None);
                 }
-                self.begin_to_push(&mut held);
-                (held.since, held.moved) = (self.engine.frames(), false);
+                self.begin_to_push(&mut grabbed);
+                (grabbed.since, grabbed.moved) = (self.engine.frames(), false);
             }
             (Grip::Push, _) => {}
-            (_, Some([number, written])) if held.led <= self.engine.frames() + 1 => {
-                if let Ok(row) = self.engine.lead(number, held.pointer) {
+            (_, Some([number, written])) if grabbed.led <= self.engine.frames() + 1 => {
+                if let Ok(row) = self.engine.lead(number, grabbed.pointer) {
                     self.document.lead_command(written, &row);
-                    held.led = self.engine.frames() + 2;
+                    grabbed.led = self.engine.frames() + 2;
                 }
             }
             _ => {}
         }
-        self.held = Some(held);
+        self.grabbed = Some(grabbed);
     }
 
     /// A push takes its new force; the first one after the press can be undone.
-    fn begin_to_push(&mut self, held: &mut Held) {
-        let first = (!held.has_pushed && held.force() != [0.0; 3]).then(|| self.past(Step::Push));
+    fn begin_to_push(&mut self, grabbed: &mut Grabbed) {
+        let first = (!grabbed.has_pushed && grabbed.force() != [0.0; 3]).then(|| self.past(Step::Push));
         if first.is_some()
-            && let Err(said) = self.take_over(held.body)
+            && let Err(report) = self.take_over(grabbed.body)
         {
-            self.tell(Severity::Refused, said, None);
+            self.report(Severity::Refused, report, None);
         }
-        held.command = self.push_now(held);
-        if let Some(past) = first.filter(|_| held.command.is_some()) {
-            held.has_pushed = true;
+        grabbed.command = self.push_now(grabbed);
+        if let Some(past) = first.filter(|_| grabbed.command.is_some()) {
+            grabbed.has_pushed = true;
             self.remember(past);
         }
     }
 
     /// A hand that is in the scene itself lets go of a body, now and for good: the person has taken hold of it. A reset gives it back.
-    fn take_over(&mut self, body: usize) -> Result<(), Said> {
+    fn take_over(&mut self, body: usize) -> Result<(), Report> {
         let Some(name) = self.engine.name(body) else { return Ok(()) };
         let times = [self.engine.time(), self.time_of(self.engine.frames() + 1)];
         let mut document = self.document.clone();
@@ -258,7 +260,7 @@ impl Session {
     }
 
     /// What the scene would do to a body that is taken away now does not come about.
-    pub(super) fn forget_later(&mut self, name: &str) -> Result<(), Said> {
+    pub(super) fn forget_later(&mut self, name: &str) -> Result<(), Report> {
         let mut document = self.document.clone();
         match document.forget_later(self.own_commands, name, self.engine.time()) {
             0 => Ok(()),
@@ -267,9 +269,9 @@ impl Session {
     }
 
     /// Goes on from here with a document in which so many commands of the scene itself are gone.
-    fn go_on_with(&mut self, document: Document, gone: usize) -> Result<(), Said> {
+    fn go_on_with(&mut self, document: Document, gone: usize) -> Result<(), Report> {
         let mut engine = self.build(&document)?;
-        engine.rewind(&self.engine.snapshot()).map_err(Said::World)?;
+        engine.rewind(&self.engine.snapshot()).map_err(Report::World)?;
         (self.document, self.engine) = (document, engine);
         // What was recorded stands behind the commands of the scene.
         self.own_commands -= gone;
@@ -279,63 +281,73 @@ impl Session {
         Ok(())
     }
 
-    /// A push in proportion to the way of the pointer; none where that is back where it was pressed.
-    fn push_now(&mut self, held: &Held) -> Option<[usize; 2]> {
-        let force = held.force();
+    /// A push in proportion to the displacement of the pointer; none where that is back where it was pressed.
+    fn push_now(&mut self, grabbed: &Grabbed) -> Option<[usize; 2]> {
+        let force = grabbed.force();
         if force == [0.0; 3] {
             return None;
         }
-        let given = self.engine.push(held.body, held.node, force).ok()?;
+        let given = self.engine.push(grabbed.body, grabbed.node, force).ok()?;
         Some(self.write(given))
     }
 
     pub(super) fn release(&mut self) {
-        let Some(held) = self.held.take() else { return };
+        let Some(grabbed) = self.grabbed.take() else { return };
         let now = self.engine.frames();
-        if held.grip != Grip::Push {
+        if grabbed.grip != Grip::Push {
             self.released.retain(|other| other.at[1] >= now);
-            self.released.push(Released { body: held.body, node: held.node, at: [now, now.max(held.since + 1)] });
+            self.released.push(Released {
+                body: grabbed.body,
+                node: grabbed.node,
+                at: [now, now.max(grabbed.since + 1)],
+            });
         }
-        if let Some(command) = held.command
+        if let Some(command) = grabbed.command
             && let Err(error) = self.end(command)
         {
             self.refuse(&error, None);
         }
-        if held.grip == Grip::Pin
-            && let Err(error) = self.pin(held.body, held.node)
+        if grabbed.grip == Grip::Pin
+            && let Err(error) = self.pin(grabbed.body, grabbed.node)
         {
             self.refuse(&error, None);
         }
     }
 
     /// What the hand does now, which the world learns with its next frame: while time stands still a pull follows the pointer, and
-    /// one that was let go is over. `place` gives the place of a node in the scene of these pulls.
-    pub(super) fn show_hand(&self, pulls: &mut Vec<[[f64; 3]; 3]>, place: &dyn Fn(usize, u32) -> Option<[f64; 3]>) {
+    /// one that was let go is over. `position_of` gives the position of a node in the scene of these pulls.
+    pub(super) fn show_hand(
+        &self,
+        pulls: &mut Vec<[[f64; 3]; 3]>,
+        position_of: &dyn Fn(usize, u32) -> Option<[f64; 3]>,
+    ) {
         let now = self.engine.frames();
         for over in self.released.iter().filter(|over| (over.at[0]..=over.at[1]).contains(&now)) {
-            let place = place(over.body, over.node);
+            let position = position_of(over.body, over.node);
             // Who has taken hold of the same node since pulls it behind the one that is over.
-            if let Some(first) = pulls.iter().position(|[node, ..]| Some(*node) == place) {
+            if let Some(first) = pulls.iter().position(|[node, ..]| Some(*node) == position) {
                 pulls.remove(first);
             }
         }
-        let held = self.held.as_ref().filter(|held| held.grip != Grip::Push && !self.is_moving());
-        let Some((held, [stiffness, most])) = held.and_then(|held| Some((held, self.engine.usual_pull(held.body)?)))
+        let grabbed = self.grabbed.as_ref().filter(|grabbed| grabbed.grip != Grip::Push && !self.is_moving());
+        let Some((grabbed, [stiffness, most])) =
+            grabbed.and_then(|grabbed| Some((grabbed, self.engine.usual_pull(grabbed.body)?)))
         else {
             return;
         };
-        let place = place(held.body, held.node);
-        let Some([_, pointer, force]) = pulls.iter_mut().rfind(|[node, ..]| Some(*node) == place) else { return };
-        let stretched = [0, 1, 2].map(|d| force[d] + stiffness * (held.pointer[d] - pointer[d]));
+        let position = position_of(grabbed.body, grabbed.node);
+        let Some([_, pointer, force]) = pulls.iter_mut().rfind(|[node, ..]| Some(*node) == position) else { return };
+        let stretched = [0, 1, 2].map(|d| force[d] + stiffness * (grabbed.pointer[d] - pointer[d]));
         let share = (most / stretched.iter().map(|f| f * f).sum::<f64>().sqrt()).min(1.0);
-        (*pointer, *force) = (held.pointer, stretched.map(|f| share * f));
+        (*pointer, *force) = (grabbed.pointer, stretched.map(|f| share * f));
     }
 
     /// The push of the hand: its node, where its arrow ends, its force [m, m, N].
-    pub(super) fn push_shown(&self, place: &dyn Fn(usize, u32) -> Option<[f64; 3]>) -> Option<[[f64; 3]; 3]> {
-        let held = self.held.as_ref().filter(|held| held.grip == Grip::Push && held.pointer != held.pressed)?;
-        let node = place(held.body, held.node)?;
-        Some([node, [0, 1, 2].map(|d| node[d] + held.pointer[d] - held.pressed[d]), held.force()])
+    pub(super) fn push_shown(&self, position_of: &dyn Fn(usize, u32) -> Option<[f64; 3]>) -> Option<[[f64; 3]; 3]> {
+        let grabbed =
+            self.grabbed.as_ref().filter(|grabbed| grabbed.grip == Grip::Push && grabbed.pointer != grabbed.pressed)?;
+        let node = position_of(grabbed.body, grabbed.node)?;
+        Some([node, [0, 1, 2].map(|d| node[d] + grabbed.pointer[d] - grabbed.pressed[d]), grabbed.force()])
     }
 
     pub(super) fn pins_shown(&self) -> Vec<(usize, u32, [f64; 3])> {

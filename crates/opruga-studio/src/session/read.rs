@@ -70,7 +70,7 @@ impl Session {
     }
 
     /// How many messages there have been.
-    pub fn told(&self) -> u64 {
+    pub fn message_count(&self) -> u64 {
         self.messages
     }
 

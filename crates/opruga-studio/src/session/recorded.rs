@@ -2,7 +2,7 @@
 
 use super::{KEYFRAME_BYTES, Session};
 use crate::document::Document;
-use crate::said::Said;
+use crate::report::Report;
 use crate::setting::Setting;
 use crate::shown::{Offer, Severity};
 use crate::view_errors::ViewError;
@@ -26,14 +26,14 @@ impl Session {
     ///
     /// # Errors
     /// Why there is nothing to see: a run that a program has led, a scene that this version does not read, damage.
-    pub fn view<R: Read + Seek>(mut recording: Recording<R>, setting: impl Into<Setting>) -> Result<Session, Said> {
+    pub fn view<R: Read + Seek>(mut recording: Recording<R>, setting: impl Into<Setting>) -> Result<Session, Report> {
         let header = recording.header().clone();
         if recording.inputs().next().is_some() {
             return Err(ViewError::Led {}.into());
         }
         let text = core::str::from_utf8(&header.scene).map_err(|_| ViewError::SceneNotUtf8 {})?;
-        let held = header.assets.iter().map(|asset| (asset.name.clone(), asset.bytes.as_slice().into()));
-        let files = Files::held(held);
+        let files = header.assets.iter().map(|asset| (asset.name.clone(), asset.bytes.as_slice().into()));
+        let files = Files::in_memory(files);
         let mut document = Document::new(&header.name, text)?;
         for (path, value) in &header.overrides {
             document.take_override(path, value)?;
@@ -72,7 +72,7 @@ impl Session {
     /// Takes the next frame from the recording, if its state is there and nobody holds anything.
     pub(super) fn recorded_frame(&mut self) -> Result<bool, WorldError> {
         let next = self.engine.frames() + 1;
-        if self.recording.is_none() || self.held.is_some() || next > self.latest {
+        if self.recording.is_none() || self.grabbed.is_some() || next > self.latest {
             return Ok(false);
         }
         match self.keyframes.before(next) {
@@ -93,11 +93,11 @@ impl Session {
 
     /// At the end of a recording time stands: what comes later was not recorded, and the person is asked for it.
     pub(super) fn stops_at_the_end(&mut self) -> bool {
-        let stops = self.is_as_recorded() && self.engine.frames() >= self.latest && self.held.is_none();
+        let stops = self.is_as_recorded() && self.engine.frames() >= self.latest && self.grabbed.is_none();
         if stops {
             self.playing = false;
             let time = self.engine.time();
-            self.tell(Severity::Told, Said::RecordingEnds(time), Some(Offer::GoOn));
+            self.report(Severity::Done, Report::RecordingEnds(time), Some(Offer::GoOn));
         }
         stops
     }
@@ -109,7 +109,7 @@ impl Session {
         (viewed.until, viewed.left) = (viewed.until.min(frame), true);
         if first {
             let time = self.time_of(frame);
-            self.tell(Severity::Told, Said::OwnCourse(time), None);
+            self.report(Severity::Done, Report::OwnCourse(time), None);
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::Session;
 use super::titles::Titles;
 use crate::differences::Difference;
-use crate::said::Said;
+use crate::report::Report;
 use crate::shown::{Pace, Shown};
 use opruga::core::spec::Values;
 use std::sync::Arc;
@@ -36,7 +36,7 @@ impl Session {
         let pins = self.pins_shown();
         let titles = self.titles();
         if let Some(stopped) = shown.beside.as_mut().and_then(|beside| beside.stopped.as_mut()) {
-            *stopped = titles.in_said(stopped.clone());
+            *stopped = titles.in_report(stopped.clone());
         }
         if let Some(right) = shown.beside.as_mut().and_then(|beside| Arc::get_mut(&mut beside.right)) {
             give_titles(right, &titles);
@@ -70,9 +70,9 @@ impl Session {
         if present.len() > 64 { Titles::default() } else { Titles::new(self.renamed.clone(), present) }
     }
 
-    /// What is said, with the names by which a person knows the bodies.
-    pub(super) fn titled(&self, said: Said) -> Said {
-        self.titles().in_said(said)
+    /// A report with the names by which a person knows the bodies.
+    pub(super) fn titled(&self, report: Report) -> Report {
+        self.titles().in_report(report)
     }
 
     /// The shape of a body in the scene beside it, as far as its fields are plain values.
@@ -95,13 +95,13 @@ fn give_titles(shown: &mut Shown, titles: &Titles) {
     if titles.is_empty() {
         return;
     }
-    for (place, body) in shown.bodies.iter_mut().enumerate() {
+    for (index, body) in shown.bodies.iter_mut().enumerate() {
         let title = titles.of(&body.name);
         if title == body.name {
             continue;
         }
         body.title = title.to_string();
-        let label = shown.picture.bodies.get_mut(place).map(|seen| &mut seen.label);
+        let label = shown.picture.bodies.get_mut(index).map(|seen| &mut seen.label);
         if let Some(label) = label.filter(|label| **label == body.name) {
             label.clone_from(&body.title);
         }

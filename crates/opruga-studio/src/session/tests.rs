@@ -5,7 +5,7 @@ mod hands;
 mod landing;
 
 use super::{Edit, Grip, Request, Session};
-use crate::said::Step;
+use crate::report::Step;
 use crate::shown::{Offer, Severity};
 use opruga::blueprint::AnyBlueprint;
 use opruga::core::spec::Value;
@@ -31,7 +31,7 @@ fn ask(session: &mut Session, request: Request) {
         session.tick(Duration::from_millis(16), Duration::from_millis(12), &|| Duration::ZERO);
     }
     let message = session.shown().message;
-    assert!(message.as_ref().is_none_or(|m| m.severity == Severity::Told), "{message:?}");
+    assert!(message.as_ref().is_none_or(|m| m.severity == Severity::Done), "{message:?}");
 }
 
 fn pass(session: &mut Session, frames: u32) {
@@ -60,16 +60,16 @@ fn what_is_undone_while_the_hand_holds_a_node_leaves_nothing_that_nobody_holds()
     ask(&mut session, Request::Grab(Grip::Pin, 0, [0.0, 2.5, 0.0]));
     ask(&mut session, Request::Release);
     pass(&mut session, 20);
-    let (body, node, place) = session.shown().pins[0];
+    let (body, node, point) = session.shown().pins[0];
     // As a double click does it: two presses, and the second one is still held.
-    ask(&mut session, Request::Grab(Grip::Pull, body, place));
+    ask(&mut session, Request::Grab(Grip::Pull, body, point));
     ask(&mut session, Request::Release);
-    ask(&mut session, Request::Grab(Grip::Pull, body, place));
+    ask(&mut session, Request::Grab(Grip::Pull, body, point));
     ask(&mut session, Request::Unpin(body, node));
     ask(&mut session, Request::Release);
     pass(&mut session, 2);
     ask(&mut session, Request::Undo);
-    assert_eq!(session.shown().pins, [(body, node, place)]);
+    assert_eq!(session.shown().pins, [(body, node, point)]);
     let open_ends = |text: &str| text.matches("until = 1000000000").count();
     assert_eq!(open_ends(&session.text()), 1, "the pin alone: {}", session.text());
     pass(&mut session, 30);
@@ -126,7 +126,7 @@ fn a_point_that_was_pinned_or_taken_elsewhere_is_as_before_after_undo() {
 }
 
 #[test]
-fn a_push_follows_the_way_of_the_pointer_and_is_held_while_that_stands_still() {
+fn a_push_follows_the_pointer_and_stays_the_same_while_that_stands_still() {
     let mut session = quiet();
     pass(&mut session, 5);
     let pressed = [0.4, 2.0, 0.0];
@@ -134,16 +134,16 @@ fn a_push_follows_the_way_of_the_pointer_and_is_held_while_that_stands_still() {
     ask(&mut session, Request::Grab(Grip::Push, 0, pressed));
     ask(&mut session, Request::Lead(pressed));
     pass(&mut session, 3);
-    assert_eq!(force(&mut session), None, "without a way there is no force");
+    assert_eq!(force(&mut session), None, "without a displacement there is no force");
     // The first twitch is a small one.
     ask(&mut session, Request::Lead([0.41, 2.0, 0.0]));
     assert!((newtons(force(&mut session).expect("a push")) - 0.2).abs() < 1e-9);
     ask(&mut session, Request::Lead([0.9, 2.5, 0.0]));
-    let held = force(&mut session).expect("a push");
-    assert!((held[0] - 10.0).abs() < 1e-9 && (held[1] - 10.0).abs() < 1e-9, "{held:?}");
+    let steady = force(&mut session).expect("a push");
+    assert!((steady[0] - 10.0).abs() < 1e-9 && (steady[1] - 10.0).abs() < 1e-9, "{steady:?}");
     let node = session.shown().pushes[0][0];
     pass(&mut session, 20);
-    assert_eq!(force(&mut session), Some(held), "the pointer stands still, the node moves");
+    assert_eq!(force(&mut session), Some(steady), "the pointer stands still, the node moves");
     assert_ne!(session.shown().pushes[0][0], node);
     let pushes = |session: &Session| session.text().matches("do = \"push\"").count();
     assert_eq!(pushes(&session), 1, "one force is one command");
@@ -229,7 +229,7 @@ fn curves_are_the_same_after_going_back_and_forth_and_side_by_side_and_know_no_f
 
 /// A frame that takes half a minute is not offered: nothing else could be done meanwhile.
 #[test]
-fn substeps_of_which_a_frame_would_take_long_are_told_with_that_and_a_coarser_body_is_offered_instead() {
+fn substeps_of_which_a_frame_would_take_long_are_refused_with_its_duration_and_a_coarser_body_is_offered_instead() {
     let mut session = quiet();
     session.handle(Request::Play(true));
     let clock = std::cell::Cell::new(Duration::ZERO);
@@ -339,6 +339,6 @@ fn bodies_that_land_on_each_other_touch_once_contact_is_switched_on() {
     let hash = session.hash();
     session.handle(touch(false));
     let message = session.shown().message.expect("a refusal");
-    assert_eq!((message.severity, message.said), (Severity::Refused, crate::said::Said::ContactAtTheStartAlone));
+    assert_eq!((message.severity, message.report), (Severity::Refused, crate::report::Report::ContactAtTheStartAlone));
     assert_eq!(session.hash(), hash);
 }

@@ -1,11 +1,11 @@
 //! The names by which a person knows bodies: one that was set down anew has another in the scene.
 
 use crate::exploded::Exploded;
-use crate::said::Said;
+use crate::report::Report;
 use opruga::core::error::StepError;
 use opruga::io::SceneError;
 use opruga::math::message::AnyMessage;
-use opruga::world::error::Place;
+use opruga::world::error::Part;
 use opruga::{Warning, WorldError};
 
 /// How bodies were renamed, and which there are.
@@ -44,7 +44,7 @@ impl Titles {
         if self.is_empty() {
             return text.into();
         }
-        let quoted = |(place, words): (usize, &str)| if place % 2 == 1 { self.in_path(words) } else { words.into() };
+        let quoted = |(index, words): (usize, &str)| if index % 2 == 1 { self.in_path(words) } else { words.into() };
         text.split('`').enumerate().map(quoted).collect::<Vec<_>>().join("`")
     }
 
@@ -61,21 +61,23 @@ impl Titles {
     }
 
     /// The same for a message.
-    pub(super) fn in_said(&self, said: Said) -> Said {
+    pub(super) fn in_report(&self, report: Report) -> Report {
         let of = |name: &String| self.of(name).to_string();
-        match said {
-            Said::World(error) => Said::World(self.in_error(error)),
-            Said::Scene(errors) => Said::Scene(errors.into_iter().map(|error| self.in_scene_error(error)).collect()),
-            Said::Exploded(exploded) => Said::Exploded(Exploded { body: of(&exploded.body), ..exploded }),
-            Said::AtTheEnd(time, list) => {
-                Said::AtTheEnd(time, list.into_iter().map(|warning| self.in_warning(warning)).collect())
+        match report {
+            Report::World(error) => Report::World(self.in_error(error)),
+            Report::Scene(errors) => {
+                Report::Scene(errors.into_iter().map(|error| self.in_scene_error(error)).collect())
             }
-            Said::GoesOn(name) => Said::GoesOn(of(&name)),
-            Said::NoBody(name) => Said::NoBody(of(&name)),
-            Said::NoShape(name) => Said::NoShape(of(&name)),
-            Said::Copy(name) => Said::Copy(of(&name)),
-            Said::NoDifference(about) => Said::NoDifference(self.in_path(&about)),
-            said => said,
+            Report::Exploded(exploded) => Report::Exploded(Exploded { body: of(&exploded.body), ..exploded }),
+            Report::AtTheEnd(time, list) => {
+                Report::AtTheEnd(time, list.into_iter().map(|warning| self.in_warning(warning)).collect())
+            }
+            Report::GoesOn(name) => Report::GoesOn(of(&name)),
+            Report::NoBody(name) => Report::NoBody(of(&name)),
+            Report::NoShape(name) => Report::NoShape(of(&name)),
+            Report::Copy(name) => Report::Copy(of(&name)),
+            Report::NoDifference(about) => Report::NoDifference(self.in_path(&about)),
+            report => report,
         }
     }
 
@@ -109,8 +111,8 @@ impl Titles {
                     *about = self.in_message(about);
                 }
             }
-            WorldError::Build { place, source } => {
-                if let Place::Body { name } | Place::IntegratorOf { name } = place {
+            WorldError::Build { part, source } => {
+                if let Part::Body { name } | Part::IntegratorOf { name } = part {
                     *name = self.of(name).to_string();
                 }
                 source.about = self.in_message(&source.about);
@@ -153,8 +155,8 @@ mod tests {
             about: PathFault::NoBodyCalled { name: body.into(), nearest: None }.into(),
         };
         let (error, told) = (lost("ball-3"), lost("ball"));
-        assert_eq!(known.in_said(Said::World(error)), Said::World(told));
-        assert_eq!(known.in_said(Said::SetDown), Said::SetDown);
+        assert_eq!(known.in_report(Report::World(error)), Report::World(told));
+        assert_eq!(known.in_report(Report::SetDown), Report::SetDown);
     }
 
     #[test]

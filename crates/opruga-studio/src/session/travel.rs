@@ -7,7 +7,7 @@ use crate::document::Document;
 use crate::engine::Engine;
 use crate::keyframes::Keyframes;
 use crate::pair;
-use crate::said::{Said, Step};
+use crate::report::{Report, Step};
 use crate::samples::Samples;
 use crate::shown::Severity;
 
@@ -77,7 +77,7 @@ impl Session {
     }
 
     /// What is done now replaces what was recorded later: the future is written anew from here.
-    pub(super) fn branch(&mut self) -> Result<(), Said> {
+    pub(super) fn branch(&mut self) -> Result<(), Report> {
         let now = self.engine.frames();
         if now >= self.latest {
             self.leave_the_recording(now);
@@ -86,7 +86,7 @@ impl Session {
         let mut document = self.document.clone();
         document.cut(self.own_commands, self.engine.time());
         let mut engine = self.build(&document)?;
-        engine.rewind(&self.engine.snapshot()).map_err(Said::World)?;
+        engine.rewind(&self.engine.snapshot()).map_err(Report::World)?;
         (self.document, self.engine) = (document, engine);
         self.cut_pins();
         self.released.clear();
@@ -132,13 +132,13 @@ impl Session {
     }
 
     /// Builds the world of a document, and the one on its right.
-    pub(super) fn build(&self, document: &Document) -> Result<Box<dyn Engine>, Said> {
+    pub(super) fn build(&self, document: &Document) -> Result<Box<dyn Engine>, Report> {
         pair::build(document, self.differences.as_deref(), &self.files, &self.setting)
     }
 
     /// Shows the scene twice, the second time with differences, or once (none). Both go from the start to the present
     /// moment again: what differs has differed all the time.
-    pub(super) fn compare(&mut self, differences: Option<Vec<Difference>>) -> Result<(), Said> {
+    pub(super) fn compare(&mut self, differences: Option<Vec<Difference>>) -> Result<(), Report> {
         if differences == self.differences {
             return Ok(());
         }
@@ -160,8 +160,8 @@ impl Session {
     fn with_differences(
         &mut self,
         differences: Option<Vec<Difference>>,
-        act: impl FnOnce(&mut Session) -> Result<(), Said>,
-    ) -> Result<(), Said> {
+        act: impl FnOnce(&mut Session) -> Result<(), Report>,
+    ) -> Result<(), Report> {
         if differences == self.differences {
             return act(self);
         }
@@ -181,7 +181,7 @@ impl Session {
         document: Document,
         own_commands: usize,
         [frame, common]: [u64; 2],
-    ) -> Result<(), Said> {
+    ) -> Result<(), Report> {
         self.release();
         let mut engine = self.build(&document)?;
         let shared = frame.min(common).min(self.engine.frames().max(self.latest));
@@ -208,7 +208,7 @@ impl Session {
         Ok(())
     }
 
-    pub(super) fn step_back(&mut self) -> Result<(), Said> {
+    pub(super) fn step_back(&mut self) -> Result<(), Report> {
         let Some(past) = self.undo.last().cloned() else {
             self.open_before();
             return Ok(());
@@ -223,11 +223,11 @@ impl Session {
         // What is redone begins where it was done.
         self.redo.push(present);
         let time = self.time_of(past.frame);
-        self.tell(Severity::Told, Said::Undone(past.label, time), None);
+        self.report(Severity::Done, Report::Undone(past.label, time), None);
         Ok(())
     }
 
-    pub(super) fn step_forward(&mut self) -> Result<(), Said> {
+    pub(super) fn step_forward(&mut self) -> Result<(), Report> {
         let Some(future) = self.redo.last().cloned() else { return Ok(()) };
         let present = Past { common: future.common, ..self.past(future.label.clone()) };
         self.with_differences(future.differences, |session| {
@@ -237,7 +237,7 @@ impl Session {
         self.redo.pop();
         self.undo.push(present);
         let time = self.time_of(future.frame);
-        self.tell(Severity::Told, Said::Redone(future.label, time), None);
+        self.report(Severity::Done, Report::Redone(future.label, time), None);
         Ok(())
     }
 
@@ -245,7 +245,7 @@ impl Session {
         frame as f64 * self.engine.frame_seconds()
     }
 
-    pub(super) fn reset(&mut self) -> Result<(), Said> {
+    pub(super) fn reset(&mut self) -> Result<(), Report> {
         self.resets += 1;
         if self.is_as_recorded() {
             self.release();

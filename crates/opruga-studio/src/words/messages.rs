@@ -3,7 +3,7 @@
 use super::{Language, Part};
 use crate::differences::Difference;
 use crate::exploded::Exploded;
-use crate::said::{Said, Step};
+use crate::report::{Report, Step};
 use opruga::core::spec::Value;
 use opruga::draw::ArrowKind;
 
@@ -73,20 +73,20 @@ impl Language {
 
     /// What a message says.
     #[expect(clippy::too_many_lines, reason = "a table: one arm for every message")]
-    pub fn said(self, said: &Said) -> String {
-        match said {
-            Said::Scene(errors) => {
+    pub fn report(self, report: &Report) -> String {
+        match report {
+            Report::Scene(errors) => {
                 errors.iter().map(|error| error.text(self.translation())).collect::<Vec<_>>().join("\n")
             }
-            Said::World(error) => self.in_full(error),
-            Said::Recording(error) => self.in_full(error),
-            Said::NotWritten(error) => error.text(self.translation()),
-            Said::NotDrawn(error) => self.in_full(error),
-            Said::Inside(file, said) => format!("{file}: {}", self.said(said)),
-            Said::NotCompressed => {
+            Report::World(error) => self.in_full(error),
+            Report::Recording(error) => self.in_full(error),
+            Report::NotWritten(error) => error.text(self.translation()),
+            Report::NotDrawn(error) => self.in_full(error),
+            Report::Inside(file, report) => format!("{file}: {}", self.report(report)),
+            Report::NotCompressed => {
                 either!(self, "the scene cannot be compressed", "prizor se ne može sažeti")
             }
-            Said::Exploded(Exploded { body, integrator, unstable: true }) => {
+            Report::Exploded(Exploded { body, integrator, unstable: true }) => {
                 let integrator = self.kind(Part::Integrator, integrator);
                 either!(
                     self,
@@ -94,18 +94,18 @@ impl Language {
                     "Tijelo `{body}` se raspalo: {integrator} je nestabilan uz ovaj korak"
                 )
             }
-            Said::Exploded(Exploded { body, .. }) => either!(
+            Report::Exploded(Exploded { body, .. }) => either!(
                 self,
                 "`{body}` exploded: it is more than 100 times as large as the scene was",
                 "Tijelo `{body}` se raspalo: više je od 100 puta veće nego što je bio prizor"
             ),
-            Said::Undone(step, time) => format!("{} {}, t = {time:.2} s", self.undone(), self.done(step)),
-            Said::Redone(step, time) => format!("{} {}, t = {time:.2} s", self.redone(), self.done(step)),
-            Said::PinsLetGo => self.pins_let_go().into(),
-            Said::GoesOn(name) => format!("`{name}` {}", self.goes_on()),
-            Said::AllGoOn(kind) => format!("{} `{}`", self.all_go_on(), self.kind(Part::Integrator, kind)),
-            Said::SetDown => self.set_down().into(),
-            Said::AtTheStartAlone(path) => {
+            Report::Undone(step, time) => format!("{} {}, t = {time:.2} s", self.undone(), self.done(step)),
+            Report::Redone(step, time) => format!("{} {}, t = {time:.2} s", self.redone(), self.done(step)),
+            Report::PinsLetGo => self.pins_let_go().into(),
+            Report::GoesOn(name) => format!("`{name}` {}", self.goes_on()),
+            Report::AllGoOn(kind) => format!("{} `{}`", self.all_go_on(), self.kind(Part::Integrator, kind)),
+            Report::SetDown => self.set_down().into(),
+            Report::AtTheStartAlone(path) => {
                 let name = self.done(&Step::Set(path.clone()));
                 either!(
                     self,
@@ -113,12 +113,12 @@ impl Language {
                     "`{name}` se može izostaviti samo na početku: „Na početak”, pa ×"
                 )
             }
-            Said::ContactAtTheStartAlone => either!(
+            Report::ContactAtTheStartAlone => either!(
                 self,
                 "Contact is switched on and off at the start alone: Reset first",
                 "Dodir se uključuje i isključuje samo na početku: najprije „Na početak”"
             ),
-            Said::AtTheEnd(time, list) => {
+            Report::AtTheEnd(time, list) => {
                 let list: Vec<String> = list.iter().map(|warning| self.warning_text(warning)).collect();
                 let (count, list) = (list.len(), list.join(" · "));
                 let warnings = if count == 1 { "1 warning".into() } else { format!("{count} warnings") };
@@ -128,98 +128,98 @@ impl Language {
                     "Naredbeni redak ovdje završava, u t = {time:.2} s; upozorenja ({count}): {list}. U prozoru vrijeme teče dalje"
                 )
             }
-            Said::RecordingEnds(time) => either!(
+            Report::RecordingEnds(time) => either!(
                 self,
                 "The recording ends here, at t = {time:.2} s. What comes later is computed: a new course",
                 "Snimka ovdje završava, u t = {time:.2} s. Što slijedi tek se računa: to je novi tijek"
             ),
-            Said::OwnCourse(time) => either!(
+            Report::OwnCourse(time) => either!(
                 self,
                 "From t = {time:.2} s on this is a new course; the file of the recording stays as it is",
                 "Od t = {time:.2} s ovo je novi tijek; datoteka snimke ostaje kakva jest"
             ),
-            Said::TakesLong(seconds) => either!(
+            Report::TakesLong(seconds) => either!(
                 self,
                 "A frame takes longer than {seconds} s, and nothing can be asked for meanwhile: time stands at the last good frame. \
                  Fewer substeps or vertices take less; the program with a window and `opruga run` are not bound by this",
                 "Sličica traje dulje od {seconds} s, a dotle se ništa ne može tražiti: vrijeme stoji na zadnjoj dobroj sličici. \
                  Manje podkoraka ili vrhova traje kraće; program s prozorom i `opruga run` nisu time vezani"
             ),
-            Said::NoBody(name) => either!(self, "there is no body `{name}`", "nema tijela `{name}`"),
-            Said::NoShape(name) => {
+            Report::NoBody(name) => either!(self, "there is no body `{name}`", "nema tijela `{name}`"),
+            Report::NoShape(name) => {
                 either!(self, "body `{name}` has no shape to change", "tijelo `{name}` nema oblik koji bi se mijenjao")
             }
-            Said::Copy(name) => either!(
+            Report::Copy(name) => either!(
                 self,
                 "`{name}` is one of several copies; take `copies` out of the scene to change them one by one",
                 "`{name}` je jedna od više kopija; ukloni `copies` iz prizora da ih mijenjaš jednu po jednu"
             ),
-            Said::Scaled(by) => either!(
+            Report::Scaled(by) => either!(
                 self,
                 "a body cannot be scaled by {by}; allowed: above 0",
                 "tijelo se ne može povećati {by} puta; dopušteno: više od 0"
             ),
-            Said::NoDifference(about) => either!(
+            Report::NoDifference(about) => either!(
                 self,
                 "`{about}` stands nowhere in the scene itself; the two sides can differ in bodies that are there from the start \
                  and are no copies",
                 "`{about}` ne stoji u samom prizoru; strane se mogu razlikovati u tijelima koja su ondje od početka i nisu kopije"
             ),
-            Said::NoText(file) => either!(self, "{file} is no text in UTF-8", "{file} nije tekst u UTF-8"),
-            Said::NoShapeFile(file, known) => either!(
+            Report::NoText(file) => either!(self, "{file} is no text in UTF-8", "{file} nije tekst u UTF-8"),
+            Report::NoShapeFile(file, known) => either!(
                 self,
                 "{file} is neither a scene nor a shape; allowed: {known}",
                 "{file} nije ni prizor ni oblik; dopušteno: {known}"
             ),
-            Said::NameOfFile(file) => either!(
+            Report::NameOfFile(file) => either!(
                 self,
                 "{file}: a scene cannot name this file; rename it without quotes and backslashes",
                 "{file}: prizor ne može imenovati tu datoteku; preimenuj je bez navodnika i obrnutih kosih crta"
             ),
-            Said::TooLarge(file, bytes, most) => either!(
+            Report::TooLarge(file, bytes, most) => either!(
                 self,
                 "{file} has {bytes} bytes; allowed: at most {most}",
                 "{file} ima {bytes} bajtova; dopušteno: najviše {most}"
             ),
-            Said::Unreadable(file) => either!(self, "{file} cannot be read", "{file} se ne može pročitati"),
-            Said::Written(files) => format!("{} {}", self.kept(), files.join(", ")),
-            Said::NoFolder(folder, why) => {
+            Report::Unreadable(file) => either!(self, "{file} cannot be read", "{file} se ne može pročitati"),
+            Report::Written(files) => format!("{} {}", self.kept(), files.join(", ")),
+            Report::NoFolder(folder, why) => {
                 either!(self, "the folder {folder} cannot be made: {why}", "mapa {folder} ne može nastati: {why}")
             }
-            Said::FolderFull(folder) => either!(self, "{folder} is full", "mapa {folder} je puna"),
-            Said::NoDownload(file) => {
+            Report::FolderFull(folder) => either!(self, "{folder} is full", "mapa {folder} je puna"),
+            Report::NoDownload(file) => {
                 either!(self, "the browser does not take the file {file}", "preglednik ne prima datoteku {file}")
             }
-            Said::NothingToDraw => either!(self, "there is nothing to draw", "nema se što nacrtati"),
-            Said::LinkCopied => self.link_copied().into(),
-            Said::AddressTooLong(letters, most) => either!(
+            Report::NothingToDraw => either!(self, "there is nothing to draw", "nema se što nacrtati"),
+            Report::LinkCopied => self.link_copied().into(),
+            Report::AddressTooLong(letters, most) => either!(
                 self,
                 "the scene is too large for an address: {letters} letters; allowed: {most}. Save it as a file",
                 "prizor je prevelik za adresu: {letters} znakova; dopušteno: {most}. Spremi ga kao datoteku"
             ),
-            Said::AddressUnknown(known) => either!(
+            Report::AddressUnknown(known) => either!(
                 self,
                 "the address names no scene that comes with the program; allowed: {known}",
                 "adresa ne imenuje nijedan prizor iz programa; dopušteno: {known}"
             ),
-            Said::AddressCut => either!(
+            Report::AddressCut => either!(
                 self,
                 "the scene in the address is not whole: the address may have been cut off when it was copied",
                 "prizor u adresi nije cjelovit: adresa je možda odrezana pri kopiranju"
             ),
-            Said::AddressTooLarge(most) => either!(
+            Report::AddressTooLarge(most) => either!(
                 self,
                 "the scene in the address is too large; allowed: {most} bytes",
                 "prizor u adresi je prevelik; dopušteno: {most} bajtova"
             ),
-            Said::WindowLost(file) => either!(
+            Report::WindowLost(file) => either!(
                 self,
                 "The last window was lost, probably with its graphics driver. What was done is saved in {file}, and goes on here: \
                  time stands at the last moment that was kept",
                 "Posljednji prozor je izgubljen, vjerojatno s grafičkim upravljačkim programom. Učinjeno je spremljeno u {file} i \
                  nastavlja se ovdje: vrijeme stoji na zadnjem sačuvanom trenutku"
             ),
-            Said::AddressStays => {
+            Report::AddressStays => {
                 either!(
                     self,
                     "the browser does not let its address be changed",

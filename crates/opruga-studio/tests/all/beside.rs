@@ -24,7 +24,7 @@ fn ask(session: &mut Session, request: Request) {
     let asked = format!("{request:?}");
     session.handle(request);
     let message = session.shown().message;
-    assert!(message.as_ref().is_none_or(|m| m.severity == Severity::Told), "{asked}: {message:?}");
+    assert!(message.as_ref().is_none_or(|m| m.severity == Severity::Done), "{asked}: {message:?}");
     while session.is_seeking() {
         session.tick(Duration::from_millis(16), Duration::from_millis(12), &|| Duration::ZERO);
     }

@@ -4,9 +4,9 @@ use opruga::core::error::BuildError;
 use opruga::core::spec::{Value, Values};
 use opruga::io::Files;
 use opruga::math::message::Message;
-use opruga::world::error::Place;
+use opruga::world::error::Part;
 use opruga::{Options, WorldError};
-use opruga_studio::said::Said;
+use opruga_studio::report::Report;
 use opruga_studio::session::{Edit, Request, Session};
 use opruga_studio::shown::Severity;
 use opruga_studio::words::Language;
@@ -55,7 +55,7 @@ fn refused(session: &mut Session, request: Request) -> String {
     session.handle(request.clone());
     let message = session.shown().message.filter(|message| message.severity == Severity::Refused);
     let message = message.unwrap_or_else(|| panic!("{request:?} is not refused"));
-    Language::Croatian.said(&message.said)
+    Language::Croatian.report(&message.report)
 }
 
 #[test]
@@ -120,20 +120,20 @@ fn places_and_numbers_of_the_world_are_said_in_croatian_as_in_english() {
     for (error, numbers) in
         [(diverged, ["0.101042 s", "0.1 s", "1.23457e7 m"]), (unstable, ["0.000520833 s", "8.10045e-5 s", "220"])]
     {
-        let (english, croatian) = (error.in_full(), Language::Croatian.said(&Said::World(error)));
+        let (english, croatian) = (error.in_full(), Language::Croatian.report(&Report::World(error)));
         for number in numbers {
             assert!(english.contains(number) && croatian.contains(number), "{number}: {english}\n{croatian}");
         }
     }
-    for (place, wanted) in [
-        (Place::body("lopta"), "tijelo `lopta`:"),
-        (Place::IntegratorOf { name: "lopta".into() }, "integrator tijela `lopta`:"),
-        (Place::Section { path: "integrator" }, "integrator:"),
-        (Place::Collider {}, "prepreka:"),
-        (Place::Section { path: "world" }, "svijet:"),
+    for (part, wanted) in [
+        (Part::body("lopta"), "tijelo `lopta`:"),
+        (Part::IntegratorOf { name: "lopta".into() }, "integrator tijela `lopta`:"),
+        (Part::Section { path: "integrator" }, "integrator:"),
+        (Part::Collider {}, "prepreka:"),
+        (Part::Section { path: "world" }, "svijet:"),
     ] {
         let source = BuildError::new("pressure", "model.no_cavity", "the body has no cavity that nobody has heard of");
-        let said = Language::Croatian.said(&Said::World(WorldError::Build { place, source }));
+        let said = Language::Croatian.report(&Report::World(WorldError::Build { part, source }));
         assert!(said.starts_with(wanted), "{said}");
     }
 }
@@ -143,7 +143,7 @@ fn what_is_wrong_with_a_scene_is_said_in_croatian_with_its_places_values_and_lim
     let ball = opruga::scenes::find("ball").expect("a scene");
     let wrong = ball.replace("mass = 1.0", "mass = -1.0").replace("radius = 0.5", "raduis = 0.5");
     let refused = Session::open("ball", &wrong, Files::default(), Options::default()).expect_err("it is wrong");
-    let told = Language::Croatian.said(&refused);
+    let told = Language::Croatian.report(&refused);
     for part in ["greška[scene.range]: `mass` je -1.0", "greška[scene.unknown_field]: nema polja `raduis`"] {
         assert!(told.contains(part), "{part}: {told}");
     }
@@ -191,8 +191,8 @@ fn wrong_with(dimension: u8, name: &str, shape: &str, bytes: &[u8]) -> Option<St
     );
     let beside = [("a.node", NODES), ("a.ele", CELLS)].into_iter().filter(|(file, _)| *file != name);
     let files = beside.chain([(name, bytes)]).map(|(file, bytes)| (file.to_string(), Arc::from(bytes)));
-    let said = Session::open("proba", &text, Files::held(files), Options::default()).err()?;
-    Some(Language::Croatian.said(&said))
+    let said = Session::open("proba", &text, Files::in_memory(files), Options::default()).err()?;
+    Some(Language::Croatian.report(&said))
 }
 
 /// Mesh files that are cut off, with words that cannot be, or with lines too many or too few.

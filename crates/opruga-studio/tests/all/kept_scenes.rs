@@ -101,7 +101,8 @@ fn row_93_what_was_done_in_a_window_that_is_lost_goes_on_in_the_next_to_the_same
     for scene in ["ball", "heart"] {
         let mut session = open(scene);
         pull(&mut session);
-        let held = Files::held(named_files(session.name(), &session.saved(), session.files(), session.registries()));
+        let held =
+            Files::in_memory(named_files(session.name(), &session.saved(), session.files(), session.registries()));
         let shared = Shared { name: session.name().into(), text: session.saved(), files: held };
         let room = Room::new(scene);
         let path = room.0.join("kept");

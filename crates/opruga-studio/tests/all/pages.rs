@@ -32,7 +32,7 @@ fn a_file_of_its_own_is_in_the_address_and_those_of_the_program_are_not() {
     let own = Shared { files: plain.files.clone().with([("mine.svg".into(), Arc::clone(&bytes))]), ..plain.clone() };
     let fragment = to_fragment(&own).expect("it fits");
     let back = of_fragment(&fragment).expect("a scene").expect("one");
-    assert_eq!(back.files.held_file("mine.svg"), Some(&bytes));
+    assert_eq!(back.files.file_in_memory("mine.svg"), Some(&bytes));
     assert_eq!(back, own);
     let plain = to_fragment(&plain).expect("it fits");
     assert!(plain.len() < 4000 && plain.len() < fragment.len(), "{} {}", plain.len(), fragment.len());
@@ -63,7 +63,7 @@ fn a_scene_that_is_too_large_for_an_address_is_refused() {
             (seed >> 56) as u8
         })
         .collect();
-    let large = Shared { files: Files::held([("noise.ply".into(), Arc::from(noise))]), ..scene("ball") };
+    let large = Shared { files: Files::in_memory([("noise.ply".into(), Arc::from(noise))]), ..scene("ball") };
     assert!(to_fragment(&large).expect_err("too large").to_string().contains("too large"));
 }
 

@@ -8,7 +8,7 @@ use opruga::io::scene;
 use opruga::recordings::Tape;
 use opruga::{Options, World, catalogue};
 use opruga_studio::document::Document;
-use opruga_studio::said::Said;
+use opruga_studio::report::Report;
 use opruga_studio::session::{Grip, Request, Session};
 use opruga_studio::shown::Offer;
 use opruga_studio::view_errors::ViewError;
@@ -56,7 +56,7 @@ fn record(every: u64, led: bool) -> (Vec<u8>, Vec<u64>) {
     (bytes, hashes)
 }
 
-fn view(bytes: &[u8]) -> Result<Session, Said> {
+fn view(bytes: &[u8]) -> Result<Session, Report> {
     Session::view(Recording::open(Cursor::new(bytes)).expect("its head is whole"), Options::default())
 }
 
@@ -99,7 +99,7 @@ fn time_stands_at_the_end_of_a_recording_until_somebody_wants_a_course_of_their_
     let shown = session.shown();
     let message = shown.message.expect("a message");
     assert_eq!((session.frames(), shown.playing, shown.recorded_until), (90, false, Some(90)));
-    assert_eq!((message.said, message.offer), (Said::RecordingEnds(shown.time), Some(Offer::GoOn)));
+    assert_eq!((message.report, message.offer), (Report::RecordingEnds(shown.time), Some(Offer::GoOn)));
     session.handle(Request::Step);
     assert_eq!((session.frames(), session.hash()), (90, hashes[90]), "not even by a step");
     // To the start and back: it is still the recording.
@@ -109,7 +109,7 @@ fn time_stands_at_the_end_of_a_recording_until_somebody_wants_a_course_of_their_
     arrive(&mut session);
     session.handle(Request::Accept(Offer::GoOn));
     let shown = session.shown();
-    assert_eq!(shown.message.map(|message| message.said), Some(Said::OwnCourse(shown.time)));
+    assert_eq!(shown.message.map(|message| message.report), Some(Report::OwnCourse(shown.time)));
     (0..20).for_each(|_| tick(&mut session));
     let shown = session.shown();
     assert!(shown.playing && session.frames() > 100, "{}", session.frames());
@@ -126,7 +126,7 @@ fn a_recording_goes_on_by_hand() {
     session.handle(Request::Grab(Grip::Pull, 0, [0.4, 1.0, 0.0]));
     let shown = session.shown();
     assert_eq!(shown.recorded_until, Some(40), "up to here it is as it was recorded");
-    assert_eq!(shown.message.map(|message| message.said), Some(Said::OwnCourse(shown.time)));
+    assert_eq!(shown.message.map(|message| message.report), Some(Report::OwnCourse(shown.time)));
     for k in 0..20 {
         session.handle(Request::Lead([0.4 + 0.02 * f64::from(k), 1.2, 0.0]));
         session.handle(Request::Step);
@@ -146,8 +146,8 @@ fn a_recording_goes_on_by_hand() {
 fn what_cannot_be_viewed_says_why() {
     let (led, _) = record(1, true);
     let refused = |bytes: &[u8]| view(bytes).expect_err("it is refused");
-    assert_eq!(refused(&led), Said::Recording(ViewError::Led {}));
-    let croatian = Language::Croatian.said(&refused(&led));
+    assert_eq!(refused(&led), Report::Recording(ViewError::Led {}));
+    let croatian = Language::Croatian.report(&refused(&led));
     assert_eq!(
         croatian,
         "ovaj je tijek vodio program, što tekst prizora ne može reći; savjet: `opruga replay` ga prikazuje"
@@ -158,12 +158,12 @@ fn what_cannot_be_viewed_says_why() {
     let place = other.windows(9).position(|bytes| bytes == b"nRT = 55.").expect("it is in the scene");
     other[place + 6] = b'6';
     let changed = Recording::open(Cursor::new(&other[..])).map(|_| refused(&other));
-    assert!(changed.is_err() || changed == Ok(Said::Recording(ViewError::OtherProgram {})), "{changed:?}");
+    assert!(changed.is_err() || changed == Ok(Report::Recording(ViewError::OtherProgram {})), "{changed:?}");
     // One bit of a state is another one: its bytes are named.
     let mut damaged = bytes.clone();
     let place = damaged.len() * 2 / 3;
     damaged[place] ^= 1;
-    let Said::Recording(ViewError::State { cause: RecordingError::Damaged { from, to } }) = refused(&damaged) else {
+    let Report::Recording(ViewError::State { cause: RecordingError::Damaged { from, to } }) = refused(&damaged) else {
         panic!("{:?}", refused(&damaged))
     };
     assert!((from..to).contains(&(place as u64)), "{from} {place} {to}");
@@ -176,13 +176,13 @@ fn a_recording_without_frames_and_one_with_damage_behind_them_are_not_viewed() {
     let chunk = |bytes: &[u8]| bytes == b"FRAM";
     let first = bytes.windows(4).position(chunk).expect("a frame");
     let refused = |bytes: &[u8]| view(bytes).expect_err("it is refused");
-    assert_eq!(refused(&bytes[..first]), Said::Recording(ViewError::Empty {}));
+    assert_eq!(refused(&bytes[..first]), Report::Recording(ViewError::Empty {}));
     let last = bytes.windows(4).rposition(chunk).expect("a frame");
     let damaged = [&bytes[..last], &[0; 48]].concat();
     let (from, to) = (last as u64, damaged.len() as u64);
     let cause = RecordingError::Damaged { from, to };
-    assert_eq!(refused(&damaged), Said::Recording(ViewError::DamagedBehind { frame: 89, cause }));
-    let croatian = Language::Croatian.said(&refused(&damaged));
+    assert_eq!(refused(&damaged), Report::Recording(ViewError::DamagedBehind { frame: 89, cause }));
+    let croatian = Language::Croatian.report(&refused(&damaged));
     assert_eq!(croatian, format!("iza sličice 89: snimka je oštećena između bajtova {from} i {to}"));
 }
 

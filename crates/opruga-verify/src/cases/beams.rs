@@ -155,7 +155,7 @@ fn roll_up(lab: &Lab, n: f64) -> Result<f64, Trouble> {
 /// The same by models with EI = 1 N m² that hardly stretch.
 pub(super) fn roll_up_by(lab: &Lab, n: f64, models: &str) -> Result<f64, Trouble> {
     let (count, l) = (n as usize, 1.0 / (n - 1.0));
-    let place = |angle: f64, node: usize| {
+    let position_at = |angle: f64, node: usize| {
         (0..node).fold([0.0; 2], |x, k| [x[0] + l * (k as f64 * angle).cos(), x[1] + l * (k as f64 * angle).sin()])
     };
     let mut text = format!(
@@ -165,11 +165,11 @@ pub(super) fn roll_up_by(lab: &Lab, n: f64, models: &str) -> Result<f64, Trouble
     );
     let steps = 40;
     for node in [count - 1, count] {
-        let start = place(0.0, node);
+        let start = position_at(0.0, node);
         let _ = write!(text, ",\n {{ select = {{ node = {node} }}, motion = [");
         for step in 0..=steps {
             let part = f64::from(step) / f64::from(steps);
-            let x = place(part * std::f64::consts::TAU / (n - 1.0), node);
+            let x = position_at(part * std::f64::consts::TAU / (n - 1.0), node);
             let _ = write!(text, "[{part:?}, {:?}, {:?}],", x[0] - start[0], x[1] - start[1]);
         }
         text.push_str("] }");

@@ -69,7 +69,7 @@ pub(super) const CASES: &[Case] = &[
     },
 ];
 
-fn mean_place(world: &World<2>) -> [f64; 2] {
+fn mean_position(world: &World<2>) -> [f64; 2] {
     let n = world.node_count(0) as u32;
     let mut out = [0.0; 2];
     for k in 0..n {
@@ -106,11 +106,11 @@ fn stop(lab: &Lab, h: f64) -> Result<f64, Trouble> {
          [[collider]]\nkind = \"half_space\"\npoint = [0, 0]\nnormal = [0, 1]\nfriction = 0.4",
     );
     let mut world = lab.plane(scene)?;
-    let start = mean_place(&world)[0];
+    let start = mean_position(&world)[0];
     for _ in 0..60 {
         world.frame()?;
     }
-    Ok(mean_place(&world)[0] - start)
+    Ok(mean_position(&world)[0] - start)
 }
 
 /// A bar of n equal springs with c = 1 m/s and 1 kg/m that touches the wall with 1 cm/s: when its momentum is zero, and how

@@ -8,7 +8,7 @@ use crate::lab::{Lab, Scene, Trouble};
 /// αΔT of all cases.
 const STRAIN: f64 = 0.01;
 
-const HELD: Case = Case {
+const HEATED_BAR: Case = Case {
     quantity: "stress of a bar between two walls that is warmer than at rest, over E; αΔT = 0.01, ν = 0.3, linear",
     unit: "",
     source: "exact: −αΔT (S. Timoshenko, J. N. Goodier, Theory of Elasticity, ch. 13)",
@@ -27,19 +27,19 @@ const COLUMN: Case = Case {
     source: "exact: bL²/2E",
     over: Over::Cells("cells along the column"),
     expected: &[0.04],
-    ..HELD
+    ..HEATED_BAR
 };
 
 pub(super) const CASES: &[Case] = &[
-    Case { name: "heated-bar-quadrilaterals", measure: |lab, n| bar(lab, n, Cells::Boxes), ..HELD },
-    Case { name: "heated-bar-quadratic-triangles", measure: |lab, n| bar(lab, n, Cells::Quadratic), ..HELD },
+    Case { name: "heated-bar-quadrilaterals", measure: |lab, n| bar(lab, n, Cells::Boxes), ..HEATED_BAR },
+    Case { name: "heated-bar-quadratic-triangles", measure: |lab, n| bar(lab, n, Cells::Quadratic), ..HEATED_BAR },
     Case {
         name: "heated-slice",
         quantity: "growth of a free warm slice in plane strain, quadrilaterals; αΔT = 0.01, ν = 0.3, linear",
         source: "exact: (1 + ν) αΔT (S. Timoshenko, J. N. Goodier, Theory of Elasticity, ch. 13)",
         expected: &[1.3 * STRAIN],
         measure: slice,
-        ..HELD
+        ..HEATED_BAR
     },
     Case {
         name: "bimetal",
@@ -52,7 +52,7 @@ pub(super) const CASES: &[Case] = &[
         tolerance: 0.01,
         check: Check::Finest,
         measure: strip,
-        ..HELD
+        ..HEATED_BAR
     },
     Case { name: "column-quadrilaterals", measure: |lab, n| column(lab, n, Cells::Boxes), ..COLUMN },
     Case { name: "column-quadratic-triangles", measure: |lab, n| column(lab, n, Cells::Quadratic), ..COLUMN },
@@ -71,7 +71,7 @@ pub(super) const START: Case = Case {
     tolerance: 0.01,
     check: Check::Order(2.0),
     measure: start,
-    ..HELD
+    ..HEATED_BAR
 };
 
 /// A solid of E = 1 Pa that has grown by 1 + αΔT, with further fields of its model and its pins.

@@ -155,14 +155,14 @@ fn oscillator(rule: &str, h: f64, substeps: u32, damping: f64) -> Scene {
 
 fn damped(lab: &Lab, h: f64, rule: &str) -> Result<f64, Trouble> {
     let mut world = lab.plane(oscillator(rule, h, (1.0 / h).round() as u32, 0.4))?;
-    world.place_node(0, 1, [1.5, 0.0], [0.0; 2])?;
+    world.set_node(0, 1, [1.5, 0.0], [0.0; 2])?;
     world.frame()?;
     Ok((world.position(0, 1)[0] - 1.0) / 0.5)
 }
 
 fn amplitude(lab: &Lab, step: f64) -> Result<f64, Trouble> {
     let mut world = lab.plane(oscillator("backward_euler\ntolerance = 1e-13", 0.5 * step, 1, 0.0))?;
-    world.place_node(0, 1, [1.5, 0.0], [0.0; 2])?;
+    world.set_node(0, 1, [1.5, 0.0], [0.0; 2])?;
     world.frame()?;
     let (x, v) = (world.position(0, 1)[0] - 1.0, world.velocity(0, 1)[0]);
     Ok(x.hypot(0.5 * v) / 0.5)
@@ -174,7 +174,7 @@ fn limit(lab: &Lab, rule: &str) -> Result<f64, Trouble> {
     for _ in 0..16 {
         let middle = 0.5 * (stable + unstable);
         let mut world = lab.plane(oscillator(rule, 0.5 * middle, 20, 0.0))?;
-        world.place_node(0, 1, [1.001, 0.0], [0.0; 2])?;
+        world.set_node(0, 1, [1.001, 0.0], [0.0; 2])?;
         // A run that ends in numbers that are none has grown too.
         let grows = (0..100).any(|_| world.frame().is_err() || (world.position(0, 1)[0] - 1.0).abs() > 0.1);
         if grows { unstable = middle } else { stable = middle }

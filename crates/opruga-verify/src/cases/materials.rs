@@ -279,7 +279,7 @@ fn damped(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     let amplitude = 1e-6;
     for (node, x) in mesh.positions.iter().enumerate() {
         let moved = amplitude * (std::f64::consts::FRAC_PI_2 * x[0]).sin();
-        world.place_node(0, node as u32, [x[0] + moved, x[1]], [0.0; 2])?;
+        world.set_node(0, node as u32, [x[0] + moved, x[1]], [0.0; 2])?;
     }
     world.frame()?;
     Ok(displacement(&world, [1.0, 0.0])[0] / amplitude)

@@ -38,7 +38,7 @@ pub(super) const CASES: &[Case] = &[
         tolerance: 1e-8,
         check: Check::Everywhere,
         quick: true,
-        measure: held_ring,
+        measure: gas_filled_ring,
         ..GAS
     },
     Case {
@@ -134,7 +134,7 @@ pub(super) fn ring_pins(n: u32) -> String {
     )
 }
 
-fn held_ring(lab: &Lab, n: f64) -> Result<f64, Trouble> {
+fn gas_filled_ring(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     let scene = Scene::statics(2, 1e-11).add(&format!(
         "[[body]]\nname = \"ring\"\nmass = 1\nshape = {{ kind = \"ring\", radius = 0.5, vertices = {n} }}\n\
          models = [{{ kind = \"mass_spring\", stiffness = 1600.0 }}, {{ kind = \"pressure\", nRT = 100.0 }}]\n{}",
@@ -178,7 +178,7 @@ fn pulse<const D: usize>(world: &mut World<D>) -> Result<f64, Trouble> {
     let rest = reading(world, "volume")?;
     for node in 0..world.node_count(0) as u32 {
         let x = world.position(0, node);
-        world.place_node(0, node, x, x.map(|c| 1e-3 * c))?;
+        world.set_node(0, node, x, x.map(|c| 1e-3 * c))?;
     }
     let (mut falls, mut before) = (Vec::new(), 0.0);
     for _ in 0..4000 {

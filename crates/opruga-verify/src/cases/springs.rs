@@ -107,9 +107,9 @@ fn lattice(lab: &Lab, strain: f64, by: impl Fn(&[f64; 2], f64) -> [f64; 2]) -> R
 }
 
 /// The largest load on the way through the snap.
-fn snap(lab: &Lab, way: f64) -> Result<f64, Trouble> {
+fn snap(lab: &Lab, arc_length: f64) -> Result<f64, Trouble> {
     let load = 10.0;
-    let scene = Scene::new(2, 1.0, 1, &format!("equilibrium\narc_length = {way:?}\ntolerance = 1e-11")).add(&format!(
+    let scene = Scene::new(2, 1.0, 1, &format!("equilibrium\narc_length = {arc_length:?}\ntolerance = 1e-11")).add(&format!(
         "[[body]]\nname = \"roof\"\nmass = 1.0\nshape = {{ kind = \"polyline\", points = [[-1.0, 0.0], [0.0, 0.3], [1.0, 0.0]] }}\n\
          models = [{{ kind = \"mass_spring\", stiffness = 100.0 }}]\npin = [{{ select = {{ nodes = [0, 2] }} }}]\n\
          [[load]]\nkind = \"force\"\nbody = \"roof\"\nselect = {{ node = 1 }}\nvalue = [0.0, {:?}]",

@@ -179,11 +179,11 @@ fn omega<const D: usize>(world: &World<D>, number: usize) -> Result<f64, Trouble
     Ok(world.modes(0, number + 1)?.get(number).ok_or("too few modes")?.omega())
 }
 
-fn beam(lab: &Lab, counts: [u32; 2], cells: Cells, held: bool, number: usize) -> Result<f64, Trouble> {
+fn beam(lab: &Lab, counts: [u32; 2], cells: Cells, clamped: bool, number: usize) -> Result<f64, Trouble> {
     let thickness: f64 = 0.02;
     let mesh = mapped(counts, cells, |x| [x[0], thickness * x[1]])?;
     let end = nodes(&mesh, |x| x[0] == 0.0);
-    let pins = if held { format!("pin = [{{ select = {{ nodes = {end:?} }} }}]") } else { String::new() };
+    let pins = if clamped { format!("pin = [{{ select = {{ nodes = {end:?} }} }}]") } else { String::new() };
     let world = lab.plane(still(2).body(&mesh, &solid(0.0, ", plane = \"stress\"", &pins))?)?;
     Ok(omega(&world, number)? * 12.0f64.sqrt() / thickness)
 }
@@ -212,8 +212,8 @@ fn bar(lab: &Lab, n: f64, number: usize) -> Result<f64, Trouble> {
     omega(&world, number)
 }
 
-/// Modes so near to one another in ω that a mesh mixes them.
-const NEAR: f64 = 0.03;
+/// The relative distance of modes so close to one another in ω that a mesh mixes them.
+const CLOSE_MODES: f64 = 0.03;
 
 /// The frequency of the mode that is most like an even swelling. Where a mesh mixes it with neighbours of other shapes, ω² is
 /// the mean of theirs by how much of the swelling is in each: what the swelling has in the space of these modes.
@@ -233,9 +233,9 @@ fn breathing<const D: usize>(world: &World<D>, count: usize) -> Result<f64, Trou
     if likeness(&most.shape) < 0.7 {
         return Err("it does not breathe".into());
     }
-    let near = modes.iter().filter(|mode| (mode.omega() / most.omega() - 1.0).abs() < NEAR);
+    let close = modes.iter().filter(|mode| (mode.omega() / most.omega() - 1.0).abs() < CLOSE_MODES);
     let (mut square, mut whole) = (0.0, 0.0);
-    for mode in near {
+    for mode in close {
         let part = likeness(&mode.shape) * likeness(&mode.shape);
         square += part * mode.omega() * mode.omega();
         whole += part;

@@ -3,8 +3,8 @@
 use opruga_core::spec::Values;
 use opruga_mesh::{Mesh, MeshError};
 
-/// A loss of this part of an area or a volume is told.
-pub const LOST_AND_TOLD: f64 = 0.05;
+/// A loss of this part of an area or a volume is reported.
+pub const REPORTED_LOSS: f64 = 0.05;
 /// A filling that loses or wins more than this part of the volume is refused.
 const REFUSED: f64 = 0.25;
 /// Spacings that are tried for a hint, each this part of the one before, and how many.
@@ -26,12 +26,12 @@ pub enum Filling {
 pub struct Loss {
     /// The volume of the filling over that of the surface.
     pub kept: f64,
-    /// A spacing that keeps the volume within [`LOST_AND_TOLD`], if one was found.
+    /// A spacing that keeps the volume within [`REPORTED_LOSS`], if one was found.
     pub finer: Option<f64>,
 }
 
 impl Filling {
-    /// The filled body; and what it has lost of the volume, where that is more than [`LOST_AND_TOLD`].
+    /// The filled body; and what it has lost of the volume, where that is more than [`REPORTED_LOSS`].
     ///
     /// # Errors
     /// What [`Mesh::lattice_filling`] and [`Mesh::tetrahedra_filling`] refuse; [`MeshError::Lost`] for tetrahedra that lose more than a quarter.
@@ -43,7 +43,7 @@ impl Filling {
         };
         let mesh = surface.tetrahedra_filling(spacing)?;
         let kept = kept(&mesh, surface);
-        if (kept - 1.0).abs() <= LOST_AND_TOLD {
+        if (kept - 1.0).abs() <= REPORTED_LOSS {
             return Ok((mesh, None));
         }
         let finer = finer(surface, spacing, kept);
@@ -68,7 +68,7 @@ fn kept(filling: &Mesh<3>, surface: &Mesh<3>) -> f64 {
 /// A spacing that keeps the volume, of two digits. What is cut off falls with the square of the spacing: the first that is tried follows from that.
 fn finer(surface: &Mesh<3>, spacing: f64, now: f64) -> Option<f64> {
     let (step, most) = FINER;
-    let square = (LOST_AND_TOLD / (now - 1.0).abs()).sqrt();
+    let square = (REPORTED_LOSS / (now - 1.0).abs()).sqrt();
     let mut next = spacing * if square < step { square } else { step };
     for _ in 0..most {
         // As it will be written.
@@ -76,7 +76,7 @@ fn finer(surface: &Mesh<3>, spacing: f64, now: f64) -> Option<f64> {
         if surface.lattice_estimate(shown) > LARGEST_TRIED {
             return None;
         }
-        let works = |made: &Mesh<3>| (kept(made, surface) - 1.0).abs() <= LOST_AND_TOLD;
+        let works = |made: &Mesh<3>| (kept(made, surface) - 1.0).abs() <= REPORTED_LOSS;
         if surface.tetrahedra_filling(shown).is_ok_and(|made| works(&made)) {
             return Some(shown);
         }

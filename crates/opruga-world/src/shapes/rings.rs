@@ -92,8 +92,8 @@ impl Circle<'_> {
 /// Refuses rings that meet, that lie in one of their own kind, and holes in nothing.
 fn check(circles: &[Circle<'_>]) -> Result<(), MeshError> {
     let spread = |axis: usize| {
-        let places = circles.iter().map(|circle| circle.center[axis]);
-        let (low, high) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+        let coordinates = circles.iter().map(|circle| circle.center[axis]);
+        let (low, high) = coordinates.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
             (if x < low { x } else { low }, if x > high { x } else { high })
         });
         high - low
@@ -109,10 +109,10 @@ fn check(circles: &[Circle<'_>]) -> Result<(), MeshError> {
     // The smallest ring around each.
     let mut around: Vec<Option<usize>> = vec![None; circles.len()];
     let mut meeting: Option<(usize, usize)> = None;
-    let mut near: Vec<usize> = Vec::new();
+    let mut overlapping: Vec<usize> = Vec::new();
     for k in order {
-        near.retain(|other| ends(*other).1 >= ends(k).0);
-        for &other in &near {
+        overlapping.retain(|other| ends(*other).1 >= ends(k).0);
+        for &other in &overlapping {
             let (inner, outer) = match circles[k].lies(&circles[other]) {
                 Lying::Apart => continue,
                 Lying::Meeting => {
@@ -127,7 +127,7 @@ fn check(circles: &[Circle<'_>]) -> Result<(), MeshError> {
                 around[inner] = Some(outer);
             }
         }
-        near.push(k);
+        overlapping.push(k);
     }
     if let Some((first, second)) = meeting {
         return Err(MeshError::RingsMeet { first, second });

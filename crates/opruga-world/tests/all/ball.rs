@@ -373,11 +373,11 @@ fn an_empty_world_goes_on_and_commands_on_lost_bodies_are_told() {
 fn numbers_that_are_not_finite_stay_outside() {
     let mut world = run(rings(1, 36, "symplectic_euler"), Options::default(), 2);
     let hash = world.state_hash();
-    let error = world.place_node(0, 3, [f64::NAN, 0.0], [0.0; 2]).expect_err("no place").in_full();
+    let error = world.set_node(0, 3, [f64::NAN, 0.0], [0.0; 2]).expect_err("no place").in_full();
     assert_eq!(error, "`body 0, node 3`: NaN is not a position and not a velocity; allowed: finite numbers");
-    assert!(world.place_node(0, 3, [0.0; 2], [f64::INFINITY, 0.0]).is_err());
-    assert!(world.place_node(0, 36, [0.0; 2], [0.0; 2]).is_err());
-    assert!(world.place_node(1, 0, [0.0; 2], [0.0; 2]).is_err());
+    assert!(world.set_node(0, 3, [0.0; 2], [f64::INFINITY, 0.0]).is_err());
+    assert!(world.set_node(0, 36, [0.0; 2], [0.0; 2]).is_err());
+    assert!(world.set_node(1, 0, [0.0; 2], [0.0; 2]).is_err());
     assert!(world.set("world.gravity", Value::Numbers(vec![0.0, f64::NAN])).is_err());
     assert!(world.set("body.ball[0].models.pressure.nRT", Value::Number(f64::INFINITY)).is_err());
     assert_eq!(world.state_hash(), hash);

@@ -185,7 +185,7 @@ fn steps_follow_the_frequencies_of_the_same_masses() {
         let start: Vec<[f64; 2]> =
             mesh.positions.iter().zip(&mode.shape).map(|(x, u)| core::array::from_fn(|d| x[d] + size * u[d])).collect();
         for (node, x) in start.iter().enumerate() {
-            bar.place_node(0, node as u32, *x, [0.0; 2]).expect("a place");
+            bar.set_node(0, node as u32, *x, [0.0; 2]).expect("a place");
         }
         let energy = bar.energy().total();
         for _ in 0..steps {

@@ -76,12 +76,12 @@ fn what_is_not_there_is_told_and_never_another_body() {
         );
         assert!(world.node_mass(body, node).is_nan(), "{body}, {node}");
         assert!(world.reaction(body, &[0, node]).iter().all(|x| x.is_nan()), "{body}, {node}");
-        assert!(world.place_node(body, node, [0.0; 2], [0.0; 2]).is_err(), "{body}, {node}");
+        assert!(world.set_node(body, node, [0.0; 2], [0.0; 2]).is_err(), "{body}, {node}");
     }
     for body in [1, 7, usize::MAX] {
         assert_eq!((world.node_count(body), world.rest_volume(body).is_nan()), (0, true), "{body}");
         assert!(world.handle(body).is_none() && world.usual_pull(body).is_none(), "{body}");
-        assert!(world.modes(body, 3).is_err() && world.held_nodes(body).is_empty(), "{body}");
+        assert!(world.modes(body, 3).is_err() && world.pinned_nodes(body).is_empty(), "{body}");
         assert!(world.readings(body).is_empty() && world.node_pressures(body).is_empty(), "{body}");
         assert!(world.cell_states(body).is_empty() && world.contact_forces(body).is_empty(), "{body}");
         assert!(world.node_forces(body, None).is_empty(), "{body}");

@@ -154,7 +154,7 @@ fn folded_bodies_that_pins_carry_and_turn_as_a_whole_are_told_of() {
     }
     let mut world = World::new(blueprint, Options::default()).expect("a world");
     for (node, _) in mesh.positions.iter().enumerate().filter(|(_, x)| x[0] > 0.0) {
-        world.place_node(0, node as u32, [0.5, 0.5], [0.0; 2]).expect("placed");
+        world.set_node(0, node as u32, [0.5, 0.5], [0.0; 2]).expect("placed");
     }
     (0..3600).for_each(|_| world.frame().expect("a frame"));
     assert!(world.position(0, 0)[0] > 4.9, "{:?}", world.position(0, 0));

@@ -30,7 +30,7 @@ fn body<const D: usize>(mesh: Mesh<D>, material: &str) -> Blueprint<D> {
 /// Places the nodes of the only body by their places at rest.
 fn place<const D: usize>(world: &mut World<D>, positions: &[[f64; D]], shape: &dyn Fn([f64; D]) -> [f64; D]) {
     for (node, at) in positions.iter().enumerate() {
-        world.place_node(0, node as u32, shape(*at), [0.0; D]).expect("placed");
+        world.set_node(0, node as u32, shape(*at), [0.0; D]).expect("placed");
     }
 }
 
@@ -142,7 +142,7 @@ fn bodies_that_move_within_themselves_are_not_told_of() {
         for (node, at) in boxes.positions.iter().enumerate() {
             let x = at.map(|x| 1e-3 * x);
             let v = [30.0 - 7e3 * x[1] + strain * node as f64, 10.0 + 7e3 * x[0], 0.0];
-            world.place_node(0, node as u32, x, v).expect("placed");
+            world.set_node(0, node as u32, x, v).expect("placed");
         }
         assert_eq!(world.other_balances().is_some(), told, "strain {strain}");
     }
@@ -165,7 +165,7 @@ fn copies_are_counted_and_the_first_is_named() {
     assert_eq!(world.other_balances(), None);
     for body in [5, 2] {
         for (node, _) in mesh.positions.iter().enumerate() {
-            world.place_node(body, node as u32, [9.0, 1.0], [0.0; 2]).expect("placed");
+            world.set_node(body, node as u32, [9.0, 1.0], [0.0; 2]).expect("placed");
         }
     }
     let told = world.other_balances().expect("two bodies in a point");

@@ -96,7 +96,7 @@ fn queries_see_bodies_where_they_are() {
     assert!(inside.body == 0 && inside.distance < -0.39, "{inside:?}");
     for node in 0..48 {
         let x = world.position(1, node);
-        world.place_node(1, node, [x[0], x[1] + 3.0], [0.0; 2]).expect("a node");
+        world.set_node(1, node, [x[0], x[1] + 3.0], [0.0; 2]).expect("a node");
     }
     assert_eq!(ray(&world, 0.0).expect("the first ring").body, 0);
     assert_eq!(ray(&world, 3.0).expect("the second ring").body, 1);

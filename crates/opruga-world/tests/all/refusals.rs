@@ -100,7 +100,7 @@ fn every_part_that_is_refused_is_found_once() {
     let found: Vec<String> = World::problems(&blueprint, &Options::default(), &Arc::default())
         .iter()
         .map(|problem| match problem {
-            WorldError::Build { place, source } => format!("{place}: {}: {}", source.kind, source.code()),
+            WorldError::Build { part, source } => format!("{part}: {}: {}", source.kind, source.code()),
             WorldError::UnstableStep { body, .. } => format!("unstable: {body}"),
             other => other.code().to_string() + ": " + &other.in_full(),
         })
@@ -171,7 +171,7 @@ fn the_hint_of_inverted_cells_names_no_law_that_the_body_has() {
         let fields = [("material", text(law)), ("youngs_modulus", Value::Number(1e3))];
         let mut world = World::new(solid(mesh, "backward_euler", &[], &fields), Options::default()).expect("a world");
         assert_eq!(world.inverted_cells(), None);
-        world.place_node(0, 0, [2.0, 2.0], [0.0; 2]).expect("a node");
+        world.set_node(0, 0, [2.0, 2.0], [0.0; 2]).expect("a node");
         let said = world.inverted_cells().expect("a cell inside out").message;
         assert!(said.ends_with(&format!("{hint}, or `unfold = true` in `[world]`")), "{law}: {said}");
     }

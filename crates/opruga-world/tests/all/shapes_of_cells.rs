@@ -33,7 +33,7 @@ fn shifted<const D: usize>(part: f64) -> (Option<String>, f64) {
     let (a, b, middle) = (cell[0], cell[1], cell[D + 1]);
     let mut world = world(mesh.clone(), "stable_neo_hookean");
     let (p, q) = (mesh.positions[a as usize], mesh.positions[b as usize]);
-    world.place_node(0, middle, core::array::from_fn(|d| p[d] + part * (q[d] - p[d])), [0.0; D]).expect("placed");
+    world.set_node(0, middle, core::array::from_fn(|d| p[d] + part * (q[d] - p[d])), [0.0; D]).expect("placed");
     let points = world.cell_states(0).iter().map(|cell| cell.smallest_volume_ratio).fold(f64::INFINITY, f64::min);
     (world.inverted_cells().map(|warning| warning.message), points)
 }
@@ -60,7 +60,7 @@ fn boxes_that_fold_at_a_corner_are_inside_out() {
         let mesh = Mesh::<2>::grid([0.0; 2], [1.0; 2], [1; 2]).expect("a square");
         let mut world = world(mesh, "stable_neo_hookean");
         let corner = (0..4).find(|node| world.position(0, *node) == [1.0, 1.0]).expect("a corner");
-        world.place_node(0, corner, [to; 2], [0.0; 2]).expect("placed");
+        world.set_node(0, corner, [to; 2], [0.0; 2]).expect("placed");
         (world.inverted_cells().map(|w| w.message), world.cell_states(0)[0].smallest_volume_ratio)
     };
     assert_eq!(found(0.51).0, None);
@@ -69,9 +69,9 @@ fn boxes_that_fold_at_a_corner_are_inside_out() {
     assert!(said.is_some_and(|said| said.contains("J = -0.02")));
     let mut world = world(Mesh::<3>::grid([0.0; 3], [1.0; 3], [1; 3]).expect("a cube"), "stable_neo_hookean");
     let corner = (0..8).find(|node| world.position(0, *node) == [1.0; 3]).expect("a corner");
-    world.place_node(0, corner, [0.66; 3], [0.0; 3]).expect("placed");
+    world.set_node(0, corner, [0.66; 3], [0.0; 3]).expect("placed");
     assert!(world.cell_states(0)[0].smallest_volume_ratio > 0.0 && world.inverted_cells().is_some());
-    world.place_node(0, corner, [0.68; 3], [0.0; 3]).expect("placed");
+    world.set_node(0, corner, [0.68; 3], [0.0; 3]).expect("placed");
     assert_eq!(world.inverted_cells(), None);
 }
 
@@ -88,7 +88,7 @@ fn cells_that_are_strained_far_and_not_folded_are_not_warned_of() {
             [r * t.sin() + 0.3 * x[2], 2.0 - r * t.cos(), 0.4 * x[2]]
         };
         for (node, x) in positions.iter().enumerate() {
-            world.place_node(0, node as u32, bent(*x), [0.0; 3]).expect("placed");
+            world.set_node(0, node as u32, bent(*x), [0.0; 3]).expect("placed");
         }
         assert_eq!(world.inverted_cells(), None);
     }
@@ -97,7 +97,7 @@ fn cells_that_are_strained_far_and_not_folded_are_not_warned_of() {
     let (p, q) = (mesh.positions[a as usize], mesh.positions[b as usize]);
     mesh.positions[middle as usize] = core::array::from_fn(|d| p[d] + 0.25 * (q[d] - p[d]));
     let mut world = world(mesh, "stable_neo_hookean");
-    world.place_node(0, b, [q[0] + 0.01, q[1] + 0.02], [0.0; 2]).expect("placed");
+    world.set_node(0, b, [q[0] + 0.01, q[1] + 0.02], [0.0; 2]).expect("placed");
     assert_eq!(world.inverted_cells(), None);
 }
 
@@ -142,7 +142,7 @@ fn strains_are_no_rotations_and_rotations_of_cells_are() {
         let told = |shape: &dyn Fn([f64; 3]) -> [f64; 3]| {
             let mut world = world(mesh.clone(), "linear");
             for (node, x) in mesh.positions.iter().enumerate() {
-                world.place_node(0, node as u32, shape(*x), [0.0; 3]).expect("placed");
+                world.set_node(0, node as u32, shape(*x), [0.0; 3]).expect("placed");
             }
             // Pins that hold what was placed.
             world.frame().expect("a frame");

@@ -105,8 +105,8 @@ impl Scenery {
             let pinned = if many { Vec::new() } else { body.pinned_nodes() };
             let edges_length: f64 = edges.iter().map(length).sum();
             let side = |axis: usize| {
-                let places = || positions.iter().map(move |position| position[axis]);
-                places().fold(f64::NEG_INFINITY, f64::max) - places().fold(f64::INFINITY, f64::min)
+                let coordinates = || positions.iter().map(move |position| position[axis]);
+                coordinates().fold(f64::NEG_INFINITY, f64::max) - coordinates().fold(f64::INFINITY, f64::min)
             };
             let facets = if flat {
                 Facets::Edges(body.facets().as_chunks().0.to_vec())

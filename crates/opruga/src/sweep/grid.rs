@@ -93,8 +93,8 @@ impl Axis {
             Values::Listed(values) => values.clone(),
             Values::Range(range) => {
                 let count = range.count.unwrap_or(1);
-                let place = |k: usize| if count > 1 { k as f64 / (count - 1) as f64 } else { 0.0 };
-                let mut out: Vec<String> = (0..count).map(|k| range.at(place(k))).collect();
+                let fraction = |k: usize| if count > 1 { k as f64 / (count - 1) as f64 } else { 0.0 };
+                let mut out: Vec<String> = (0..count).map(|k| range.at(fraction(k))).collect();
                 // Rounding may give neighbours the same whole number.
                 out.dedup();
                 out
@@ -102,13 +102,13 @@ impl Axis {
         }
     }
 
-    /// The value at a place from 0 to 1, which is not reached.
-    fn at(&self, place: f64) -> String {
+    /// The value at a fraction from 0 to 1, which is not reached.
+    fn at(&self, fraction: f64) -> String {
         match &self.values {
             Values::Listed(values) => {
-                values.get((place * values.len() as f64) as usize).or(values.last()).cloned().unwrap_or_default()
+                values.get((fraction * values.len() as f64) as usize).or(values.last()).cloned().unwrap_or_default()
             }
-            Values::Range(range) => range.at(place),
+            Values::Range(range) => range.at(fraction),
         }
     }
 
@@ -180,17 +180,17 @@ impl Range {
         Ok(Some(range))
     }
 
-    /// The number at a place from 0 (the lower end) to 1 (the upper end), as a scene file would write it.
-    fn at(&self, place: f64) -> String {
-        let x = if place <= 0.0 {
+    /// The number at a fraction from 0 (the lower end) to 1 (the upper end), as a scene file would write it.
+    fn at(&self, fraction: f64) -> String {
+        let x = if fraction <= 0.0 {
             self.low
-        } else if place >= 1.0 {
+        } else if fraction >= 1.0 {
             self.high
         } else if self.logarithmic {
             let (low, high) = (natural_logarithm(self.low), natural_logarithm(self.high));
-            exponential(low + place * (high - low))
+            exponential(low + fraction * (high - low))
         } else {
-            self.low + place * (self.high - self.low)
+            self.low + fraction * (self.high - self.low)
         };
         // Fifteen digits: what rounding has done to the last ones shall not be read, and counts of vertices are whole.
         let x = number(&format!("{:.14e}", if self.whole { x.round() } else { x })).unwrap_or(x);
@@ -227,8 +227,8 @@ pub(super) fn points(axes: &[Axis], design: Design) -> Result<Vec<Point>, SceneE
     if axes.is_empty() {
         return Err(SceneError::of(SweepError::NothingVaries {}));
     }
-    for (place, axis) in axes.iter().enumerate() {
-        if axes[..place].iter().any(|other| other.path == axis.path) {
+    for (index, axis) in axes.iter().enumerate() {
+        if axes[..index].iter().any(|other| other.path == axis.path) {
             return Err(SceneError::of(SweepError::VariesTwice {}).path(visible(&axis.path)));
         }
         let Values::Range(range) = &axis.values else { continue };
@@ -269,10 +269,10 @@ pub(super) fn points(axes: &[Axis], design: Design) -> Result<Vec<Point>, SceneE
         Design::Each => Ok(axes
             .iter()
             .enumerate()
-            .flat_map(|(place, axis)| {
+            .flat_map(|(index, axis)| {
                 axis.listed().into_iter().map(move |value| {
                     let mut point = vec![None; axes.len()];
-                    point[place] = Some(value);
+                    point[index] = Some(value);
                     point
                 })
             })
@@ -290,8 +290,8 @@ pub(super) fn points(axes: &[Axis], design: Design) -> Result<Vec<Point>, SceneE
                 }
                 for (point, part) in out.iter_mut().zip(parts) {
                     let within = (random.bits() >> 11) as f64 / (1u64 << 53) as f64;
-                    let place = if independent { within } else { (part as f64 + within) / count as f64 };
-                    point.push(Some(axis.at(place)));
+                    let fraction = if independent { within } else { (part as f64 + within) / count as f64 };
+                    point.push(Some(axis.at(fraction)));
                 }
             }
             Ok(out)

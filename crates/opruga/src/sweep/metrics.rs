@@ -198,7 +198,7 @@ enum Gauge {
     Speed,
     Probe {
         number: usize,
-        place: usize,
+        column_index: usize,
         statistic: Statistic,
         least: f64,
         largest: f64,
@@ -226,12 +226,13 @@ impl Meter {
                 Quantity::NanosecondsPerStep => Gauge::Speed,
                 Quantity::Probe(column, statistic) => {
                     let find = |(number, columns): (usize, &Vec<String>)| {
-                        columns.iter().position(|c| c == column).map(|place| (number, place))
+                        columns.iter().position(|c| c == column).map(|column_index| (number, column_index))
                     };
-                    let (number, place) = probes.iter().enumerate().find_map(find).unwrap_or((usize::MAX, usize::MAX));
+                    let (number, column_index) =
+                        probes.iter().enumerate().find_map(find).unwrap_or((usize::MAX, usize::MAX));
                     Gauge::Probe {
                         number,
-                        place,
+                        column_index,
                         statistic: *statistic,
                         least: f64::INFINITY,
                         largest: f64::NEG_INFINITY,
@@ -286,8 +287,9 @@ impl Meter {
                     }
                 }
                 Gauge::Drift { drift } => *drift = world.energy().drift(),
-                Gauge::Probe { number, place, least, largest, sum, count, last, .. } => {
-                    let Some((_, x)) = world.probe(*number).get(*place).cloned().filter(|(_, x)| x.is_finite()) else {
+                Gauge::Probe { number, column_index, least, largest, sum, count, last, .. } => {
+                    let Some((_, x)) = world.probe(*number).get(*column_index).cloned().filter(|(_, x)| x.is_finite())
+                    else {
                         continue;
                     };
                     *least = if x < *least { x } else { *least };

@@ -98,8 +98,8 @@ impl Sweep {
             let words: Vec<&str> = WORDS.iter().map(|w| w.0).collect();
             errors.push(SceneError::of(SweepError::NothingMeasured { words: words.join(", ") }));
         }
-        for (place, metric) in self.metrics.iter().enumerate() {
-            if self.metrics[..place].contains(metric) {
+        for (index, metric) in self.metrics.iter().enumerate() {
+            if self.metrics[..index].contains(metric) {
                 errors.push(SceneError::of(SweepError::MetricTwice { metric: metric.name.clone() }));
             }
         }
@@ -113,11 +113,11 @@ impl Sweep {
 
     fn check(&self, scene: &dyn AnyScene, points: &[Point], errors: &mut Vec<SceneError>) {
         errors.extend(self.metrics.iter().filter_map(|metric| metric.check(scene).err()));
-        for place in 0..self.axes.len() {
+        for index in 0..self.axes.len() {
             // The first value of each parameter by itself: a path that leads nowhere does so for all of them.
-            let Some(value) = points.iter().find_map(|point| point[place].clone()) else { continue };
+            let Some(value) = points.iter().find_map(|point| point[index].clone()) else { continue };
             let mut point = vec![None; self.axes.len()];
-            point[place] = Some(value);
+            point[index] = Some(value);
             let found = self.read(&point).err().unwrap_or_default();
             errors.extend(found.into_iter().find(|e| e.code.starts_with("set.") || e.code.contains("unknown")));
         }

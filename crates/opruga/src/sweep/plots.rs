@@ -17,9 +17,9 @@ pub fn plots(sweep: &Sweep, rows: &[Row], length_unit: &str, credit: &str) -> Re
         (Design::Grid, [x, y]) => Ok(vec![("plots.svg".into(), sweep_plots.map(x, y)?)]),
         (_, axes) => {
             let alone = axes.len() == 1;
-            let one = |(place, axis)| -> Result<_, DrawError> {
-                let name = if alone { "plots.svg".into() } else { format!("plots-{}.svg", file_name(axes, place)) };
-                Ok((name, sweep_plots.over(place, axis)?))
+            let one = |(index, axis)| -> Result<_, DrawError> {
+                let name = if alone { "plots.svg".into() } else { format!("plots-{}.svg", file_name(axes, index)) };
+                Ok((name, sweep_plots.over(index, axis)?))
             };
             axes.iter().enumerate().map(one).collect()
         }
@@ -27,11 +27,11 @@ pub fn plots(sweep: &Sweep, rows: &[Row], length_unit: &str, credit: &str) -> Re
 }
 
 /// The last word of a path where that is enough to tell the parameters apart, else the whole path.
-fn file_name(axes: &[Axis], place: usize) -> String {
+fn file_name(axes: &[Axis], index: usize) -> String {
     let last = |axis: &Axis| axis.path.rsplit('.').next().unwrap_or_default().to_string();
-    let word = last(&axes[place]);
+    let word = last(&axes[index]);
     let alone = axes.iter().filter(|axis| last(axis) == word).count() == 1;
-    let name = if alone { word } else { axes[place].path.clone() };
+    let name = if alone { word } else { axes[index].path.clone() };
     name.chars().map(|c| if c.is_alphanumeric() || c == '.' { c } else { '_' }).collect()
 }
 
@@ -44,7 +44,7 @@ struct Plots<'a> {
 
 impl Plots<'_> {
     /// Every metric over one parameter.
-    fn over(&self, place: usize, axis: &Axis) -> Result<String, DrawError> {
+    fn over(&self, index: usize, axis: &Axis) -> Result<String, DrawError> {
         let listed = match self.sweep.design {
             Design::Sample { .. } => None,
             _ => Some(axis.listed()),
@@ -61,7 +61,7 @@ impl Plots<'_> {
         for (column, metric) in self.sweep.metrics.iter().enumerate() {
             let mut points = Vec::new();
             for row in self.rows {
-                let Some(x) = row.values[place].as_deref().and_then(at) else { continue };
+                let Some(x) = row.values[index].as_deref().and_then(at) else { continue };
                 points.push([x, row.numbers[column].unwrap_or(f64::NAN)]);
                 if !lines {
                     // A gap: points that are no neighbours are not joined.
@@ -98,13 +98,13 @@ impl Plots<'_> {
     fn map(&self, x: &Axis, y: &Axis) -> Result<String, DrawError> {
         let (columns, rows) = (x.listed(), y.listed());
         let mut panels = Vec::new();
-        for (place, metric) in self.sweep.metrics.iter().enumerate() {
+        for (index, metric) in self.sweep.metrics.iter().enumerate() {
             let mut values = vec![vec![f64::NAN; columns.len()]; rows.len()];
             let mut failed = Vec::new();
             for row in self.rows {
                 // The points of a grid: its last parameter varies fastest.
                 let (column, line) = (row.number / rows.len(), row.number % rows.len());
-                values[line][column] = row.numbers[place].unwrap_or(f64::NAN);
+                values[line][column] = row.numbers[index].unwrap_or(f64::NAN);
                 if row.status != Status::Done {
                     failed.push([column, line]);
                 }
@@ -150,8 +150,8 @@ fn short_path(path: &str, other: &str) -> String {
 /// Values with three digits, unless two of them would look the same.
 fn short_values(values: Vec<String>) -> Vec<String> {
     let short: Vec<String> = values.iter().map(|v| number(v).map_or(v.clone(), format_value)).collect();
-    let told_apart = short.iter().collect::<std::collections::BTreeSet<_>>().len() == short.len();
-    if told_apart { short } else { values }
+    let distinct = short.iter().collect::<std::collections::BTreeSet<_>>().len() == short.len();
+    if distinct { short } else { values }
 }
 
 /// A range of numbers that holds one more.

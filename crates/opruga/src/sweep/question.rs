@@ -95,7 +95,7 @@ impl Question {
             name: self.name.clone(),
             file: self.file.clone(),
             text: self.scene.clone(),
-            files: Files::held(files),
+            files: Files::in_memory(files),
             fixed,
             axes,
             design: match self.sample {

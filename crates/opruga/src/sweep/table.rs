@@ -121,8 +121,8 @@ pub fn read_rows(sweep: &Sweep, points: &[Point], text: &str, file: &str) -> Res
             errors.push(changed(number + 2, content));
             continue;
         }
-        let place = row.number;
-        if rows[place].replace(row).is_some() {
+        let index = row.number;
+        if rows[index].replace(row).is_some() {
             errors.push(damaged(number + 2, RowFault::TwoRows, content));
         }
     }

@@ -76,7 +76,7 @@ fn a_ring_breathes_at_its_frequency() {
         world.set("world.drag", Value::Number(0.0)).expect("a parameter");
         for node in 0..36 {
             let x = world.position(0, node);
-            world.place_node(0, node, x, [1e-3 * x[0], 1e-3 * x[1]]).expect("a node");
+            world.set_node(0, node, x, [1e-3 * x[0], 1e-3 * x[1]]).expect("a node");
         }
         // Times at which the radius is least: its rate rises through zero.
         let (mut times, mut before) = (Vec::new(), radius(&world).1);

@@ -50,7 +50,7 @@ fn a_block_that_trembles_by_a_third_misses_less_of_its_energy_in_shorter_steps()
         ));
         for node in 0..world.node_count(0) as u32 {
             let [x, y] = world.position(0, node);
-            world.place_node(0, node, [x, 0.7 * y], [-3.0 * 0.7 * y, 3.0 * x]).expect("a place");
+            world.set_node(0, node, [x, 0.7 * y], [-3.0 * 0.7 * y, 3.0 * x]).expect("a place");
         }
         let start = world.energy().total();
         let (mut gain, mut loss) = (0.0f64, 0.0f64);

@@ -82,7 +82,7 @@ fn a_plate_without_thickness_ends_the_run_at_the_last_good_frame() {
     // Every node away from the middle.
     for node in 0..world.node_count(0) as u32 {
         let x = world.position(0, node);
-        world.place_node(0, node, x.map(|c| 0.5 + 1.4 * (c - 0.5)), [0.0; 2]).unwrap_or_else(|e| panic!("{e}"));
+        world.set_node(0, node, x.map(|c| 0.5 + 1.4 * (c - 0.5)), [0.0; 2]).unwrap_or_else(|e| panic!("{e}"));
     }
     let before = world.time();
     let error = world.frame().expect_err("no thickness").to_string();
@@ -157,7 +157,7 @@ fn a_mesh_file_gives_every_cell_its_density() {
         );
         let held = [("two.msh".to_string(), std::sync::Arc::from(mesh(second).as_bytes()))];
         let options = opruga::io::scene::Options {
-            files: opruga::io::Files::held(held),
+            files: opruga::io::Files::in_memory(held),
             ..opruga::io::scene::Options::default()
         };
         opruga::io::scene::read(text.as_bytes(), "test.toml", &opruga::catalogue(), &options).map(|read| read.0)

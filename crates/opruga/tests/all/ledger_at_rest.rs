@@ -67,7 +67,7 @@ fn outcome(text: &str, speed: f64) -> (f64, u64, f64) {
     let options = Options { allow_unstable: true, ..Options::default() };
     let mut world = World::new(blueprint, options).expect("a world");
     if speed > 0.0 {
-        world.place_node(0, 0, world.position(0, 0), [speed, 0.0]).expect("placed");
+        world.set_node(0, 0, world.position(0, 0), [speed, 0.0]).expect("placed");
     }
     (0..60).for_each(|_| world.frame().expect("a frame"));
     let warned = world.warnings().into_iter().find(|warning| warning.code == "ledger.closure");

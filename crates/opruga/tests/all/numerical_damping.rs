@@ -171,7 +171,7 @@ fn changes_of_the_scene_are_no_damping() {
     let start = world.energy().total();
     frames(&mut world, 5);
     world.set("world.gravity", opruga::core::spec::Value::Numbers(vec![0.0, 0.0, 5.0])).expect("another weight");
-    world.place_node(0, 0, [-0.05, 0.0, 0.0], [0.0, 0.0, 0.3]).expect("another place");
+    world.set_node(0, 0, [-0.05, 0.0, 0.0], [0.0, 0.0, 0.3]).expect("another place");
     let placed = world.energy();
     frames(&mut world, 5);
     let e = world.energy();

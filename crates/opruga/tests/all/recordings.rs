@@ -53,7 +53,7 @@ fn handle(world: &mut World<2>, frame: u64) {
         }
         14 => {
             let (x, v) = (world.position(1, 3), world.velocity(1, 3));
-            world.place_node(1, 3, [x[0] + 0.01, x[1]], v).expect("placed");
+            world.set_node(1, 3, [x[0] + 0.01, x[1]], v).expect("placed");
         }
         20 => world.remove_body(&world.blueprint().bodies[3].name.clone()).expect("removed"),
         _ => {}
@@ -168,10 +168,10 @@ fn the_hash_of_a_frame_sees_every_number_and_no_layout() {
                     let changed = if number < 2 { &mut near[number] } else { &mut like[number - 2] };
                     // The last bit alone.
                     *changed = f64::from_bits(changed.to_bits() ^ 1);
-                    together.place_node(body, node, near, like).expect("placed");
+                    together.set_node(body, node, near, like).expect("placed");
                     seen.insert(together.frame_hash());
                     changes += 1;
-                    together.place_node(body, node, x, v).expect("back");
+                    together.set_node(body, node, x, v).expect("back");
                 }
             }
         }

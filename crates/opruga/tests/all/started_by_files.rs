@@ -28,7 +28,7 @@ fn wind() -> String {
 
 fn with_file(text: &str, name: &str, bytes: &[u8]) -> Result<AnyBlueprint, Vec<SceneError>> {
     let options =
-        scene::Options { files: Files::held([(name.to_string(), Arc::from(bytes))]), ..scene::Options::default() };
+        scene::Options { files: Files::in_memory([(name.to_string(), Arc::from(bytes))]), ..scene::Options::default() };
     scene::read(text.as_bytes(), "test.toml", &catalogue(), &options).map(|r| r.0)
 }
 

@@ -70,12 +70,12 @@ pub fn laid_out<const D: usize>(
     mass: f64,
     list: &[Values],
 ) -> System<D> {
-    let places = layout.places(x.len());
+    let places = layout.index_count(x.len());
     let (mut cx, mut cv) = (Columns::zeros(places), Columns::zeros(places));
     for node in 0..x.len() {
         for body in 0..layout.stride() {
-            cx.set(layout.place(node, body), x[node]);
-            cv.set(layout.place(node, body), v[node]);
+            cx.set(layout.index(node, body), x[node]);
+            cv.set(layout.index(node, body), v[node]);
         }
     }
     let mut system = System::new(simd, layout, x.len(), layout.stride(), cx, cv, Parameter::uniform(mass));

@@ -13,7 +13,7 @@ fn any(dimension: u8, shape: &str, files: &[(&str, &[u8])]) -> Result<(AnyBluepr
     let head = HEAD.replace("dimension = 2", &format!("dimension = {dimension}"));
     let text = format!("{head}[[body]]\nname = \"it\"\nmass = 1\nshape = {{ {shape} }}\n");
     let held = files.iter().map(|(name, bytes)| (name.to_string(), Arc::from(*bytes)));
-    read(text.as_bytes(), "scene.toml", &catalogue(), &Options { files: Files::held(held), ..Options::default() })
+    read(text.as_bytes(), "scene.toml", &catalogue(), &Options { files: Files::in_memory(held), ..Options::default() })
 }
 
 /// The mesh of a plane shape.

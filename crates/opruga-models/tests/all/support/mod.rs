@@ -64,7 +64,7 @@ pub(crate) fn system<const D: usize>(mesh: &Mesh<D>, parts: &[Part<D>]) -> Syste
 /// The same with another mass of every node [kg].
 pub(crate) fn system_with_mass<const D: usize>(mesh: &Mesh<D>, parts: &[Part<D>], mass: f64) -> System<D> {
     let nodes = mesh.positions.len();
-    let places = Layout::Single.places(nodes);
+    let places = Layout::Single.index_count(nodes);
     let mut x = Columns::zeros(places);
     for p in 0..places {
         x.set(p, mesh.positions[p.min(nodes - 1)]);

@@ -1,7 +1,7 @@
 //! Bodies that leave every measure.
 
 use super::{ask, pass, quiet};
-use crate::said::Said;
+use crate::report::Report;
 use crate::session::{Edit, Request, Session};
 use crate::shown::{Offer, Severity};
 use opruga::Options;
@@ -59,23 +59,23 @@ fn a_body_that_explodes_stops_time_while_it_can_still_be_seen_also_side_by_side(
         if beside {
             let right = session.shown().beside.expect("two scenes");
             assert_eq!(
-                right.stopped.as_ref().map(Said::to_string).as_deref(),
+                right.stopped.as_ref().map(Report::to_string).as_deref(),
                 Some("`ball` exploded: explicit euler is unstable at this step")
             );
         }
         // It is told again where somebody insists, and where both are computed anew.
-        let (told, frames) = (message.number, session.frames());
+        let (message_count, frames) = (message.number, session.frames());
         play(&mut session, 5);
-        assert!(session.frames() <= frames + 1 && session.told() > told && !session.is_moving());
+        assert!(session.frames() <= frames + 1 && session.message_count() > message_count && !session.is_moving());
         session.handle(Request::Compare(!beside));
         arrive(&mut session);
         let message = session.shown().message.expect("it is told");
         assert!(message.text.contains("exploded"), "{}", message.text);
         // Going back is no explosion.
-        let told = session.told();
+        let message_count = session.message_count();
         session.handle(Request::Seek(3));
         arrive(&mut session);
-        assert_eq!((session.frames(), session.told()), (3, told));
+        assert_eq!((session.frames(), session.message_count()), (3, message_count));
     }
 }
 
@@ -93,7 +93,7 @@ fn a_right_side_that_explodes_stops_and_the_left_one_goes_on() {
     ask(&mut session, Request::Differ(crate::differences::Difference::Set("time.substeps".into(), Value::Integer(8))));
     play(&mut session, 900);
     let shown = session.shown();
-    assert!(shown.playing && shown.message.is_none_or(|message| message.severity == Severity::Told));
+    assert!(shown.playing && shown.message.is_none_or(|message| message.severity == Severity::Done));
     let stopped = shown.beside.expect("two scenes").stopped.expect("it has stopped");
     assert!(stopped.to_string().contains("exploded"), "{stopped}");
 }

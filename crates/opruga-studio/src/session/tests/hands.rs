@@ -1,7 +1,7 @@
 //! The hand of a person beside those that are in the scene.
 
 use super::{ask, assert_replays, pass, quiet};
-use crate::said::Step;
+use crate::report::Step;
 use crate::session::{Grip, Request, Session};
 use opruga::Options;
 

@@ -2,7 +2,7 @@
 
 use super::{arrive, assert_replays, integrator, no_refusal, open, pass};
 use opruga::core::spec::Value;
-use opruga_studio::said::Step;
+use opruga_studio::report::Step;
 use opruga_studio::session::{Edit, Placed, Request, Session};
 
 #[test]
@@ -40,7 +40,7 @@ fn a_body_turns_and_grows_about_its_middle() {
     };
     let (x, y, radius) = middle(&mut session);
     let placed = Placed { moved: [0.5, 0.25, 0.0], turned: 1.1, scaled: 2.0 };
-    session.handle(Request::Edit(Edit::Place("ball".into(), placed)));
+    session.handle(Request::Edit(Edit::Transform("ball".into(), placed)));
     no_refusal(&mut session);
     let (x2, y2, radius2) = middle(&mut session);
     // Pictures have the digits of single precision.
@@ -63,7 +63,7 @@ fn a_body_that_has_fallen_is_moved_turned_and_copied_from_where_it_is() {
     let [beside, level] = middle(&mut session, 1);
     assert!(beside > x + 0.9 && (level - y).abs() < 1e-6, "{beside} {level}");
     let placed = Placed { moved: [-1.0, 0.5, 0.0], turned: 0.3, scaled: 1.5 };
-    session.handle(Request::Edit(Edit::Place("ball".into(), placed)));
+    session.handle(Request::Edit(Edit::Transform("ball".into(), placed)));
     no_refusal(&mut session);
     let [x2, y2] = middle(&mut session, 1);
     assert!((x2 - x + 1.0).abs() < 1e-6 && (y2 - y - 0.5).abs() < 1e-6, "{x2} {y2}");
@@ -103,7 +103,7 @@ fn a_body_that_is_set_down_anew_keeps_the_name_by_which_it_is_known() {
     let moved = Placed { moved: [0.3, 0.0, 0.0], turned: 0.0, scaled: 1.0 };
     for _ in 0..2 {
         let name = session.shown().bodies[0].name.clone();
-        session.handle(Request::Edit(Edit::Place(name, moved)));
+        session.handle(Request::Edit(Edit::Transform(name, moved)));
         session.handle(Request::Step);
         assert_eq!(titles(&mut session), ["ball"]);
     }
@@ -185,7 +185,7 @@ fn a_body_goes_back_to_the_integrator_of_the_scene() {
 fn a_turn_and_a_scaling_are_undone_by_their_names() {
     let mut session = open("ball");
     let place = |moved: [f64; 3], turned: f64, scaled: f64| {
-        Request::Edit(Edit::Place("ball".into(), Placed { moved, turned, scaled }))
+        Request::Edit(Edit::Transform("ball".into(), Placed { moved, turned, scaled }))
     };
     for (request, step) in [
         (place([0.1, 0.0, 0.0], 0.0, 1.0), Step::Move),

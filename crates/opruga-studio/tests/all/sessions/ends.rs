@@ -4,8 +4,8 @@ use super::{arrive, no_refusal, open, pass, replayed};
 use opruga::Options;
 use opruga::core::spec::Value;
 use opruga::io::Files;
+use opruga_studio::report::Report;
 use opruga_studio::runner::{Copied, Link};
-use opruga_studio::said::Said;
 use opruga_studio::session::{Edit, Request, Session, by_the_clock};
 use opruga_studio::shown::{Offer, Severity, Show};
 use std::time::{Duration, Instant};
@@ -32,18 +32,20 @@ fn what_attracts_attention_at_the_end_of_a_scene_is_told_there_once() {
     assert!(session.shown().message.is_none() && !inverted(&mut session));
     pass(&mut session, 1);
     let message = session.shown().message.expect("it is told at the end");
-    assert_eq!(message.severity, Severity::Told);
+    assert_eq!(message.severity, Severity::Done);
     let told = |said: &str| said.contains("inside out");
-    assert!(matches!(&message.said, Said::AtTheEnd(time, list) if (time - 1.0).abs() < 1e-9 && told(&list[0].message)));
+    assert!(
+        matches!(&message.report, Report::AtTheEnd(time, list) if (time - 1.0).abs() < 1e-9 && told(&list[0].message))
+    );
     assert!(inverted(&mut session), "and stands with the other warnings");
     // Time goes on, and when the same end comes again nothing is told twice.
-    let told = session.told();
+    let message_count = session.message_count();
     pass(&mut session, 3);
     session.handle(Request::Seek(u64::from(end) - 3));
     arrive(&mut session);
     assert!(!inverted(&mut session), "before it nobody has looked");
     pass(&mut session, 5);
-    assert_eq!(session.told(), told);
+    assert_eq!(session.message_count(), message_count);
     // A scene in which nothing is odd ends in silence.
     let mut calm = of(CALM);
     pass(&mut calm, 8);
@@ -103,7 +105,7 @@ fn optional_fields_of_shapes_and_obstacles_are_given_no_longer() {
     // What has no such value stays, and it is said what helps.
     session.handle(Request::Unset("collider.0.size".into()));
     let message = session.shown().message.expect("a refusal");
-    assert_eq!(message.said, Said::AtTheStartAlone("collider.0.size".into()));
+    assert_eq!(message.report, Report::AtTheStartAlone("collider.0.size".into()));
     // Of a shape the field goes, at the start and later.
     let folder = std::env::temp_dir().join(format!("opruga-unset-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder");
@@ -165,25 +167,25 @@ fn where_nobody_can_be_asked_meanwhile_a_frame_that_takes_long_ends_by_the_clock
         let shown = session.shown();
         let message = shown.message.expect("a message");
         assert_eq!((shown.playing, shown.frames, message.severity), (false, 0, Severity::Refused));
-        (message.said, message.offer.expect("an offer"))
+        (message.report, message.offer.expect("an offer"))
     };
     session.handle(Request::Play(true));
     let begin = Instant::now();
     session.tick(Duration::from_millis(100), Duration::from_millis(8), &|| begin.elapsed());
     assert!(begin.elapsed() < Duration::from_secs(30), "{:?}", begin.elapsed());
-    assert_eq!(asked(&mut session), (Said::TakesLong(0.25), Offer::Wait(1.0)));
+    assert_eq!(asked(&mut session), (Report::TakesLong(0.25), Offer::Wait(1.0)));
     // It is waited for longer, for what was wanted, and still in vain; a single step waits as long then.
     session.handle(Request::Accept(Offer::Wait(1.0)));
     assert!(session.shown().playing && session.shown().message.is_none());
     session.tick(Duration::from_millis(100), Duration::from_millis(8), &|| begin.elapsed());
-    assert_eq!(asked(&mut session), (Said::TakesLong(1.0), Offer::Wait(4.0)));
+    assert_eq!(asked(&mut session), (Report::TakesLong(1.0), Offer::Wait(4.0)));
     session.handle(Request::Step);
-    assert_eq!(asked(&mut session), (Said::TakesLong(1.0), Offer::Wait(4.0)));
+    assert_eq!(asked(&mut session), (Report::TakesLong(1.0), Offer::Wait(4.0)));
     // What is on the way to a moment is broken off as well.
     session.handle(Request::Seek(3));
     session.tick(Duration::ZERO, Duration::from_millis(8), &|| begin.elapsed());
     assert!(!session.is_seeking());
-    assert_eq!(asked(&mut session), (Said::TakesLong(1.0), Offer::Wait(4.0)));
+    assert_eq!(asked(&mut session), (Report::TakesLong(1.0), Offer::Wait(4.0)));
     // Fewer substeps take no time, and nothing is asked.
     session.handle(Request::Set("time.substeps".into(), Value::Integer(40)));
     no_refusal(&mut session);
@@ -192,5 +194,5 @@ fn where_nobody_can_be_asked_meanwhile_a_frame_that_takes_long_ends_by_the_clock
     // Another scene is waited for as the first one was.
     session.handle(Request::Open { name: "it".into(), text, files: Files::default() });
     session.handle(Request::Step);
-    assert_eq!(asked(&mut session).0, Said::TakesLong(0.25));
+    assert_eq!(asked(&mut session).0, Report::TakesLong(0.25));
 }

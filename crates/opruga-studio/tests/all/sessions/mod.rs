@@ -34,7 +34,7 @@ fn pass(session: &mut Session, frames: u32) {
 
 fn no_refusal(session: &mut Session) {
     let message = session.shown().message;
-    assert!(message.as_ref().is_none_or(|m| m.severity == Severity::Told), "{message:?}");
+    assert!(message.as_ref().is_none_or(|m| m.severity == Severity::Done), "{message:?}");
 }
 
 fn refusal(session: &mut Session) -> String {

@@ -33,7 +33,7 @@ fn what_a_person_does_runs_to_the_same_bits_from_the_saved_scene() {
     session.handle(Request::Integrator(None, integrator("runge_kutta")));
     pass(&mut session, 30);
     let turned = Placed { moved: [0.3, 0.5, 0.0], turned: 0.7, scaled: 1.2 };
-    session.handle(Request::Edit(Edit::Place("small".into(), turned)));
+    session.handle(Request::Edit(Edit::Transform("small".into(), turned)));
     pass(&mut session, 30);
     session.handle(Request::Edit(Edit::Delete("ball".into())));
     pass(&mut session, 30);

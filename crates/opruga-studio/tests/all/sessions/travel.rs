@@ -191,7 +191,7 @@ fn a_slider_that_is_drawn_while_time_stands_still_is_one_edit_and_two_moves_are_
     for _ in 0..2 {
         let name = session.shown().bodies[0].name.clone();
         let placed = Placed { moved: [0.3, 0.0, 0.0], turned: 0.0, scaled: 1.0 };
-        session.handle(Request::Edit(Edit::Place(name, placed)));
+        session.handle(Request::Edit(Edit::Transform(name, placed)));
     }
     // Pictures have the digits of single precision.
     for moved in [0.6, 0.3, 0.0] {
@@ -211,7 +211,7 @@ fn from_a_scene_that_was_opened_there_is_a_way_back_to_what_was_done_in_the_one_
     session.handle(request.clone());
     pass(&mut session, 3);
     assert_eq!(session.name(), "pressures");
-    assert_eq!(session.shown().undo, Some(opruga_studio::said::Step::Open("ball".into())));
+    assert_eq!(session.shown().undo, Some(opruga_studio::report::Step::Open("ball".into())));
     session.handle(Request::Undo);
     assert_eq!((session.name(), session.hash(), session.saved()), ("ball", hash, saved));
     assert!(!session.is_moving());

@@ -376,7 +376,7 @@ fn the_window_looks_as_it_did_in_the_plane() {
     window.until("the start", |shown| shown.frames == 0 && shown.latest == 0);
     window.rest();
     let message = window.shown().message.clone();
-    assert!(message.is_none_or(|m| m.severity == Severity::Told));
+    assert!(message.is_none_or(|m| m.severity == Severity::Done));
     window.picture().assert_like("plane");
     window.click("Light");
     window.frames(30);

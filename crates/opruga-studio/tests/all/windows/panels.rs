@@ -4,7 +4,7 @@ use super::screen::window::{SIZE, Window, top_of};
 use egui::{Key, Modifiers, PointerButton, Role, Vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use opruga::core::spec::Value;
-use opruga_studio::said::Said;
+use opruga_studio::report::Report;
 use opruga_studio::session::{Edit, Request};
 use opruga_studio::shown::Severity;
 
@@ -114,7 +114,7 @@ fn models_whose_law_needs_one_of_two_fields_are_added_and_the_fields_take_each_o
     window.frames(10);
     window.click("nRT [J] instead of pressure");
     window.until("a quantity", |shown| shown.bodies[0].models[1].number("nRT").is_some());
-    assert!(window.shown().message.as_ref().is_none_or(|message| message.severity == Severity::Told));
+    assert!(window.shown().message.as_ref().is_none_or(|message| message.severity == Severity::Done));
 }
 
 #[test]
@@ -147,7 +147,7 @@ fn what_the_window_says_is_seen_after_what_the_session_has_said() {
     window.until("a refusal", |shown| shown.message.is_some());
     let says = |window: &Window| window.harness.query_by_label_contains("The link is copied").is_some();
     assert!(!says(&window));
-    window.harness.state_mut().as_mut().expect("a window").tell(Severity::Told, Said::LinkCopied);
+    window.harness.state_mut().as_mut().expect("a window").report(Severity::Done, Report::LinkCopied);
     window.frames(3);
     assert!(says(&window));
     // What is said by the session then is newer.

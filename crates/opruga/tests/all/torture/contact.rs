@@ -36,7 +36,7 @@ fn what_rests_wakes_when_something_changes() {
         ("place", &|world| {
             for node in 0..24 {
                 let [x, y] = world.position(0, node);
-                world.place_node(0, node, [x, y + 0.5], [0.0; 2]).expect("a node");
+                world.set_node(0, node, [x, y + 0.5], [0.0; 2]).expect("a node");
             }
         }),
     ];

@@ -264,7 +264,7 @@ fn comes_back(body: &Body, rule: &str, (what, spoil): &Spoil) -> Option<String> 
         .filter(|&[a, b]| (0..3).map(|d| (rest[a][d] - rest[b][d]).abs()).sum::<f64>() < 0.4)
         .collect();
     for (node, x) in rest.iter().enumerate() {
-        world.place_node(0, node as u32, spoil(*x, node), [0.0; 3]).expect("a node");
+        world.set_node(0, node as u32, spoil(*x, node), [0.0; 3]).expect("a node");
     }
     let energy = |world: &dyn AnyWorld| {
         let e = world.energy();
@@ -314,7 +314,7 @@ fn a_folded_and_a_crushed_curve_are_reported_and_a_bent_one_is_not() {
     // Edges fold back where they turn by more than 120°, and give way below 0.577 of their length.
     for (end, count) in [([2.0, 1.0], 0), ([1.0, 0.1], 1), ([2.57, 0.0], 1), ([2.59, 0.0], 0)] {
         let mut world = read(text).unwrap_or_else(|e| panic!("{}", e[0])).build(Options::default()).expect("a world");
-        world.place_node(0, 3, [end[0], end[1], 0.0], [0.0; 3]).expect("a node");
+        world.set_node(0, 3, [end[0], end[1], 0.0], [0.0; 3]).expect("a node");
         let found = world.warnings_at_the_end().into_iter().find(|warning| warning.code == "finite_difference.folded");
         assert_eq!(found.map_or(0, |warning| warning.count), count, "{end:?}");
     }

@@ -263,7 +263,7 @@ fn a_chamber_turned_inside_out_is_counted_and_makes_no_energy() {
     let mut world = built(plane(&text));
     for node in 0..24 {
         let [x, y] = world.position(0, node);
-        world.place_node(0, node, [-0.9 * x, y], [0.0; 2]).expect("a node");
+        world.set_node(0, node, [-0.9 * x, y], [0.0; 2]).expect("a node");
     }
     assert!(world.readings(0)[0].1 < 0.0, "{:?}", world.readings(0));
     let start = world.energy().total();

@@ -29,7 +29,7 @@ fn collapsed_bodies_recover() {
         let mut world = built(plane(&text));
         for node in 0..24 {
             let x = world.position(0, node);
-            world.place_node(0, node, spoil(node, x), [0.0; 2]).expect("a node");
+            world.set_node(0, node, spoil(node, x), [0.0; 2]).expect("a node");
         }
         for frame in 0..600 {
             world.frame().unwrap_or_else(|e| panic!("{name}, frame {frame}: {e}"));
@@ -76,7 +76,7 @@ fn collapsed_balloons_recover_or_say_why_not() {
         let mut world = built();
         for node in 0..world.node_count(0) as u32 {
             let x = world.position(0, node);
-            world.place_node(0, node, spoil(x), [0.0; 3]).expect("a node");
+            world.set_node(0, node, spoil(x), [0.0; 3]).expect("a node");
         }
         for frame in 0..400 {
             world.frame().unwrap_or_else(|e| panic!("{name}, frame {frame}: {e}"));
@@ -138,11 +138,11 @@ fn numbers_that_are_none_are_refused_and_leave_the_world_whole() {
     let (hash, energy) = (world.state_hash(), world.energy());
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         for (x, v) in [([bad, 0.0], [0.0; 2]), ([0.0; 2], [0.0, bad])] {
-            let error = world.place_node(0, 3, x, v).expect_err("no number");
+            let error = world.set_node(0, 3, x, v).expect_err("no number");
             assert!(error.to_string().starts_with("`body 0, node 3`: "), "{error}");
         }
     }
-    assert!(world.place_node(0, 24, [0.0; 2], [0.0; 2]).is_err(), "there is no such node");
+    assert!(world.set_node(0, 24, [0.0; 2], [0.0; 2]).is_err(), "there is no such node");
     assert!(world.add_force(2, std::sync::Arc::new(|_, _, _, _| [0.0; 2])).is_err(), "there is no such body");
     assert_eq!((world.state_hash(), world.energy()), (hash, energy));
     // A law that fails in the third frame from now, at one node of the second body.

@@ -3,12 +3,12 @@
 use opruga_core::system::Pin;
 use opruga_solve::dense::symmetric_eigen;
 
-/// Turns that the places of the pins do not tell of, as a part of those that they do.
+/// Turns that the positions of the pins do not show, as a part of those that they do.
 const NO_TURN: f64 = 1e-9;
 
-/// The lengths of the ways of pins from the start of their motions to a time [m]: along the axes that they hold, and less what a rigid
+/// How far pins have travelled from the start of their motions to a time [m]: along the axes that they hold, and less what a rigid
 /// motion has, in every piece of the motions the nearest one. What is carried or turned as a whole has gone no way.
-pub(crate) fn ways<const D: usize>(pins: &[&Pin<D>], time: f64) -> Vec<f64> {
+pub(crate) fn travel_lengths<const D: usize>(pins: &[&Pin<D>], time: f64) -> Vec<f64> {
     let mut out = vec![0.0; pins.len()];
     if pins.iter().all(|pin| pin.motion.is_empty()) {
         return out;
@@ -21,18 +21,19 @@ pub(crate) fn ways<const D: usize>(pins: &[&Pin<D>], time: f64) -> Vec<f64> {
     let mut before: Vec<[f64; D]> = pins.iter().map(|pin| pin.anchor).collect();
     for time in times {
         let after: Vec<[f64; D]> = pins.iter().map(|pin| pin.target(time).0).collect();
-        let held = |pin: &Pin<D>, step: [f64; D]| core::array::from_fn(|d| if pin.axes[d] { step[d] } else { 0.0 });
+        let along_pinned_axes =
+            |pin: &Pin<D>, step: [f64; D]| core::array::from_fn(|d| if pin.axes[d] { step[d] } else { 0.0 });
         let steps: Vec<[f64; D]> = pins
             .iter()
             .zip(before.iter().zip(&after))
-            .map(|(pin, (from, to))| held(pin, core::array::from_fn(|d| to[d] - from[d])))
+            .map(|(pin, (from, to))| along_pinned_axes(pin, core::array::from_fn(|d| to[d] - from[d])))
             .collect();
         // A chord of a turn is perpendicular to the arm to its middle.
         let middles: Vec<[f64; D]> =
             before.iter().zip(&after).map(|(from, to)| core::array::from_fn(|d| 0.5 * (from[d] + to[d]))).collect();
         let whole = nearest_rigid(&middles, &steps);
         for (k, pin) in pins.iter().enumerate() {
-            let own: [f64; D] = held(pin, core::array::from_fn(|d| steps[k][d] - whole[k][d]));
+            let own: [f64; D] = along_pinned_axes(pin, core::array::from_fn(|d| steps[k][d] - whole[k][d]));
             out[k] += own.iter().map(|x| x * x).sum::<f64>().sqrt();
         }
         before = after;
@@ -102,7 +103,7 @@ mod tests {
             let offset = (0..3).map(|d| to[d] - anchor[d] + speed[d] * t);
             core::iter::once(t).chain(offset).collect()
         };
-        Pin { place: 0, axes: [true; 3], anchor, motion: Arc::new((0..=720).map(row).collect()) }
+        Pin { index: 0, axes: [true; 3], anchor, motion: Arc::new((0..=720).map(row).collect()) }
     }
 
     #[test]
@@ -113,33 +114,33 @@ mod tests {
                 .map(|k| turning(f64::from(k / 4), angles[k as usize % 4], degrees[k as usize / 4], [3.0, 1e3, 2.0]))
                 .collect()
         };
-        let of = |pins: &[Pin<3>], time: f64| ways(&pins.iter().collect::<Vec<_>>(), time);
-        for way in of(&ends([1080.0; 2]), 2.0) {
-            assert!(way < 1e-9, "{way}");
+        let of = |pins: &[Pin<3>], time: f64| travel_lengths(&pins.iter().collect::<Vec<_>>(), time);
+        for travel in of(&ends([1080.0; 2]), 2.0) {
+            assert!(travel < 1e-9, "{travel}");
         }
         for (time, part) in [(0.0, 0.0), (0.5, 0.5), (1.0, 1.0), (7.0, 1.0)] {
-            for way in of(&ends([0.0, 1080.0]), time) {
+            for travel in of(&ends([0.0, 1080.0]), time) {
                 // Half of three turns at a radius of 1 m, by chords.
-                assert!((way - part * 3.0 * core::f64::consts::PI).abs() < 1e-3, "{way} at {time}");
+                assert!((travel - part * 3.0 * core::f64::consts::PI).abs() < 1e-3, "{travel} at {time}");
             }
         }
         let still = Pin { motion: Arc::new(Vec::new()), ..turning(0.0, 0.0, 0.0, [0.0; 3]) };
-        assert_eq!(ways(&[&still, &still], 1.0), [0.0; 2]);
+        assert_eq!(travel_lengths(&[&still, &still], 1.0), [0.0; 2]);
     }
 
     #[test]
     fn a_way_there_and_back_counts_twice_and_free_axes_do_not() {
         let pin = |x: f64, axes: [bool; 2], to: f64| Pin {
-            place: 0,
+            index: 0,
             axes,
             anchor: [x, 0.0],
             motion: Arc::new(vec![vec![1.0, 0.0, 0.0], vec![2.0, to, 5.0], vec![3.0, 0.0, 0.0]]),
         };
         let pins = [pin(0.0, [true, false], -1.0), pin(1.0, [true, false], 1.0)];
         let all: Vec<&Pin<2>> = pins.iter().collect();
-        for (time, way) in [(1.0, 0.0), (1.5, 0.5), (2.0, 1.0), (3.0, 2.0), (9.0, 2.0)] {
-            for found in ways(&all, time) {
-                assert!((found - way).abs() < 1e-12, "{found} at {time}");
+        for (time, travel) in [(1.0, 0.0), (1.5, 0.5), (2.0, 1.0), (3.0, 2.0), (9.0, 2.0)] {
+            for found in travel_lengths(&all, time) {
+                assert!((found - travel).abs() < 1e-12, "{found} at {time}");
             }
         }
     }

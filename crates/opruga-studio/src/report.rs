@@ -1,4 +1,4 @@
-//! What is said to the person, as data: the interface puts it into words of its language ([`crate::words`]).
+//! What is reported to the person, as data: the interface puts it into words of its language ([`crate::words`]).
 
 use crate::exploded::Exploded;
 use crate::view_errors::ViewError;
@@ -53,7 +53,7 @@ pub enum Step {
 
 /// What a message says.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Said {
+pub enum Report {
     /// What is wrong with a scene or its files.
     Scene(Vec<SceneError>),
     /// What a world refuses.
@@ -65,7 +65,7 @@ pub enum Said {
     /// A picture or a film cannot be made.
     NotDrawn(DrawError),
     /// This is wrong with what lies in a file of this name.
-    Inside(String, Box<Said>),
+    Inside(String, Box<Report>),
     /// A scene cannot be compressed.
     NotCompressed,
     /// A body has grown beyond every measure, and time stands.
@@ -140,38 +140,38 @@ pub enum Said {
     WindowLost(String),
 }
 
-impl core::fmt::Display for Said {
+impl core::fmt::Display for Report {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(&Language::English.said(self))
+        f.write_str(&Language::English.report(self))
     }
 }
 
-impl From<Vec<SceneError>> for Said {
-    fn from(errors: Vec<SceneError>) -> Said {
-        Said::Scene(errors)
+impl From<Vec<SceneError>> for Report {
+    fn from(errors: Vec<SceneError>) -> Report {
+        Report::Scene(errors)
     }
 }
 
-impl From<ViewError> for Said {
-    fn from(error: ViewError) -> Said {
-        Said::Recording(error)
+impl From<ViewError> for Report {
+    fn from(error: ViewError) -> Report {
+        Report::Recording(error)
     }
 }
 
-impl From<WriteError> for Said {
-    fn from(error: WriteError) -> Said {
-        Said::NotWritten(error)
+impl From<WriteError> for Report {
+    fn from(error: WriteError) -> Report {
+        Report::NotWritten(error)
     }
 }
 
-impl From<DrawError> for Said {
-    fn from(error: DrawError) -> Said {
-        Said::NotDrawn(error)
+impl From<DrawError> for Report {
+    fn from(error: DrawError) -> Report {
+        Report::NotDrawn(error)
     }
 }
 
-impl From<WorldError> for Said {
-    fn from(error: WorldError) -> Said {
-        Said::World(error)
+impl From<WorldError> for Report {
+    fn from(error: WorldError) -> Report {
+        Report::World(error)
     }
 }

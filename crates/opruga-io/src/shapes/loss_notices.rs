@@ -5,7 +5,7 @@ use crate::problem::SceneError;
 use opruga_math::words::rounded;
 use opruga_mesh::Mesh;
 use opruga_mesh::outline::{self, Cause, Ring, SMALLEST_ANGLE, Thin};
-use opruga_world::shapes::{LOST_AND_TOLD, Loss};
+use opruga_world::shapes::{Loss, REPORTED_LOSS};
 
 /// An outline that has so many times more points in its file than nodes loses detail that one may look for.
 const THINNED: usize = 4;
@@ -24,7 +24,7 @@ fn difference(before: f64, after: f64, unit: &'static str) -> Change {
 pub(crate) fn lost_volume<const D: usize>(filling: &Mesh<D>, loss: Loss, scale: f64) -> SceneError {
     let after = filling.measure().map_or(0.0, |measure| measure.value()) * (scale * scale * scale).abs();
     let change = difference(after / loss.kept, after, "m³");
-    let warned = 100.0 * LOST_AND_TOLD;
+    let warned = 100.0 * REPORTED_LOSS;
     let hint = match loss.finer {
         Some(spacing) => ShapeHint::SpacingKeeps { spacing, percent: warned },
         None => ShapeHint::SmallerSpacing {},
@@ -38,7 +38,7 @@ pub(super) fn remeshed(made: &Mesh<3>, before: &Mesh<3>, length: f64, scale: f64
     let (after, before) = (made.enclosed_volume() * cube, before.enclosed_volume() * cube);
     let (change, kept) = (difference(before, after, "m³"), rounded(after / before, 3));
     let notice = ShapeNotice::Remeshed { length, change, kept };
-    ((after / before - 1.0).abs() > LOST_AND_TOLD).then(|| SceneError::of(notice).advice(ShapeHint::SmallerRemesh {}))
+    ((after / before - 1.0).abs() > REPORTED_LOSS).then(|| SceneError::of(notice).advice(ShapeHint::SmallerRemesh {}))
 }
 
 /// That most points of an outline are left out, or much of its area, as the spacing of its nodes wants it: `given` points in the file, and the rings
@@ -47,7 +47,7 @@ pub(super) fn thinned(given: usize, before: &[Ring], rings: &[Ring], spacing: f6
     let nodes: usize = rings.iter().map(|ring| ring.points.len()).sum();
     let area = |rings: &[Ring]| rings.iter().map(Ring::area).sum::<f64>();
     let (whole, left) = (area(before), area(rings));
-    let (many, much) = (given > THINNED * nodes, (left / whole - 1.0).abs() > LOST_AND_TOLD);
+    let (many, much) = (given > THINNED * nodes, (left / whole - 1.0).abs() > REPORTED_LOSS);
     let change = || difference(whole, left, "m²");
     let notice = match (many, much) {
         (true, _) => ShapeNotice::Thinned { given, nodes, spacing, change: change() },
@@ -78,14 +78,14 @@ pub(super) fn thin(mesh: &Mesh<2>, thin: &Thin) -> SceneError {
         Cause::Finer => (ThinCause::Finer {}, ShapeHint::SmallerOrLattice {}),
         Cause::Unfinished => (ThinCause::Unfinished {}, ShapeHint::LargerOrLattice {}),
     };
-    let [angle, x, y] = [thin.angle, thin.place[0], thin.place[1]].map(|number| rounded(number, 3));
+    let [angle, x, y] = [thin.angle, thin.position[0], thin.position[1]].map(|number| rounded(number, 3));
     let (count, triangles, least) = (thin.count, mesh.cells.len(), SMALLEST_ANGLE);
     SceneError::of(ShapeNotice::ThinTriangles { count, triangles, least, angle, x, y, cause }).advice(hint)
 }
 
 /// Vertices that lie exactly where another one lies.
 pub(super) fn seams(mesh: &Mesh<3>) -> usize {
-    let mut places: Vec<[u64; 3]> = mesh.positions.iter().map(|p| p.map(|x| (x + 0.0).to_bits())).collect();
-    places.sort_unstable();
-    places.windows(2).filter(|pair| pair[0] == pair[1]).count()
+    let mut coordinates: Vec<[u64; 3]> = mesh.positions.iter().map(|p| p.map(|x| (x + 0.0).to_bits())).collect();
+    coordinates.sort_unstable();
+    coordinates.windows(2).filter(|pair| pair[0] == pair[1]).count()
 }

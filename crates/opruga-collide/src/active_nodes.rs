@@ -1,4 +1,4 @@
-//! Which nodes of a tile are held back, and by what.
+//! At which nodes of a tile a contact is active, and what a node meets.
 
 use crate::entries::numbers;
 use opruga_core::tile::TILE;
@@ -13,11 +13,11 @@ pub(crate) enum Meets {
     Everything,
 }
 
-/// Which nodes of a tile have been held back in this step: a bit each.
-pub(crate) struct Held(pub(crate) [u8; TILE / WIDTH]);
+/// At which nodes of a tile a contact has been active in this step: a bit each.
+pub(crate) struct ActiveNodes(pub(crate) [u8; TILE / WIDTH]);
 
-impl Held {
-    /// The nodes from `k` and so many more on, until the end of the pack at `k`: 1 if held, else 0.
+impl ActiveNodes {
+    /// The nodes from `k` and so many more on, until the end of the pack at `k`: 1 if active, else 0.
     #[inline(always)]
     pub(crate) fn numbers(&self, k: usize, offset: usize) -> [f64; WIDTH] {
         let bits = self.0.get(k / WIDTH).copied().unwrap_or(0) >> offset;
