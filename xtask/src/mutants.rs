@@ -71,8 +71,8 @@ const MUTANTS: [Mutant; 10] = [
     Mutant {
         name: "reader of TetGen",
         file: "crates/opruga-io/src/meshes/tetgen.rs",
-        text: "found.node(number, position, place);",
-        instead: "found.node(number + 1, position, place);",
+        text: "found.node(number, position, offset);",
+        instead: "found.node(number + 1, position, offset);",
         tests: &["--package", "opruga-io", "--test", "all", "mesh_round_trips::"],
     },
     // The differences between states lose their sign.
