@@ -113,9 +113,11 @@ pub fn compare(along: usize) -> Result<Table, String> {
     let cubes = cubes(&own);
     let mut rows = vec![of_rapier(&cubes, along, "Rapier, constraints, 4 steps", SoftBodySolver::Constraints)?];
     let real_time = [("integrator.kind", "backward_euler"), ("integrator.accuracy", "real_time")];
+    let barrier = [real_time[0], real_time[1], ("contact.response", "barrier")];
     let explicit = EXPLICIT.map(|substeps| (substeps, &[][..], "symplectic Euler"));
     let implicit = IMPLICIT.map(|substeps| (substeps, &real_time[..], "backward Euler, real time"));
-    for (substeps, settings, rule) in explicit.into_iter().chain(implicit) {
+    let by_barrier = [(IMPLICIT[0], &barrier[..], "backward Euler, real time, barrier")];
+    for (substeps, settings, rule) in explicit.into_iter().chain(implicit).chain(by_barrier) {
         let mut own = world(along, substeps, settings)?;
         let step = |world: &mut World<3>| world.frame().map(|_| ()).map_err(|e| e.to_string());
         let name = format!("Opruga, {rule}, {substeps} {}", if substeps == 1 { "step" } else { "steps" });

@@ -27,6 +27,7 @@ use crate::candidates::Candidates;
 use crate::closest::{closest_of_segments, closest_on_facet};
 use crate::gap::Gap;
 use crate::law::Laws;
+use crate::reach::around;
 use crate::reports;
 use crate::row::Row;
 use crate::rows::{key, meeting_time};
@@ -151,8 +152,16 @@ pub struct Barrier<const D: usize> {
     /// How much every point gives way: 1/k of its body there [m/N]; 0 where it is led.
     pub softness: Vec<f64>,
     candidates: Candidates<D>,
+    /// Around the points on their paths, and where they may be with the candidates at hand; empty where there are none.
     boxes: Vec<[[f64; D]; 2]>,
+    searched: Vec<[[f64; D]; 2]>,
+    /// The pairs that come within reach on the paths that were looked at last: features, and whether they are a vertex and a facet.
+    close: Vec<([u32; 2], bool)>,
 }
+
+/// The margin around the paths of points within which candidates stay, as a part of the longest path: corrections become shorter from one to the next.
+/// Without it, a search comes with every correction. What is found within reach does not depend on it.
+const MARGIN: f64 = 0.25;
 
 impl<const D: usize> Barrier<D> {
     /// A barrier of a reach [m].
@@ -160,7 +169,12 @@ impl<const D: usize> Barrier<D> {
         Barrier { reach, ..Barrier::default() }
     }
 
-    /// Looks for all pairs that may come within reach while the points go straight from x to y [m].
+    /// Forgets which pairs may come within reach: the surface may be another one.
+    pub fn forget(&mut self) {
+        self.searched.clear();
+    }
+
+    /// Looks for all pairs that may come within reach while the points go straight from x to y [m], unless those at hand are among the candidates.
     ///
     /// # Errors
     /// [`Trouble::TooMany`] above a limit.
@@ -171,17 +185,63 @@ impl<const D: usize> Barrier<D> {
         [x, y]: [&[[f64; D]]; 2],
         most: usize,
     ) -> Result<(), Trouble> {
+        let mut longest: f64 = 0.0;
         self.boxes.clear();
         self.boxes.extend(x.iter().zip(y).map(|(x, y)| {
+            longest = (0..D).fold(longest, |longest, d| (y[d] - x[d]).abs().larger(longest));
             let at = |choose: fn(f64, f64) -> f64| core::array::from_fn(|d| choose(x[d], y[d]));
             [at(|a, b| a.smaller(b)), at(|a, b| a.larger(b))]
         }));
+        let within = |([low, high], [least, most]): (&[[f64; D]; 2], &[[f64; D]; 2])| {
+            (0..D).all(|d| least[d] <= low[d] && high[d] <= most[d])
+        };
+        let known = self.searched.len() == self.boxes.len() && self.boxes.iter().zip(&self.searched).all(within);
         let distances = laws.largest_thickness().map(|thickness| thickness + self.reach);
-        if self.candidates.find(surface, &self.boxes, distances, most, |a, b| laws.meet(a, b)) {
-            Ok(())
-        } else {
-            Err(Trouble::TooMany { found: self.candidates.len() })
+        if !known {
+            self.search(surface, laws, distances, self.reach.larger(MARGIN * longest), most)?;
         }
+        let mut close = std::mem::take(&mut self.close);
+        close.clear();
+        close
+            .extend(self.pairs().filter(|(pair, with_facet)| self.comes_close(surface, distances, *pair, *with_facet)));
+        self.close = close;
+        Ok(())
+    }
+
+    /// Looks for the pairs that come within distances [m] while the points stay in their boxes, and within a margin [m] of these.
+    fn search(
+        &mut self,
+        surface: &Surface<D>,
+        laws: &Laws,
+        distances: [f64; 2],
+        margin: f64,
+        most: usize,
+    ) -> Result<(), Trouble> {
+        // Where a margin finds too many, none may find few enough.
+        for margin in [margin, 0.0] {
+            let wider = |[low, high]: &[[f64; D]; 2]| [low.map(|low| low - margin), high.map(|high| high + margin)];
+            self.searched.clear();
+            self.searched.extend(self.boxes.iter().map(wider));
+            if self.candidates.find(surface, &self.searched, distances, most, |a, b| laws.meet(a, b)) {
+                return Ok(());
+            }
+        }
+        self.forget();
+        Err(Trouble::TooMany { found: self.candidates.len() })
+    }
+
+    /// Whether the boxes of a pair come within reach on the paths that were looked at last: what a margin adds does not.
+    fn comes_close(&self, surface: &Surface<D>, distances: [f64; 2], [a, b]: [u32; 2], with_facet: bool) -> bool {
+        let at = |p: u32| self.boxes[p as usize];
+        let (first, second, points) = if with_facet {
+            let corners = &surface.facets[b as usize];
+            (at(a), around(at, corners), [a, corners[0]])
+        } else {
+            let [a, b] = [a, b].map(|edge| &surface.edges[edge as usize]);
+            (around(at, a), around(at, b), [a[0], b[0]])
+        };
+        let distance = distances[usize::from(points.iter().any(|p| surface.is_of_obstacle(*p)))];
+        (0..D).all(|d| first[0][d] <= second[1][d] + distance && second[0][d] - distance <= first[1][d])
     }
 
     /// The pairs that were found: features, and whether they are a vertex and a facet.
@@ -218,7 +278,7 @@ impl<const D: usize> Barrier<D> {
         [pair.points[0], pair.points[if with_facet { 1 } else { 2 }]].map(|p| surface.body[p as usize])
     }
 
-    /// The pairs within reach with the points at x [m].
+    /// The pairs within reach with the points at x [m], on the paths that were looked at last.
     ///
     /// # Errors
     /// [`Trouble::Meet`] where a pair is not apart.
@@ -230,7 +290,7 @@ impl<const D: usize> Barrier<D> {
         out: &mut Vec<Pressed<D>>,
     ) -> Result<(), Trouble> {
         out.clear();
-        for (features, with_facet) in self.pairs() {
+        for (features, with_facet) in self.close.iter().copied() {
             let pair = self.closest(surface, x, features, with_facet);
             let [a, b] = Self::bodies(surface, &pair, with_facet);
             let law = laws.of(a, b);
@@ -280,10 +340,10 @@ impl<const D: usize> Barrier<D> {
         if softness > 0.0 { 1.0 / softness } else { 0.0 }
     }
 
-    /// The part of the way from x to y that all pairs may go, each keeping a tenth of its gap; 1 where nothing is in the way.
+    /// The part of the paths from x to y, which were looked at last, that all pairs may go, each keeping a tenth of its gap; 1 where nothing is in their path.
     pub fn free_part(&self, surface: &Surface<D>, laws: &Laws, [x, y]: [&[[f64; D]]; 2]) -> f64 {
         let mut part: f64 = 1.0;
-        for (features, with_facet) in self.pairs() {
+        for (features, with_facet) in self.close.iter().copied() {
             let pair = self.closest(surface, x, features, with_facet);
             let [a, b] = Self::bodies(surface, &pair, with_facet);
             let thickness = laws.of(a, b).thickness;

@@ -6,6 +6,7 @@
 use crate::barrier_search::{Kept, Opened, Refused, Search, scaled};
 use crate::island::Island;
 use crate::meeting::{Meeting, Substep};
+use crate::pair_stiffness::PairStiffness;
 use crate::refusals::Refusal;
 use crate::staying::Staying;
 use opruga_collide::{Touching, Trouble};
@@ -105,6 +106,7 @@ impl<const D: usize> Meeting<D> {
             opened.push(Opened { island: pushed.island, first, step: begun? });
             first += island.system.nodes * D;
         }
+        let has_budget = opened.iter().all(|open| islands[open.island].integrator.has_budget());
         kept.most_halvings = opened.iter().map(|open: &Opened<D>| open.step.most_halvings()).min().unwrap_or(0);
         let mut x = self.touching.before[0].clone();
         self.touching.surface.follow(&mut x);
@@ -125,15 +127,17 @@ impl<const D: usize> Meeting<D> {
             x,
             pressed: Vec::new(),
             rubbing: Vec::new(),
+            stiffness: PairStiffness::default(),
             directions: Directions::default(),
             length: first,
             iterations: 0,
+            has_budget,
             converged: true,
             stretch: 1.0,
             staying,
         };
         search.find_softness()?;
-        search.find_end(std::mem::take(&mut kept.multipliers))?;
+        search.find_end(h, std::mem::take(&mut kept.multipliers))?;
         kept.multipliers = search.multipliers();
         search.close(whole)?;
         Ok(())

@@ -42,6 +42,7 @@ mod node_columns;
 mod node_forces;
 mod node_states;
 mod other_balances;
+mod pair_stiffness;
 mod path;
 mod path_faults;
 mod pin_travel;

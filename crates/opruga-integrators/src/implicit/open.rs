@@ -5,6 +5,7 @@ use super::contact_query::ContactQuery;
 use super::convergence::{count, finish};
 use super::direction::Keep;
 use super::ends::{Found, Ledger, Statics, commit, end, enter_end, enter_stage, open_ledger};
+use super::friction::SlipRule;
 use super::holding;
 use super::line_search::given_along;
 use super::linear::{Filter, Mixture};
@@ -17,6 +18,7 @@ use opruga_core::error::StepError;
 use opruga_core::open_step::OpenStep;
 use opruga_core::potential::Definiteness;
 use opruga_core::system::System;
+use opruga_math::Lane;
 use opruga_solve::blocks::isotropic;
 
 /// A step that has begun.
@@ -219,7 +221,8 @@ impl<R: Rule<D>, const D: usize> OpenStep<D> for Open<R, D> {
             return false;
         }
         let settings = Settings { solver: Solver::Auto, ..self.settings };
-        let verdict = judge(system, &mut self.workspace, &self.balance, &settings, settings.against_slide());
+        let slip = if settings.real_time { SlipRule::Projected } else { settings.against_slide() };
+        let verdict = judge(system, &mut self.workspace, &self.balance, &settings, slip);
         verdict.anew || verdict.unsettled
     }
     fn goal(&self) -> f64 {
@@ -227,7 +230,7 @@ impl<R: Rule<D>, const D: usize> OpenStep<D> for Open<R, D> {
     }
     fn most_iterations(&self) -> (u32, bool) {
         let accepts = self.settings.real_time || self.settings.otherwise == Otherwise::Accept;
-        (self.settings.iterations, accepts)
+        (self.settings.common_iterations, accepts)
     }
     fn most_halvings(&self) -> u32 {
         let halves = matches!(self.account, Account::Motion(_)) && self.settings.otherwise == Otherwise::Halve;
@@ -239,7 +242,15 @@ impl<R: Rule<D>, const D: usize> OpenStep<D> for Open<R, D> {
         let solved = Solved { iterations, converged, ..Solved::default() };
         evaluate(system, workspace, &balance, false)?;
         count(system, &solved);
-        system.work.solver.accepted += u64::from(!converged);
+        let work = &mut system.work.solver;
+        match converged {
+            true => {}
+            false if self.settings.real_time => {
+                let left = workspace.step.iter().fold(0.0, |most: f64, moved| moved.abs().larger(most));
+                (work.cut_off, work.left) = (work.cut_off + 1, left.larger(work.left));
+            }
+            false => work.accepted += 1,
+        }
         match account {
             Account::Motion(ledger) => {
                 end(rule, system, workspace, &balance, balance.h);

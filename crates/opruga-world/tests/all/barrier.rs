@@ -156,7 +156,7 @@ fn bodies_that_buckle_find_an_end() {
 /// Bodies at rest come to their common balance by a barrier: each is carried by its weight, where a constraint would leave it.
 #[test]
 fn stacks_come_to_their_balance() {
-    for (bodies, friction) in [(2, 0.0), (2, 0.5), (3, 0.5)] {
+    for (bodies, friction) in [(2, 0.0), (2, 0.5), (3, 0.3), (3, 0.5), (3, 0.8)] {
         let scene = crate::rest_together::high_stack(bodies, friction);
         let by = |response: &str| {
             let mut scene = scene.clone();

@@ -1,0 +1,84 @@
+//! The second derivatives of what acts between bodies: a matrix for each pair, over the coordinates of its nodes.
+//!
+//! ```text
+//! y += Gᵀ S G x,   S = κ m b″ n nᵀ, or ∂²D/∂s² of friction
+//! ```
+//!
+//! G takes the coordinates to the relative motion of a pair.
+
+use opruga_collide::{Pressed, Rubbing, Surface};
+
+/// All pairs whose matrix is not zero.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct PairStiffness<const D: usize> {
+    pairs: Vec<Pair<D>>,
+    /// First coordinates of nodes and their weights, pair by pair.
+    nodes: Vec<(u32, f64)>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Pair<const D: usize> {
+    /// The end of its nodes.
+    end: u32,
+    /// S [N/m].
+    matrix: [[f64; D]; D],
+    /// How its points of obstacles still move relative to one another [m].
+    obstacles: [f64; D],
+}
+
+impl<const D: usize> PairStiffness<D> {
+    /// Takes the pairs that press, and their friction after these displacements [m]. `coordinates` gives the body and the first coordinate of a point,
+    /// and `ahead` how far points of obstacles still have to go [m].
+    pub(crate) fn take(
+        &mut self,
+        (pressed, rubbing): (&[Pressed<D>], &[Rubbing<D>]),
+        moved: &[[f64; D]],
+        (surface, coordinates): (&Surface<D>, &[Option<(usize, usize)>]),
+        ahead: &[[f64; D]],
+    ) {
+        self.pairs.clear();
+        self.nodes.clear();
+        let mut add = |points: &[u32; 4], weights: &[f64; 4], matrix| {
+            let mut obstacles = [0.0; D];
+            for (p, w) in points.iter().zip(weights).filter(|(_, w)| **w != 0.0) {
+                (0..D).for_each(|d| obstacles[d] += w * ahead[*p as usize][d]);
+                surface.visit_nodes(*p, |node, share| {
+                    if let Some((_, at)) = coordinates[node as usize] {
+                        self.nodes.push((at as u32, w * share));
+                    }
+                });
+            }
+            self.pairs.push(Pair { end: self.nodes.len() as u32, matrix, obstacles });
+        };
+        for pair in pressed.iter().filter(|pair| pair.curvature != 0.0) {
+            let n = &pair.normal;
+            let matrix = core::array::from_fn(|i| core::array::from_fn(|j| pair.curvature * n[i] * n[j]));
+            add(&pair.points, &pair.weights, matrix);
+        }
+        for rub in rubbing {
+            // The columns of a symmetric matrix are its rows.
+            let slip = rub.slip(moved);
+            let unit = |d: usize| core::array::from_fn(|k| f64::from(u8::from(k == d)));
+            add(&rub.points, &rub.weights, core::array::from_fn(|d| rub.stiffen(&slip, &unit(d))));
+        }
+    }
+
+    /// y += Gᵀ S G x; `with_obstacles` adds what obstacles do to the motion.
+    pub(crate) fn multiply(&self, x: &[f64], with_obstacles: bool, y: &mut [f64]) {
+        let mut first = 0;
+        for pair in &self.pairs {
+            let nodes = &self.nodes[first..pair.end as usize];
+            first = pair.end as usize;
+            let mut motion = if with_obstacles { pair.obstacles } else { [0.0; D] };
+            for (at, weight) in nodes {
+                let x = &x[*at as usize..*at as usize + D];
+                (0..D).for_each(|d| motion[d] += weight * x[d]);
+            }
+            let force: [f64; D] = core::array::from_fn(|i| (0..D).map(|j| pair.matrix[i][j] * motion[j]).sum::<f64>());
+            for (at, weight) in nodes {
+                let y = &mut y[*at as usize..*at as usize + D];
+                (0..D).for_each(|d| y[d] += weight * force[d]);
+            }
+        }
+    }
+}
