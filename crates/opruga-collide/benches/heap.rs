@@ -141,7 +141,7 @@ fn run(columns: usize, rows: usize, frames: usize) {
         }
         common::report(10 * block, touch, free, &heap.touching.counts, points, &heap.touching.after[0]);
     }
-    println!("{:.0} bytes a vertex", heap.touching.heap_bytes() as f64 / points as f64);
+    common::report_memory(&heap.touching, points);
 }
 
 fn main() {

@@ -173,7 +173,7 @@ fn run(edge: usize, frames: usize) {
         }
         common::report(10 * block, touch, free, &pile.touching.counts, points, &pile.x);
     }
-    println!("{:.0} bytes a vertex", pile.touching.heap_bytes() as f64 / points as f64);
+    common::report_memory(&pile.touching, points);
 }
 
 fn main() {

@@ -1,6 +1,6 @@
 //! What the benchmarks of contact between bodies share: walls, and a line for ten frames.
 
-use opruga_collide::Counts;
+use opruga_collide::{Counts, Touching};
 use opruga_core::contacts::Touch;
 
 /// A plane: axis, position, sign of the normal.
@@ -62,5 +62,17 @@ pub(crate) fn report<const D: usize>(
         of(counts.pairs),
         of(counts.contacts),
         of(counts.turns),
+    );
+}
+
+/// Prints the memory of contact by vertices, and by candidates beyond 400 bytes a vertex: those of the last frames on average.
+pub(crate) fn report_memory<const D: usize>(touching: &Touching<D>, vertices: usize) {
+    let bytes = touching.heap_bytes() as f64;
+    let candidates = touching.counts.candidates as f64 / touching.counts.steps as f64;
+    let of_candidate = (bytes - 400.0 * vertices as f64) / candidates;
+    println!(
+        "{:.0} bytes a vertex at {:.1} candidates a vertex: beside 400 bytes a vertex, {of_candidate:.0} a candidate",
+        bytes / vertices as f64,
+        candidates / vertices as f64
     );
 }
