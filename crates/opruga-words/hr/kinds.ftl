@@ -437,6 +437,57 @@ shape-mesh-inverted = izvrnute ćelije
 shape-mesh-unreferenced = suvišni čvorovi
     .about = Što biva s čvorovima koje ne imenuje nijedna ćelija: pogreška, ili izostavljanje i brojanje.
 
+## Fields of the sections of a scene: those that it cannot leave out
+
+scene-scene-format = format
+    .about = Inačica formata: `opruga-1`.
+scene-scene-dimension = dimenzija
+    .about = 2 za ravninu, 3 za prostor.
+scene-time-seconds = trajanje
+    .about = Koliko prizor traje.
+scene-body-name = ime
+    .about = Ime tijela, jedino u prizoru.
+scene-copies-spacing = razmak
+    .about = Razmak od kopije do kopije duž svake osi.
+scene-contact_pair-first = prva
+    .about = Skupina.
+scene-contact_pair-second = druga
+    .about = Druga skupina, ili ista: tada njezina tijela među sobom.
+scene-probe-name = ime
+    .about = Prvi dio imena stupaca, jedini u prizoru.
+scene-ball-center = središte
+    .about = Središte.
+scene-ball-radius = polumjer
+    .about = Polumjer.
+scene-half_space-point = točka
+    .about = Točka ravnine.
+scene-half_space-normal = normala
+    .about = Normala, bilo koje duljine osim nule.
+scene-force-value = vrijednost
+    .about = Sila na svaki čvor.
+scene-central_force-value = vrijednost
+    .about = Sila na svaki čvor; negativna vuče od točke.
+scene-central_force-center = središte
+    .about = Točka, ista za sve kopije.
+scene-traction-value = vrijednost
+    .about = Sila po površini.
+scene-pressure-value = vrijednost
+    .about = Tlak; pozitivan tlači prema unutra.
+scene-body_force-value = vrijednost
+    .about = Sila po obujmu.
+scene-every-at = početak
+    .about = Kad počinje: s prvom sličicom koja počinje tada ili kasnije.
+scene-every-until = kraj
+    .about = Kad završava: s prvom sličicom koja počinje tada ili kasnije.
+scene-drag-path = put
+    .about = Put pokazivača.
+scene-push-force = sila
+    .about = Sila na svaki čvor.
+scene-set-path = put
+    .about = Parametar: `body.IME.models.VRSTA.polje` (`IME` tijela s kopijama: sve njih), `body.IME.integrator.polje`, `integrator.polje`, `world.polje`, `collider.BROJ.polje` ili `time.substeps`.
+scene-remove-body = tijelo
+    .about = Ime tijela, iz prizora ili dodanog prije toga.
+
 ## Words that parameters take
 
 choice-constraint = ograničenje

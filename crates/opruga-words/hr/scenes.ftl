@@ -98,6 +98,7 @@ part-scene_allowed-HolesInside = rupe u prstenu pozitivnog polumjera
 
 ## SceneHint
 
+part-scene_hint-Purpose = { ABOUT($field) }
 part-scene_hint-NoQuotes = napiši to bez navodnika
 part-scene_hint-DecimalPoint = veći broj napiši s decimalnom točkom
 part-scene_hint-Misspelt = `{ $word }` je krivo napisano

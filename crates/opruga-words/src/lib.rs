@@ -5,7 +5,8 @@
 //! `.hint` are the texts of these names. A field is a variable; where it is a message itself, its own entry is taken. A selector
 //! compares a count with numbers and with plural categories of the language, a text with itself, a message with its variant, and
 //! `none` with a field that is not there. `NUMBER` knows `maximumSignificantDigits`, which is 6 without it. `ALLOWED` is what a field
-//! that is a message says is allowed, `HINT` what it says would help, and where it says nothing the text of the next field.
+//! that is a message says is allowed, `HINT` what it says would help, and where it says nothing the text of the next field. `ABOUT` is
+//! the line about the parameter whose path a field has. An entry that comes out empty is no translation: English takes its place.
 //!
 //! # Source
 //! Project Fluent, "Fluent Syntax Guide", <https://projectfluent.org/fluent/guide/>; Unicode CLDR, "Language Plural Rules".
@@ -83,7 +84,7 @@ impl Translation {
     /// What a message says; none where the translation does not know it.
     pub fn text(&self, message: &dyn Message) -> Option<String> {
         let pattern = self.entry(message)?.value.as_ref()?;
-        Some(self.resolved(pattern, &message.fields()))
+        Some(self.resolved(pattern, &message.fields())).filter(|text| !text.is_empty())
     }
 
     /// What a message says, in English where the translation does not know it.
@@ -135,6 +136,16 @@ impl Translation {
         texts.flatten().next().unwrap_or_default()
     }
 
+    /// The line about the parameter whose path a field has; empty where the language has none.
+    fn about(&self, arguments: &CallArguments<&'static str>, fields: &[(&'static str, Field)]) -> String {
+        let Some(InlineExpression::VariableReference { id }) = arguments.positional.first() else {
+            return String::new();
+        };
+        let path = field(fields, id.name).map_or_else(String::new, Field::to_string);
+        let [part, kind, parameter] = path.split('-').collect::<Vec<_>>()[..] else { return String::new() };
+        self.named_parameter(part, kind, parameter).map_or_else(String::new, |known| known.about.into())
+    }
+
     fn entry(&self, message: &dyn Message) -> Option<&Known<&'static str>> {
         self.entries.get(&*entry_name(message.code(), message.variant()))
     }
@@ -162,6 +173,7 @@ impl Translation {
             Expression::Inline(InlineExpression::Placeable { expression }) => self.filled(expression, fields),
             Expression::Inline(InlineExpression::FunctionReference { id, arguments }) => match id.name {
                 "NUMBER" => number_of(arguments, fields),
+                "ABOUT" => self.about(arguments, fields),
                 name => self.beside_of(name, arguments, fields),
             },
             Expression::Inline(InlineExpression::MessageReference { id, .. }) => {

@@ -1,12 +1,14 @@
 //! The Croatian texts are those of the messages that the crates have, no more and no fewer.
 
 use opruga_core::error::StepError;
+use opruga_core::spec::{Default, Spec};
 use opruga_integrators::refusals::StepHint;
-use opruga_math::message::{Message as _, Variant};
+use opruga_math::message::{AnyMessage, Message as _, Variant};
 use opruga_models::fem::Refusal;
 use opruga_words::Translation;
 use opruga_world::WorldError;
-use std::collections::BTreeMap;
+use opruga_world::schema::{self, Holds, Section};
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 #[path = "../../opruga-cli/src/errors.rs"]
@@ -105,6 +107,78 @@ fn what_a_model_refuses_in_a_step_comes_with_what_helps_under_the_settings_of_th
         english.ends_with("; hint: `when_not_converged = \"halve\"`, more `load_steps`, or more `iterations`"),
         "{english}"
     );
+}
+
+/// A field that a scene leaves out is explained by its documentation. Croatian has a line about it; for a kind that a program adds and
+/// does not name, English takes its place.
+#[test]
+fn a_missing_field_is_explained_in_both_languages() {
+    let hints = |text: &str| {
+        let text = format!("format = \"opruga-1\"\ndimension = 2\nintegrator = \"verlet\"\n{text}");
+        let options = opruga_io::scene::Options::default();
+        let read = opruga_io::scene::read(text.as_bytes(), "s.toml", &opruga::catalogue(), &options);
+        let error = read.expect_err("a field is missing").remove(0);
+        let croatian = error.clone().translated(Some(Translation::croatian())).hint;
+        (error.hint.expect("a hint"), croatian.expect("a hint"))
+    };
+    let wanted = [
+        ("[time]", "How long the scene lasts.", "Koliko prizor traje."),
+        (
+            "time = { seconds = 1 }\n[[collider]]\nkind = \"half_space\"\npoint = [0, 0]",
+            "Direction out of the solid.",
+            "Smjer iz krutine.",
+        ),
+    ];
+    for (text, english, croatian) in wanted {
+        assert_eq!(hints(text), (english.into(), croatian.into()), "{text}");
+    }
+    let added: AnyMessage = Added::Purpose { field: "model-own_model-own_rate".into() }.into();
+    assert_eq!(Translation::croatian().text(&*added), None);
+    assert_eq!(Translation::croatian().text_or_english(&*added), "A rate of its own.");
+}
+
+opruga_math::messages! {
+    /// The explanation of a field of a kind that a program adds.
+    #[derive(Clone, Debug, PartialEq)]
+    enum Added {
+        "part.scene_hint" #[error("A rate of its own.")]
+        Purpose { field: String },
+    }
+}
+
+/// Of the sections of a scene, every field that has no default has a line in Croatian, and no other field has one.
+#[test]
+fn what_a_scene_cannot_leave_out_has_a_croatian_line() {
+    let mut named = BTreeSet::new();
+    let mut missing = Vec::new();
+    let mut check = |spec: &Spec| {
+        let kind = spec.kind.replace('.', "_");
+        for field in spec.fields.iter().filter(|field| field.default == Default::Required) {
+            named.extend([&*kind, "every"].map(|kind| format!("scene-{kind}-{}", field.name)));
+            if Translation::croatian().named_parameter("scene", &kind, field.name).is_none_or(|it| it.about.is_empty())
+            {
+                missing.push(format!("{kind}-{}", field.name));
+            }
+        }
+    };
+    schema::SELECTORS.iter().for_each(&mut check);
+    of_section(&schema::SCENE, &mut check);
+    assert!(missing.is_empty(), "{missing:?}");
+    let paths = Translation::croatian().paths();
+    let stale: Vec<_> = paths.iter().filter(|path| path.starts_with("scene-") && !named.contains(**path)).collect();
+    assert!(stale.is_empty(), "{stale:?}");
+}
+
+/// A section and all within it.
+fn of_section(section: &'static Section, check: &mut impl FnMut(&Spec)) {
+    check(section.spec);
+    for child in section.children {
+        match child.holds {
+            Holds::Table(inner) | Holds::List(inner) | Holds::VectorOr(inner) => of_section(inner, check),
+            Holds::Tagged { sections, .. } => sections.iter().for_each(|inner| of_section(inner, check)),
+            _ => {}
+        }
+    }
 }
 
 #[test]

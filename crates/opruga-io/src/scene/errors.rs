@@ -1,6 +1,7 @@
 //! What the reader of scenes refuses and warns of, by what it is about.
 
-use opruga_core::spec::ConditionText;
+use opruga_core::spec::{self, ConditionText};
+use opruga_math::message::{Field, IntoField};
 use opruga_math::words::{counted, number};
 use opruga_math::{messages, terms};
 use opruga_mesh::MeshError;
@@ -58,6 +59,28 @@ terms! {
     }
 }
 
+/// A field of a kind or of a section. A translation has a line about it among its names of kinds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct FieldOf {
+    /// What the kind is a kind of; none for a section of the format.
+    pub part: Option<Part>,
+    pub kind: &'static str,
+    pub about: &'static spec::Field,
+}
+
+impl IntoField for FieldOf {
+    fn field(&self) -> Field {
+        let part = match self.part {
+            Some(Part::Shape) => "shape",
+            Some(Part::Model) => "model",
+            Some(Part::Integrator) => "integrator",
+            Some(Part::Collider) => "obstacle",
+            Some(Part::Load | Part::Command) | None => "scene",
+        };
+        Field::Text(format!("{part}-{}-{}", self.kind.replace('.', "_"), self.about.name))
+    }
+}
+
 messages! {
     /// What is allowed where the message does not say it.
     #[derive(Clone, Debug, PartialEq)]
@@ -95,6 +118,8 @@ messages! {
     /// What helps where the message does not say it.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum SceneHint {
+        "part.scene_hint" #[error("{}", field.about.documentation)]
+        Purpose { field: FieldOf },
         "part.scene_hint" #[error("write it without quotes")]
         NoQuotes {},
         "part.scene_hint" #[error("write a larger number with a decimal point")]

@@ -1,7 +1,7 @@
 //! The reader's common ground: reports, tables by specification, words and their nearest neighbours.
 
 use super::Options;
-use super::errors::{FieldError, Part, SceneAllowed, SceneHint, Wanted};
+use super::errors::{FieldError, FieldOf, Part, SceneAllowed, SceneHint, Wanted};
 use crate::catalogue::{Catalogue, find};
 use crate::document::{Data, Entry, Location, Node};
 use crate::problem::{MOST_SHOWN, Notice, SceneError, visible};
@@ -175,6 +175,18 @@ impl<'a> Reader<'a> {
     /// The plain fields of a table, checked; errors and missing fields are reported and leave the default. Structured
     /// fields are left to the caller, who reads them by their names.
     pub(crate) fn fields(&mut self, node: &Node, path: &str, section: &Section, tag: Option<&'static str>) -> Values {
+        self.fields_of(None, node, path, section, tag)
+    }
+
+    /// The same for a table that describes a kind of a part, or for a section of the format.
+    fn fields_of(
+        &mut self,
+        part: Option<Part>,
+        node: &Node,
+        path: &str,
+        section: &Section,
+        tag: Option<&'static str>,
+    ) -> Values {
         let mut values = Values::defaults(section.spec, self.dimension);
         if !matches!(node.data, Data::Table(_)) {
             self.wrong_type(node, path, Wanted::Table);
@@ -194,7 +206,7 @@ impl<'a> Reader<'a> {
             }
         }
         let meant = self.misspelt(node, section, tag);
-        self.missing(node, path, section, &meant);
+        self.missing(part, node, path, section, &meant);
         self.choices(node, path, section.spec, &meant);
         self.without_effect(node, path, section.spec, &values);
         values
@@ -259,7 +271,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Reports all missing fields of a table at once, but for those that are meant by a misspelt name.
-    fn missing(&mut self, node: &Node, path: &str, section: &Section, meant: &[String]) {
+    fn missing(&mut self, part: Option<Part>, node: &Node, path: &str, section: &Section, meant: &[String]) {
         let plain = section.spec.fields.iter().filter(|f| f.default == Default::Required).map(|f| f.name);
         let structured = section.children.iter().filter(|c: &&Child| c.required).map(|c| c.name);
         let missing: Vec<&str> = plain
@@ -276,7 +288,8 @@ impl<'a> Reader<'a> {
         };
         let mut error = SceneError::of(about).path(join(path, missing[0]));
         if let Some(field) = section.spec.fields.iter().find(|f| f.name == missing[0] && missing.len() == 1) {
-            error = error.allows(field.range.describe(self.dimension)).hint(field.documentation);
+            let purpose = SceneHint::Purpose { field: FieldOf { part, kind: section.spec.kind, about: field } };
+            error = error.allows(field.range.describe(self.dimension)).advice(purpose);
         }
         self.report(node.location, error);
     }
@@ -317,7 +330,7 @@ impl<'a> Reader<'a> {
             self.report(location, SceneError::of(about).path(join(path, "kind")));
             return None;
         }
-        Some(self.fields(node, path, &Section { spec, children: &[] }, Some("kind")))
+        Some(self.fields_of(Some(what), node, path, &Section { spec, children: &[] }, Some("kind")))
     }
 
     /// `integrator`: a table, or the word alone where its defaults will do.
