@@ -10,40 +10,40 @@ messages! {
         "collider.kind" #[error("there is no such collider in {dimension}D")]
         Kind { dimension: usize },
         /// A hollow ball that its thickness fills.
-        "collider.no_room" #[error("`thickness` is {thickness}")] #[allowed("less than the radius {radius}")]
+        "collider.no_room" #[error("`thickness` is {thickness}")] #[parameters("thickness")] #[allowed("less than the radius {radius}")]
         FilledBall { thickness: f64, radius: f64 },
         /// A hollow box that its thickness fills.
-        "collider.no_room" #[error("`thickness` is {thickness}")] #[allowed("less than half of every side, {half}")]
+        "collider.no_room" #[error("`thickness` is {thickness}")] #[parameters("thickness")] #[allowed("less than half of every side, {half}")]
         FilledBox { thickness: f64, half: f64 },
         /// A normal without a direction.
-        "collider.no_direction" #[error("`normal` is {normal}")] #[allowed("a vector of a length above {least}")]
+        "collider.no_direction" #[error("`normal` is {normal}")] #[parameters("normal")] #[allowed("a vector of a length above {least}")]
         NoNormal { normal: String, least: String },
         /// A capsule without a direction.
-        "collider.no_direction" #[error("`a` is {a} and `b` is {b}")] #[allowed("two different points (one point is a `ball`)")]
+        "collider.no_direction" #[error("`a` is {a} and `b` is {b}")] #[parameters("a", "b")] #[allowed("two different points (one point is a `ball`)")]
         NoAxis { a: String, b: String },
         /// A box that is given twice or not at all.
-        "collider.box_fields" #[error("needs either `min` and `max`, or `center` and `size`")]
+        "collider.box_fields" #[error("needs either `min` and `max`, or `center` and `size`")] #[parameters("min", "max", "center", "size")]
         BoxFields {},
         /// A box whose corners are the wrong way round.
-        "collider.empty_box" #[error("`max` is {max} and `min` is {min}")] #[allowed("every coordinate of `max` above that of `min`")]
+        "collider.empty_box" #[error("`max` is {max} and `min` is {min}")] #[parameters("max", "min")] #[allowed("every coordinate of `max` above that of `min`")]
         EmptyCorners { max: String, min: String },
         /// A box without a size.
-        "collider.empty_box" #[error("`size` is {size}")] #[allowed("lengths above 0")]
+        "collider.empty_box" #[error("`size` is {size}")] #[parameters("size")] #[allowed("lengths above 0")]
         EmptySize { size: String },
         /// Points that are too far apart, or none.
-        "collider.points" #[error("`points` has {count} points from {low} to {high}")] #[allowed("at least one, within 1e100 m of each other")]
+        "collider.points" #[error("`points` has {count} points from {low} to {high}")] #[parameters("points")] #[allowed("at least one, within 1e100 m of each other")]
         FarPoints { count: usize, low: String, high: String },
         /// A curve of too few points.
-        "collider.points" #[error("`points` has {count} points")] #[allowed("at least {least}")]
+        "collider.points" #[error("`points` has {count} points")] #[parameters("points")] #[allowed("at least {least}")]
         FewPoints { count: usize, least: usize },
         /// Points without an extent.
         "collider.points" #[error("the points have no extent")]
         NoExtent {},
         /// A hull without an area.
-        "collider.flat_hull" #[error("the hull of the {count} `points` has no area")] #[allowed("points that are not all on one line")]
+        "collider.flat_hull" #[error("the hull of the {count} `points` has no area")] #[parameters("points")] #[allowed("points that are not all on one line")]
         NoArea { count: usize },
         /// A hull without a volume.
-        "collider.flat_hull" #[error("the hull of the {count} `points` has no volume")] #[allowed("points that are not all on one plane")]
+        "collider.flat_hull" #[error("the hull of the {count} `points` has no volume")] #[parameters("points")] #[allowed("points that are not all on one plane")]
         NoVolume { count: usize },
         /// A segment without a length.
         "collider.degenerate_facet" #[error("points {first} and {second} are both {position}")] #[allowed("segments of a length above 0")]
@@ -52,10 +52,10 @@ messages! {
         "collider.degenerate_facet" #[error("triangle {triangle} with points {points} has no area")] #[allowed("triangles with an area")]
         FlatTriangle { triangle: usize, points: String },
         /// Numbers that make no triangles.
-        "collider.triangles" #[error("`triangles` has {count} numbers")] #[allowed("three per triangle, at least one triangle")]
+        "collider.triangles" #[error("`triangles` has {count} numbers")] #[parameters("triangles")] #[allowed("three per triangle, at least one triangle")]
         Triangles { count: usize },
         /// A point that is not there.
-        "collider.triangles" #[error("`triangles` names point {point}")] #[allowed("0 to {last}")]
+        "collider.triangles" #[error("`triangles` names point {point}")] #[parameters("triangles")] #[allowed("0 to {last}")]
         NoPoint { point: u32, last: usize },
     }
 }

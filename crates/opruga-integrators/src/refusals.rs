@@ -33,25 +33,25 @@ messages! {
     pub enum Refusal {
         /// A rule that damps slow motions little, in real time.
         "integrator.real_time"
-        #[error("`accuracy` is \"real_time\", whose steps leave a part out of balance; `{integrator}` with `spectral_radius` = {} damps slow motions hardly, and hands that part on with the acceleration that it remembers", number(*radius))]
+        #[error("`accuracy` is \"real_time\", whose steps leave a part out of balance; `{integrator}` with `spectral_radius` = {} damps slow motions hardly, and hands that part on with the acceleration that it remembers", number(*radius))] #[value("\"real_time\"")] #[parameters("accuracy", "spectral_radius")]
         #[allowed("\"exact\"")] #[hint("`backward_euler` and `bdf2` have a real-time setting")]
         DampsLittle { integrator: &'static str, radius: f64 },
         /// A rule that damps nothing, in real time.
         "integrator.real_time"
-        #[error("`accuracy` is \"real_time\", whose steps leave a part out of balance; `{integrator}` damps nothing, and would add it up without end")]
+        #[error("`accuracy` is \"real_time\", whose steps leave a part out of balance; `{integrator}` damps nothing, and would add it up without end")] #[value("\"real_time\"")] #[parameters("accuracy")]
         #[allowed("\"exact\"")] #[hint("`backward_euler` and `bdf2` have a real-time setting")]
         DampsNothing { integrator: &'static str },
         /// No matrix to keep.
-        "integrator.no_matrix" #[error("`linear_solver` is \"matrix_free\", and `accuracy` is \"real_time\", which keeps a matrix")]
+        "integrator.no_matrix" #[error("`linear_solver` is \"matrix_free\", and `accuracy` is \"real_time\", which keeps a matrix")] #[value("\"matrix_free\"")] #[parameters("linear_solver", "accuracy")]
         #[allowed("\"auto\", \"conjugate_gradients\", \"cholesky\"")]
         MatrixFreeInRealTime {},
         /// No matrix to factor.
-        "integrator.no_matrix" #[error("`linear_solver` is \"matrix_free\", and `arc_length` factors a matrix")]
+        "integrator.no_matrix" #[error("`linear_solver` is \"matrix_free\", and `arc_length` factors a matrix")] #[value("\"matrix_free\"")] #[parameters("linear_solver", "arc_length")]
         #[allowed("\"auto\", \"conjugate_gradients\", \"cholesky\"")]
         MatrixFreeByArc {},
         /// A matrix that conjugate gradients cannot take.
         "integrator.no_matrix"
-        #[error("`linear_solver` is \"matrix_free\", whose conjugate gradients need a symmetric matrix, and that of the body is not symmetric")]
+        #[error("`linear_solver` is \"matrix_free\", whose conjugate gradients need a symmetric matrix, and that of the body is not symmetric")] #[value("\"matrix_free\"")] #[parameters("linear_solver")]
         #[allowed("\"auto\"")]
         Unsymmetric {},
         /// A body that nothing holds.
@@ -70,7 +70,7 @@ messages! {
         FreePiece { pieces: usize, nodes: usize, center: String, motions: AnyMessage, count: usize },
         /// A curve of equilibria that begins where nothing holds the body.
         "static.arc_length_and_obstacles"
-        #[error("`arc_length` is given, and pins do not hold the body, which nothing presses onto obstacles where the curve begins, without any load")]
+        #[error("`arc_length` is given, and pins do not hold the body, which nothing presses onto obstacles where the curve begins, without any load")] #[parameters("arc_length")]
         #[allowed("pins that hold it, or the whole load at once, in as many `load_steps` as it takes")]
         LooseByArc {},
         /// A body that an obstacle lets slide.

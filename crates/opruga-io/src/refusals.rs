@@ -4,6 +4,7 @@ use crate::document::{self, Data, Entry, Location, Node};
 use crate::overrides;
 use crate::problem::{Around, SceneError};
 use crate::source::Source;
+use opruga_core::error::BuildError;
 use opruga_math::message::AnyMessage;
 use opruga_math::messages;
 use opruga_math::words::number;
@@ -57,34 +58,13 @@ impl From<&WorldError> for SceneError {
                 }
             }
             WorldError::Diverged { time, .. } => scene_error.value(time.to_string()),
-            WorldError::Build { part, source } if *part != (Part::Collider {}) => {
-                match named_value(&source.about.to_string()) {
-                    Some((field, value)) => {
-                        let path = format!("{}.{field}", scene_error.path);
-                        scene_error.path(path).value(value)
-                    }
-                    None => scene_error,
-                }
-            }
+            WorldError::Build { part, source } if *part != (Part::Collider {}) => match source.about.value() {
+                Some(value) => scene_error.value(value),
+                None => scene_error,
+            },
             _ => scene_error,
         }
     }
-}
-
-/// The field that a message begins with and its value: ``` `field` is 0.5 …```, or ``` `field` of cell 7 is 0.5 …```.
-fn named_value(message: &str) -> Option<(&str, &str)> {
-    let (field, rest) = message.strip_prefix('`')?.split_once('`')?;
-    let rest = match rest.strip_prefix(" of cell ") {
-        Some(cell) => cell.trim_start_matches(|c: char| c.is_ascii_digit()),
-        None => rest,
-    };
-    let rest = rest.strip_prefix(" is ")?;
-    let end = match rest.strip_prefix('"') {
-        Some(text) => text.find('"')? + 2,
-        None => rest.find([' ', ';', ',']).unwrap_or(rest.len()),
-    };
-    let value = &rest[..end];
-    (value.starts_with('"') || value.parse::<f64>().is_ok()).then_some((field, value))
 }
 
 /// Whether an error about a body is about one of its own fields, and not about a model.
@@ -97,30 +77,48 @@ fn is_field_of_body(kind: &str) -> bool {
 fn path_of(error: &WorldError) -> String {
     let body = |name: &str| format!("body.{}", name.split('[').next().unwrap_or(name));
     match error {
-        WorldError::Build { part: Part::IntegratorOf { name }, .. } => format!("{}.integrator", body(name)),
-        WorldError::Build { part: Part::Body { name }, source } => match source.kind.as_str() {
-            // Where a body lies, what holds it, and how it is stepped or swings is no matter of one model.
-            kind if is_field_of_body(kind) => format!("{}.{kind}", body(name)),
-            "stability" | "modes" | "memory" | "mass" => body(name),
-            _ if source.code().starts_with("static.") => body(name),
-            kind => format!("{}.models.{kind}", body(name)),
-        },
         WorldError::Build { part: Part::Collider {}, source } => {
             format!("collider.{}", source.kind.split(' ').nth(1).unwrap_or("0"))
         }
-        WorldError::Build { part, .. } => part.to_string(),
+        WorldError::Build { part, source } => {
+            let around = match part {
+                Part::Body { name } => match source.kind.as_str() {
+                    // Where a body lies, what holds it, and how it is stepped or swings is no matter of one model.
+                    kind if is_field_of_body(kind) => {
+                        return format!("{}.{}", body(name), valued(source).unwrap_or(kind.into()));
+                    }
+                    "stability" | "modes" | "memory" | "mass" => body(name),
+                    _ if source.code().starts_with("static.") => body(name),
+                    kind => format!("{}.models.{kind}", body(name)),
+                },
+                Part::IntegratorOf { name } => format!("{}.integrator", body(name)),
+                Part::BodyAt { index } => format!("body.{index}"),
+                Part::Load { index } => format!("load.{index}"),
+                Part::Command { index } => format!("command.{index}"),
+                Part::Probe { name } => format!("probe.{name}"),
+                Part::Pair { index } => format!("contact.pair.{index}"),
+                Part::Section { path } => (*path).into(),
+                Part::Collider {} => "collider".into(),
+            };
+            valued(source).map_or(around.clone(), |parameter| format!("{around}.{parameter}"))
+        }
         WorldError::UnstableStep { .. } => "time.substeps".into(),
         WorldError::Step { body: name, .. }
         | WorldError::Diverged { body: name, .. }
         | WorldError::NotConverged { body: name, .. }
         | WorldError::Meet { first: name, .. }
         | WorldError::LedThrough { first: name, .. } => body(name),
-        WorldError::Path { path, .. } => path.split('`').nth(1).map_or_else(String::new, body),
+        WorldError::Path { path, .. } => path.clone(),
         WorldError::Snapshot { .. }
         | WorldError::Overflow { .. }
         | WorldError::TooManyContacts { .. }
         | WorldError::BrokenOff {} => String::new(),
     }
+}
+
+/// The parameter whose value is refused.
+fn valued(error: &BuildError) -> Option<String> {
+    error.about.value().and_then(|_| error.about.parameters().into_iter().next())
 }
 
 /// A warning of a world as an error, for those who want no warnings.
@@ -136,8 +134,8 @@ impl From<&Warning> for SceneError {
     }
 }
 
-/// Gives an error its file, and the line of its path in the text of the scene: that of the field that its message names
-/// first, or of the nearest part around it where the path itself is not written; or the override that has set it.
+/// Gives an error its file, and the line of its path in the text of the scene: that of the parameter that it is
+/// about, or of the nearest part around it where the path itself is not written; or the override that has set it.
 #[must_use]
 pub fn in_scene(error: SceneError, text: &str, file: &str, overrides: &[(String, String)]) -> SceneError {
     let source = Source { file, text: text.strip_prefix('\u{feff}').unwrap_or(text) };
@@ -159,8 +157,8 @@ pub fn in_scene(error: SceneError, text: &str, file: &str, overrides: &[(String,
         // The field of the scene is right: it is a number of the mesh that is not.
         return SceneError { file: mesh.into(), ..error };
     }
-    let fields: Vec<&str> = error.message.split('`').skip(1).step_by(2).collect();
-    match location(&root, &error.path, &fields) {
+    let parameters = error.about.as_ref().map_or_else(Vec::new, |about| about.parameters());
+    match location(&root, &error.path, &parameters) {
         Some(Location::Bytes(start, end)) => source.mark(error, start, end),
         Some(Location::Override(number)) => match overrides.get(number) {
             Some((path, value)) => SceneError { file: overrides::named(path, value), ..error },
@@ -238,8 +236,8 @@ fn mesh_file<'n>(root: &'n Node, path: &str) -> Option<&'n str> {
     body.get("shape")?.get("file")?.text()
 }
 
-/// The location of the last part of a path that is written, or of a field in it; none where nothing of it is.
-fn location(root: &Node, path: &str, fields: &[&str]) -> Option<Location> {
+/// The location of the last part of a path that is written, or of a parameter in it; none where nothing of it is.
+fn location(root: &Node, path: &str, parameters: &[String]) -> Option<Location> {
     let (mut node, mut location) = (root, None);
     for part in path.split('.') {
         let next = match &node.data {
@@ -254,7 +252,7 @@ fn location(root: &Node, path: &str, fields: &[&str]) -> Option<Location> {
         let Some((next, at)) = next else { break };
         (node, location) = (next, Some(at));
     }
-    let named = fields.iter().find_map(|field| node.entry(field)).map(shown_at);
+    let named = parameters.iter().find_map(|parameter| node.entry(parameter)).map(shown_at);
     // A part of which an override has changed something is as that has made it.
     let changed =
         || node.entries().iter().map(|entry| entry.value.location).rfind(|at| matches!(at, Location::Override(_)));

@@ -32,6 +32,10 @@ pub trait Message: std::error::Error + Send + Sync + 'static {
     fn value(&self) -> Option<String> {
         None
     }
+    /// The parameters of a scene that the message is about, by their words there, the one that matters most first.
+    fn parameters(&self) -> Vec<String> {
+        parameters_of_parts(self.fields())
+    }
     /// What is allowed, in English.
     fn allowed(&self) -> Option<String> {
         None
@@ -46,6 +50,16 @@ pub trait Message: std::error::Error + Send + Sync + 'static {
         let beside = beside.into_iter().filter_map(|(label, text)| text.map(|text| format!("; {label}: {text}")));
         self.to_string() + &beside.collect::<String>()
     }
+}
+
+/// The parameters that the parts of a message are about.
+#[doc(hidden)]
+pub fn parameters_of_parts(fields: Vec<(&'static str, Field)>) -> Vec<String> {
+    let of = |field| match field {
+        Field::Message(part) => part.parameters(),
+        _ => Vec::new(),
+    };
+    fields.into_iter().flat_map(|(_, field)| of(field)).collect()
 }
 
 /// What a catalogue must know of a variant of a message.
@@ -80,6 +94,7 @@ struct Restated {
     /// The English text, the value, what is allowed and what helps.
     english: String,
     beside: [Option<String>; 3],
+    parameters: Vec<String>,
 }
 
 impl fmt::Display for Restated {
@@ -103,6 +118,9 @@ impl Message for Restated {
     fn value(&self) -> Option<String> {
         self.beside[0].clone()
     }
+    fn parameters(&self) -> Vec<String> {
+        self.parameters.clone()
+    }
     fn allowed(&self) -> Option<String> {
         self.beside[1].clone()
     }
@@ -115,7 +133,8 @@ impl AnyMessage {
     /// A message with a text in English alone, of a program that adds kinds of its own.
     pub fn plain(code: &'static str, english: String) -> AnyMessage {
         let fields = vec![("text", Field::Text(english.clone()))];
-        AnyMessage::from(Restated { code, variant: "Plain", fields, english, beside: [None, None, None] })
+        let (beside, parameters) = ([None, None, None], Vec::new());
+        AnyMessage::from(Restated { code, variant: "Plain", fields, english, beside, parameters })
     }
 
     /// The same with other names: `name` changes a field that is one, `text` those within an English text.
@@ -129,7 +148,8 @@ impl AnyMessage {
         let fields = self.fields().into_iter().map(|(of, value)| (of, field(value))).collect();
         let beside = [self.value(), self.allowed(), self.hint()].map(|old| old.map(|old| text(&old)));
         let english = text(&self.to_string());
-        AnyMessage::from(Restated { code: self.code(), variant: self.variant(), fields, english, beside })
+        let (code, variant, parameters) = (self.code(), self.variant(), self.parameters());
+        AnyMessage::from(Restated { code, variant, fields, english, beside, parameters })
     }
 }
 
@@ -243,8 +263,10 @@ pub fn if_any<T: fmt::Display>(part: &Option<T>) -> String {
 /// Declares errors or warnings: an enum by `thiserror` whose variants have a stable code, typed fields and an English
 /// text, as `thiserror` formats it. Variants without fields are written with empty braces.
 ///
-/// `#[value(…)]`, `#[allowed(…)]` and `#[hint(…)]`, in this order, are texts beside it: the offending value, what is allowed and what
-/// helps. Where one of the last two is empty, there is none. A message is itself a field: [`IntoField`] is written with it.
+/// `#[value(…)]`, `#[parameters(…)]`, `#[allowed(…)]` and `#[hint(…)]`, in this order, stand beside it: the text of the offending value,
+/// the words of the parameters of a scene that the message is about, and the texts of what is allowed and what helps. Where one of the
+/// last two is empty, there is none. A message without parameters has those of its parts. A message is itself a field: [`IntoField`]
+/// is written with it.
 ///
 /// ```
 /// use opruga_math::words::number;
@@ -255,7 +277,7 @@ pub fn if_any<T: fmt::Display>(part: &Option<T>) -> String {
 ///         /// An edge between two nodes at one point; its number.
 ///         "model.edge_length"
 ///         #[error("edge {edge} is {} m long", number(*length))]
-///         #[value("{length}")]
+///         #[value("{length}")] #[parameters("modulus")]
 ///         #[allowed("> 0")]
 ///         ShortEdge { edge: u32, length: f64 },
 ///         /// Nothing to hold springs.
@@ -272,7 +294,7 @@ macro_rules! messages {
         $visible:vis enum $name:ident {
             $(
                 $(#[doc = $doc:literal])* $code:literal #[error($($text:tt)*)]
-                $(#[value($($value:tt)*)])? $(#[allowed($($allowed:tt)*)])? $(#[hint($($hint:tt)*)])?
+                $(#[value($($value:tt)*)])? $(#[parameters($($parameter:expr),+)])? $(#[allowed($($allowed:tt)*)])? $(#[hint($($hint:tt)*)])?
                 $variant:ident { $($field:ident: $type:ty),* $(,)? }
             ),* $(,)?
         }
@@ -300,6 +322,11 @@ macro_rules! messages {
             }
             fn value(&self) -> Option<String> {
                 match self { $($name::$variant { $($field),* } => $crate::text_beside!(as written $($($value)*)?),)* }
+            }
+            fn parameters(&self) -> Vec<String> {
+                match self {
+                    $($name::$variant { $($field),* } => $crate::parameters_beside!(self $($($parameter),+)?),)*
+                }
             }
             fn allowed(&self) -> Option<String> {
                 match self { $($name::$variant { $($field),* } => $crate::text_beside!($($($allowed)*)?),)* }
@@ -338,6 +365,18 @@ macro_rules! text_beside {
     };
     ($($text:tt)*) => {
         Some(format!($($text)*)).filter(|text| !text.is_empty())
+    };
+}
+
+/// The parameters that a message is about.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! parameters_beside {
+    ($message:ident) => {
+        $crate::message::parameters_of_parts($message.fields())
+    };
+    ($message:ident $($parameter:expr),+) => {
+        vec![$($parameter.to_string()),+]
     };
 }
 
@@ -407,12 +446,17 @@ mod tests {
             "test.short"
             #[error("edge {edge} of {place} is {} m long", number(*length))]
             #[value("{}", number(*length))]
+            #[parameters("modulus", least)]
             #[allowed("more than {least}")]
             Short { edge: u32, length: f64, place: Place, least: u32 },
             /// None.
             "test.none"
             #[error("there are no edges")]
             None {},
+            /// Of another.
+            "test.of"
+            #[error("{part}")]
+            Of { part: AnyMessage },
         }
     }
 
@@ -432,7 +476,11 @@ mod tests {
         assert_eq!(any, any.clone());
         assert_eq!((any.value(), any.allowed(), any.hint()), (Some("0.3".into()), Some("more than 0".into()), None));
         assert_eq!(any.in_full(), "edge 3 of body `ball` is 0.3 m long; allowed: more than 0");
-        let [short, none] = Refusal::VARIANTS else { panic!("{:?}", Refusal::VARIANTS) };
+        let about = ["modulus".to_string(), "0".into()];
+        assert_eq!((any.parameters(), other.parameters()), (about.to_vec(), about.to_vec()));
+        assert_eq!(Refusal::Of { part: any }.parameters(), about, "those of its part");
+        assert_eq!(Refusal::None {}.parameters(), [""; 0]);
+        let [short, none, _] = Refusal::VARIANTS else { panic!("{:?}", Refusal::VARIANTS) };
         assert_eq!((short.code, short.name, short.english[1]), ("test.short", "Short", "\"more than {least}\""));
         assert_eq!((none.fields, none.english), (&[][..], ["\"there are no edges\"", "", ""]));
     }

@@ -178,7 +178,7 @@ fn has_drawings(world: &dyn AnyWorld) -> bool {
 }
 
 fn no_body(body: usize) -> WorldError {
-    WorldError::path(format!("body {body}"), PathFault::NoBody {})
+    WorldError::path(format!("body.{body}"), PathFault::NoBody {})
 }
 
 impl Living {

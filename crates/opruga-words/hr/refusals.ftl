@@ -39,7 +39,7 @@ step-not_finite-Forces = sile oko stanja nisu konačne, pa se ne može dati stab
 
 ## Springs
 
-model-no_edges-NoEdges = tijelo nema bridova ({ $edges }) koji bi nosili opruge
+model-no_edges-NoEdges = tijelo nema bridova koji bi nosili opruge (`edges = "{ $edges }"`)
 model-zero_length-NoLengthOfSpring = brid { $edge } nema duljinu, a `modulus` je treba
 model-no_area-NoTriangles = `modulus` treba trokute uz bridove
     .hint = za lanac ili obris zadaj `stiffness`

@@ -77,7 +77,7 @@ impl<'w, const D: usize> BodyView<'w, D> {
         if (node as usize) < count {
             return Ok(());
         }
-        let path = format!("body `{}`, node {node}", self.blueprint().name);
+        let path = format!("body.{}.node.{node}", self.blueprint().name);
         Err(WorldError::path(path, PathFault::NoNode { last: count - 1 }))
     }
 }

@@ -366,7 +366,8 @@ impl<const D: usize> Builder<'_, D> {
         lane: usize,
         layout: Layout,
     ) -> Result<(), WorldError> {
-        for load in self.blueprint.loads.iter().filter(|l| l.body == number) {
+        for (index, load) in self.blueprint.loads.iter().enumerate().filter(|(_, load)| load.body == number) {
+            let refused = |fault: PathFault| Err(WorldError::path(format!("load.{index}"), fault));
             let nodes = load.select.resolve(&body.mesh, &body.translation);
             let depth = if D == 2 { body.thickness } else { 1.0 };
             let mut entries: BTreeMap<usize, [f64; D]> = BTreeMap::new();
@@ -392,14 +393,14 @@ impl<const D: usize> Builder<'_, D> {
                         entries.insert(layout.index(node as usize, lane), force.map(|f| f * share * depth));
                     }
                     if entries.is_empty() {
-                        return Err(no_cells(body));
+                        return refused(PathFault::NoCells {});
                     }
                 }
                 LoadKind::Pressure(pressure) => {
                     let indices = |side: Vec<u32>| side.iter().map(|&n| layout.index(n as usize, lane)).collect();
                     let sides: Vec<Vec<usize>> = body.mesh.boundary_sides(&nodes).into_iter().map(indices).collect();
                     if sides.is_empty() {
-                        return Err(no_facets(body));
+                        return refused(PathFault::NoFacets {});
                     }
                     let load = FollowerPressure::new(pressure * depth, &load.curve, layout.stride(), sides);
                     system.add(Box::new(load));
@@ -407,7 +408,7 @@ impl<const D: usize> Builder<'_, D> {
                 }
             }
             if entries.is_empty() {
-                return Err(no_facets(body));
+                return refused(PathFault::NoFacets {});
             }
             system.add(Box::new(NodeForces { entries: entries.into_iter().collect(), curve: load.curve.clone() }));
         }
@@ -424,14 +425,6 @@ fn no_view<const D: usize>(model: &dyn Potential<D>, integrator: &str) -> BuildE
         false => Refusal::NoDerivatives { integrator, why },
     };
     BuildError::of(properties.name, refusal)
-}
-
-fn no_cells<const D: usize>(body: &BodyBlueprint<D>) -> WorldError {
-    WorldError::path(format!("load on {}", body.name), PathFault::NoCells {})
-}
-
-fn no_facets<const D: usize>(body: &BodyBlueprint<D>) -> WorldError {
-    WorldError::path(format!("load on {}", body.name), PathFault::NoFacets {})
 }
 
 /// The enclosed volume of a body at rest [m³] (area times thickness in 2D).

@@ -75,7 +75,7 @@ impl<const D: usize> World<D> {
         if let Some(body) = command.action.body()
             && !self.slots.is_there(body)
         {
-            return Err(WorldError::path(format!("body {body}"), PathFault::NoBody {}));
+            return Err(WorldError::path(format!("body.{body}"), PathFault::NoBody {}));
         }
         crate::validity::given(&command)?;
         self.write_down(|| Input::Command(command.clone()));
@@ -118,7 +118,7 @@ impl<const D: usize> World<D> {
     /// # Errors
     /// [`WorldError::Path`] if the command is no drag, the time does not rise, or a number is not finite.
     pub fn lead(&mut self, number: usize, row: Vec<f64>) -> Result<(), WorldError> {
-        let refuse = |fault: PathFault| WorldError::path(format!("command {number}"), fault);
+        let refuse = |fault: PathFault| WorldError::path(format!("command.{number}"), fault);
         let running = self.running.get_mut(number).ok_or_else(|| refuse(PathFault::NoCommand {}))?;
         let Action::Drag { path, .. } = &mut running.command.action else {
             return Err(refuse(PathFault::NoDrag {}));
@@ -144,9 +144,9 @@ impl<const D: usize> World<D> {
             }
             Some(running) => {
                 let fault = PathFault::CannotEnd { at: running.command.at, until };
-                Err(WorldError::path(format!("command {number}"), fault))
+                Err(WorldError::path(format!("command.{number}"), fault))
             }
-            None => Err(WorldError::path(format!("command {number}"), PathFault::NoCommand {})),
+            None => Err(WorldError::path(format!("command.{number}"), PathFault::NoCommand {})),
         }
     }
 
@@ -212,7 +212,7 @@ impl<const D: usize> World<D> {
         if let Some(body) = command.action.body()
             && self.handle(body).is_none()
         {
-            let path = self.blueprint.bodies.get(body).map_or(format!("body {body}"), |b| b.name.clone());
+            let path = self.blueprint.bodies.get(body).map_or(format!("body.{body}"), |b| b.name.clone());
             return Err(WorldError::path(path, PathFault::NoBodyThen { time: self.time() }));
         }
         let acting = match &command.action {

@@ -70,7 +70,7 @@ messages! {
         Densities { count: usize, cells: usize },
         "scene.length" #[error("{count} nodes have a velocity")] #[value("{count}")] #[allowed("none, or each of {nodes} nodes")]
         NodeVelocities { count: usize, nodes: usize },
-        "scene.length" #[error("`angular_velocity` has {count} numbers")] #[value("{count}")] #[allowed("{wanted}")]
+        "scene.length" #[error("`angular_velocity` has {count} numbers")] #[value("{count}")] #[parameters("angular_velocity")] #[allowed("{wanted}")]
         AngularVelocity { count: usize, wanted: usize },
     }
 }

@@ -51,14 +51,14 @@ pub enum Input<const D: usize> {
 impl<const D: usize> Input<D> {
     pub(crate) fn unwritable(&self) -> WorldError {
         match self {
-            Input::Force { body } => WorldError::path(format!("body {body}"), PathFault::ForceUnrecorded {}),
+            Input::Force { body } => WorldError::path(format!("body.{body}"), PathFault::ForceUnrecorded {}),
             Input::Act => WorldError::path("command", PathFault::ActUnrecorded {}),
             Input::Add { name } => WorldError::path(name, PathFault::BodyUnrecorded {}),
             Input::Command(CommandBlueprint { action: Action::Add(body), .. }) => {
                 WorldError::path(&body.name, PathFault::BodyUnrecorded {})
             }
             Input::Command(CommandBlueprint { action: Action::Change { body, .. }, .. }) => {
-                WorldError::path(format!("body {body}"), PathFault::ModelsUnrecorded {})
+                WorldError::path(format!("body.{body}"), PathFault::ModelsUnrecorded {})
             }
             _ => WorldError::path("", PathFault::Unrecorded {}),
         }

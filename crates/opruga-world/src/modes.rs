@@ -63,7 +63,7 @@ impl<const D: usize> World<D> {
     /// frequency can be found since a node without mass can move.
     pub fn modes(&self, body: usize, count: usize) -> Result<Vec<Mode<D>>, WorldError> {
         if self.handle(body).is_none() {
-            return Err(WorldError::path(format!("body {body}"), PathFault::NoBody {}));
+            return Err(WorldError::path(format!("body.{body}"), PathFault::NoBody {}));
         }
         let name = self.blueprint.bodies[body].name.clone();
         let refuse =

@@ -51,7 +51,7 @@ impl<const D: usize> World<D> {
         position: [f64; D],
         velocity: [f64; D],
     ) -> Result<(), WorldError> {
-        let refuse = |fault: PathFault| Err(WorldError::path(format!("body {body}, node {node}"), fault));
+        let refuse = |fault: PathFault| Err(WorldError::path(format!("body.{body}.node.{node}"), fault));
         if node as usize >= self.node_count(body) {
             return refuse(PathFault::NoNode { last: self.node_count(body).saturating_sub(1) });
         }
@@ -90,7 +90,7 @@ impl<const D: usize> World<D> {
     /// [`WorldError`] if there is no such body or its island cannot be built anew; the world stays as it was.
     pub fn add_force(&mut self, body: usize, law: Arc<ForceLaw<D>>) -> Result<(), WorldError> {
         let Some(handle) = self.handle(body) else {
-            return Err(WorldError::path(format!("body {body}"), PathFault::NoBody {}));
+            return Err(WorldError::path(format!("body.{body}"), PathFault::NoBody {}));
         };
         self.user_forces.push((handle, law));
         let outcome = self.rebuild(&BTreeSet::from([body]));

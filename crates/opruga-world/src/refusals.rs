@@ -20,7 +20,7 @@ messages! {
         NoIntegratorHere {},
         "scene.unknown_name" #[error("there is no such {what}")] #[allowed("{known}")]
         NoKindHere { what: &'static str, known: String },
-        "scene.missing" #[error("`{name}` is missing")]
+        "scene.missing" #[error("`{name}` is missing")] #[parameters(name)]
         NoFieldGiven { name: &'static str },
         "stale_handle" #[error("the body of this handle is not in this world any more, or never was")]
         #[hint("`World::body` finds a body by its name, `World::handle` gives a handle of it")]
@@ -33,13 +33,13 @@ messages! {
         #[allowed("every cell in one model")]
         Uncovered { count: usize, cells: usize, first: usize, groups: String },
         "integrator.mass_matrix"
-        #[error("`mass` is \"consistent\", which couples the accelerations of the nodes of a cell, and `{integrator}` moves every node by its own mass")]
+        #[error("`mass` is \"consistent\", which couples the accelerations of the nodes of a cell, and `{integrator}` moves every node by its own mass")] #[value("\"consistent\"")] #[parameters("mass")]
         #[allowed("\"lumped\"")] #[hint("consistent masses go with backward_euler, bdf2, implicit_midpoint and newmark")]
         MassMatrix { integrator: &'static str },
-        "model.mass" #[error("`mass` is \"consistent\", and there are obstacles, whose impacts act on the masses of single nodes")]
+        "model.mass" #[error("`mass` is \"consistent\", and there are obstacles, whose impacts act on the masses of single nodes")] #[value("\"consistent\"")] #[parameters("mass")]
         #[allowed("\"lumped\"")] #[hint("consistent masses go with obstacles in `equilibrium`, which knows no impacts")]
         MassAndObstacles {},
-        "model.mass" #[error("`mass` is \"consistent\", and `node_mass` = {mass} kg gives every node the same mass, whatever its cells")]
+        "model.mass" #[error("`mass` is \"consistent\", and `node_mass` = {mass} kg gives every node the same mass, whatever its cells")] #[value("\"consistent\"")] #[parameters("mass")]
         #[allowed("\"lumped\"")] #[hint("`mass` or `density` of the body goes with consistent masses")]
         NodeMass { mass: f64 },
         "integrator.needs" #[error("the model has no symmetric second derivatives, which `{integrator}` needs{}", because(why))]
@@ -68,7 +68,7 @@ messages! {
         #[allowed("bodies that all rest, or all move")]
         #[hint("`contact.touch = false` in a body lets it pass through the others")]
         RestBesideMotion { integrator: &'static str, other: String },
-        "contact.implicit" #[error("`{integrator}` with `arc_length` or `load_steps` puts loads on in parts, and bodies that touch find their balance under the whole load")]
+        "contact.implicit" #[error("`{integrator}` with `arc_length` or `load_steps` puts loads on in parts, and bodies that touch find their balance under the whole load")] #[parameters("arc_length", "load_steps")]
         #[allowed("bodies that touch without `arc_length` and `load_steps`")]
         #[hint("`contact.touch = false` in a body lets it pass through the others")]
         RestInParts { integrator: &'static str },
@@ -85,7 +85,7 @@ messages! {
         #[error("the reach is {} m and the shortest edge of the body {} m, so its own features would push one another at rest", number(*reach), number(*shortest))]
         #[allowed("less than that edge")]
         Reach { reach: f64, shortest: f64 },
-        "contact.unfold" #[error("`unfold` displaces bodies at random, into others too")] #[allowed("`unfold = false` in a scene with `[contact]`")]
+        "contact.unfold" #[error("`unfold` displaces bodies at random, into others too")] #[parameters("unfold")] #[allowed("`unfold = false` in a scene with `[contact]`")]
         Unfold {},
         "limit.memory" #[error("the bodies of the scene take about {all} bytes, `{body}` {largest} of them")] #[allowed("at most {most} bytes")]
         #[hint("a coarser mesh, an explicit integrator, or `linear_solver = \"matrix_free\"`")]
@@ -100,18 +100,18 @@ messages! {
         #[hint("move the scene to the origin")]
         FarBody { farthest: f64, range: f64 },
         "scene.range"
-        #[error("`velocity` and `angular_velocity` let it begin with {} m/s along an axis, {} m in a step of {} s", rounded(*fastest, 3), rounded(*fastest * *h, 3), number(*h))]
+        #[error("`velocity` and `angular_velocity` let it begin with {} m/s along an axis, {} m in a step of {} s", rounded(*fastest, 3), rounded(*fastest * *h, 3), number(*h))] #[parameters("velocity", "angular_velocity")]
         #[allowed("at most {} m/s, with which a step ends where positions still have digits that tell its nodes apart", rounded(*range / *h, 3))]
         #[hint("are its units mixed (metres, seconds, radians)?")]
         FastBody { fastest: f64, h: f64, range: f64 },
-        "scene.range" #[error("`{word}` is {value}, with which node {node} has a mass of {} kg", number(*mass))] #[value("{value}")]
+        "scene.range" #[error("`{word}` is {value}, with which node {node} has a mass of {} kg", number(*mass))] #[value("{value}")] #[parameters(word)]
         #[allowed("such that every node has at least {} kg and at most {} kg", number(f64::MIN_POSITIVE), number(f64::MAX))]
         #[hint("are its units mixed (metres, kilograms)?")]
         MassOfNode { word: &'static str, value: String, node: usize, mass: f64 },
         "scene.range" #[error("a weight of {} m/s² takes the energy of the bodies beyond the finite numbers", number(*weight))]
         #[allowed("at most {} m/s² along an axis", number(*most))]
         Weight { weight: f64, most: f64 },
-        "scene.range" #[error("`{word}` is {value}, which takes the energy or the momentum of the body beyond the finite numbers")] #[value("{value}")]
+        "scene.range" #[error("`{word}` is {value}, which takes the energy or the momentum of the body beyond the finite numbers")] #[value("{value}")] #[parameters(word)]
         #[allowed("numbers whose squares are finite, up to {}", number(*most))]
         BeyondFinite { word: &'static str, value: String, most: f64 },
         "scene.range" #[error("its energy or its momentum is beyond the finite numbers")]

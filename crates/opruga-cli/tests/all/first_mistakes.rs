@@ -247,13 +247,16 @@ fn a_long_run_says_how_long_it_will_take() {
     let mut all = String::new();
     for line in BufReader::new(run.stderr.take().expect("its talk")).lines() {
         all += &(line.expect("text") + "\n");
-        if all.contains("note: ") || all.contains(" left") {
+        if all.contains("note[") || all.contains(" left") {
             break;
         }
     }
     run.kill().expect("it is killed");
     run.wait().expect("it ends");
-    let line = all.lines().find(|l| l.starts_with("note: the run will take about ")).unwrap_or_else(|| panic!("{all}"));
+    let line = all
+        .lines()
+        .find(|l| l.starts_with("note[run.takes_long]: the run will take about "))
+        .unwrap_or_else(|| panic!("{all}"));
     for part in [
         " more (",
         " frames of ",
@@ -261,5 +264,53 @@ fn a_long_run_says_how_long_it_will_take() {
         "--set integrator=symplectic_euler --set time.substeps=",
     ] {
         assert!(line.contains(part), "{part}: {line}");
+    }
+}
+
+/// What a world refuses is shown at the parameter that it is about, with its value; how bodies are called changes nothing.
+#[test]
+fn what_a_world_refuses_is_shown_at_its_parameter_whatever_bodies_are_called() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let grid = "shape = { kind = \"grid\", size = [1, 1], cells = [2, 2] }\nsimplices = true\norder = 1\n[[body.models]]\nkind = \"fem\"\n\
+                material = \"neo_hookean\"\nyoungs_modulus = 1e3";
+    let chain = "shape = { kind = \"line\", from = [0, 0], to = [1, 0], segments = 2 }\n[[body.models]]\nkind = \"mass_spring\"";
+    let called = |text: String, name: &str| text.replace("\"it\"", &format!("\"{name}\""));
+    let unstable = called(scene(2, RING, ""), "frame").replace("substeps = 20", "frame = 0.02\nsubsteps = 1");
+    let loose = called(scene(2, &format!("{grid}\npoissons_ratio = 0.3"), ""), "mass").replace("verlet", "equilibrium");
+    let rows = [
+        (unstable, "step.unstable", "time.substeps", "substeps = 1", Some("0.02")),
+        (loose, "static.rigid_modes", "body.mass", "[[body]]", None),
+        (
+            scene(2, &format!("{grid}\npoissons_ratio = 0.499"), ""),
+            "model.locking",
+            "body.it.models.fem.poissons_ratio",
+            "poissons_ratio = 0.499",
+            Some("0.499"),
+        ),
+        (
+            scene(2, &format!("{chain}\nmodulus = 1e3"), ""),
+            "model.no_area",
+            "body.it.models.mass_spring",
+            "modulus = 1e3",
+            None,
+        ),
+        (
+            scene(2, RING, "").replace("mass = 1", "mass = 1e-310"),
+            "scene.range",
+            "body.it.mass",
+            "mass = 1e-310",
+            Some("1e-310"),
+        ),
+    ];
+    for (text, code, path, line, value) in rows {
+        write(folder.path(), &text);
+        let output = opruga(folder.path(), &["check", "s.toml", "--json"]);
+        let error: Value = serde_json::from_slice(&output.stderr).unwrap_or_else(|_| panic!("{}", said(&output)));
+        let number = text.lines().position(|written| written == line).map(|index| index + 1);
+        assert_eq!(
+            (error["code"].as_str(), error["path"].as_str(), error["line"].as_u64(), error["value"].as_str()),
+            (Some(code), Some(path), number.map(|number| number as u64), value),
+            "{error}"
+        );
     }
 }

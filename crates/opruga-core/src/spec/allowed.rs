@@ -51,7 +51,7 @@ messages! {
         "scene.unknown_field" #[error("there is no field `{name}`")] #[hint("{}", did_you_mean(nearest))]
         UnknownField { name: String, nearest: Option<String> },
         /// The value is outside of its range or of another type.
-        "scene.range" #[error("`{name}` is {value}")] #[value("{value}")] #[allowed("{allowed}")]
+        "scene.range" #[error("`{name}` is {value}")] #[value("{value}")] #[parameters(name)] #[allowed("{allowed}")]
         NotAllowed { name: String, value: String, allowed: AllowedValues },
     }
 

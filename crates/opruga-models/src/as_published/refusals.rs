@@ -15,10 +15,10 @@ messages! {
         "model.open_surface" #[error("the body has no outline")]
         NoOutline {},
         /// A pointer that is held and goes nowhere.
-        "model.one_of" #[error("`held` needs `pointer`")]
+        "model.one_of" #[error("`held` needs `pointer`")] #[parameters("held", "pointer")]
         NoPointer {},
         /// Intervals that end before they begin.
-        "model.interval" #[error("each row of `held` is [press, release] with press < release")]
+        "model.interval" #[error("each row of `held` is [press, release] with press < release")] #[parameters("held")]
         Interval {},
         /// A volume by which nothing can be divided.
         "run.model" #[error("the published \"volume\" Σ ½ |Δx| |Δy| is zero: every edge lies along an axis")] #[hint("turn the body a little")]

@@ -10,10 +10,10 @@ messages! {
     #[derive(Clone, Debug, PartialEq)]
     pub enum Refusal {
         /// A modulus alone.
-        "model.one_of" #[error("`modulus` needs `thickness`")]
+        "model.one_of" #[error("`modulus` needs `thickness`")] #[parameters("modulus", "thickness")]
         NoThickness {},
         /// A thickness beside a stiffness.
-        "model.one_of" #[error("`thickness` goes with `modulus`, not with `stiffness`")]
+        "model.one_of" #[error("`thickness` goes with `modulus`, not with `stiffness`")] #[parameters("thickness", "modulus", "stiffness")]
         Thickness {},
         /// A mesh without bends.
         "model.mesh" #[error("{problem}")]

@@ -65,7 +65,7 @@ messages! {
         SeveralSolids { solids: usize },
         /// A boundary in a boundary, outside of which all is filled.
         "model.nested_exterior"
-        #[error("`exterior` is true, and facet {facet} belongs to a boundary inside another one")]
+        #[error("`exterior` is true, and facet {facet} belongs to a boundary inside another one")] #[parameters("exterior")]
         #[allowed("cavities beside one another")]
         NestedExterior { facet: u32 },
         /// More vertices than a dense matrix is made for.

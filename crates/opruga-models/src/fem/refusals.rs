@@ -31,35 +31,35 @@ messages! {
         NoGroupsOfCells { name: String },
         /// Growth by heat that leaves nothing.
         "model.temperature"
-        #[error("cell {cell} would be {growth} times as long by `thermal_expansion` = {expansion} 1/K from {reference} K to {now} K")]
+        #[error("cell {cell} would be {growth} times as long by `thermal_expansion` = {expansion} 1/K from {reference} K to {now} K")] #[parameters("thermal_expansion")]
         #[allowed("more than 0")] #[hint("steel has 1.2e-5 1/K, rubber 2e-4 1/K")]
         NoGrowth { cell: u32, growth: f64, expansion: f64, reference: f64, now: f64 },
         /// Linear cells near incompressibility.
-        "model.locking" #[error("`poissons_ratio` is {ratio} for linear {cells}, which lock near incompressibility")] #[allowed("at most {most}")]
+        "model.locking" #[error("`poissons_ratio` is {ratio} for linear {cells}, which lock near incompressibility")] #[value("{ratio}")] #[parameters("poissons_ratio")] #[allowed("at most {most}")]
         #[hint("`order = 2` for the body, or `locking = \"nodal_volume\"`")]
         LinearCellsLock { ratio: f64, cells: Simplices, most: f64 },
         /// Volumes of nodes that do not know heat.
-        "model.locking" #[error("`locking` is \"nodal_volume\", and the body expands by heat, which the volumes of nodes do not know")]
+        "model.locking" #[error("`locking` is \"nodal_volume\", and the body expands by heat, which the volumes of nodes do not know")] #[value("\"nodal_volume\"")] #[parameters("locking")]
         #[allowed("\"refuse\" or \"accept\"")] #[hint("`order = 2` for the body, or quadrilaterals and hexahedra, do not lock either")]
         NodalVolumeAndHeat {},
         /// Volumes of nodes where the thickness is free.
-        "model.locking" #[error("`locking` is \"nodal_volume\" in plane stress, where the thickness is free and nothing locks")]
+        "model.locking" #[error("`locking` is \"nodal_volume\" in plane stress, where the thickness is free and nothing locks")] #[value("\"nodal_volume\"")] #[parameters("locking")]
         #[allowed("\"refuse\" or \"accept\"")] #[hint("leave `locking` out")]
         NodalVolumeInPlaneStress {},
         /// Volumes of nodes of cells that do not lock.
-        "model.locking" #[error("`locking` is \"nodal_volume\", but the cells are no linear triangles or tetrahedra, and do not lock")]
+        "model.locking" #[error("`locking` is \"nodal_volume\", but the cells are no linear triangles or tetrahedra, and do not lock")] #[value("\"nodal_volume\"")] #[parameters("locking")]
         #[allowed("\"refuse\" or \"accept\"")] #[hint("leave `locking` out")]
         NodalVolumeOfOthers {},
         /// Numbers of cells that the mesh lacks.
-        "model.no_values" #[error("`{field}` is \"{name}\", and the cells of the mesh have no such numbers")] #[allowed("{known}")]
+        "model.no_values" #[error("`{field}` is \"{name}\", and the cells of the mesh have no such numbers")] #[value("\"{name}\"")] #[parameters(field)] #[allowed("{known}")]
         #[hint("`{instead}` gives one number for all cells")]
         NoValues { field: &'static str, name: String, known: String, instead: &'static str },
         /// A mesh without numbers of cells.
-        "model.no_values" #[error("`{field}` is \"{name}\", and the cells of the mesh have no such numbers")]
+        "model.no_values" #[error("`{field}` is \"{name}\", and the cells of the mesh have no such numbers")] #[value("\"{name}\"")] #[parameters(field)]
         #[allowed("none, the mesh has no numbers of cells")] #[hint("`{instead}` gives one number for all cells")]
         NoValuesAtAll { field: &'static str, name: String, instead: &'static str },
         /// A number of a cell out of range.
-        "model.cell_value" #[error("`{field}` of cell {cell} is {value}")] #[value("{value}")] #[allowed("{allowed}")]
+        "model.cell_value" #[error("`{field}` of cell {cell} is {value}")] #[value("{value}")] #[parameters(field)] #[allowed("{allowed}")]
         #[hint("the numbers are in the file of the mesh; `{instead}` gives one for all cells")]
         CellValue { field: &'static str, cell: usize, value: String, allowed: AllowedValues, instead: &'static str },
         /// A cell that is inverted at rest.

@@ -80,16 +80,16 @@ opruga_math::messages! {
         Uneven { cell: usize, spacing: f64, first: f64 },
         /// A curve or a surface needs a thickness.
         "model.no_thickness"
-        #[error("a curve or a surface needs `thickness`")]
+        #[error("a curve or a surface needs `thickness`")] #[parameters("thickness")]
         #[allowed("> 0 m")]
         NoThickness {},
         /// A solid has no thickness of its own.
         "model.solid_thickness"
-        #[error("`thickness` belongs to curves and surfaces; a solid has none")]
+        #[error("`thickness` belongs to curves and surfaces; a solid has none")] #[parameters("thickness")]
         SolidThickness {},
         /// Torsion belongs to curves.
         "model.torsion_of_surface"
-        #[error("`torsion` belongs to curves (`line`, `ring`, `polyline`); a surface or solid resists its own shear")]
+        #[error("`torsion` belongs to curves (`line`, `ring`, `polyline`); a surface or solid resists its own shear")] #[parameters("torsion")]
         TorsionOfSurface {},
         /// A curve without curvature has no torsion.
         "model.no_torsion"

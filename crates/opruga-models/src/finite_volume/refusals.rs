@@ -27,7 +27,7 @@ messages! {
         InvertedCell { cell: usize, determinant: f64, size: f64 },
         /// Linear cells near incompressibility.
         "model.locking"
-        #[error("`poissons_ratio` is {} for triangles or tetrahedra, which lock near incompressibility", number(*ratio))]
+        #[error("`poissons_ratio` is {} for triangles or tetrahedra, which lock near incompressibility", number(*ratio))] #[value("{}", number(*ratio))] #[parameters("poissons_ratio")]
         #[allowed("at most {}", number(*most))]
         #[hint("`locking = \"accept\"` takes them as they are, and `fem` has `order = 2` and `locking = \"nodal_volume\"`")]
         Locks { ratio: f64, most: f64 },

@@ -50,14 +50,15 @@ impl<const D: usize> Model<D> for MassSpring {
     }
     fn build(&self, ingredients: &Ingredients<D>) -> Result<Box<dyn Potential<D>>, BuildError> {
         let mesh = ingredients.mesh;
-        let set = match ingredients.values[0].text("edges") {
-            Some("boundary") => EdgeSet::Boundary,
-            Some("shear") => EdgeSet::AllWithShear,
+        let word = ingredients.values[0].text("edges").unwrap_or("all");
+        let set = match word {
+            "boundary" => EdgeSet::Boundary,
+            "shear" => EdgeSet::AllWithShear,
             _ => EdgeSet::All,
         };
         let edges = mesh.edges(set);
         if edges.is_empty() {
-            return Err(Refusal::NoEdges { edges: format!("{set:?}") }.into());
+            return Err(Refusal::NoEdges { edges: word.into() }.into());
         }
         let lengths: Vec<f64> =
             edges.iter().map(|&[a, b]| distance(&mesh.positions[a as usize], &mesh.positions[b as usize])).collect();

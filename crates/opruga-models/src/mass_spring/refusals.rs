@@ -10,13 +10,13 @@ messages! {
     #[derive(Clone, Debug, PartialEq)]
     pub enum Refusal {
         /// Nothing to hold springs.
-        "model.no_edges" #[error("the body has no {edges} edges to carry springs")]
+        "model.no_edges" #[error("the body has no edges to carry springs (`edges = \"{edges}\"`)")] #[parameters("edges")]
         NoEdges { edges: String },
         /// An edge between two nodes at one point.
-        "model.zero_length" #[error("edge {edge} has no length; `modulus` needs one")]
+        "model.zero_length" #[error("edge {edge} has no length; `modulus` needs one")] #[parameters("modulus")]
         NoLengthOfSpring { edge: usize },
         /// A modulus without an area.
-        "model.no_area" #[error("`modulus` needs triangles next to the edges")] #[hint("give `stiffness` for a chain or outline")]
+        "model.no_area" #[error("`modulus` needs triangles next to the edges")] #[parameters("modulus")] #[hint("give `stiffness` for a chain or outline")]
         NoTriangles {},
         /// A mesh that has no areas.
         "model.mesh" #[error("{problem}")]

@@ -25,11 +25,11 @@ messages! {
         NoThicknessAcross { material: String, determinant: f64 },
         /// A Poisson's ratio that allows no second constant of Mooney and Rivlin.
         "model.not_convex"
-        #[error("`poissons_ratio` is {ratio}, with which `mooney_rivlin` is not convex, whatever the `mooney_share`")]
+        #[error("`poissons_ratio` is {ratio}, with which `mooney_rivlin` is not convex, whatever the `mooney_share`")] #[value("{ratio}")] #[parameters("poissons_ratio", "mooney_share")]
         #[allowed("at least {least}, so that {share} <= ν/(1 − 2ν)")] #[hint("a smaller `mooney_share` allows a smaller one, down to 0")]
         NeverConvex { ratio: f64, least: String, share: String },
         /// A second constant of Mooney and Rivlin that is too large.
-        "model.not_convex" #[error("`mooney_share` is {share} with `poissons_ratio` = {ratio}, and not convex")]
+        "model.not_convex" #[error("`mooney_share` is {share} with `poissons_ratio` = {ratio}, and not convex")] #[value("{share}")] #[parameters("mooney_share", "poissons_ratio")]
         #[allowed("at most {most} = ν/(1 − 2ν)")] #[hint("a larger `poissons_ratio` allows a larger one")]
         NotConvex { share: f64, ratio: f64, most: String },
     }

@@ -23,25 +23,25 @@ messages! {
         Misses { missed: usize, nodes: usize, first: usize },
         /// Regions far smaller than the distance of nodes.
         "model.region"
-        #[error("`region` is {} m, which makes {} boxes of {nodes} nodes", number(*region), number(*boxes))]
+        #[error("`region` is {} m, which makes {} boxes of {nodes} nodes", number(*region), number(*boxes))] #[value("{}", number(*region))] #[parameters("region")]
         #[allowed("at most {most} boxes")]
         #[hint("a region holds some nodes along each axis")]
         TooManyRegions { region: f64, boxes: f64, nodes: usize, most: usize },
         /// A step-dependent stiffness with a potential.
         "model.goal_step"
-        #[error("`goal_step` is {}, and `scheme` is \"potential\", whose stiffness does not depend on the step", number(*share))]
+        #[error("`goal_step` is {}, and `scheme` is \"potential\", whose stiffness does not depend on the step", number(*share))] #[value("{}", number(*share))] #[parameters("goal_step", "scheme")]
         #[allowed("`stiffness`")]
         #[hint("at this step, `stiffness = {}` means the same, and `scheme = \"as_published\"` takes `goal_step`", number(*stiffness))]
         GoalStep { share: f64, stiffness: f64 },
         /// A step that has changed.
         "model.step_changed"
-        #[error("the substep is {} s, and `goal_step` counts for the {} s that the scene declared", number(*now), number(*declared))]
+        #[error("the substep is {} s, and `goal_step` counts for the {} s that the scene declared", number(*now), number(*declared))] #[parameters("goal_step")]
         #[allowed("that step")]
         #[hint("`stiffness = {}` means the same at any step", number(*stiffness))]
         StepChanged { now: f64, declared: f64, stiffness: f64 },
         /// What the published scheme lacks, as a part of a refusal.
         "part.no_potential"
-        #[error("`scheme` is \"as_published\", whose goal, the fitted map over the root of its determinant, is the gradient of no potential; `scheme = \"potential\"` has both")]
+        #[error("`scheme` is \"as_published\", whose goal, the fitted map over the root of its determinant, is the gradient of no potential; `scheme = \"potential\"` has both")] #[parameters("scheme")]
         NoPotentialOfGoal {},
     }
 }

@@ -362,7 +362,7 @@ fn an_empty_world_goes_on_and_commands_on_lost_bodies_are_told() {
         }
         assert!(world.frames() < 20, "the push on body 7 has begun");
     };
-    assert!(error.starts_with("`body 7`: there is no such body at t = 0.2"), "{error}");
+    assert!(error.starts_with("`body.7`: there is no such body at t = 0.2"), "{error}");
     world.frame().expect("goes on: the error is told once");
     let bytes = world.snapshot();
     world.restore(&bytes).expect("an empty world too");
@@ -374,7 +374,7 @@ fn numbers_that_are_not_finite_stay_outside() {
     let mut world = run(rings(1, 36, "symplectic_euler"), Options::default(), 2);
     let hash = world.state_hash();
     let error = world.set_node(0, 3, [f64::NAN, 0.0], [0.0; 2]).expect_err("no place").in_full();
-    assert_eq!(error, "`body 0, node 3`: NaN is not a position and not a velocity; allowed: finite numbers");
+    assert_eq!(error, "`body.0.node.3`: NaN is not a position and not a velocity; allowed: finite numbers");
     assert!(world.set_node(0, 3, [0.0; 2], [f64::INFINITY, 0.0]).is_err());
     assert!(world.set_node(0, 36, [0.0; 2], [0.0; 2]).is_err());
     assert!(world.set_node(1, 0, [0.0; 2], [0.0; 2]).is_err());

@@ -111,7 +111,7 @@ fn every_part_that_is_refused_is_found_once() {
             "collider: collider 1 (half_space): collider.no_direction",
             "collider: collider 2 (half_space): collider.no_direction",
             "body `open`: pressure: model.open_surface",
-            "path.unknown: `load on loaded`: the selected nodes hold no whole facet of the boundary; allowed: all nodes of one \
+            "path.unknown: `load.0`: the selected nodes hold no whole facet of the boundary; allowed: all nodes of one \
              facet at least",
             "unstable: stiff[0]",
         ]
@@ -124,6 +124,18 @@ fn every_part_that_is_refused_is_found_once() {
     blueprint.loads.clear();
     assert_eq!(World::problems(&blueprint, &Options::default(), &Arc::default()), []);
     assert!(World::new(blueprint, Options::default()).is_ok());
+}
+
+/// A body without edges is refused in the words of the scene file.
+#[test]
+fn springs_without_edges_are_refused_by_the_word_of_their_edges() {
+    let dot = Arc::new(Mesh { positions: vec![[0.0, 0.0]], ..Mesh::default() });
+    let blueprint = scene(vec![body("dot", &dot, vec![model("mass_spring", "stiffness", 1.0)])], Vec::new());
+    let refused = World::new(blueprint, Options::default()).expect_err("it has no edges");
+    assert_eq!(
+        refused.to_string(),
+        "body `dot`: mass_spring: the body has no edges to carry springs (`edges = \"all\"`)"
+    );
 }
 
 /// Two nodes of m = 0.5 kg and a spring k swing with ω² = 2k/m, so the estimate is k/2 for each node, and the weight of

@@ -139,7 +139,7 @@ fn numbers_that_are_none_are_refused_and_leave_the_world_whole() {
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         for (x, v) in [([bad, 0.0], [0.0; 2]), ([0.0; 2], [0.0, bad])] {
             let error = world.set_node(0, 3, x, v).expect_err("no number");
-            assert!(error.to_string().starts_with("`body 0, node 3`: "), "{error}");
+            assert!(error.to_string().starts_with("`body.0.node.3`: "), "{error}");
         }
     }
     assert!(world.set_node(0, 24, [0.0; 2], [0.0; 2]).is_err(), "there is no such node");
