@@ -1,7 +1,7 @@
 //! What the command line refuses beside what the library refuses.
 
 use opruga::math::message::AnyMessage;
-use opruga::math::words::{counted, number};
+use opruga::math::words::{counted, number, rounded};
 
 opruga::math::messages! {
     /// Why a call is refused.
@@ -174,6 +174,49 @@ opruga::math::messages! {
         OtherProgram { program: String, now: &'static str },
         "scene.changed" #[error("{file} has changed since; the recording goes by its own copy")]
         SceneChanged { file: String },
+        "pictures.thinned" #[error("pictures of {nodes} nodes would take {mebibytes} MiB; one frame of {every} is kept")]
+        PicturesThinned { nodes: usize, mebibytes: u64, every: u64 },
+    }
+    /// What is worth knowing about a call, and nothing odd.
+    #[derive(Clone, Debug, PartialEq)]
+    pub(crate) enum CallNote {
+        "run.whole_frames"
+        #[error("frames are whole: the run ends at t = {} s, not at {} s, after {} of {} s",
+            number(*reached), number(*asked), counted(*frames, "frame", "frames"), rounded(*frame, 4))]
+        WholeFrames { reached: f64, asked: f64, frames: u64, frame: f64 },
+        "run.takes_long"
+        #[error("the run will take about {duration} more ({} of {} s). Shorter: {shorter}", counted(*frames, "frame", "frames"), rounded(*each, 2))]
+        TakesLong { duration: String, frames: u64, each: f64, shorter: Shorter },
+        "pictures.rate"
+        #[error("{} pictures per second, not {} (--fps): from one to the next is a whole number of frames of the scene, here {} of {} s each",
+            rounded(*rate, 4), rounded(*asked, 4), counted(*every, "frame", "frames"), rounded(*frame, 4))]
+        OtherRate { rate: f64, asked: f64, every: u64, frame: f64 },
+        "pictures.none" #[error("no plots: {cause}")]
+        NoPlots { cause: AnyMessage },
+        "pictures.none" #[error("no strip and no video: {cause}")]
+        NoStrip { cause: AnyMessage },
+        "pictures.none" #[error("no video, since the run was interrupted; `opruga run --resume` goes on from the checkpoint")]
+        NoVideo {},
+        "threads.shared" #[error("{threads} runs shared the machine; for speeds take --threads 1 (and --force)")]
+        SharedMachine { threads: usize },
+    }
+    /// What would make a run shorter.
+    #[derive(Clone, Debug, PartialEq)]
+    pub(crate) enum Shorter {
+        "part.shorter" #[error("--set integrator.accuracy=real_time")]
+        RealTime {},
+        "part.shorter" #[error("an explicit rule, --set integrator={integrator} --set time.substeps={substeps}")]
+        Explicit { integrator: &'static str, substeps: u32 },
+        "part.shorter" #[error("fewer substeps than {substeps}: implicit rules have no largest stable step")]
+        FewerSubsteps { substeps: u32 },
+        "part.shorter" #[error("--set time.substeps={substeps}, which is stable for the shapes at rest")]
+        Substeps { substeps: u32 },
+        "part.shorter" #[error("--threads {threads}")]
+        Threads { threads: usize },
+        "part.shorter" #[error("fewer nodes, or an earlier end (--seconds)")]
+        Less {},
+        "part.shorter" #[error("{first}; {rest}")]
+        List { first: Box<Shorter>, rest: Box<Shorter> },
     }
     /// What helps where a recording or a checkpoint cannot be used.
     #[derive(Clone, Debug, PartialEq)]

@@ -129,9 +129,9 @@ impl Failure {
             }
             Failure::Run(error) => writeln!(err, "{}", error.text(translation())),
             Failure::Write(error) => writeln!(err, "{}", error.text(translation())),
-            Failure::Draw(error) => writeln!(err, "{}", with_code(error)),
-            Failure::Output(error) => writeln!(err, "{}", with_code(error)),
-            Failure::Check(fault) => writeln!(err, "{}", with_code(fault)),
+            Failure::Draw(error) => writeln!(err, "{}", with_code(Label::Error, error)),
+            Failure::Output(error) => writeln!(err, "{}", with_code(Label::Error, error)),
+            Failure::Check(fault) => writeln!(err, "{}", with_code(Label::Error, fault)),
             Failure::Call(fault) => {
                 let own = translation();
                 let _ = writeln!(err, "{}: {}", in_words(own, &Label::Error), in_words(own, &**fault));
@@ -145,9 +145,9 @@ impl Failure {
 }
 
 /// `error[code]: text`, in the language of the call.
-fn with_code(about: &dyn Message) -> String {
+pub(crate) fn with_code(label: Label, about: &dyn Message) -> String {
     let own = translation();
-    format!("{}[{}]: {}", in_words(own, &Label::Error), about.code(), in_words(own, about))
+    format!("{}[{}]: {}", in_words(own, &label), about.code(), in_words(own, about))
 }
 
 /// Prints data on stdout; a reader that has gone is no error.

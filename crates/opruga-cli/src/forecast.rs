@@ -1,7 +1,8 @@
 //! How long a run will take, told once where that is long, and what would make it shorter.
 
+use crate::errors::{CallNote, Shorter};
 use opruga::core::spec::{Role, Value, Values};
-use opruga::math::words::{counted, rounded};
+use opruga::math::words::rounded;
 use opruga::{AnyBody, AnyWorld};
 
 /// So long the first frames are measured [s].
@@ -18,23 +19,20 @@ pub(crate) struct Forecast {
 }
 
 impl Forecast {
-    /// A sentence on how long the rest of a run takes, if that is long: `wall` seconds were spent on `done` frames, and
+    /// How long the rest of a run takes, if that is long: `wall` seconds were spent on `done` frames, and
     /// `left` frames are left.
-    pub(crate) fn of(&mut self, world: &dyn AnyWorld, done: u64, left: u64, wall: f64) -> Option<String> {
+    pub(crate) fn of(&mut self, world: &dyn AnyWorld, done: u64, left: u64, wall: f64) -> Option<CallNote> {
         if self.looked || wall < MEASURED || done == 0 {
             return None;
         }
         self.looked = true;
         let each = wall / done as f64;
         let rest = each * left as f64;
-        (rest > LONG).then(|| {
-            let frames = counted(left, "frame", "frames");
-            format!(
-                "note: the run will take about {} more ({frames} of {} s). Shorter: {}",
-                duration(rest),
-                rounded(each, 2),
-                shorter(world).join("; ")
-            )
+        (rest > LONG).then(|| CallNote::TakesLong {
+            duration: duration(rest),
+            frames: left,
+            each,
+            shorter: shorter(world),
         })
     }
 }
@@ -66,34 +64,34 @@ pub(crate) fn is_implicit(world: &dyn AnyWorld) -> bool {
 }
 
 /// What would make a run shorter, the most effective first.
-fn shorter(world: &dyn AnyWorld) -> Vec<String> {
+fn shorter(world: &dyn AnyWorld) -> Shorter {
     let mut out = Vec::new();
     let (time, integrator) = (world.scene().time(), world.scene().integrator());
     let implicit = implicit(world).any(|implicit| implicit);
     if implicit {
         if has_real_time(world, integrator) {
-            out.push("--set integrator.accuracy=real_time".to_string());
+            out.push(Shorter::RealTime {});
         }
-        if let Some((kind, substeps)) = explicit_substeps(world) {
-            out.push(format!("an explicit rule, --set integrator={kind} --set time.substeps={substeps}"));
+        if let Some((integrator, substeps)) = explicit_substeps(world) {
+            out.push(Shorter::Explicit { integrator, substeps });
         }
         if time.substeps > 1 {
-            out.push(format!("fewer substeps than {}: implicit rules have no largest stable step", time.substeps));
+            out.push(Shorter::FewerSubsteps { substeps: time.substeps });
         }
     } else {
         let limits = world.stability().iter().map(|(_, stability)| stability.largest_stable_step.unwrap_or(0.0));
         let limit = limits.fold(f64::INFINITY, f64::min);
         let enough = (1.2 * time.frame / limit).ceil().max(1.0);
         if enough.is_finite() && enough < 0.8 * f64::from(time.substeps) {
-            out.push(format!("--set time.substeps={enough}, which is stable for the shapes at rest"));
+            out.push(Shorter::Substeps { substeps: enough as u32 });
         }
     }
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     if world.threads() < cores && (world.islands() > 1 || implicit) {
-        out.push(format!("--threads {cores}"));
+        out.push(Shorter::Threads { threads: cores });
     }
-    out.push("fewer nodes, or an earlier end (--seconds)".into());
-    out
+    let list = |rest, first| Shorter::List { first: Box::new(first), rest: Box::new(rest) };
+    out.into_iter().rev().fold(Shorter::Less {}, list)
 }
 
 /// Whether the integrator of a scene has a faster setting that it does not use yet.
@@ -104,11 +102,11 @@ fn has_real_time(world: &dyn AnyWorld, integrator: &Values) -> bool {
 }
 
 /// The explicit integrator that is offered, and the substeps at which it would be stable, if these are not many.
-fn explicit_substeps(world: &dyn AnyWorld) -> Option<(&'static str, f64)> {
+fn explicit_substeps(world: &dyn AnyWorld) -> Option<(&'static str, u32)> {
     let spec = world.integrator_with(Role::OfferedExplicit)?;
     let limit = world.stable_step_under(&Values::defaults(spec, world.scene().dimension()))?;
     let substeps = (1.2 * world.scene().time().frame / limit).ceil().max(1.0);
-    (substeps <= MANY_SUBSTEPS).then_some((spec.kind, substeps))
+    (substeps <= MANY_SUBSTEPS).then_some((spec.kind, substeps as u32))
 }
 
 #[cfg(test)]

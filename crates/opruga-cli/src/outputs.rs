@@ -1,12 +1,14 @@
 //! What a run leaves behind: tables, checkpoint, strip, video, plots.
 
 use crate::checkpoints::Keeper;
-use crate::failure::Failure;
+use crate::errors::CallNote;
+use crate::failure::{Failure, with_code};
 use crate::recorder::{Recorder, film_rate};
 use crate::source::Source;
 use opruga::blueprint::Recorded;
 use opruga::draw;
 use opruga::io::output_folder::OutputFolder;
+use opruga::io::problem::Label;
 use opruga::io::tables::{
     CellSummary, EnergySummary, FinalBody, MomentumSummary, SolverSummary, Summary, WarningSummary, write_final,
     write_final_with,
@@ -152,7 +154,7 @@ impl Outputs<'_> {
         let (view, film) = match strip.and_then(|strip| whole.map(|whole| (strip, whole))) {
             Ok(views) => views,
             Err(nothing @ draw::DrawError::Empty { .. }) => {
-                eprintln!("note: no strip and no video: {nothing}");
+                print_note(&CallNote::NoStrip { cause: nothing.into() });
                 return Ok(());
             }
             Err(error) => return Err(error.into()),
@@ -166,9 +168,7 @@ impl Outputs<'_> {
         self.folder.write("strip.png", false, |out| out.write_all(&png))?;
         files.push("strip.png".into());
         if self.stop.load(Ordering::Relaxed) {
-            eprintln!(
-                "note: no video, since the run was interrupted; `opruga run --resume` goes on from the checkpoint"
-            );
+            print_note(&CallNote::NoVideo {});
             return Ok(());
         }
         files.push(self.video(scenery, recorder, &film, dimension)?);
@@ -318,6 +318,11 @@ pub(crate) fn cells(world: &dyn AnyWorld) -> Vec<CellSummary> {
         });
     }
     found
+}
+
+/// A note for people.
+pub(crate) fn print_note(note: &CallNote) {
+    eprintln!("{}", with_code(Label::Note, note));
 }
 
 /// A warning for people.

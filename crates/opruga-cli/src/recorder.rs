@@ -1,11 +1,12 @@
 //! What is kept of a run while it runs: rows of tables, and moments for pictures.
 
-use crate::errors::{CallFault, CallWarning};
+use crate::errors::{CallFault, CallNote, CallWarning};
 use crate::failure::Failure;
+use crate::outputs::{print_note, print_warning};
 use opruga::blueprint::Recorded;
 use opruga::core::spec::Role;
 use opruga::io::tables::NumberTable;
-use opruga::math::words::{counted, rounded};
+use opruga::math::words::rounded;
 use opruga::pictures::{Moment, Scenery};
 use opruga::{AnyBody, AnyWorld, Warning, draw};
 use std::borrow::Cow;
@@ -169,10 +170,7 @@ impl Recorder {
         let bytes = pictures * (nodes * (dimension + 1) * 4) as u64;
         let every = wanted * bytes.div_ceil(PICTURE_BYTES).max(1);
         if drawn && every > wanted {
-            eprintln!(
-                "warning: pictures of {nodes} nodes would take {} MiB; one frame of {every} is kept",
-                bytes >> 20
-            );
+            print_warning(&Warning::new(CallWarning::PicturesThinned { nodes, mebibytes: bytes >> 20, every }, 1));
         }
         let rate = film_rate(every, frame);
         if drawn && draw::Mp4Writer::new(std::io::sink(), [16, 16], rate).is_err() {
@@ -182,7 +180,7 @@ impl Recorder {
         if every == wanted
             && let Some(note) = asked.and_then(|asked| other_rate(asked, every, frame)).filter(|_| notes)
         {
-            eprintln!("{note}");
+            print_note(&note);
         }
         let mut scenery = drawn.then(|| Scenery::new(world));
         if springs {
@@ -262,16 +260,9 @@ pub(crate) fn film_rate(every: u64, frame: f64) -> f64 {
 }
 
 /// What is said where pictures come at another rate than asked for.
-fn other_rate(asked: f64, every: u64, frame: f64) -> Option<String> {
-    let (rate, asked) = (rounded(film_rate(every, frame), 4), rounded(asked, 4));
-    let frames = counted(every, "frame", "frames");
-    (rate != asked).then(|| {
-        format!(
-            "note: {rate} pictures per second, not {asked} (--fps): from one to the next is a whole number of frames of the scene, here \
-             {frames} of {} s each",
-            rounded(frame, 4)
-        )
-    })
+fn other_rate(asked: f64, every: u64, frame: f64) -> Option<CallNote> {
+    let rate = film_rate(every, frame);
+    (rounded(rate, 4) != rounded(asked, 4)).then_some(CallNote::OtherRate { rate, asked, every, frame })
 }
 
 /// Substeps between two looks within a frame, so that small runs show every swing; 0: none.
@@ -351,17 +342,12 @@ mod tests {
             assert_eq!(other_rate(asked, every, frame), None, "{asked}");
         }
         assert_eq!(
-            other_rate(11.3, 5, frame).as_deref(),
-            Some(
-                "note: 12 pictures per second, not 11.3 (--fps): from one to the next is a whole number of frames of the scene, here \
-                 5 frames of 0.01667 s each"
-            )
+            other_rate(11.3, 5, frame).expect("it is told").to_string(),
+            "12 pictures per second, not 11.3 (--fps): from one to the next is a whole number of frames of the scene, here \
+             5 frames of 0.01667 s each"
         );
-        let most = other_rate(240.0, 1, frame).expect("it is told");
-        assert!(
-            most.starts_with("note: 60 pictures per second, not 240") && most.contains("here 1 frame of"),
-            "{most}"
-        );
+        let most = other_rate(240.0, 1, frame).expect("it is told").to_string();
+        assert!(most.starts_with("60 pictures per second, not 240") && most.contains("here 1 frame of"), "{most}");
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use crate::arguments::Run;
 use crate::checkpoints::{self, Calling, Keeper, SavedRun};
-use crate::errors::{CallFault, CallRange, CallWarning, CheckFault, Crossing};
+use crate::errors::{CallFault, CallNote, CallRange, CallWarning, CheckFault, Crossing};
 use crate::failure::{Failure, print_data};
 use crate::forecast::{Forecast, duration};
 use crate::interrupt;
@@ -15,10 +15,9 @@ use crate::uses;
 use opruga::blueprint::AnyBlueprint;
 use opruga::io::output_folder::{Existing, OutputFolder};
 use opruga::io::outputs_apart::Use;
-use opruga::io::problem::warning_text;
 use opruga::io::safe_write::WriteError;
 use opruga::io::scene;
-use opruga::math::words::{counted, number, rounded};
+use opruga::math::words::rounded;
 use opruga::recordings::TapeHint;
 use opruga::{AnyWorld, Options, Registries, Simd, Warning};
 use std::collections::BTreeMap;
@@ -157,18 +156,11 @@ fn other_simd() -> Option<CallWarning> {
 }
 
 /// That a run ends at another time than it was asked for, since frames are whole.
-pub(crate) fn whole_frames(frames: u64, frame: f64, seconds: f64) -> Option<String> {
+pub(crate) fn whole_frames(frames: u64, frame: f64, seconds: f64) -> Option<CallNote> {
     let reached = frames as f64 * frame;
     // Rounding apart.
-    ((reached - seconds).abs() > 1e-6 * frame).then(|| {
-        format!(
-            "note: frames are whole: the run ends at t = {} s, not at {} s, after {} of {} s",
-            number(reached),
-            number(seconds),
-            counted(frames, "frame", "frames"),
-            rounded(frame, 4)
-        )
-    })
+    let apart = (reached - seconds).abs() > 1e-6 * frame;
+    apart.then_some(CallNote::WholeFrames { reached, asked: seconds, frames, frame })
 }
 
 struct Job<'a> {
@@ -215,7 +207,7 @@ impl Job<'_> {
         let early = world.warnings();
         if !call.json {
             early.iter().for_each(outputs::print_warning);
-            whole_frames(frames, frame, seconds).iter().for_each(|note| eprintln!("{note}"));
+            whole_frames(frames, frame, seconds).iter().for_each(outputs::print_note);
             recorder.thinned().iter().for_each(outputs::print_warning);
         }
         let first = world.frames();
@@ -242,7 +234,7 @@ impl Job<'_> {
             failure = failure.or(untaped);
             looking += recorder.record(&mut *world);
             if let Some(failed) = keeper.write_if_due(&*world, &recorder.table) {
-                progress.line(&warning_text(&failed, translation()));
+                progress.bar.suspend(|| outputs::print_warning(&failed));
             }
             progress.after_frame(&*world, frame);
         }
@@ -297,11 +289,6 @@ impl Progress {
         Progress { bar, forecast, start, first, frames, quiet, last_line: 0.0 }
     }
 
-    /// Writes a line above the bar.
-    fn line(&self, text: &str) {
-        self.bar.suspend(|| eprintln!("{text}"));
-    }
-
     /// Shows how far the run is: on the bar, and where there is none in a line now and then.
     fn after_frame(&mut self, world: &dyn AnyWorld, frame: f64) {
         self.bar.set_position(world.frames());
@@ -316,7 +303,7 @@ impl Progress {
             return;
         }
         if let Some(forecast) = self.forecast.of(world, done, left, wall) {
-            self.line(&forecast);
+            self.bar.suspend(|| outputs::print_note(&forecast));
             self.last_line = wall;
         }
         if self.bar.is_hidden() && wall - self.last_line >= TALK_EVERY {

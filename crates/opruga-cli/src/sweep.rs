@@ -4,9 +4,10 @@ mod findings;
 
 use crate::arguments::Sweep as Call;
 use crate::bench::processor_time;
-use crate::errors::{CallError, CallRange};
+use crate::errors::{CallError, CallNote, CallRange};
 use crate::failure::{Failure, print_data};
 use crate::interrupt;
+use crate::outputs::print_note;
 use crate::run::{default_folder, simd_from_environment};
 use crate::source::{Source, argument};
 use crate::uses;
@@ -43,7 +44,7 @@ pub(crate) fn sweep(call: &Call, registries: &Registries) -> Result<u8, Failure>
     let threads = call.threads.map_or(cores.min(256), usize::from);
     let SceneInfo { length_unit, credit, ends } = scene_info(&sweep);
     if !call.json {
-        ends.iter().for_each(|note| eprintln!("{note}"));
+        ends.iter().for_each(print_note);
     }
     let work = Work { sweep: &sweep, points: &points, folder: &folder, threads, simd };
     let start = Instant::now();
@@ -56,7 +57,9 @@ pub(crate) fn sweep(call: &Call, registries: &Registries) -> Result<u8, Failure>
                 files.push(name);
             }
         }
-        Err(nothing @ opruga::draw::DrawError::Empty { .. }) => eprintln!("note: no plots: {nothing}"),
+        Err(nothing @ opruga::draw::DrawError::Empty { .. }) => {
+            print_note(&CallNote::NoPlots { cause: nothing.into() });
+        }
         Err(error) => return Err(error.into()),
     }
     files.push("summary.json".into());
@@ -73,7 +76,7 @@ pub(crate) fn sweep(call: &Call, registries: &Registries) -> Result<u8, Failure>
     } else {
         print_data(&found.to_string())?;
         if threads > 1 && sweep.metrics.iter().any(Metric::is_timing) {
-            eprintln!("note: {threads} runs shared the machine; for speeds take --threads 1 (and --force)");
+            print_note(&CallNote::SharedMachine { threads });
         }
         eprintln!("written to {}", folder.path("").display());
     }
@@ -97,7 +100,7 @@ struct SceneInfo {
     /// Whose drawings it shows.
     credit: String,
     /// That runs end at another time than was asked for, unless that differs between them.
-    ends: Option<String>,
+    ends: Option<CallNote>,
 }
 
 fn scene_info(sweep: &Sweep) -> SceneInfo {

@@ -31,6 +31,7 @@ pub mod runner;
 pub mod setting;
 pub mod shape_file;
 pub mod share;
+pub mod start_errors;
 mod taps;
 pub mod theme;
 pub mod view_errors;

@@ -10,6 +10,7 @@ use opruga_studio::rescue::{self, Rescue};
 use opruga_studio::session::Request;
 use opruga_studio::setting::Setting;
 use opruga_studio::shown::Severity;
+use opruga_studio::start_errors::StartError;
 use opruga_studio::{wanted, watch};
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -21,12 +22,18 @@ use std::sync::{Arc, Mutex, PoisonError};
 const USAGE: &str = "opruga-studio [SCENE]\n\nSCENE is a scene file, the name of a scene that comes with the program, a recorded run, \
                      or the file of a shape (.svg, .obj, .stl, .ply, .gltf, .glb).";
 
+/// Reports what is wrong with the call, and how the program is called.
+fn refuse_call(error: StartError) {
+    watch::print(error);
+    eprintln!("\n{USAGE}");
+}
+
 /// The arguments as texts. One that is none is reported.
 fn texts(arguments: impl Iterator<Item = OsString>) -> Result<Vec<String>, ()> {
     let text = |argument: OsString| {
         argument.into_string().map_err(|argument| {
             let shown = argument.to_string_lossy();
-            eprintln!("error[studio.call]: `{}` is no text in UTF-8\n\n{USAGE}", visible(&shown));
+            refuse_call(StartError::NotUtf8 { argument: visible(&shown) });
         })
     };
     arguments.map(text).collect()
@@ -45,11 +52,11 @@ fn main() -> ExitCode {
         return ExitCode::SUCCESS;
     }
     if let Some(option) = arguments.iter().find(|word| word.starts_with('-')) {
-        eprintln!("error[studio.call]: there is no option `{}`\n\n{USAGE}", visible(option));
+        refuse_call(StartError::NoOption { option: visible(option) });
         return ExitCode::from(2);
     }
     if arguments.len() > 1 {
-        eprintln!("error[studio.call]: {} scenes are named; allowed: at most one\n\n{USAGE}", arguments.len());
+        refuse_call(StartError::SeveralScenes { count: arguments.len() });
         return ExitCode::from(2);
     }
     let setting = Setting { options: options(), registries: Registries::default() };
@@ -125,8 +132,7 @@ fn main() -> ExitCode {
             ExitCode::from(watch::LOST)
         }
         Err(error) => {
-            eprintln!("error[studio.no_window]: no window can be opened: {error}");
-            eprintln!("  = hint: `opruga run {wanted}` runs without a window and writes pictures");
+            watch::print(StartError::NoWindow { reason: error.to_string(), scene: wanted });
             ExitCode::from(watch::NO_WINDOW)
         }
     }

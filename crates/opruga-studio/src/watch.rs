@@ -3,8 +3,11 @@
 //! is saved and said, and another window goes on from there. Where it is asked to end, what was done is saved and said too.
 
 use crate::handing::Folder;
+use crate::preferences::Store;
 use crate::rescue;
+use crate::start_errors::StartError;
 use opruga::Registries;
+use opruga::io::problem::SceneError;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitCode, ExitStatus, Stdio};
@@ -46,6 +49,12 @@ enum Next {
     Lost,
 }
 
+/// Prints an error in the language that the person prefers.
+pub fn print(error: StartError) {
+    let language = Store::of_the_person().read().language;
+    eprintln!("{}", SceneError::of(error).text(language.translation()));
+}
+
 /// Watches over windows on what the arguments name.
 pub fn run(arguments: &[OsString], registries: &Registries) -> ExitCode {
     let Ok(kept) = Kept::new() else {
@@ -64,7 +73,7 @@ pub fn run(arguments: &[OsString], registries: &Registries) -> ExitCode {
         let status = match window(arguments, Some(&kept.file()), saved.as_deref()) {
             Ok(status) => status,
             Err(error) => {
-                eprintln!("error[studio.no_window]: the window cannot be started: {error}");
+                print(StartError::NotStarted { reason: error.to_string() });
                 return ExitCode::from(NO_WINDOW);
             }
         };
@@ -84,9 +93,10 @@ pub fn run(arguments: &[OsString], registries: &Registries) -> ExitCode {
             }
             return ExitCode::from(code);
         }
-        let why = signal(&status)
-            .map_or_else(|| format!("exit code {}", status.code().unwrap_or(-1)), |number| format!("signal {number}"));
-        eprintln!("error[studio.lost]: the window was lost ({why})");
+        print(match signal(&status) {
+            Some(number) => StartError::Signal { number },
+            None => StartError::ExitCode { code: status.code().unwrap_or(-1) },
+        });
         saved = save_and_report(&kept.file(), registries);
         lost.retain(|at| at.elapsed() < WITHIN);
         lost.push(Instant::now());

@@ -261,7 +261,40 @@ checkpoint-failed-CheckpointFailed = točka nastavka usput se nije mogla zapisat
 checkpoint-failed-NoCheckpoint = nema točke nastavka u t = { $time } s: { $path }: { $cause }
 recording-open-NoEnd = snimka nema kraja: računanje je prekinuto ili još traje; cijelih sličica do t = { $until } s: { $frames }, a bajtova iza njih, koji nisu cijela sličica: { $lost }
 recording-program-OtherProgram = snimku je zapisao { $program }; ovo je { $now }
+pictures-thinned-PicturesThinned = slike s toliko čvorova ({ $nodes }) zauzele bi { $mebibytes } MiB; čuva se jedna sličica od { $every }
 scene-changed-SceneChanged = datoteka { $file } otad se promijenila; vrijedi prizor iz snimke
+
+## CallNote
+
+run-whole_frames-WholeFrames = sličice su cijele: računanje završava u t = { $reached } s, a ne u { $asked } s; sličica: { $frames }, svaka po { NUMBER($frame, maximumSignificantDigits: 4) } s
+run-takes_long-TakesLong = računanje će trajati još oko { $duration } (sličica: { $frames }, svaka po { NUMBER($each, maximumSignificantDigits: 2) } s). Kraće: { $shorter }
+pictures-rate-OtherRate = slika u sekundi: { NUMBER($rate, maximumSignificantDigits: 4) }, a ne { NUMBER($asked, maximumSignificantDigits: 4) } (--fps); od jedne do druge je cijeli broj sličica prizora, ovdje { $every } po { NUMBER($frame, maximumSignificantDigits: 4) } s
+pictures-none-NoPlots = nema grafova: { $cause }
+pictures-none-NoStrip = nema trake ni filma: { $cause }
+pictures-none-NoVideo = nema filma jer je računanje prekinuto; `opruga run --resume` nastavlja od točke nastavka
+threads-shared-SharedMachine = istodobnih računanja koja su dijelila stroj: { $threads }; za brzine uzmi --threads 1 (i --force)
+
+## Shorter
+
+part-shorter-RealTime = --set integrator.accuracy=real_time
+part-shorter-Explicit = eksplicitno pravilo, --set integrator={ $integrator } --set time.substeps={ $substeps }
+part-shorter-FewerSubsteps = manje podkoraka od { $substeps }: implicitna pravila nemaju najveći stabilni korak
+part-shorter-Substeps = --set time.substeps={ $substeps }, što je stabilno za oblike u mirovanju
+part-shorter-Threads = --threads { $threads }
+part-shorter-Less = manje čvorova, ili raniji kraj (--seconds)
+part-shorter-List = { $first }; { $rest }
+
+## StartError
+
+studio-call-NotUtf8 = `{ $argument }` nije tekst u UTF-8
+studio-call-NoOption = nema opcije `{ $option }`
+studio-call-SeveralScenes = navedeno je prizora: { $count }
+    .allowed = najviše jedan
+studio-no_window-NoWindow = prozor se ne može otvoriti: { $reason }
+    .hint = `opruga run { $scene }` računa bez prozora i zapisuje slike
+studio-no_window-NotStarted = prozor se ne može pokrenuti: { $reason }
+studio-lost-ExitCode = prozor je izgubljen (izlazni kod { $code })
+studio-lost-Signal = prozor je izgubljen (signal { $number })
 
 ## ResumeHint
 

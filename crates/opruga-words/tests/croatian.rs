@@ -13,6 +13,8 @@ use std::path::Path;
 
 #[path = "../../opruga-cli/src/errors.rs"]
 mod call_errors;
+#[path = "../../opruga-studio/src/start_errors.rs"]
+mod start_errors;
 #[path = "../../opruga-studio/src/view_errors.rs"]
 mod view_errors;
 
@@ -29,7 +31,8 @@ fn variants() -> impl Iterator<Item = &'static Variant> {
         opruga::scenes::MESSAGES,
         &[call_errors::CallError::VARIANTS, call_errors::CallRange::VARIANTS, call_errors::CallFault::VARIANTS],
         &[call_errors::OutputError::VARIANTS, call_errors::Crossing::VARIANTS, call_errors::CheckFault::VARIANTS],
-        &[call_errors::CallWarning::VARIANTS, call_errors::ResumeHint::VARIANTS],
+        &[call_errors::CallWarning::VARIANTS, call_errors::ResumeHint::VARIANTS, call_errors::CallNote::VARIANTS],
+        &[call_errors::Shorter::VARIANTS, start_errors::StartError::VARIANTS],
         opruga::draw::MESSAGES,
         &[view_errors::ViewError::VARIANTS],
         &[opruga_video::VideoError::VARIANTS],

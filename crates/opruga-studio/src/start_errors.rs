@@ -1,0 +1,30 @@
+//! Why the studio does not start, and why its window is gone.
+
+opruga::math::messages! {
+    /// Why the studio does not start, and why its window is gone.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum StartError {
+        /// An argument is no text.
+        "studio.call" #[error("`{argument}` is no text in UTF-8")]
+        NotUtf8 { argument: String },
+        /// An option that is not there.
+        "studio.call" #[error("there is no option `{option}`")]
+        NoOption { option: String },
+        /// Several scenes.
+        "studio.call" #[error("{count} scenes are named")] #[allowed("at most one")]
+        SeveralScenes { count: usize },
+        /// There is no screen, or no way to draw on it.
+        "studio.no_window" #[error("no window can be opened: {reason}")]
+        #[hint("`opruga run {scene}` runs without a window and writes pictures")]
+        NoWindow { reason: String, scene: String },
+        /// The program of the window does not start.
+        "studio.no_window" #[error("the window cannot be started: {reason}")]
+        NotStarted { reason: String },
+        /// The window has ended by itself.
+        "studio.lost" #[error("the window was lost (exit code {code})")]
+        ExitCode { code: i32 },
+        /// A signal has ended the window.
+        "studio.lost" #[error("the window was lost (signal {number})")]
+        Signal { number: i32 },
+    }
+}
