@@ -81,6 +81,17 @@ fn a_call_that_names_two_scenes_or_no_text_or_no_scene_is_told_what_is_allowed()
     };
     assert!(said(&["ball".as_ref(), "heart".as_ref()]).contains("opruga-studio [SCENE]"));
     assert!(said(&["--fast".as_ref()]).contains("`--fast`"));
+    let folder = std::env::temp_dir().join(format!("opruga-call-{}", std::process::id()));
+    std::fs::create_dir_all(folder.join("opruga")).expect("a folder");
+    std::fs::write(folder.join("opruga/studio.toml"), "language = \"hr\"\n").expect("preferences");
+    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_opruga-studio"));
+    let croatian = command.arg("--fast").env("XDG_CONFIG_HOME", &folder).output().expect("it starts");
+    std::fs::remove_dir_all(&folder).expect("it goes");
+    let croatian = String::from_utf8_lossy(&croatian.stderr).into_owned();
+    assert!(
+        !cfg!(target_os = "linux") || croatian.starts_with("greška[studio.call]: nema opcije `--fast`"),
+        "{croatian}"
+    );
     assert!(said(&["presures".as_ref()]).contains("did you mean `pressures`?"));
     #[cfg(unix)]
     assert!(said(&[std::os::unix::ffi::OsStrExt::from_bytes(b"\xff")]).contains("UTF-8"));

@@ -178,3 +178,16 @@ fn modes_of_a_free_body_do_not_ask_for_the_integrator_of_the_scene() {
     let looked_for = opruga(folder.path(), &["modes", "ball", "--equilibrium", "--no-pictures", "--force"]);
     assert_ne!(code(&looked_for), 0);
 }
+
+/// Notes have codes: a scene without bodies has no pictures, and runs that share the machine are slower than one alone.
+#[test]
+fn what_is_worth_knowing_is_told_with_a_code() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let empty = "format = \"opruga-1\"\ndimension = 2\nintegrator = \"verlet\"\n[time]\nseconds = 0.1\n";
+    std::fs::write(folder.path().join("s.toml"), empty).expect("a file");
+    let told = said(&opruga(folder.path(), &["run", "s.toml"]));
+    assert!(told.contains("note[pictures.none]: no strip and no video: there is nothing to draw"), "{told}");
+    let sweep = ["sweep", "ball", "--set", "body.ball.mass=1,2", "--metric", "nanoseconds_per_step"];
+    let told = said(&opruga(folder.path(), &[&sweep[..], &["--seconds", "0.05", "--threads", "2"]].concat()));
+    assert!(told.contains("note[threads.shared]: 2 runs shared the machine"), "{told}");
+}
