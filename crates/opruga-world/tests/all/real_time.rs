@@ -263,6 +263,31 @@ fn steps_that_may_be_worse_than_promised_are_counted_with_what_is_left() {
     assert!(warning.message.contains(&format!("{} m", number(work.left))), "{warning:?}");
 }
 
+/// A clamped bar under a sudden weight: one iteration leaves the more out of balance the more that bends the bar, of the first weights 8 and 2 %,
+/// of the second 32 and 10 %.
+#[test]
+fn a_step_that_leaves_more_out_of_balance_than_its_rule_promises_is_counted() {
+    let counted = |rule: &str, iterations: i64, weight: f64| {
+        let mesh = Mesh::<2>::grid([0.0; 2], [1.0, 0.1], [8, 2]).unwrap();
+        let material = [("youngs_modulus", Value::Number(1e6)), ("material", text("corotated"))];
+        let of_rule = [("accuracy", text("real_time")), ("iterations", Value::Integer(iterations))];
+        let mut bar = solid(mesh, rule, &of_rule, &material);
+        bar.surroundings.gravity = [0.0, -weight];
+        bar.bodies[0].pins = clamp();
+        let mut bar = World::new(bar, Options::default()).unwrap();
+        bar.frame().unwrap();
+        let (work, warnings) = (bar.solver_work(), bar.warnings());
+        assert_eq!((work.steps, work.halved), (1, 0), "{rule}, {weight}: one step");
+        assert_eq!(warnings.iter().any(|warning| warning.code == "step.cut_off"), work.cut_off > 0, "{warnings:?}");
+        work.cut_off
+    };
+    for (rule, little, much) in [("backward_euler", 10.0, 40.0), ("bdf2", 2.5, 12.5)] {
+        assert_eq!(counted(rule, 1, little), 0, "{rule}");
+        assert_eq!(counted(rule, 1, much), 1, "{rule}");
+        assert_eq!(counted(rule, 3, much), 0, "{rule}: three iterations");
+    }
+}
+
 fn cpu() -> f64 {
     // Time of this thread: nanoseconds on a processor, the first number of schedstat.
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
