@@ -19,6 +19,7 @@ mod interrupted_near_obstacles;
 mod invariance_of_solids;
 mod led_bodies;
 mod looks;
+mod many_chambers;
 mod moving_obstacles;
 mod no_energy;
 mod other_balances;
