@@ -42,7 +42,7 @@ const LONGEST_STRETCH: f64 = 16.0;
 
 /// Bodies at rest stay more firmly where they are after a correction of which a smaller part could be gone. Without it the corrections of a stack of three bodies
 /// lead its upper ones off the lower ones and back for ever (`stacks_come_to_their_balance`).
-const CUT_SHORT: f64 = 0.0;
+const CUT_SHORT: f64 = 0.25;
 
 /// Iterations of a search with a budget at most, with those that it does not count: as many as exact steps have without friction.
 const MOST_IN_BUDGET: u32 = 100;
@@ -56,7 +56,7 @@ const SETTLED: f64 = 1e-3;
 
 /// The part of what is out of balance with which a search with a budget is at its end. With 0.2 in its place, the impact of 27 cubes makes 4 % of the energy
 /// in motion (`falling-cubes`); docs/contact.md has its figures.
-const ENOUGH: f64 = 0.2;
+const ENOUGH: f64 = 0.05;
 
 /// The part of that which the linear solver may leave, and the part of its right-hand side that it leaves at most.
 const LINEAR_SHARE: f64 = 0.5;
@@ -510,11 +510,9 @@ impl<const D: usize> Search<'_, '_, D> {
                 None => std::array::from_fn(|d| from[d] + self.ahead[p][d]),
             };
         }
-        let Touching { surface, laws, most, .. } = &*self.touching;
-        surface.follow(&mut self.trial);
-        self.barrier.look(surface, laws, [&self.x, &self.trial], *most)?;
+        self.touching.surface.follow(&mut self.trial);
         let far = std::mem::take(&mut self.trial);
-        let mut part = self.barrier.free_part(surface, laws, [&self.x, &far]);
+        let mut part = self.free_part(&far)?;
         let start = std::mem::take(&mut self.x);
         let moved = self.moved.clone();
         let before = self.energy();
@@ -592,6 +590,25 @@ impl<const D: usize> Search<'_, '_, D> {
             (sum, size) = (sum + energy, size + energy);
         }
         Some([sum, size])
+    }
+
+    /// The part of the paths to these positions [m] that all pairs may go.
+    fn free_part(&mut self, far: &[[f64; D]]) -> Result<f64, Refused> {
+        let Touching { surface, laws, most, .. } = &*self.touching;
+        let mut end = far.to_vec();
+        let mut part = 1.0;
+        for _ in 0..MOST_HALVINGS {
+            match self.barrier.look(surface, laws, [&self.x, &end], *most) {
+                Ok(()) => return Ok(part * self.barrier.free_part(surface, laws, [&self.x, &end])),
+                // Paths across many bodies have more pairs than the limit allows: half of them may do.
+                Err(Trouble::TooMany { .. }) => part *= 0.5,
+                Err(trouble) => return Err(trouble.into()),
+            }
+            for (end, (x, far)) in end.iter_mut().zip(self.x.iter().zip(far)) {
+                *end = std::array::from_fn(|d| x[d] + part * (far[d] - x[d]));
+            }
+        }
+        Ok(self.barrier.look(surface, laws, [&self.x, &self.x], *most).map(|()| 0.0)?)
     }
 
     /// Looks for pairs on the paths on which points set out in a step of h [s].
