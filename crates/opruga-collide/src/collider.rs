@@ -90,35 +90,28 @@ pub(crate) struct Reach<const D: usize> {
     pub(crate) bend: f64,
 }
 
-/// Refuses a collider.
-struct Refuse<'a> {
-    number: usize,
-    values: &'a Values,
+/// Why a collider is refused.
+fn refused(values: &Values, refusal: Refusal) -> BuildError {
+    BuildError::of(values.kind(), refusal)
 }
 
-impl Refuse<'_> {
-    fn error(&self, refusal: Refusal) -> BuildError {
-        BuildError::of(format!("collider {} ({})", self.number, self.values.kind()), refusal)
-    }
-    /// The value of a field, as it stands in the scene.
-    fn shown(&self, field: &str) -> String {
-        self.values.get(field).map_or("absent".to_string(), Value::to_string)
-    }
+/// The value of a field, as it stands in the scene.
+fn shown(values: &Values, field: &str) -> String {
+    values.get(field).map_or("absent".to_string(), Value::to_string)
 }
 
 impl<const D: usize> Collider<D> {
-    /// Builds a collider from its parameters; `number` counts colliders from 0 and names it in errors.
-    pub(crate) fn build(number: usize, values: &Values) -> Result<Collider<D>, BuildError> {
-        let refuse = Refuse { number, values };
+    /// Builds a collider from its parameters.
+    pub(crate) fn build(values: &Values) -> Result<Collider<D>, BuildError> {
         let (form, parts, center) = match values.kind() {
-            "half_space" => half_space(values, &refuse)?,
-            "box" => cuboid(values, &refuse)?,
-            "ball" => ball(values, &refuse)?,
-            "capsule" => capsule(values, &refuse)?,
-            "convex" => convex(values, &refuse)?,
-            "polyline" if D == 2 => polyline(values, &refuse)?,
-            "triangle_mesh" if D == 3 => triangle_mesh(values, &refuse)?,
-            _ => return Err(refuse.error(Refusal::Kind { dimension: D })),
+            "half_space" => half_space(values)?,
+            "box" => cuboid(values)?,
+            "ball" => ball(values),
+            "capsule" => capsule(values)?,
+            "convex" => convex(values)?,
+            "polyline" if D == 2 => polyline(values)?,
+            "triangle_mesh" if D == 3 => triangle_mesh(values)?,
+            _ => return Err(refused(values, Refusal::Kind { dimension: D })),
         };
         let motion = motion(values, &center);
         let mut law = Law {
@@ -140,7 +133,7 @@ impl<const D: usize> Collider<D> {
                     law.extent += ball.radius;
                     if ball.sign < 0.0 && law.thickness >= ball.radius {
                         let (thickness, radius) = (law.thickness, ball.radius);
-                        return Err(refuse.error(Refusal::FilledBall { thickness, radius }));
+                        return Err(refused(values, Refusal::FilledBall { thickness, radius }));
                     }
                 }
                 _ => {}
@@ -150,7 +143,7 @@ impl<const D: usize> Collider<D> {
             law.extent += magnitude(&shape.half);
             for half in &shape.half {
                 if law.thickness >= *half {
-                    return Err(refuse.error(Refusal::FilledBox { thickness: law.thickness, half: *half }));
+                    return Err(refused(values, Refusal::FilledBox { thickness: law.thickness, half: *half }));
                 }
             }
         }
@@ -286,7 +279,7 @@ const SHORTEST: f64 = 1e-150;
 /// Form, parts and centre of a shape.
 type Built<const D: usize> = (Form<D>, Vec<Part<D>>, [f64; D]);
 
-fn half_space<const D: usize>(values: &Values, refuse: &Refuse<'_>) -> Result<Built<D>, BuildError> {
+fn half_space<const D: usize>(values: &Values) -> Result<Built<D>, BuildError> {
     let (point, normal) = (values.vector::<D>("point"), values.vector::<D>("normal"));
     let mut unit = normal;
     let mut size = length(&unit);
@@ -297,8 +290,8 @@ fn half_space<const D: usize>(values: &Values, refuse: &Refuse<'_>) -> Result<Bu
         size = length(&unit);
     }
     if !(size > SHORTEST && size.is_finite()) {
-        let (normal, least) = (refuse.shown("normal"), format!("{SHORTEST:e}"));
-        return Err(refuse.error(Refusal::NoNormal { normal, least }));
+        let (normal, least) = (shown(values, "normal"), format!("{SHORTEST:e}"));
+        return Err(refused(values, Refusal::NoNormal { normal, least }));
     }
     for n in &mut unit {
         *n /= size;
@@ -306,7 +299,7 @@ fn half_space<const D: usize>(values: &Values, refuse: &Refuse<'_>) -> Result<Bu
     Ok((Form::HalfSpace { point, normal: unit }, vec![Part::HalfSpace(HalfSpace::through(&point, unit))], point))
 }
 
-fn cuboid<const D: usize>(values: &Values, refuse: &Refuse<'_>) -> Result<Built<D>, BuildError> {
+fn cuboid<const D: usize>(values: &Values) -> Result<Built<D>, BuildError> {
     let given = |name| values.get(name).is_some();
     let corners = [given("min"), given("max")];
     let middle = [given("center"), given("size")];
@@ -316,13 +309,16 @@ fn cuboid<const D: usize>(values: &Values, refuse: &Refuse<'_>) -> Result<Built<
             (scaled(&add(&min, &max), 0.5), scaled(&subtract(&max, &min), 0.5))
         }
         ([false, false], [true, true]) => (values.vector::<D>("center"), scaled(&values.vector::<D>("size"), 0.5)),
-        _ => return Err(refuse.error(Refusal::BoxFields {})),
+        _ => return Err(refused(values, Refusal::BoxFields {})),
     };
     if half.iter().any(|h| !(*h > 0.0 && h.is_finite())) {
-        return Err(refuse.error(match corners[0] {
-            true => Refusal::EmptyCorners { max: refuse.shown("max"), min: refuse.shown("min") },
-            false => Refusal::EmptySize { size: refuse.shown("size") },
-        }));
+        return Err(refused(
+            values,
+            match corners[0] {
+                true => Refusal::EmptyCorners { max: shown(values, "max"), min: shown(values, "min") },
+                false => Refusal::EmptySize { size: shown(values, "size") },
+            },
+        ));
     }
     // The rows of the transpose are the turned unit vectors.
     let turn = rotation::<D>(&turning(&spin(values, "rotation")), -1.0);
@@ -344,20 +340,20 @@ fn cuboid<const D: usize>(values: &Values, refuse: &Refuse<'_>) -> Result<Built<
     Ok((Form::Box { shape, inside }, parts, center))
 }
 
-fn ball<const D: usize>(values: &Values, _refuse: &Refuse<'_>) -> Result<Built<D>, BuildError> {
+fn ball<const D: usize>(values: &Values) -> Built<D> {
     let (center, inside) = (values.vector::<D>("center"), values.flag("inside"));
     let radius = values.number("radius").unwrap_or(0.0);
     let ball = Ball { center, radius, sign: if inside { -1.0 } else { 1.0 } };
-    Ok((Form::Ball { center, radius, inside }, vec![Part::Ball(ball)], center))
+    (Form::Ball { center, radius, inside }, vec![Part::Ball(ball)], center)
 }
 
-fn capsule<const D: usize>(values: &Values, refuse: &Refuse<'_>) -> Result<Built<D>, BuildError> {
+fn capsule<const D: usize>(values: &Values) -> Result<Built<D>, BuildError> {
     let (a, b) = (values.vector::<D>("a"), values.vector::<D>("b"));
     let radius = values.number("radius").unwrap_or(0.0);
     let along = subtract(&b, &a);
     let square = dot(&along, &along);
     if !(square > 1e-280 && square.is_finite()) {
-        return Err(refuse.error(Refusal::NoAxis { a: refuse.shown("a"), b: refuse.shown("b") }));
+        return Err(refused(values, Refusal::NoAxis { a: shown(values, "a"), b: shown(values, "b") }));
     }
     // Of the coordinate axes the one that is most at a right angle, made fully so.
     let mut least = 0;
@@ -374,7 +370,7 @@ fn capsule<const D: usize>(values: &Values, refuse: &Refuse<'_>) -> Result<Built
 }
 
 /// The points of a field, and the middle of the box around them.
-fn points<const D: usize>(values: &Values, refuse: &Refuse<'_>) -> Result<(Vec<[f64; D]>, [f64; D]), BuildError> {
+fn points<const D: usize>(values: &Values) -> Result<(Vec<[f64; D]>, [f64; D]), BuildError> {
     let (mut low, mut high) = ([f64::INFINITY; D], [f64::NEG_INFINITY; D]);
     let mut points = Vec::new();
     for row in values.rows("points") {
@@ -390,16 +386,16 @@ fn points<const D: usize>(values: &Values, refuse: &Refuse<'_>) -> Result<(Vec<[
     let fits = magnitude(&subtract(&high, &low)) < 1e100;
     if points.is_empty() || !fits {
         let (low, high) = (format!("{low:?}"), format!("{high:?}"));
-        return Err(refuse.error(Refusal::FarPoints { count: points.len(), low, high }));
+        return Err(refused(values, Refusal::FarPoints { count: points.len(), low, high }));
     }
     Ok((points, scaled(&add(&low, &high), 0.5)))
 }
 
-fn convex<const D: usize>(values: &Values, refuse: &Refuse<'_>) -> Result<Built<D>, BuildError> {
-    let (points, center) = points::<D>(values, refuse)?;
+fn convex<const D: usize>(values: &Values) -> Result<Built<D>, BuildError> {
+    let (points, center) = points::<D>(values)?;
     let count = points.len();
     let flat = || if D == 2 { Refusal::NoArea { count } } else { Refusal::NoVolume { count } };
-    let (facets, faces) = Facets::convex(&points).map_err(|_| refuse.error(flat()))?;
+    let (facets, faces) = Facets::convex(&points).map_err(|_| refused(values, flat()))?;
     let form = if D == 2 {
         // Faces run clockwise one after the other; their second corners are the polygon counterclockwise.
         Form::Polygon { points: faces.iter().map(|f| points[f[1]]).collect() }
@@ -413,12 +409,12 @@ fn convex<const D: usize>(values: &Values, refuse: &Refuse<'_>) -> Result<Built<
     Ok((form, vec![Part::Facets(facets)], center))
 }
 
-fn polyline<const D: usize>(values: &Values, refuse: &Refuse<'_>) -> Result<Built<D>, BuildError> {
-    let (points, center) = points::<D>(values, refuse)?;
+fn polyline<const D: usize>(values: &Values) -> Result<Built<D>, BuildError> {
+    let (points, center) = points::<D>(values)?;
     let closed = values.flag("closed");
     let least = if closed { 3 } else { 2 };
     if points.len() < least {
-        return Err(refuse.error(Refusal::FewPoints { count: points.len(), least }));
+        return Err(refused(values, Refusal::FewPoints { count: points.len(), least }));
     }
     let count = if closed { points.len() } else { points.len() - 1 };
     let mut segments = Vec::with_capacity(count);
@@ -430,18 +426,18 @@ fn polyline<const D: usize>(values: &Values, refuse: &Refuse<'_>) -> Result<Buil
     let facets = Facets::surface(&segments).map_err(|flaw| match flaw {
         Flaw::Degenerate(k) => {
             let (first, second, position) = (k, (k + 1) % points.len(), format!("{:?}", points[k]));
-            refuse.error(Refusal::SamePoints { first, second, position })
+            refused(values, Refusal::SamePoints { first, second, position })
         }
-        Flaw::Flat => refuse.error(Refusal::NoExtent {}),
+        Flaw::Flat => refused(values, Refusal::NoExtent {}),
     })?;
     Ok((Form::Polyline { points, closed }, vec![Part::Facets(facets)], center))
 }
 
-fn triangle_mesh<const D: usize>(values: &Values, refuse: &Refuse<'_>) -> Result<Built<D>, BuildError> {
-    let (points, center) = points::<D>(values, refuse)?;
+fn triangle_mesh<const D: usize>(values: &Values) -> Result<Built<D>, BuildError> {
+    let (points, center) = points::<D>(values)?;
     let numbers = values.integers("triangles");
     if numbers.is_empty() || !numbers.len().is_multiple_of(3) {
-        return Err(refuse.error(Refusal::Triangles { count: numbers.len() }));
+        return Err(refused(values, Refusal::Triangles { count: numbers.len() }));
     }
     let mut corners = Vec::with_capacity(numbers.len() / 3);
     let mut triangles = Vec::with_capacity(numbers.len() / 3);
@@ -449,7 +445,7 @@ fn triangle_mesh<const D: usize>(values: &Values, refuse: &Refuse<'_>) -> Result
         let mut corner = [points[0]; D];
         for (k, &number) in triangle.iter().enumerate() {
             let Some(point) = points.get(number as usize) else {
-                return Err(refuse.error(Refusal::NoPoint { point: number, last: points.len() - 1 }));
+                return Err(refused(values, Refusal::NoPoint { point: number, last: points.len() - 1 }));
             };
             corner[k % D] = *point;
         }
@@ -458,9 +454,9 @@ fn triangle_mesh<const D: usize>(values: &Values, refuse: &Refuse<'_>) -> Result
     }
     let facets = Facets::surface(&corners).map_err(|flaw| match flaw {
         Flaw::Degenerate(k) => {
-            refuse.error(Refusal::FlatTriangle { triangle: k, points: format!("{:?}", triangles[k]) })
+            refused(values, Refusal::FlatTriangle { triangle: k, points: format!("{:?}", triangles[k]) })
         }
-        Flaw::Flat => refuse.error(Refusal::NoExtent {}),
+        Flaw::Flat => refused(values, Refusal::NoExtent {}),
     })?;
     Ok((Form::Triangles { points, triangles, solid: false }, vec![Part::Facets(facets)], center))
 }

@@ -7,10 +7,10 @@ use crate::facet_contacts::{Placed, hold_back_by_facets};
 use crate::motion::Frame;
 use crate::pass::Pass;
 use crate::picture::{Picture, picture};
+use crate::refusals::Refused;
 use crate::touch::{Faces, NodePath};
 use core::any::Any;
 use opruga_core::contacts::{Contacts, Moved, Touch};
-use opruga_core::error::BuildError;
 use opruga_core::spec::Values;
 use opruga_core::tile::TILE;
 use opruga_math::{Lane, Simd, WIDTH};
@@ -38,13 +38,13 @@ impl<const D: usize> Colliders<D> {
     /// Builds colliders from their parameters, in order; the kind of each is that of its [`Values`].
     ///
     /// # Errors
-    /// [`BuildError`] with the number of the collider (from 0), the offending value and what is allowed: a normal or
-    /// capsule without direction, an empty box, a flat hull, a facet without extent, a number of a point that does not
-    /// exist, a thickness that leaves no room.
-    pub fn build(values: &[Values]) -> Result<Colliders<D>, BuildError> {
+    /// [`Refused`] with the index of the collider, the offending value and what is allowed: a normal or capsule without
+    /// direction, an empty box, a flat hull, a facet without extent, a number of a point that does not exist, a thickness
+    /// that leaves no room.
+    pub fn build(values: &[Values]) -> Result<Colliders<D>, Refused> {
         let mut colliders = Vec::with_capacity(values.len());
-        for (number, values) in values.iter().enumerate() {
-            colliders.push(Collider::build(number, values)?);
+        for (index, values) in values.iter().enumerate() {
+            colliders.push(Collider::build(values).map_err(|source| Refused { index, source })?);
         }
         Ok(Colliders { all: colliders.into(), without_faces: false })
     }

@@ -118,6 +118,7 @@ pub use inside::Buried;
 pub use law::{Laws, PairLaw};
 pub use outline::Outline;
 pub use picture::Picture;
+pub use refusals::Refused;
 pub use reports::Report;
 pub use spec::all;
 pub use surface::Surface;

@@ -1,6 +1,17 @@
 //! Why an obstacle is refused, as messages.
 
+use opruga_core::error::BuildError;
 use opruga_math::messages;
+
+/// Which obstacle is refused, and why.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("collider {index} ({}): {}", source.kind, source.about.in_full())]
+pub struct Refused {
+    /// The index of the obstacle.
+    pub index: usize,
+    /// What is wrong with it.
+    pub source: BuildError,
+}
 
 messages! {
     /// Why the parameters of an obstacle are refused.

@@ -58,7 +58,7 @@ impl From<&WorldError> for SceneError {
                 }
             }
             WorldError::Diverged { time, .. } => scene_error.value(time.to_string()),
-            WorldError::Build { part, source } if *part != (Part::Collider {}) => match source.about.value() {
+            WorldError::Build { source, .. } => match source.about.value() {
                 Some(value) => scene_error.value(value),
                 None => scene_error,
             },
@@ -77,9 +77,6 @@ fn is_field_of_body(kind: &str) -> bool {
 fn path_of(error: &WorldError) -> String {
     let body = |name: &str| format!("body.{}", name.split('[').next().unwrap_or(name));
     match error {
-        WorldError::Build { part: Part::Collider {}, source } => {
-            format!("collider.{}", source.kind.split(' ').nth(1).unwrap_or("0"))
-        }
         WorldError::Build { part, source } => {
             let around = match part {
                 Part::Body { name } => match source.kind.as_str() {
@@ -98,7 +95,7 @@ fn path_of(error: &WorldError) -> String {
                 Part::Probe { name } => format!("probe.{name}"),
                 Part::Pair { index } => format!("contact.pair.{index}"),
                 Part::Section { path } => (*path).into(),
-                Part::Collider {} => "collider".into(),
+                Part::Collider { index } => format!("collider.{index}"),
             };
             valued(source).map_or(around.clone(), |parameter| format!("{around}.{parameter}"))
         }

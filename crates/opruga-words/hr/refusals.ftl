@@ -345,7 +345,7 @@ part-place-Load = opterećenje { $index }
 part-place-Command = naredba { $index }
 part-place-Probe = sonda `{ $name }`
 part-place-Pair = contact.pair { $index }
-part-place-Collider = prepreka
+part-place-Collider = prepreka { $index }
 part-place-Section = { $path ->
         [world] svijet
        *[other] { $path }

@@ -12,7 +12,7 @@ use crate::plausible;
 use crate::refusals::Refusal;
 use crate::registry::Registry;
 use crate::unfold;
-use opruga_collide::Colliders;
+use opruga_collide::{Colliders, Refused};
 use opruga_core::break_off::BreakOff;
 use opruga_core::error::BuildError;
 use opruga_core::integrator::Integrator;
@@ -440,8 +440,8 @@ pub(crate) fn build_colliders<const D: usize>(
         return Ok(None);
     }
     let values: Vec<_> = blueprint.colliders.iter().map(|c| c.values.clone()).collect();
-    let built = Colliders::<D>::build(&values);
-    Ok(Some(Arc::new(built.map_err(|source| WorldError::Build { part: Part::Collider {}, source })?)))
+    let refuse = |Refused { index, source }| WorldError::Build { part: Part::Collider { index }, source };
+    Ok(Some(Arc::new(Colliders::<D>::build(&values).map_err(refuse)?)))
 }
 
 /// An integrator from its parameters; `part` says whose it is.

@@ -34,11 +34,11 @@ fn other(first: &str, second: &str) -> String {
     if first == second { "itself".into() } else { format!("`{second}`") }
 }
 
-/// A part of a world in front of what is wrong there; an obstacle says itself which one it is.
-fn before(part: &Part) -> String {
+/// A part of a world and the kind of thing that refuses there.
+fn refusing(part: &Part, kind: &str) -> String {
     match part {
-        Part::Collider {} => String::new(),
-        part => format!("{part}: "),
+        Part::Collider { .. } => format!("{part} ({kind})"),
+        part => format!("{part}: {kind}"),
     }
 }
 
@@ -60,8 +60,8 @@ messages! {
         Probe { name: String },
         "part.place" #[error("contact.pair {index}")]
         Pair { index: usize },
-        "part.place" #[error("collider")]
-        Collider {},
+        "part.place" #[error("collider {index}")]
+        Collider { index: usize },
         "part.place" #[error("{path}")]
         Section { path: &'static str },
     }
@@ -70,7 +70,7 @@ messages! {
     #[derive(Clone, Debug, PartialEq)]
     pub enum WorldError {
         /// A model, integrator or collider refuses. The code is that of the source.
-        "part.build" #[error("{}{}: {}", before(part), source.kind, source.about)]
+        "part.build" #[error("{}: {}", refusing(part, &source.kind), source.about)]
         #[allowed("{}", source.about.allowed().unwrap_or_default())] #[hint("{}", source.about.hint().unwrap_or_default())]
         Build { part: Part, source: BuildError },
         /// The substep h \[s\] is longer than the integrator allows, and what it allows \[s\]: the largest frequency \[rad/s\], the largest

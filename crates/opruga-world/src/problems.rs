@@ -1,7 +1,7 @@
 //! Everything that a world would refuse, found part by part: what [`World::new`] stops at is only the first of it.
 
 use crate::blueprint::{Blueprint, BodyBlueprint, LoadBlueprint};
-use crate::error::WorldError;
+use crate::error::{Part, WorldError};
 use crate::registry::Registry;
 use crate::world::{Options, World};
 use opruga_core::spec::Values;
@@ -26,8 +26,8 @@ impl<const D: usize> World<D> {
         for (number, collider) in blueprint.colliders.iter().enumerate() {
             if let Some(mut error) = refused(part(Vec::new(), vec![collider.clone()], Vec::new())) {
                 // Built alone it was number 0.
-                if let WorldError::Build { source, .. } = &mut error {
-                    source.kind = format!("collider {number} ({})", collider.values.kind());
+                if let WorldError::Build { part: Part::Collider { index }, .. } = &mut error {
+                    *index = number;
                 }
                 problems.push(error);
             } else {

@@ -3,7 +3,7 @@
 
 use crate::common;
 use common::*;
-use opruga_collide::{Colliders, Picture};
+use opruga_collide::{Colliders, Picture, Refused};
 use opruga_core::error::BuildError;
 use opruga_core::spec::{Value, Values};
 
@@ -325,11 +325,14 @@ fn pictures_show_where_things_are() {
 #[test]
 fn refusals_name_collider_and_value() {
     fn refused<const D: usize>(list: Values) -> BuildError {
-        Colliders::<D>::build(&[values::<D>("ball", &[("radius", number(1.0))]), list]).unwrap_err()
+        let ball = values::<D>("ball", &[("radius", number(1.0))]);
+        let Refused { index, source } = Colliders::<D>::build(&[ball, list]).unwrap_err();
+        assert_eq!(index, 1);
+        source
     }
     // A direction of zeros is no value of the field; one whose length is lost has none either.
     let e = refused::<2>(values::<2>("half_space", &[("normal", vector(&[1e-200, 0.0]))]));
-    assert_eq!((e.kind.as_str(), e.code()), ("collider 1 (half_space)", "collider.no_direction"));
+    assert_eq!((e.kind.as_str(), e.code()), ("half_space", "collider.no_direction"));
     assert_eq!(e.about.in_full(), "`normal` is [1e-200, 0.0]; allowed: a vector of a length above 1e-150");
     let e = refused::<2>(values::<2>("box", &[("min", vector(&[0.0, 0.0]))]));
     assert_eq!(e.code(), "collider.box_fields");
@@ -373,7 +376,7 @@ fn refusals_name_collider_and_value() {
     assert_eq!(refused::<3>(mesh(&[0, 1, 3])).about.in_full(), "`triangles` names point 3; allowed: 0 to 2");
     assert_eq!(refused::<3>(mesh(&[0, 1])).code(), "collider.triangles");
     assert_eq!(refused::<3>(mesh(&[0, 1, 2])).code(), "collider.degenerate_facet");
-    assert_eq!(Colliders::<2>::build(&[mesh(&[0, 1, 2])]).unwrap_err().code(), "collider.kind");
+    assert_eq!(Colliders::<2>::build(&[mesh(&[0, 1, 2])]).unwrap_err().source.code(), "collider.kind");
 }
 
 #[test]

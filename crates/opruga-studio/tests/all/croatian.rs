@@ -129,7 +129,7 @@ fn places_and_numbers_of_the_world_are_said_in_croatian_as_in_english() {
         (Part::body("lopta"), "tijelo `lopta`:"),
         (Part::IntegratorOf { name: "lopta".into() }, "integrator tijela `lopta`:"),
         (Part::Section { path: "integrator" }, "integrator:"),
-        (Part::Collider {}, "prepreka:"),
+        (Part::Collider { index: 2 }, "prepreka 2:"),
         (Part::Section { path: "world" }, "svijet:"),
     ] {
         let source = BuildError::new("pressure", "model.no_cavity", "the body has no cavity that nobody has heard of");

@@ -108,8 +108,8 @@ fn every_part_that_is_refused_is_found_once() {
     assert_eq!(
         found,
         [
-            "collider: collider 1 (half_space): collider.no_direction",
-            "collider: collider 2 (half_space): collider.no_direction",
+            "collider 1: half_space: collider.no_direction",
+            "collider 2: half_space: collider.no_direction",
             "body `open`: pressure: model.open_surface",
             "path.unknown: `load.0`: the selected nodes hold no whole facet of the boundary; allowed: all nodes of one \
              facet at least",
