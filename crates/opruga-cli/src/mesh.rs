@@ -16,9 +16,9 @@ use opruga::io::safe_write::{safe_write, try_write};
 use opruga::io::scene::{self, Limits};
 use opruga::io::shapes::{Problem, body, kind_of_file};
 use opruga::io::{Files, Notice, SceneError, meshes};
+use opruga::math::message::Setting;
 use opruga::math::words::{counted, number, rounded};
 use opruga::mesh::{CellQuality, Element, Mesh, triangle_parts};
-use opruga::shapes;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -149,7 +149,7 @@ fn shape(call: &Call, folder: &Path, name: &str, ending: &str) -> Result<(usize,
     }
 }
 
-/// What a file or an option of the call is refused for: the words of scenes become those of the call.
+/// What a file or an option of the call is refused for.
 fn refused(call: &Call, name: &str, problem: Problem) -> Failure {
     let value = |option: &str, value: Option<f64>| value.map(|value| format!("{option} {value}"));
     let option = match problem.field {
@@ -157,9 +157,7 @@ fn refused(call: &Call, name: &str, problem: Problem) -> Failure {
         "size" => value("--scale-to", call.scale_to),
         field => call.set.iter().rfind(|set| set.split('=').next() == Some(field)).map(|set| format!("--set {set}")),
     };
-    // What a reader says of a file quotes the file, and no option.
-    let quotes = problem.field == "file" && !is_of_shapes(&problem.about);
-    let error = in_words_of_the_call(call, name, problem.about, quotes);
+    let error = of_call(call, name, problem.about);
     Failure::Scene(vec![match option.filter(|_| error.line.is_none()) {
         Some(file) => SceneError { file, ..error },
         None => error,
@@ -168,16 +166,7 @@ fn refused(call: &Call, name: &str, problem: Problem) -> Failure {
 
 /// What is odd about the file.
 fn file_notices(call: &Call, name: &str, notices: Vec<SceneError>) -> Vec<Notice> {
-    let notice = |about: SceneError| {
-        let quotes = !is_of_shapes(&about);
-        Notice { about: in_words_of_the_call(call, name, about, quotes), count: 1 }
-    };
-    notices.into_iter().map(notice).collect()
-}
-
-/// Whether an error is about the shape that the call asks for, and not about the text of its file.
-fn is_of_shapes(error: &SceneError) -> bool {
-    error.code.starts_with("shape.") || error.code.starts_with("limit.")
+    notices.into_iter().map(|about| Notice { about: of_call(call, name, about), count: 1 }).collect()
 }
 
 /// The file that an error names, as the call names it: TetGen's second file lies beside the first.
@@ -190,59 +179,22 @@ fn placed(call: &Call, name: &str, file: &str) -> String {
     }
 }
 
-/// Words of scenes and the options that stand for them here.
-const WORDS: [(&str, &str); 6] = [
-    ("`weld = 0`", "--mend"),
-    ("`inverted = \"turn\"`", "--mend"),
-    ("`unreferenced = \"leave_out\"`", "--mend"),
-    (" (`overlap = \"union\"`)", ""),
-    ("the scene has", "the mesh would have"),
-    ("the scene would take", "the mesh would take"),
-];
-
-/// A text in which fields of scenes, alone or with a value, are options of the call: `` `weld = 0.1` `` becomes `--set weld=0.1`.
-fn options(text: &str) -> String {
-    let mut out = String::new();
-    for (index, piece) in text.split('`').enumerate() {
-        let (field, value) = piece.split_once(" = ").map_or((piece, None), |(field, value)| (field, Some(value)));
-        let option = match field {
-            "spacing" => "--size".to_string(),
-            "size" => "--scale-to".to_string(),
-            _ => format!("--set {field}"),
-        };
-        let between = if option.starts_with("--set") { "=" } else { " " };
-        let known = field != "kind" && shapes::all().iter().any(|spec| spec.fields.iter().any(|f| f.name == field));
-        match (index % 2 == 1, known, value) {
-            (true, true, Some(value)) => out += &format!("{option}{between}{}", value.trim_matches('"')),
-            (true, true, None) if between == "=" => out += &format!("{option}=…"),
-            (true, true, None) => out += &option,
-            (true, false, _) => out += &format!("`{piece}`"),
-            (false, ..) => out += piece,
-        }
-    }
-    out
+/// The option that stands for a setting of a shape.
+fn option(setting: &Setting) -> Setting {
+    let Setting::InScene { name, value } = setting else { return setting.clone() };
+    let value = value.as_ref().map(|value| value.trim_matches('"'));
+    Setting::InCall(match (*name, value) {
+        ("weld", Some("0")) | ("inverted", Some("turn")) | ("unreferenced", Some("leave_out")) => "--mend".into(),
+        ("spacing", value) => ["--size"].into_iter().chain(value).collect::<Vec<_>>().join(" "),
+        ("size", None) => "--scale-to".into(),
+        (name, value) => format!("--set {name}={}", value.unwrap_or("…")),
+    })
 }
 
-/// An error as the call has it; of one that quotes the file only the hint names options.
-fn in_words_of_the_call(call: &Call, name: &str, error: SceneError, quotes: bool) -> SceneError {
-    let error = if call.json { error } else { error.translated(translation()) };
-    let replaced = |text: String| WORDS.iter().fold(text, |text, (scene, call)| text.replace(scene, call));
-    let reworded = |text: String| options(&replaced(text));
-    // What only scenes have is said of them.
-    let hint = error.hint.filter(|_| !error.code.starts_with("read.")).map(reworded).map(|hint| {
-        let (here, in_scenes): (Vec<&str>, Vec<&str>) = hint.split("; ").partition(|part| !part.contains('`'));
-        match in_scenes.is_empty() {
-            true => hint,
-            false if here.is_empty() => format!("in a scene, {}", in_scenes.join("; ").trim_start_matches("or ")),
-            false => format!("{}; in a scene: {}", here.join("; "), in_scenes.join("; ").trim_start_matches("or ")),
-        }
-    });
+/// An error as the call has it: with its options, and without a path in a scene.
+fn of_call(call: &Call, name: &str, error: SceneError) -> SceneError {
     let file = placed(call, name, &error.file);
-    let (message, allowed) = match quotes {
-        true => (replaced(error.message), error.allowed.map(replaced)),
-        false => (reworded(error.message), error.allowed.map(reworded)),
-    };
-    SceneError { file, message, allowed, hint, path: String::new(), ..error }
+    SceneError { file, path: String::new(), ..error.replaced(&option) }
 }
 
 fn finish<const D: usize>(

@@ -27,7 +27,6 @@ terms! {
     /// What helps where a file asks for too much.
     pub(crate) enum LimitHint = "part.limit_hint" {
         Picture = "take a picture with fewer spots: one that is smoothed, or drawn with fewer colours",
-        Spacing = "take a larger `spacing`, or a drawing of fewer points",
         Entities = "write the drawing without entities, or with `use`",
         Letters = "the letters of this font are made of too many others",
         Instances = "draw a mesh less often, or leave out what the body does not need",

@@ -2,7 +2,7 @@
 
 use crate::scene::errors::FieldError;
 use core::fmt;
-use opruga_math::message::{AnyMessage, Message};
+use opruga_math::message::{AnyMessage, IntoField, Message, Replacing};
 use opruga_math::words::number;
 use opruga_words::Translation;
 use opruga_world::Warning;
@@ -200,12 +200,17 @@ impl SceneError {
     pub fn text(&self, translation: Option<&Translation>) -> String {
         describe(self, Label::Error, translation)
     }
-    /// The same with its texts in the language of a translation, as far as it knows them, and without what it was made of.
+    /// The same with what stands for settings elsewhere than in a scene.
     #[must_use]
-    pub fn translated(mut self, translation: Option<&Translation>) -> SceneError {
-        let (message, (allowed, hint)) = (self.sentence_alone(translation), self.beside(translation));
-        (self.message, self.allowed, self.hint) = (message, allowed, hint);
-        (self.about, self.advice, self.allowance) = (None, None, None);
+    pub fn replaced(mut self, settings: &Replacing<'_>) -> SceneError {
+        for message in [&mut self.about, &mut self.advice, &mut self.allowance].into_iter().flatten() {
+            *message = IntoField::replaced(message, settings);
+        }
+        let Some(about) = &self.about else { return self };
+        let text = |message: &Option<AnyMessage>| message.as_ref().map(AnyMessage::to_string);
+        self.message = about.to_string();
+        self.allowed = text(&self.allowance).or_else(|| about.allowed()).or(self.allowed);
+        self.hint = text(&self.advice).or_else(|| about.hint()).or(self.hint);
         self
     }
     /// The sentence without a place.

@@ -20,6 +20,44 @@ pub enum Field {
     Message(AnyMessage),
 }
 
+/// A parameter of a shape that a text names: as a scene writes it, or what stands for it where there is no scene.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Setting {
+    /// In a scene: `` `size` ``, or with a value `` `open = "cap"` ``.
+    InScene {
+        /// The name of the parameter.
+        name: &'static str,
+        /// The value, as a scene has it.
+        value: Option<String>,
+    },
+    /// What a command line has for it, such as `--size`.
+    InCall(String),
+}
+
+impl Setting {
+    /// A parameter without a value.
+    pub fn named(name: &'static str) -> Setting {
+        Setting::InScene { name, value: None }
+    }
+    /// A parameter with a value, as a scene has it.
+    pub fn with(name: &'static str, value: impl fmt::Display) -> Setting {
+        Setting::InScene { name, value: Some(value.to_string()) }
+    }
+}
+
+impl fmt::Display for Setting {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Setting::InScene { name, value: None } => write!(f, "`{name}`"),
+            Setting::InScene { name, value: Some(value) } => write!(f, "`{name} = {value}`"),
+            Setting::InCall(option) => f.write_str(option),
+        }
+    }
+}
+
+/// What takes the place of each setting that a message names.
+pub type Replacing<'r> = dyn Fn(&Setting) -> Setting + 'r;
+
 /// An error, a warning, or a part of one.
 pub trait Message: std::error::Error + Send + Sync + 'static {
     /// The stable code, such as `model.open_surface`; that of a part of a text begins with `part.`.
@@ -42,6 +80,10 @@ pub trait Message: std::error::Error + Send + Sync + 'static {
     }
     /// What helps, in English.
     fn hint(&self) -> Option<String> {
+        None
+    }
+    /// The same with other settings; none where it names none.
+    fn replaced(&self, _settings: &Replacing<'_>) -> Option<AnyMessage> {
         None
     }
     /// The English text with what is allowed and what helps: `text; allowed: …; hint: …`.
@@ -190,9 +232,23 @@ impl fmt::Display for Field {
 }
 
 /// A type that a field of a message may have.
-pub trait IntoField {
+pub trait IntoField: Clone {
     /// The value, as a catalogue takes it.
     fn field(&self) -> Field;
+    /// The same with other settings.
+    #[must_use]
+    fn replaced(&self, _settings: &Replacing<'_>) -> Self {
+        self.clone()
+    }
+}
+
+impl IntoField for Setting {
+    fn field(&self) -> Field {
+        Field::Text(self.to_string())
+    }
+    fn replaced(&self, settings: &Replacing<'_>) -> Setting {
+        settings(self)
+    }
 }
 
 impl IntoField for f64 {
@@ -240,6 +296,9 @@ impl IntoField for AnyMessage {
     fn field(&self) -> Field {
         Field::Message(self.clone())
     }
+    fn replaced(&self, settings: &Replacing<'_>) -> AnyMessage {
+        Message::replaced(&*self.0, settings).unwrap_or_else(|| self.clone())
+    }
 }
 
 /// What is not there is an empty text.
@@ -247,11 +306,17 @@ impl<T: IntoField> IntoField for Box<T> {
     fn field(&self) -> Field {
         T::field(self)
     }
+    fn replaced(&self, settings: &Replacing<'_>) -> Box<T> {
+        Box::new(T::replaced(self, settings))
+    }
 }
 
 impl<T: IntoField> IntoField for Option<T> {
     fn field(&self) -> Field {
         self.as_ref().map_or_else(|| Field::Text(String::new()), IntoField::field)
+    }
+    fn replaced(&self, settings: &Replacing<'_>) -> Option<T> {
+        self.as_ref().map(|value| value.replaced(settings))
     }
 }
 
@@ -334,6 +399,9 @@ macro_rules! messages {
             fn hint(&self) -> Option<String> {
                 match self { $($name::$variant { $($field),* } => $crate::text_beside!($($($hint)*)?),)* }
             }
+            fn replaced(&self, settings: &$crate::message::Replacing<'_>) -> Option<$crate::message::AnyMessage> {
+                Some($crate::message::IntoField::replaced(self, settings).into())
+            }
         }
         impl $name {
             /// Every variant, for tests and catalogues.
@@ -348,6 +416,13 @@ macro_rules! messages {
         impl $crate::message::IntoField for $name {
             fn field(&self) -> $crate::message::Field {
                 $crate::message::Field::Message(self.clone().into())
+            }
+            fn replaced(&self, settings: &$crate::message::Replacing<'_>) -> $name {
+                match self {
+                    $($name::$variant { $($field),* } => $name::$variant {
+                        $($field: $crate::message::IntoField::replaced($field, settings)),*
+                    },)*
+                }
             }
         }
     )* };
@@ -457,6 +532,11 @@ mod tests {
             "test.of"
             #[error("{part}")]
             Of { part: AnyMessage },
+            /// Too large.
+            "test.large"
+            #[error("the body is too large")]
+            #[hint("use {scale}, or a smaller {size}")]
+            Large { scale: Setting, size: Setting },
         }
     }
 
@@ -480,8 +560,26 @@ mod tests {
         assert_eq!((any.parameters(), other.parameters()), (about.to_vec(), about.to_vec()));
         assert_eq!(Refusal::Of { part: any }.parameters(), about, "those of its part");
         assert_eq!(Refusal::None {}.parameters(), [""; 0]);
-        let [short, none, _] = Refusal::VARIANTS else { panic!("{:?}", Refusal::VARIANTS) };
+        let [short, none, ..] = Refusal::VARIANTS else { panic!("{:?}", Refusal::VARIANTS) };
         assert_eq!((short.code, short.name, short.english[1]), ("test.short", "Short", "\"more than {least}\""));
         assert_eq!((none.fields, none.english), (&[][..], ["\"there are no edges\"", "", ""]));
+    }
+
+    #[test]
+    fn settings_are_replaced_in_the_parts_of_a_message_too() {
+        let large = Refusal::Large { scale: Setting::with("scale", "0.001"), size: Setting::named("size") };
+        let around = AnyMessage::from(Refusal::Of { part: large.clone().into() });
+        let option = |setting: &Setting| match setting {
+            Setting::InScene { name, value } => {
+                Setting::InCall(format!("--{name} {}", value.as_deref().unwrap_or_default()).trim_end().into())
+            }
+            option => option.clone(),
+        };
+        let hint = |message: &dyn Message| message.hint().expect("a hint");
+        let replaced = IntoField::replaced(&around, &option);
+        let [(_, Field::Message(part))] = &replaced.fields()[..] else { panic!("{replaced:?}") };
+        assert_eq!(hint(&large), "use `scale = 0.001`, or a smaller `size`");
+        assert_eq!(hint(&**part), "use --scale 0.001, or a smaller --size");
+        assert_eq!(part.fields()[1], ("size", Field::Text("--size".into())));
     }
 }

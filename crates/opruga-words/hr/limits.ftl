@@ -15,7 +15,6 @@ part-counted-Values = vrijednosti ili pripadnosti skupinama
 ## LimitHint
 
 part-limit_hint-Picture = uzmi sliku s manje mrlja: zaglađenu ili nacrtanu s manje boja
-part-limit_hint-Spacing = uzmi veći `spacing` ili crtež s manje točaka
 part-limit_hint-Entities = napiši crtež bez entiteta ili s elementom `use`
 part-limit_hint-Letters = slova ovog fonta sastavljena su od previše drugih
 part-limit_hint-Instances = nacrtaj mrežu manje puta ili izostavi što tijelu ne treba
@@ -33,6 +32,10 @@ limit-bodies-Bodies = prizor ima { $count } tijela ili više
 limit-nodes-Nodes = prizor ima { $count } čvorova ili više
     .allowed = najviše { $most } čvorova
 limit-memory-Memory = prizor bi zauzeo oko { $count } bajtova ili više
+    .allowed = najviše { $most } bajtova
+limit-nodes-MeshNodes = mreža bi imala { $count } čvorova ili više
+    .allowed = najviše { $most } čvorova
+limit-memory-MeshMemory = mreža bi zauzela oko { $count } bajtova ili više
     .allowed = najviše { $most } bajtova
 
 ## Rounded

@@ -269,22 +269,22 @@ mesh-inverted-Inverted = { $element } { $index } je izvrnut{ $count ->
        *[other] {" "}(izvrnuto: { $count } od { $cells })
     }
     .allowed = { $order }
-    .hint = `inverted = "turn"` okreće takve ćelije i broji ih
+    .hint = { $turn } okreće takve ćelije i broji ih
 mesh-inverted-AllInverted = { $element } { $index } je izvrnut{ $cells ->
         [1] {""}
        *[other] {" "}(izvrnuto: { $cells } od { $cells })
     }
     .allowed = { $order }
-    .hint = cijela datoteka ide obrnuto: `inverted = "turn"` okreće njezine ćelije i broji ih
+    .hint = cijela datoteka ide obrnuto: { $turn } okreće njezine ćelije i broji ih
 mesh-topology-Topology = { $problem }
 mesh-non_manifold-Crowded = više od dvije ćelije dijele stranu, kroz čvorove { $first } i { $second }
     .allowed = najviše dvije ćelije na strani
 mesh-unreferenced-LooseNode = čvor { $first } ne pripada nijednoj ćeliji
     .allowed = čvorovi ćelija
-    .hint = `unreferenced = "leave_out"` izostavlja takve čvorove i broji ih
+    .hint = { $leave_out } izostavlja takve čvorove i broji ih
 mesh-unreferenced-LooseNodes = čvorova bez ćelije: { $count }, prvi je čvor { $first }
     .allowed = čvorovi ćelija
-    .hint = `unreferenced = "leave_out"` izostavlja takve čvorove i broji ih
+    .hint = { $leave_out } izostavlja takve čvorove i broji ih
 
 ## MeshFileNotice
 

@@ -8,29 +8,30 @@ part-change-Added = { $off } { $unit } ({ $percent } %) od { $whole } { $unit } 
 ## ThinCause
 
 part-thin_cause-Corner = sâm obris ondje ima kut od { $angle }°
-part-thin_cause-Finer = obris je ondje finiji od `spacing`
+part-thin_cause-Finer = obris je ondje finiji od { $spacing }
 part-thin_cause-Unfinished = profinjavanje je dodalo onoliko čvorova koliko smije
 
 ## ShapeHint
 
-part-shape_hint-SmallerSpacing = uzmi manji `spacing`
-part-shape_hint-SpacingKeeps = `spacing = { $spacing }` čuva obujam unutar { $percent } %
-part-shape_hint-SmallerRemesh = uzmi manji `remesh`
-part-shape_hint-RemeshWorks = `remesh = { $length }` uspijeva
-part-shape_hint-NoRemeshWorks = uzmi manji `remesh`: nijedna iskušana duljina od { $length } m naviše ne uspijeva
-part-shape_hint-RoundCorner = zaobli ga u crtežu, ili uzmi `filling = "lattice"`
-part-shape_hint-SmallerOrLattice = uzmi manji `spacing`, ili `filling = "lattice"`
-part-shape_hint-LargerOrLattice = uzmi veći `spacing`, ili `filling = "lattice"`
-part-shape_hint-FinerOutline = uzmi manji `spacing`, veći `size`, `drop_below` ili `filling = "lattice"`
-part-shape_hint-Overlap = `overlap = "union"` zadržava što pokriva bilo koji, `overlap = "even_odd"` što obuhvaća neparan broj njih
-part-shape_hint-Millimetres = datoteka je možda u milimetrima: `scale = 0.001`; `size` zadaje duljinu
-part-shape_hint-Kilometres = datoteka je možda u kilometrima: `scale = 1000.0`; `size` zadaje duljinu
-part-shape_hint-Size = `size` zadaje duljinu
-part-shape_hint-CapOrSheet = `open = "cap"` zatvara je, `open = "sheet"` zadržava je kao tkaninu
+part-shape_hint-SmallerSpacing = uzmi manji { $spacing }
+part-shape_hint-LargerSpacing = uzmi veći { $spacing } ili crtež s manje točaka
+part-shape_hint-SpacingKeeps = { $spacing } čuva obujam unutar { $percent } %
+part-shape_hint-SmallerRemesh = uzmi manji { $remesh }
+part-shape_hint-RemeshWorks = { $remesh } uspijeva
+part-shape_hint-NoRemeshWorks = uzmi manji { $remesh }: nijedna iskušana duljina od { $length } m naviše ne uspijeva
+part-shape_hint-RoundCorner = zaobli ga u crtežu, ili uzmi { $lattice }
+part-shape_hint-SmallerOrLattice = uzmi manji { $spacing }, ili { $lattice }
+part-shape_hint-LargerOrLattice = uzmi veći { $spacing }, ili { $lattice }
+part-shape_hint-FinerOutline = uzmi manji { $spacing }, veći { $size }, { $drop_below } ili { $lattice }
+part-shape_hint-Overlap = { $union } zadržava što pokriva bilo koji, { $parity } što obuhvaća neparan broj njih
+part-shape_hint-Millimetres = datoteka je možda u milimetrima: { $scale }; { $size } zadaje duljinu
+part-shape_hint-Kilometres = datoteka je možda u kilometrima: { $scale }; { $size } zadaje duljinu
+part-shape_hint-Size = { $size } zadaje duljinu
+part-shape_hint-CapOrSheet = { $cap } zatvara je, { $sheet } zadržava je kao tkaninu
 part-shape_hint-Weld = vrhova: { $count }, { $count ->
         [one] leži
        *[other] leže
-    } na mjestu drugoga: `weld = 0` spaja ih; ili `open = "cap"`, `open = "sheet"`
+    } na mjestu drugoga: { $weld } spaja ih; ili { $cap }, { $sheet }
 
 ## ShapeError
 
@@ -60,17 +61,17 @@ shape-thinned-Thinned = od { $given } { $given ->
         [1] točke
        *[other] točaka
     } datoteke nastaje { $nodes } čvorova, na razmaku od { $spacing } m: { $change }
-    .hint = manji `spacing` čuva sitnije pojedinosti, `filling = "lattice"` nosi ih sve
+    .hint = manji { $finer } čuva sitnije pojedinosti, { $lattice } nosi ih sve
 shape-thinned-Coarse = { $nodes } čvorova na razmaku od { $spacing } m daje ovo: { $change }
-    .hint = manji `spacing` čuva sitnije pojedinosti, `filling = "lattice"` nosi ih sve
+    .hint = manji { $finer } čuva sitnije pojedinosti, { $lattice } nosi ih sve
 shape-nested-Nested = obrisa unutar obrisa drugog elementa, koji su ondje rupe: { $count }
-    .hint = `overlap = "union"` zadržava što bilo koji element boji, `overlap = "even_odd"` kaže da se misli na rupe
+    .hint = { $union } zadržava što bilo koji element boji, { $parity } kaže da se misli na rupe
 shape-thin_triangles-ThinTriangles = { $count } od trokuta, kojih je { $triangles }, ima kutove ispod { $least }°, najmanji od { $angle }° u ({ $x }, { $y }): { $cause }
     .allowed = kutovi od { $least }° naviše
 shape-no_area-LeftOut = izostavljeno obrisa bez površine: { $count }
 shape-dropped-Dropped = { $count } od { $outlines } obrisa manje je od { $least } m² i izostavljeno
-shape-overlap-Union = obrisa koji se sijeku, prekrivaju ili dodiruju: { $count }; `overlap = "union"` zadržava što pokriva bilo koji, ostaje obrisa: { $left }
-shape-overlap-EvenOdd = obrisa koji se sijeku, prekrivaju ili dodiruju: { $count }; `overlap = "even_odd"` zadržava što obuhvaća neparan broj njih, ostaje obrisa: { $left }
+shape-overlap-Union = obrisa koji se sijeku, prekrivaju ili dodiruju: { $count }; { $overlap } zadržava što pokriva bilo koji, ostaje obrisa: { $left }
+shape-overlap-EvenOdd = obrisa koji se sijeku, prekrivaju ili dodiruju: { $count }; { $overlap } zadržava što obuhvaća neparan broj njih, ostaje obrisa: { $left }
 
 ## FaceProblem
 
@@ -95,7 +96,7 @@ mesh-duplicate_element-SameCorners = trokuti { $first } i { $second } imaju iste
 mesh-degenerate_face-NoArea = trokut { $triangle } nema površine za svoju veličinu
     .allowed = površina iznad { $least } kvadrata najduljeg brida
 mesh-degenerate_face-Joined = trokut { $triangle } imenuje isto mjesto dvaput kad se spoje vrhovi bliži od { $distance } m
-    .hint = uzmi manji `weld` ili izostavi trokut
+    .hint = uzmi manji { $weld } ili izostavi trokut
 mesh-degenerate_face-VertexTwice = trokut { $triangle } imenuje vrh dvaput
     .allowed = tri različita vrha
 mesh-degenerate_face-Face = { $problem } (strana { $face })
@@ -105,10 +106,10 @@ mesh-degenerate_face-Element = { $problem } (element { $element })
 mesh-index-NoVertexOfTriangle = trokut { $triangle } imenuje vrh { $vertex }
     .allowed = ispod { $count }
 mesh-open-NothingToFill = otvorena ploha nema unutrašnjosti koja bi se ispunila
-    .hint = zatvori je s `open = "cap"`
+    .hint = zatvori je s { $cap }
 mesh-open-NotRemeshed = otvorena ploha ne može dobiti novu mrežu
     .allowed = zatvorena ploha
-    .hint = zatvori je s `open = "cap"`
+    .hint = zatvori je s { $cap }
 mesh-open-Open = ploha nije zatvorena: slobodnih rubova: { $loops }, kroz { $positions }
     .allowed = zatvorena ploha
 mesh-dimension-Flat = zatvorena ploha je ravna: ne obuhvaća obujam
@@ -121,7 +122,7 @@ mesh-non_manifold-CrowdedEdges = više od dva trokuta susreću se na bridovima, 
 mesh-non_orientable-OneSided = ploha ima samo jednu stranu, kao Möbiusova vrpca
 mesh-self_intersection-MeetsItself = ploha susreće samu sebe: trokut { $first } oko ({ $first_center }) siječe, dodiruje ili prekriva trokut { $second } oko ({ $second_center })
     .allowed = trokuti koji se susreću samo u zajedničkim vrhovima i bridovima
-    .hint = `overlap = "keep"` uzima plohu kakva jest
+    .hint = { $keep } uzima plohu kakva jest
 mesh-size-Extent = ploha nema veličine ili je ona izvan raspona
     .allowed = veličina od 1e-150 do 1e150
 scene-not_finite-NotFiniteVertex = koordinata vrha { $vertex } je { $value }
@@ -135,10 +136,10 @@ mesh-concave_face-Concave = udubljenih strana: { $count } od onih s više od tri
 mesh-bent_face-BentFaces = strana koje nisu ravne: { $count } od onih s više od tri ugla, kojih je { $faces }, do { $off } svoje veličine; razrezane su po boljim dijagonalama
 mesh-sliver-Slivers = { $count } od { $triangles } trokuta tanki su kao iver; najtanji je trokut { $thinnest }, s površinom od { $area } kvadrata najduljeg brida
     .allowed = površine od { $least } naviše
-    .hint = `remesh` čini gotovo jednakostranične trokute
+    .hint = { $remesh } čini gotovo jednakostranične trokute
 mesh-unreferenced-UnreferencedVertices = izostavljeno vrhova koje nijedan trokut ne imenuje: { $count }
 mesh-scale-Scale = ploha je velika { $extent } m
-    .allowed = { $least } m do { $most } m, gdje `size` nije zadan
+    .allowed = { $least } m do { $most } m, gdje { $size } nije zadan
 mesh-welded-Welded = { $count } od { $vertices } vrhova { $count ->
         [one] spojen
        *[other] spojeno
@@ -321,7 +322,7 @@ svg-unsupported-Property = `{ $property }` se ne može pročitati
 svg-depth-Depth = elementi su ugniježđeni dublje od { $deepest }
     .allowed = najviše { $deepest } razina
 svg-unsupported-NoOutline = <{ $element }> ovdje nema obrisa
-    .hint = pretvori tekst u krivulje u programu za crtanje, ili uzmi `kind = "text"`
+    .hint = pretvori tekst u krivulje u programu za crtanje, ili u prizoru uzmi oblik s `kind = "text"`
 svg-unsupported-Element = <{ $element }> se ne može pročitati
     .allowed = path, rect, circle, ellipse, polygon, polyline unutar svg, g, a, switch, use
 svg-outside-Outside = `{ $link }` nije element ove datoteke
@@ -356,7 +357,7 @@ svg-colour-Share = `{ $property }` nije broj
     .allowed = 0 do 1
 svg-colour-Colour = ispuna nije boja kojom se može bojiti
     .allowed = boja, kao #ffac33 ili gold, prijelaz iz ove datoteke, none
-    .hint = `colours = false` čita samo obris
+    .hint = { $colours } čita samo obris
 svg-style-Style = stilski list ovdje možda zadaje `{ $property }`, što mijenja obrise
     .allowed = pravila bez uvjeta, iza imena, `.razreda` i `#id`
     .hint = neka program za crtanje piše atribute umjesto lista
@@ -388,12 +389,12 @@ svg-fill_rule-FillRule = oblika bez `fill-rule`, koji bi po pravilu nonzero imal
 ## MapError
 
 map-unknown_layer-NoLayers = nema sloja `{ $layer }`
-    .allowed = bez `layer`: slojeve ima samo topologija
+    .allowed = bez { $setting }: slojeve ima samo topologija
 map-unknown_layer-NoLayer = nema sloja `{ $layer }`
     .allowed = { $known }
 map-unknown_layer-SeveralLayers = karta ima slojeva: { $count }
     .allowed = { $known }
-    .hint = imenuj jedan s `layer`
+    .hint = imenuj jedan s { $setting }
 map-syntax-Position = položaj ima brojeva: { $count }
     .allowed = dva ili tri broja
 map-depth-Depth = zbirke su ugniježđene dublje od { $deepest }
@@ -420,7 +421,7 @@ map-unknown_feature-NoFeature = nijedan poligon ne pripada `{ $feature }`
 shape-no_area-NoPolygon = karta nema poligona
 map-range-Range = ({ $x }, { $y }) nije mjesto na globusu
     .allowed = zemljopisne širine od -{ $most } do { $most }, dužine od -540 do 540
-    .hint = `projection = "none"` uzima koordinate kakve jesu
+    .hint = { $projection } uzima koordinate kakve jesu
 json-syntax-Json = ovo nije ispravan JSON: „{ $reason }”
 
 ## MapNotice
@@ -440,7 +441,7 @@ font-syntax-Font = ovo nije font koji se može pročitati: „{ $reason }”
 font-no_glyph-NoLetter = `{ $letter }` nije slovo
 font-script-Script = `{ $letter }` je iz pisma čija se slova ne slažu jedno po jedno slijeva nadesno
     .allowed = slova, kao latinična, grčka ili ćirilična, bez zasebnih znakova nad njima
-    .hint = nacrtaj tekst u programu za crtanje i pretvori ga u krivulje za `kind = "svg"`
+    .hint = nacrtaj tekst u programu za crtanje i pretvori ga u krivulje SVG-datoteke
 font-no_glyph-NoGlyph = font `{ $font }` nema slovo `{ $letter }`
 shape-no_area-EmptyText = tekst je prazan
     .allowed = barem jedno slovo koje se crta
@@ -448,6 +449,6 @@ shape-no_area-NoLetters = tekst nema slova s obrisom
     .allowed = barem jedno slovo koje se crta
 shape-no_area-NoPixel = nijedan piksel nije više { $inside } od praga
     .allowed = pikseli iznad { $threshold }
-    .hint = uzmi manji `threshold` ili drugi `inside`: dark, bright ili opaque
+    .hint = uzmi manji { $lower } ili drugi { $choice }: dark, bright ili opaque
 png-syntax-Png = ovo nije PNG koji se može pročitati: „{ $reason }”
     .allowed = slika u PNG

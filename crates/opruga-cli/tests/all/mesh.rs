@@ -195,6 +195,14 @@ fn errors_of_mesh_speak_of_the_call() {
         assert!(told.contains(place) && told.contains(said), "{call:?}: {told}");
         assert!(!told.contains("[[body]]") && !told.contains("opruga mesh:") && !told.contains("`spacing`"), "{told}");
     }
+    for (call, said) in [
+        (&["mesh", "spot.obj", "--size", "1e-9"][..], "mreža bi imala "),
+        (&["mesh", "open.obj", "--size", "0.1"], "savjet: --set open=cap zatvara je, --set open=sheet "),
+        (&["mesh", "thin.svg", "--size", "0.3", "--scale-to", "1"], "savjet: uzmi manji --size, veći --scale-to, "),
+    ] {
+        let told = text(&opruga(folder.path(), &[call, &["--language", "hr"]].concat()).stderr);
+        assert!(told.contains(said) && !told.contains("in a scene"), "{call:?}: {told}");
+    }
 }
 
 /// `--strict`: what is odd about the file, or has no place in the format, is an error, and nothing is written; what the call itself asks for is none.

@@ -5,7 +5,7 @@ use super::found::{Found, Item, Kind};
 use super::scanner::Scanner;
 use crate::problem::{SceneError, visible};
 use crate::rounding::Stored;
-use opruga_math::message::AnyMessage;
+use opruga_math::message::{AnyMessage, Setting};
 use opruga_mesh::{Mesh, THIN_ELEMENT};
 use std::collections::BTreeMap;
 
@@ -250,12 +250,15 @@ impl Assembly<'_> {
             let (element, index, measure) = (item.kind.name(), item.number, format!("{:e}", measures.least));
             let (count, cells) = (inverted.len(), order.len());
             let order = if D == 2 { CornerOrder::Plane } else { CornerOrder::Space };
+            let turn = Setting::with("inverted", "\"turn\"");
             return Err(self.at(
                 item,
                 match turned(measures) {
                     false => MeshFileError::Folded { element, index, count, cells, measure, order },
-                    true if count == cells => MeshFileError::AllInverted { element, index, cells, measure, order },
-                    true => MeshFileError::Inverted { element, index, count, cells, measure, order },
+                    true if count == cells => {
+                        MeshFileError::AllInverted { element, index, cells, measure, order, turn }
+                    }
+                    true => MeshFileError::Inverted { element, index, count, cells, measure, order, turn },
                 },
             ));
         }
@@ -325,11 +328,12 @@ impl Assembly<'_> {
             return Ok(());
         }
         let (node, first) = (first as usize, self.number(first));
+        let leave_out = Setting::with("unreferenced", "\"leave_out\"");
         Err(self.at_node(
             node,
             match count {
-                1 => MeshFileError::LooseNode { first },
-                _ => MeshFileError::LooseNodes { count, first },
+                1 => MeshFileError::LooseNode { first, leave_out },
+                _ => MeshFileError::LooseNodes { count, first, leave_out },
             },
         ))
     }

@@ -2,7 +2,7 @@
 
 use super::ENDINGS;
 use super::terms::{ElementName, Expected};
-use opruga_math::message::{AnyMessage, if_any};
+use opruga_math::message::{AnyMessage, Setting, if_any};
 use opruga_math::words::counted;
 use opruga_math::{messages, terms};
 use opruga_mesh::MeshError;
@@ -168,22 +168,22 @@ messages! {
         "mesh.inverted" #[error("{element} {index} folds over itself{}", among(*count, *cells))] #[value("{measure}")] #[allowed("{order}")]
         Folded { element: ElementName, index: u64, count: usize, cells: usize, measure: String, order: CornerOrder },
         "mesh.inverted" #[error("{element} {index} is inverted{}", among(*count, *cells))] #[value("{measure}")] #[allowed("{order}")]
-        #[hint("`inverted = \"turn\"` turns such cells round, and counts them")]
-        Inverted { element: ElementName, index: u64, count: usize, cells: usize, measure: String, order: CornerOrder },
+        #[hint("{turn} turns such cells round, and counts them")]
+        Inverted { element: ElementName, index: u64, count: usize, cells: usize, measure: String, order: CornerOrder, turn: Setting },
         "mesh.inverted" #[error("{element} {index} is inverted{}", among(*cells, *cells))] #[value("{measure}")] #[allowed("{order}")]
-        #[hint("the whole file runs the other way: `inverted = \"turn\"` turns its cells round, and counts them")]
-        AllInverted { element: ElementName, index: u64, cells: usize, measure: String, order: CornerOrder },
+        #[hint("the whole file runs the other way: {turn} turns its cells round, and counts them")]
+        AllInverted { element: ElementName, index: u64, cells: usize, measure: String, order: CornerOrder, turn: Setting },
         "mesh.topology" #[error("{problem}")]
         Topology { problem: MeshError },
         "mesh.non_manifold" #[error("more than two cells share a face, through nodes {first} and {second}")]
         #[value("{edges}")] #[allowed("at most two cells at a face")]
         Crowded { first: u64, second: u64, edges: usize },
         "mesh.unreferenced" #[error("node {first} belongs to no cell")] #[value("{first}")] #[allowed("nodes of cells")]
-        #[hint("`unreferenced = \"leave_out\"` leaves such nodes out, and counts them")]
-        LooseNode { first: u64 },
+        #[hint("{leave_out} leaves such nodes out, and counts them")]
+        LooseNode { first: u64, leave_out: Setting },
         "mesh.unreferenced" #[error("{count} nodes belong to no cell, the first is node {first}")] #[value("{first}")] #[allowed("nodes of cells")]
-        #[hint("`unreferenced = \"leave_out\"` leaves such nodes out, and counts them")]
-        LooseNodes { count: usize, first: u64 },
+        #[hint("{leave_out} leaves such nodes out, and counts them")]
+        LooseNodes { count: usize, first: u64, leave_out: Setting },
     }
 
     /// What of a mesh file is left out or mended.

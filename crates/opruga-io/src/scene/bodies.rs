@@ -296,7 +296,7 @@ fn within_limits<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, D>
         let (copies, models) = (draft.copies.map_or(1, |c| c.total()) as f64, draft.models.len() as f64);
         if let Err(error) = cost.add::<D>(copies, nodes, models, &reader.options.limits) {
             let key = if draft.copies.is_some() { "copies" } else { "shape" };
-            reader.report(location_of(draft.node, key), error.path(join(&draft.path, key)));
+            reader.report(location_of(draft.node, key), SceneError::of(error).path(join(&draft.path, key)));
             return false;
         }
     }

@@ -1,7 +1,6 @@
 //! What the bodies of a scene would cost, compared with the limits before any mesh is made.
 
 use crate::limits::Limits;
-use crate::problem::SceneError;
 
 opruga_math::messages! {
     /// What a scene has too much of.
@@ -13,6 +12,21 @@ opruga_math::messages! {
         Nodes { count: String, most: u64 },
         "limit.memory" #[error("the scene would take about {count} bytes or more")] #[value("{count}")] #[allowed("at most {most} bytes")]
         Memory { count: String, most: u64 },
+        "limit.nodes" #[error("the mesh would have {count} nodes or more")] #[value("{count}")] #[allowed("at most {most} nodes")]
+        MeshNodes { count: String, most: u64 },
+        "limit.memory" #[error("the mesh would take about {count} bytes or more")] #[value("{count}")] #[allowed("at most {most} bytes")]
+        MeshMemory { count: String, most: u64 },
+    }
+}
+
+impl CostError {
+    /// The same of a mesh outside of any scene.
+    pub(crate) fn of_mesh(self) -> CostError {
+        match self {
+            CostError::Nodes { count, most } => CostError::MeshNodes { count, most },
+            CostError::Memory { count, most } => CostError::MeshMemory { count, most },
+            error => error,
+        }
     }
 }
 
@@ -35,7 +49,7 @@ impl Cost {
         nodes: f64,
         models: f64,
         limits: &Limits,
-    ) -> Result<(), SceneError> {
+    ) -> Result<(), CostError> {
         self.bodies += copies;
         self.nodes += nodes * copies;
         // A mesh once, and state, models and description for every copy.
@@ -45,13 +59,13 @@ impl Cost {
         // What is no number is above every limit.
         let within = |count: f64, most: u64| count <= most as f64;
         if !within(bodies, limits.bodies) {
-            return Err(SceneError::of(CostError::Bodies { count: shown(bodies), most: limits.bodies }));
+            return Err(CostError::Bodies { count: shown(bodies), most: limits.bodies });
         }
         if !within(all, limits.nodes) || !within(nodes, u64::from(u32::MAX)) {
-            return Err(SceneError::of(CostError::Nodes { count: shown(all), most: limits.nodes }));
+            return Err(CostError::Nodes { count: shown(all), most: limits.nodes });
         }
         if !within(bytes, limits.memory_bytes) {
-            return Err(SceneError::of(CostError::Memory { count: shown(bytes), most: limits.memory_bytes }));
+            return Err(CostError::Memory { count: shown(bytes), most: limits.memory_bytes });
         }
         Ok(())
     }

@@ -9,6 +9,7 @@ use super::drawing_errors::LetterError;
 use crate::budget::{LimitHint, OUTLINES, PIXELS, POINTS};
 use crate::problem::{SceneError, visible};
 use opruga_core::spec::Values;
+use opruga_math::message::Setting;
 
 /// Reads a PNG picture.
 ///
@@ -24,7 +25,8 @@ pub(super) fn read<'a>(bytes: &[u8], shape: &Values) -> Result<Drawing<'a>, Scen
     OUTLINES.check(contours).and(POINTS.check(points)).map_err(|e| e.advice(LimitHint::Picture))?;
     if f64::from(most) <= threshold {
         let (inside, most) = (inside.to_string(), format!("{most:.3}"));
-        return Err(SceneError::of(LetterError::NoPixel { inside, most, threshold }));
+        let [lower, choice] = ["threshold", "inside"].map(Setting::named);
+        return Err(SceneError::of(LetterError::NoPixel { inside, most, threshold, lower, choice }));
     }
     let (spans, painted, rules, notices) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     Ok(Drawing { curves, y_down: true, source: None, spans, painted, rules, notices })

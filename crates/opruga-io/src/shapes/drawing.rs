@@ -3,12 +3,13 @@
 use super::curves::{Curves, larger};
 use super::errors::{ShapeError, ShapeHint, ShapeNotice};
 use super::rules::{self, Rule};
-use super::{Content, Loaded, Problem, loss_notices};
-use crate::budget::{LimitHint, OUTLINES, POINTS};
+use super::{Content, Loaded, Problem, loss_notices, settings};
+use crate::budget::{OUTLINES, POINTS};
 use crate::problem::SceneError;
 use crate::scene::shown;
 use crate::source::Source;
 use opruga_core::spec::Values;
+use opruga_math::message::Setting;
 use opruga_math::words::rounded;
 use opruga_mesh::outline::{self, OutlineError, Overlap, Painted, Ring};
 use opruga_mesh::{MAXIMUM_NODES, Mesh, MeshError};
@@ -102,7 +103,8 @@ pub(super) fn loaded(mut drawing: Drawing<'_>, shape: &Values) -> Result<Loaded,
     OUTLINES.check(drawing.curves.closed() as u64)?;
     let tolerance = TOLERANCE * spacing * extent / size;
     let points = drawing.curves.flat_points(tolerance, POINTS.most);
-    POINTS.check(points).map_err(|e| Problem::new("spacing", e.advice(LimitHint::Spacing)))?;
+    let larger_spacing = || ShapeHint::LargerSpacing { spacing: Setting::named("spacing") };
+    POINTS.check(points).map_err(|e| Problem::new("spacing", e.advice(larger_spacing())))?;
     let mut rings = drawing.curves.flatten(tolerance);
     drawing.notices.extend(rules::follow(&mut rings, &drawing.rules));
     let mut painted = painted(&drawing.painted, &rings);
@@ -162,7 +164,9 @@ pub(super) fn loaded(mut drawing: Drawing<'_>, shape: &Values) -> Result<Loaded,
     let given = if drawing.source.is_some() { drawing.curves.points() } else { 0 };
     let before = rings;
     let rings = outline::resampled(&before, spacing).map_err(|e| {
-        Problem::new("spacing", refused(&e).value(spacing.to_string()).advice(ShapeHint::FinerOutline {}))
+        let [nearer, size, drop_below] = ["spacing", "size", "drop_below"].map(Setting::named);
+        let hint = ShapeHint::FinerOutline { spacing: nearer, size, drop_below, lattice: settings::lattice() };
+        Problem::new("spacing", refused(&e).value(spacing.to_string()).advice(hint))
     })?;
     drawing.notices.extend(loss_notices::thinned(given, &before, &rings, spacing));
     let outline = Outline { rings, inside, painted };
@@ -199,8 +203,8 @@ fn encloses_more(ring: &Ring, least: f64) -> bool {
 fn overlap_notice(rings: &[Ring], together: &[Ring], how: Overlap) -> Option<SceneError> {
     let (count, left) = (changed(rings, together), together.len());
     let notice = match how {
-        Overlap::Union => ShapeNotice::Union { count, left },
-        Overlap::EvenOdd => ShapeNotice::EvenOdd { count, left },
+        Overlap::Union => ShapeNotice::Union { count, left, overlap: settings::union() },
+        Overlap::EvenOdd => ShapeNotice::EvenOdd { count, left, overlap: settings::parity() },
     };
     (count > 0).then(|| SceneError::of(notice))
 }
@@ -246,9 +250,10 @@ fn scale_and_center(
     shape: &Values,
 ) -> Result<Vec<Ring>, Problem> {
     outline::nest(&mut rings).map_err(|e| match &e {
-        OutlineError::Meeting { parts, .. } if shape.text("overlap") == Some("refuse") => {
-            Problem::from(drawing.at(parts[1], refused(&e).advice(ShapeHint::Overlap {})))
-        }
+        OutlineError::Meeting { parts, .. } if shape.text("overlap") == Some("refuse") => Problem::from(drawing.at(
+            parts[1],
+            refused(&e).advice(ShapeHint::Overlap { union: settings::union(), parity: settings::parity() }),
+        )),
         OutlineError::NoArea { part, .. } | OutlineError::NotFinite { part, .. } => {
             drawing.at(*part, refused(&e)).into()
         }

@@ -1,5 +1,6 @@
 //! What readers of drawings, maps, fonts and pictures refuse and leave out.
 
+use opruga_math::message::Setting;
 use opruga_math::messages;
 use opruga_math::words::counted;
 
@@ -22,7 +23,7 @@ messages! {
         "svg.depth" #[error("elements are nested more than {deepest} deep")] #[value("{element}")] #[allowed("at most {deepest} levels")]
         Depth { deepest: usize, element: String },
         "svg.unsupported" #[error("<{element}> has no outline here")] #[value("{element}")]
-        #[hint("turn text into paths in the drawing program, or use `kind = \"text\"`")]
+        #[hint("turn text into paths in the drawing program, or use a shape of `kind = \"text\"` in a scene")]
         NoOutline { element: String },
         "svg.unsupported" #[error("<{element}> cannot be read")] #[value("{element}")]
         #[allowed("path, rect, circle, ellipse, polygon, polyline in svg, g, a, switch, use")]
@@ -64,8 +65,8 @@ messages! {
         "svg.colour" #[error("`{property}` is not a number")] #[value("{value}")] #[allowed("0 to 1")]
         Share { property: String, value: String },
         "svg.colour" #[error("the fill cannot be painted")] #[value("{value}")]
-        #[allowed("a colour such as #ffac33 or gold, a gradient of this file, none")] #[hint("`colours = false` reads the outline alone")]
-        Colour { value: String },
+        #[allowed("a colour such as #ffac33 or gold, a gradient of this file, none")] #[hint("{colours} reads the outline alone")]
+        Colour { value: String, colours: Setting },
         "svg.style" #[error("a style sheet may set `{property}` here, which changes outlines")] #[value("{property}: {value}")]
         #[allowed("rules without conditions, behind names, `.class` and `#id`")]
         #[hint("let the drawing program write attributes instead of a sheet")]
@@ -117,12 +118,12 @@ messages! {
     /// What is wrong with a map.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum MapError {
-        "map.unknown_layer" #[error("there is no layer `{layer}`")] #[value("{layer}")] #[allowed("no `layer`: only a topology has some")]
-        NoLayers { layer: String },
+        "map.unknown_layer" #[error("there is no layer `{layer}`")] #[value("{layer}")] #[allowed("no {setting}: only a topology has some")]
+        NoLayers { layer: String, setting: Setting },
         "map.unknown_layer" #[error("there is no layer `{layer}`")] #[value("{layer}")] #[allowed("{known}")]
         NoLayer { layer: String, known: String },
-        "map.unknown_layer" #[error("the map has {count} layers")] #[value("")] #[allowed("{known}")] #[hint("name one by `layer`")]
-        SeveralLayers { count: usize, known: String },
+        "map.unknown_layer" #[error("the map has {count} layers")] #[value("")] #[allowed("{known}")] #[hint("name one by {setting}")]
+        SeveralLayers { count: usize, known: String, setting: Setting },
         "map.syntax" #[error("a position has {count} numbers")] #[value("{count}")] #[allowed("two or three numbers")]
         Position { count: usize },
         "map.depth" #[error("collections are nested more than {deepest} deep")] #[allowed("at most {deepest} levels")]
@@ -151,8 +152,8 @@ messages! {
         "shape.no_area" #[error("the map holds no polygon")] #[value("0")]
         NoPolygon {},
         "map.range" #[error("({x}, {y}) is not a place on the globe")] #[value("{x}, {y}")]
-        #[allowed("latitudes from -{most} to {most}, longitudes from -540 to 540")] #[hint("`projection = \"none\"` takes coordinates as they are")]
-        Range { x: f64, y: f64, most: f64 },
+        #[allowed("latitudes from -{most} to {most}, longitudes from -540 to 540")] #[hint("{projection} takes coordinates as they are")]
+        Range { x: f64, y: f64, most: f64, projection: Setting },
         "json.syntax" #[error("{reason}")] #[value("{found}")]
         Json { reason: String, found: String },
     }
@@ -186,7 +187,7 @@ messages! {
         NoLetter { letter: String },
         "font.script" #[error("`{letter}` is of a script whose letters are not set one by one from left to right")] #[value("{letter}")]
         #[allowed("letters such as Latin, Greek or Cyrillic ones, without marks of their own")]
-        #[hint("draw the text in a drawing program and turn it into paths for `kind = \"svg\"`")]
+        #[hint("draw the text in a drawing program and turn it into paths of an SVG file")]
         Script { letter: String },
         "font.no_glyph" #[error("the font `{font}` has no letter `{letter}`")] #[value("{letter}")]
         NoGlyph { font: String, letter: String },
@@ -195,8 +196,8 @@ messages! {
         "shape.no_area" #[error("the text has no letter with an outline")] #[value("{text}")] #[allowed("at least one letter that is drawn")]
         NoLetters { text: String },
         "shape.no_area" #[error("no pixel is more {inside} than the threshold")] #[value("at most {most}")] #[allowed("pixels above {threshold}")]
-        #[hint("use a smaller `threshold`, or another `inside`: dark, bright or opaque")]
-        NoPixel { inside: String, most: String, threshold: f64 },
+        #[hint("use a smaller {lower}, or another {choice}: dark, bright or opaque")]
+        NoPixel { inside: String, most: String, threshold: f64, lower: Setting, choice: Setting },
         "png.syntax" #[error("the PNG cannot be read: {reason}")] #[value("{bytes} bytes")] #[allowed("a picture in PNG")]
         Png { reason: String, bytes: usize },
     }

@@ -1,5 +1,6 @@
 //! What the makers of bodies from shapes refuse, and what they count.
 
+use opruga_math::message::Setting;
 use opruga_math::messages;
 use opruga_math::words::{counted, number};
 
@@ -18,8 +19,8 @@ messages! {
     pub(crate) enum ThinCause {
         "part.thin_cause" #[error("the outline itself has a corner of {angle}° there")]
         Corner { angle: String },
-        "part.thin_cause" #[error("the outline is finer there than `spacing`")]
-        Finer {},
+        "part.thin_cause" #[error("the outline is finer there than {spacing}")]
+        Finer { spacing: Setting },
         "part.thin_cause" #[error("the refinement has added as many nodes as it may")]
         Unfinished {},
     }
@@ -27,37 +28,39 @@ messages! {
     /// What helps where a shape is refused or changed.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum ShapeHint {
-        "part.shape_hint" #[error("use a smaller `spacing`")]
-        SmallerSpacing {},
-        "part.shape_hint" #[error("`spacing = {}` keeps the volume within {percent} %", number(*spacing))]
-        SpacingKeeps { spacing: f64, percent: f64 },
-        "part.shape_hint" #[error("use a smaller `remesh`")]
-        SmallerRemesh {},
-        "part.shape_hint" #[error("`remesh = {}` works", number(*length))]
-        RemeshWorks { length: f64 },
-        "part.shape_hint" #[error("use a smaller `remesh`: no length from {} m on that was tried works", number(*length))]
-        NoRemeshWorks { length: f64 },
-        "part.shape_hint" #[error("round the corner off in the drawing, or use `filling = \"lattice\"`")]
-        RoundCorner {},
-        "part.shape_hint" #[error("use a smaller `spacing`, or `filling = \"lattice\"`")]
-        SmallerOrLattice {},
-        "part.shape_hint" #[error("use a larger `spacing`, or `filling = \"lattice\"`")]
-        LargerOrLattice {},
-        "part.shape_hint" #[error("use a smaller `spacing`, a larger `size`, `drop_below`, or `filling = \"lattice\"`")]
-        FinerOutline {},
-        "part.shape_hint" #[error("`overlap = \"union\"` keeps what any of them covers, `overlap = \"even_odd\"` what an odd number encloses")]
-        Overlap {},
-        "part.shape_hint" #[error("maybe the file is in millimetres: `scale = 0.001`; `size` sets the length")]
-        Millimetres {},
-        "part.shape_hint" #[error("maybe the file is in kilometres: `scale = 1000.0`; `size` sets the length")]
-        Kilometres {},
-        "part.shape_hint" #[error("`size` sets the length")]
-        Size {},
-        "part.shape_hint" #[error("`open = \"cap\"` closes it, `open = \"sheet\"` keeps it as cloth")]
-        CapOrSheet {},
+        "part.shape_hint" #[error("use a smaller {spacing}")]
+        SmallerSpacing { spacing: Setting },
+        "part.shape_hint" #[error("take a larger {spacing}, or a drawing of fewer points")]
+        LargerSpacing { spacing: Setting },
+        "part.shape_hint" #[error("{spacing} keeps the volume within {percent} %")]
+        SpacingKeeps { spacing: Setting, percent: f64 },
+        "part.shape_hint" #[error("use a smaller {remesh}")]
+        SmallerRemesh { remesh: Setting },
+        "part.shape_hint" #[error("{remesh} works")]
+        RemeshWorks { remesh: Setting },
+        "part.shape_hint" #[error("use a smaller {remesh}: no length from {} m on that was tried works", number(*length))]
+        NoRemeshWorks { remesh: Setting, length: f64 },
+        "part.shape_hint" #[error("round the corner off in the drawing, or use {lattice}")]
+        RoundCorner { lattice: Setting },
+        "part.shape_hint" #[error("use a smaller {spacing}, or {lattice}")]
+        SmallerOrLattice { spacing: Setting, lattice: Setting },
+        "part.shape_hint" #[error("use a larger {spacing}, or {lattice}")]
+        LargerOrLattice { spacing: Setting, lattice: Setting },
+        "part.shape_hint" #[error("use a smaller {spacing}, a larger {size}, {drop_below}, or {lattice}")]
+        FinerOutline { spacing: Setting, size: Setting, drop_below: Setting, lattice: Setting },
+        "part.shape_hint" #[error("{union} keeps what any of them covers, {parity} what an odd number encloses")]
+        Overlap { union: Setting, parity: Setting },
+        "part.shape_hint" #[error("maybe the file is in millimetres: {scale}; {size} sets the length")]
+        Millimetres { scale: Setting, size: Setting },
+        "part.shape_hint" #[error("maybe the file is in kilometres: {scale}; {size} sets the length")]
+        Kilometres { scale: Setting, size: Setting },
+        "part.shape_hint" #[error("{size} sets the length")]
+        Size { size: Setting },
+        "part.shape_hint" #[error("{cap} closes it, {sheet} keeps it as cloth")]
+        CapOrSheet { cap: Setting, sheet: Setting },
         "part.shape_hint"
-        #[error("{} at the place of another: `weld = 0` joins them; or `open = \"cap\"`, `open = \"sheet\"`", counted(*count as u64, "vertex lies", "vertices lie"))]
-        Weld { count: usize },
+        #[error("{} at the place of another: {weld} joins them; or {cap}, {sheet}", counted(*count as u64, "vertex lies", "vertices lie"))]
+        Weld { count: usize, weld: Setting, cap: Setting, sheet: Setting },
     }
 
     /// Why no body can be made of the contents of a file.
@@ -97,14 +100,14 @@ messages! {
         "shape.lost_volume" #[error("edges of {} m leave {change}", number(*length))] #[value("{kept}")]
         Remeshed { length: f64, change: Change, kept: String },
         "shape.thinned" #[error("{} {nodes} nodes, {} m apart: {change}", counted(*given as u64, "point of the file becomes", "points of the file become"), number(*spacing))]
-        #[value("{given}")] #[hint("a smaller `spacing` keeps finer detail, `filling = \"lattice\"` carries all of it")]
-        Thinned { given: usize, nodes: usize, spacing: f64, change: Change },
+        #[value("{given}")] #[hint("a smaller {finer} keeps finer detail, {lattice} carries all of it")]
+        Thinned { given: usize, nodes: usize, spacing: f64, change: Change, finer: Setting, lattice: Setting },
         "shape.thinned" #[error("{nodes} nodes {} m apart leave {change}", number(*spacing))] #[value("{kept}")]
-        #[hint("a smaller `spacing` keeps finer detail, `filling = \"lattice\"` carries all of it")]
-        Coarse { nodes: usize, spacing: f64, change: Change, kept: String },
+        #[hint("a smaller {finer} keeps finer detail, {lattice} carries all of it")]
+        Coarse { nodes: usize, spacing: f64, change: Change, kept: String, finer: Setting, lattice: Setting },
         "shape.nested" #[error("{}", counted(*count as u64, "outline lies within one of another element and is a hole there", "outlines lie within those of other elements and are holes there"))]
-        #[value("{count}")] #[hint("`overlap = \"union\"` keeps what any element paints, `overlap = \"even_odd\"` says that holes are meant")]
-        Nested { count: usize },
+        #[value("{count}")] #[hint("{union} keeps what any element paints, {parity} says that holes are meant")]
+        Nested { count: usize, union: Setting, parity: Setting },
         "shape.thin_triangles"
         #[error("{count} of {} {} angles below {least}°, the smallest {angle}° at ({x}, {y}): {cause}", counted(*triangles as u64, "triangle", "triangles"), if *count == 1 { "has" } else { "have" })]
         #[value("{angle}")] #[allowed("angles from {least}°")]
@@ -115,12 +118,12 @@ messages! {
         #[value("{count}")]
         Dropped { count: usize, outlines: usize, least: f64 },
         "shape.overlap"
-        #[error("{}: `overlap = \"union\"` keeps what any of them covers, {}", counted(*count as u64, "outline crosses, covers or touches others or itself", "outlines cross, cover or touch others or themselves"), counted(*left as u64, "outline is left", "outlines are left"))]
+        #[error("{}: {overlap} keeps what any of them covers, {}", counted(*count as u64, "outline crosses, covers or touches others or itself", "outlines cross, cover or touch others or themselves"), counted(*left as u64, "outline is left", "outlines are left"))]
         #[value("{count}")]
-        Union { count: usize, left: usize },
+        Union { count: usize, left: usize, overlap: Setting },
         "shape.overlap"
-        #[error("{}: `overlap = \"even_odd\"` keeps what an odd number of them encloses, {}", counted(*count as u64, "outline crosses, covers or touches others or itself", "outlines cross, cover or touch others or themselves"), counted(*left as u64, "outline is left", "outlines are left"))]
+        #[error("{}: {overlap} keeps what an odd number of them encloses, {}", counted(*count as u64, "outline crosses, covers or touches others or itself", "outlines cross, cover or touch others or themselves"), counted(*left as u64, "outline is left", "outlines are left"))]
         #[value("{count}")]
-        EvenOdd { count: usize, left: usize },
+        EvenOdd { count: usize, left: usize, overlap: Setting },
     }
 }

@@ -1,8 +1,10 @@
 //! What the making of a body has lost, and where it is worse than promised: said in figures.
 
 use super::errors::{Change, ShapeHint, ShapeNotice, ThinCause};
+use super::settings;
 use crate::problem::SceneError;
-use opruga_math::words::rounded;
+use opruga_math::message::Setting;
+use opruga_math::words::{number, rounded};
 use opruga_mesh::Mesh;
 use opruga_mesh::outline::{self, Cause, Ring, SMALLEST_ANGLE, Thin};
 use opruga_world::shapes::{Loss, REPORTED_LOSS};
@@ -26,8 +28,10 @@ pub(crate) fn lost_volume<const D: usize>(filling: &Mesh<D>, loss: Loss, scale: 
     let change = difference(after / loss.kept, after, "m³");
     let warned = 100.0 * REPORTED_LOSS;
     let hint = match loss.finer {
-        Some(spacing) => ShapeHint::SpacingKeeps { spacing, percent: warned },
-        None => ShapeHint::SmallerSpacing {},
+        Some(spacing) => {
+            ShapeHint::SpacingKeeps { spacing: Setting::with("spacing", number(spacing)), percent: warned }
+        }
+        None => ShapeHint::SmallerSpacing { spacing: Setting::named("spacing") },
     };
     SceneError::of(ShapeNotice::Filling { change, kept: rounded(loss.kept, 3), warned }).advice(hint)
 }
@@ -38,7 +42,8 @@ pub(super) fn remeshed(made: &Mesh<3>, before: &Mesh<3>, length: f64, scale: f64
     let (after, before) = (made.enclosed_volume() * cube, before.enclosed_volume() * cube);
     let (change, kept) = (difference(before, after, "m³"), rounded(after / before, 3));
     let notice = ShapeNotice::Remeshed { length, change, kept };
-    ((after / before - 1.0).abs() > REPORTED_LOSS).then(|| SceneError::of(notice).advice(ShapeHint::SmallerRemesh {}))
+    ((after / before - 1.0).abs() > REPORTED_LOSS)
+        .then(|| SceneError::of(notice).advice(ShapeHint::SmallerRemesh { remesh: Setting::named("remesh") }))
 }
 
 /// That most points of an outline are left out, or much of its area, as the spacing of its nodes wants it: `given` points in the file, and the rings
@@ -49,9 +54,12 @@ pub(super) fn thinned(given: usize, before: &[Ring], rings: &[Ring], spacing: f6
     let (whole, left) = (area(before), area(rings));
     let (many, much) = (given > THINNED * nodes, (left / whole - 1.0).abs() > REPORTED_LOSS);
     let change = || difference(whole, left, "m²");
+    let (finer, lattice) = (Setting::named("spacing"), settings::lattice());
     let notice = match (many, much) {
-        (true, _) => ShapeNotice::Thinned { given, nodes, spacing, change: change() },
-        (false, true) => ShapeNotice::Coarse { nodes, spacing, change: change(), kept: rounded(left / whole, 3) },
+        (true, _) => ShapeNotice::Thinned { given, nodes, spacing, change: change(), finer, lattice },
+        (false, true) => {
+            ShapeNotice::Coarse { nodes, spacing, change: change(), kept: rounded(left / whole, 3), finer, lattice }
+        }
         (false, false) => return None,
     };
     Some(SceneError::of(notice))
@@ -68,15 +76,25 @@ pub(super) fn nested(rings: &[Ring]) -> Option<(u32, SceneError)> {
         .map(|number| rings[number].part)
         .collect();
     let first = *foreign.first()?;
-    Some((first, SceneError::of(ShapeNotice::Nested { count: foreign.len() })))
+    Some((
+        first,
+        SceneError::of(ShapeNotice::Nested {
+            count: foreign.len(),
+            union: settings::union(),
+            parity: settings::parity(),
+        }),
+    ))
 }
 
 /// That triangles have sharper angles than fillings promise.
 pub(super) fn thin(mesh: &Mesh<2>, thin: &Thin) -> SceneError {
+    let (spacing, lattice) = (Setting::named("spacing"), settings::lattice());
     let (cause, hint) = match thin.cause {
-        Cause::Corner(angle) => (ThinCause::Corner { angle: rounded(angle, 3) }, ShapeHint::RoundCorner {}),
-        Cause::Finer => (ThinCause::Finer {}, ShapeHint::SmallerOrLattice {}),
-        Cause::Unfinished => (ThinCause::Unfinished {}, ShapeHint::LargerOrLattice {}),
+        Cause::Corner(angle) => (ThinCause::Corner { angle: rounded(angle, 3) }, ShapeHint::RoundCorner { lattice }),
+        Cause::Finer => {
+            (ThinCause::Finer { spacing: spacing.clone() }, ShapeHint::SmallerOrLattice { spacing, lattice })
+        }
+        Cause::Unfinished => (ThinCause::Unfinished {}, ShapeHint::LargerOrLattice { spacing, lattice }),
     };
     let [angle, x, y] = [thin.angle, thin.position[0], thin.position[1]].map(|number| rounded(number, 3));
     let (count, triangles, least) = (thin.count, mesh.cells.len(), SMALLEST_ANGLE);

@@ -12,6 +12,7 @@ use crate::budget::POINTS;
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
 use opruga_core::spec::{Values, nearest};
+use opruga_math::message::Setting;
 use opruga_mesh::outline::Inside;
 use serde::Deserialize;
 use std::cell::Cell;
@@ -92,7 +93,7 @@ pub(super) fn read<'a>(source: &'a Source<'a>, shape: &'a Values) -> Result<Draw
         let layer = layer(source, raw, &topology, shape.text("layer"))?;
         reader.object(layer, wanted.is_none(), 0)?;
     } else if let Some(layer) = shape.text("layer") {
-        let error = SceneError::of(MapError::NoLayers { layer: visible(layer) });
+        let error = SceneError::of(MapError::NoLayers { layer: visible(layer), setting: Setting::named("layer") });
         return Err(refuse(source, &text[..1.min(text.len())], error));
     } else {
         reader.object(raw, wanted.is_none(), 0)?;
@@ -171,7 +172,7 @@ fn layer<'a>(
             Some(name) => {
                 SceneError::of(MapError::NoLayer { layer: visible(name), known }).nearest(nearest(name, names()))
             }
-            None => SceneError::of(MapError::SeveralLayers { count, known }),
+            None => SceneError::of(MapError::SeveralLayers { count, known, setting: Setting::named("layer") }),
         };
         refuse(source, &raw.get()[..1], error)
     })
@@ -372,7 +373,12 @@ fn projection(
     for (rings, raw) in polygons {
         for point in rings.iter().flatten() {
             if !(point[1].abs() <= most && point[0].abs() <= 540.0) {
-                let error = SceneError::of(MapError::Range { x: point[0], y: point[1], most });
+                let error = SceneError::of(MapError::Range {
+                    x: point[0],
+                    y: point[1],
+                    most,
+                    projection: Setting::with("projection", "\"none\""),
+                });
                 return Err(refuse(source, raw.get(), error));
             }
             low = smaller(low, point[1]);

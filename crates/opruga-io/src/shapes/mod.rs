@@ -26,6 +26,7 @@ mod obj;
 mod ply;
 mod remeshing;
 mod rules;
+mod settings;
 mod stl;
 mod surface_errors;
 mod svg;
@@ -172,7 +173,8 @@ pub fn body<const D: usize>(
         files.read(name, limits.shape_bytes)
     })?;
     let dense = if shape.get("spacing").is_some() { "spacing" } else { "file" };
-    Cost::default().add::<D>(1.0, loaded.node_count(), 0.0, limits).map_err(|about| Problem::new(dense, about))?;
+    let cost = Cost::default().add::<D>(1.0, loaded.node_count(), 0.0, limits);
+    cost.map_err(|error| Problem::new(dense, SceneError::of(error.of_mesh())))?;
     let (mesh, made) =
         loaded.mesh::<D>(&Transform { scale: 1.0, rotation: &[] }).map_err(|about| Problem::new(dense, about))?;
     Ok((mesh, [loaded.notices, made].concat()))

@@ -2,6 +2,8 @@
 
 use super::errors::{ShapeError, ShapeHint};
 use crate::problem::SceneError;
+use opruga_math::message::Setting;
+use opruga_math::words::number;
 use opruga_mesh::Mesh;
 use opruga_mesh::outline::OutlineError;
 
@@ -37,8 +39,8 @@ pub(super) fn remeshed(mesh: &Mesh<3>, length: f64) -> Result<Mesh<3>, SceneErro
         }
     };
     Err(SceneError::of(error).advice(match coarsest(mesh, length) {
-        Ok(length) => ShapeHint::RemeshWorks { length },
-        Err(length) => ShapeHint::NoRemeshWorks { length },
+        Ok(length) => ShapeHint::RemeshWorks { remesh: Setting::with("remesh", number(length)) },
+        Err(length) => ShapeHint::NoRemeshWorks { remesh: Setting::named("remesh"), length },
     }))
 }
 

@@ -1,5 +1,6 @@
 //! What readers of surfaces and the welding of triangles refuse, and what they count.
 
+use opruga_math::message::Setting;
 use opruga_math::messages;
 use opruga_math::words::{counted, number};
 use opruga_mesh::MeshError;
@@ -57,8 +58,8 @@ messages! {
         #[allowed("an area above {least} of its longest edge squared")]
         NoArea { triangle: u32, area: String, least: String },
         "mesh.degenerate_face" #[error("triangle {triangle} names a place twice where vertices within {distance} m are joined")]
-        #[value("{distance}")] #[hint("use a smaller `weld`, or leave the triangle out")]
-        Joined { triangle: u32, distance: f64 },
+        #[value("{distance}")] #[hint("use a smaller {weld}, or leave the triangle out")]
+        Joined { triangle: u32, distance: f64, weld: Setting },
         "mesh.degenerate_face" #[error("triangle {triangle} names a vertex twice")] #[value("{corners}")] #[allowed("three different vertices")]
         VertexTwice { triangle: usize, corners: String },
         "mesh.index" #[error("triangle {triangle} names vertex {vertex}")] #[value("{vertex}")] #[allowed("below {count}")]
@@ -67,10 +68,10 @@ messages! {
         Face { problem: FaceProblem, face: u64, corners: String },
         "mesh.degenerate_face" #[error("{problem}: element {element}")] #[value("{corners}")] #[allowed("{CORNERS}")]
         Element { problem: FaceProblem, element: u64, corners: String },
-        "mesh.open" #[error("an open surface has no inside to fill")] #[value("{filling}")] #[hint("close it with `open = \"cap\"`")]
-        NothingToFill { filling: String },
-        "mesh.open" #[error("an open surface cannot be remeshed")] #[allowed("a closed surface")] #[hint("close it with `open = \"cap\"`")]
-        NotRemeshed {},
+        "mesh.open" #[error("an open surface has no inside to fill")] #[value("{filling}")] #[hint("close it with {cap}")]
+        NothingToFill { filling: String, cap: Setting },
+        "mesh.open" #[error("an open surface cannot be remeshed")] #[allowed("a closed surface")] #[hint("close it with {cap}")]
+        NotRemeshed { cap: Setting },
         "mesh.open" #[error("the surface is not closed: {}, through {positions}", counted(*loops as u64, "free boundary", "free boundaries"))]
         #[value("{loops}")] #[allowed("a closed surface")]
         Open { loops: usize, positions: String },
@@ -88,8 +89,8 @@ messages! {
         "mesh.self_intersection"
         #[error("the surface meets itself: triangle {first} around ({first_center}) crosses, touches or overlaps triangle {second} around ({second_center})")]
         #[value("{}", pairs(*count, *complete))] #[allowed("triangles that meet at common vertices and edges only")]
-        #[hint("`overlap = \"keep\"` takes the surface as it is")]
-        MeetsItself { first: u32, first_center: String, second: u32, second_center: String, count: usize, complete: bool },
+        #[hint("{keep} takes the surface as it is")]
+        MeetsItself { first: u32, first_center: String, second: u32, second_center: String, count: usize, complete: bool, keep: Setting },
         "mesh.size" #[error("the surface has no extent, or one out of range")] #[value("{extent}")] #[allowed("an extent from 1e-150 to 1e150")]
         Extent { extent: String },
         "scene.not_finite" #[error("a coordinate of vertex {vertex} is {value}")] #[value("{value}")] #[allowed("a finite number")]
@@ -108,13 +109,13 @@ messages! {
         BentFaces { count: usize, faces: usize, off: String },
         "mesh.sliver"
         #[error("{count} of {} {}; the thinnest is triangle {thinnest}, with an area of {} of its longest edge squared", counted(*triangles as u64, "triangle", "triangles"), if *count == 1 { "is a sliver" } else { "are slivers" }, number(*area))]
-        #[value("{count}")] #[allowed("areas from {least}")] #[hint("`remesh` makes nearly equilateral triangles")]
-        Slivers { count: usize, triangles: usize, thinnest: usize, area: f64, least: String },
+        #[value("{count}")] #[allowed("areas from {least}")] #[hint("{remesh} makes nearly equilateral triangles")]
+        Slivers { count: usize, triangles: usize, thinnest: usize, area: f64, least: String, remesh: Setting },
         "mesh.unreferenced" #[error("{} left out", counted(*count as u64, "vertex that no triangle names is", "vertices that no triangle names are"))] #[value("{count}")]
         UnreferencedVertices { count: usize },
         "mesh.scale" #[error("the surface is {} m large", number(*extent))] #[value("{extent}")]
-        #[allowed("{} m to {} m, where `size` is not given", number(*least), number(*most))]
-        Scale { extent: f64, least: f64, most: f64 },
+        #[allowed("{} m to {} m, where {size} is not given", number(*least), number(*most))]
+        Scale { extent: f64, least: f64, most: f64, size: Setting },
         "mesh.welded" #[error("{count} of {vertices} vertices {} joined to others", are(*count))] #[value("{count}")]
         Welded { count: usize, vertices: usize },
         "mesh.capped" #[error("{} closed by fans of triangles", counted(*count as u64, "free boundary is", "free boundaries are"))] #[value("{count}")]

@@ -5,6 +5,7 @@ use super::rules::Rule;
 use super::svg_sheets::Sheets;
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
+use opruga_math::message::Setting;
 use roxmltree::{Document, Node};
 use svgtypes::{Color, Paint, PaintFallback};
 
@@ -193,7 +194,7 @@ impl<'a, 'd> Fills<'a, 'd> {
     }
 
     fn refused(&self, node: Node<'_, '_>, text: &str) -> SceneError {
-        self.mark(node, SvgError::Colour { value: visible(text) })
+        self.mark(node, SvgError::Colour { value: visible(text), colours: Setting::with("colours", false) })
     }
 
     /// An error at the tag of an element.

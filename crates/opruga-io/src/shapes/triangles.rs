@@ -3,12 +3,13 @@
 use super::curves::larger;
 use super::errors::ShapeHint;
 use super::surface_errors::{FaceProblem, SurfaceError, SurfaceNotice};
-use super::{Content, Loaded, Problem, loss_notices};
+use super::{Content, Loaded, Problem, loss_notices, settings};
 use crate::meshes::MeshFileError;
 use crate::problem::SceneError;
 use crate::rounding::Stored;
 use crate::source::Source;
 use opruga_core::spec::Values;
+use opruga_math::message::Setting;
 use opruga_math::words::{number, rounded};
 use opruga_mesh::{FaceError, Mesh, MeshError, cut_face};
 use opruga_world::shapes;
@@ -205,14 +206,17 @@ pub(super) fn loaded(
     let filling = match shapes::filling(shape) {
         Ok(Some(_)) if mesh.facets.is_empty() => {
             let filling = shape.text("filling").unwrap_or("").to_string();
-            return Err(Problem::new("filling", SceneError::of(SurfaceError::NothingToFill { filling })));
+            return Err(Problem::new(
+                "filling",
+                SceneError::of(SurfaceError::NothingToFill { filling, cap: settings::cap() }),
+            ));
         }
         Ok(filling) => filling,
         Err(problem) => return Err(Problem::new("filling", SceneError::of(SurfaceError::Filling { problem }))),
     };
     let remesh = shape.number("remesh");
     if remesh.is_some() && mesh.facets.is_empty() {
-        return Err(Problem::new("remesh", SceneError::of(SurfaceError::NotRemeshed {})));
+        return Err(Problem::new("remesh", SceneError::of(SurfaceError::NotRemeshed { cap: settings::cap() })));
     }
     Ok(Loaded { notices, content: Content::Surface { mesh: Box::new(mesh), remesh, filling } })
 }
@@ -233,7 +237,16 @@ fn slivers(mesh: &Mesh<3>) -> Option<SceneError> {
     }
     let (area, thinnest) = worst;
     let (triangles, least) = (mesh.facets.len(), format!("{SLIVER:e}"));
-    (count > 0).then(|| SceneError::of(SurfaceNotice::Slivers { count, triangles, thinnest, area, least }))
+    (count > 0).then(|| {
+        SceneError::of(SurfaceNotice::Slivers {
+            count,
+            triangles,
+            thinnest,
+            area,
+            least,
+            remesh: Setting::named("remesh"),
+        })
+    })
 }
 
 /// A surface whose file is probably not in metres.
@@ -245,12 +258,13 @@ fn unusual_scale(mesh: &Mesh<3>) -> Option<SceneError> {
     }
     let [least, most] = USUAL;
     let explained = extent < UNITS * most && extent * UNITS > least;
+    let size = Setting::named("size");
     let hint = match (explained, extent > most) {
-        (false, _) => ShapeHint::Size {},
-        (true, true) => ShapeHint::Millimetres {},
-        (true, false) => ShapeHint::Kilometres {},
+        (false, _) => ShapeHint::Size { size: size.clone() },
+        (true, true) => ShapeHint::Millimetres { scale: Setting::with("scale", "0.001"), size: size.clone() },
+        (true, false) => ShapeHint::Kilometres { scale: Setting::with("scale", "1000.0"), size: size.clone() },
     };
-    Some(SceneError::of(SurfaceNotice::Scale { extent, least, most }).advice(hint))
+    Some(SceneError::of(SurfaceNotice::Scale { extent, least, most, size }).advice(hint))
 }
 
 /// Joins vertices where the scene or the format asks for it.
@@ -270,7 +284,8 @@ fn weld(
     let joined = match opruga_mesh::weld(&mut positions, &mut triangles, distance) {
         Ok(joined) => joined,
         Err(MeshError::RepeatedNode { index, .. }) => {
-            let error = SceneError::of(SurfaceError::Joined { triangle: index, distance });
+            let error =
+                SceneError::of(SurfaceError::Joined { triangle: index, distance, weld: Setting::named("weld") });
             return Err(found.at(source, index, error));
         }
         Err(problem) => return Err(SceneError::of(SurfaceError::Weld { problem }).value(distance.to_string())),
@@ -372,7 +387,8 @@ fn compare(
         mean.map(number).join(", ")
     };
     let (first_center, second_center) = (middle(first), middle(second));
-    let error = SurfaceError::MeetsItself { first, first_center, second, second_center, count, complete };
+    let keep = Setting::with("overlap", "\"keep\"");
+    let error = SurfaceError::MeetsItself { first, first_center, second, second_center, count, complete, keep };
     let error = SceneError::of(error);
     // Those that close a free boundary stand nowhere in the file.
     Err(match [second, first].into_iter().find(of_file) {
@@ -395,8 +411,13 @@ fn refused(mesh: &Mesh<3>, found: &Triangles, source: Option<&Source<'_>>, error
         MeshError::Open { loops, nodes } => {
             let positions: Vec<String> = nodes.iter().take(8).map(|n| format!("({})", coordinates(*n))).collect();
             let hint = match loss_notices::seams(mesh) {
-                0 => ShapeHint::CapOrSheet {},
-                count => ShapeHint::Weld { count },
+                0 => ShapeHint::CapOrSheet { cap: settings::cap(), sheet: settings::sheet() },
+                count => ShapeHint::Weld {
+                    count,
+                    weld: Setting::with("weld", 0),
+                    cap: settings::cap(),
+                    sheet: settings::sheet(),
+                },
             };
             SceneError::of(SurfaceError::Open { loops, positions: positions.join(", ") }).advice(hint)
         }

@@ -1,0 +1,28 @@
+//! Parameters of shapes with the values that several hints name.
+
+use opruga_math::message::Setting;
+
+/// Triangles or tetrahedra of a regular grid.
+pub(super) fn lattice() -> Setting {
+    Setting::with("filling", "\"lattice\"")
+}
+
+/// What any of several areas covers.
+pub(super) fn union() -> Setting {
+    Setting::with("overlap", "\"union\"")
+}
+
+/// What an odd number of areas encloses.
+pub(super) fn parity() -> Setting {
+    Setting::with("overlap", "\"even_odd\"")
+}
+
+/// An open surface is closed.
+pub(super) fn cap() -> Setting {
+    Setting::with("open", "\"cap\"")
+}
+
+/// An open surface stays open.
+pub(super) fn sheet() -> Setting {
+    Setting::with("open", "\"sheet\"")
+}
