@@ -1,9 +1,10 @@
 //! Why a command failed, for people and for programs, and the exit code.
 
-use crate::errors::{CallFault, CallRange, CheckFault, OutputError};
+use crate::errors::{CallFault, CallNote, CallRange, CheckFault, OutputError};
 use crate::language::translation;
+use opruga::Warning;
 use opruga::draw::DrawError;
-use opruga::io::problem::{Label, SceneError, count_of, in_words, shown};
+use opruga::io::problem::{Label, SceneError, count_of, in_words, shown, warning_text};
 use opruga::io::safe_write::WriteError;
 use opruga::math::message::{AnyMessage, Message};
 use serde_json::{Value, json};
@@ -148,6 +149,16 @@ impl Failure {
 pub(crate) fn with_code(label: Label, about: &dyn Message) -> String {
     let own = translation();
     format!("{}[{}]: {}", in_words(own, &label), about.code(), in_words(own, about))
+}
+
+/// A note for people.
+pub(crate) fn print_note(note: &CallNote) {
+    eprintln!("{}", with_code(Label::Note, note));
+}
+
+/// A warning for people.
+pub(crate) fn print_warning(warning: &Warning) {
+    eprintln!("{}", warning_text(warning, translation()));
 }
 
 /// Prints data on stdout; a reader that has gone is no error.

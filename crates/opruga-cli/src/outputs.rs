@@ -2,13 +2,12 @@
 
 use crate::checkpoints::Keeper;
 use crate::errors::CallNote;
-use crate::failure::{Failure, with_code};
+use crate::failure::{Failure, print_note, print_warning};
 use crate::recorder::{Recorder, film_rate};
 use crate::source::Source;
 use opruga::blueprint::Recorded;
 use opruga::draw;
 use opruga::io::output_folder::OutputFolder;
-use opruga::io::problem::Label;
 use opruga::io::tables::{
     CellSummary, EnergySummary, FinalBody, MomentumSummary, SolverSummary, Summary, WarningSummary, write_final,
     write_final_with,
@@ -318,14 +317,4 @@ pub(crate) fn cells(world: &dyn AnyWorld) -> Vec<CellSummary> {
         });
     }
     found
-}
-
-/// A note for people.
-pub(crate) fn print_note(note: &CallNote) {
-    eprintln!("{}", with_code(Label::Note, note));
-}
-
-/// A warning for people.
-pub(crate) fn print_warning(warning: &Warning) {
-    eprintln!("{}", opruga::io::problem::warning_text(warning, crate::language::translation()));
 }

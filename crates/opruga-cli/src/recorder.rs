@@ -2,7 +2,7 @@
 
 use crate::errors::{CallFault, CallNote, CallWarning};
 use crate::failure::Failure;
-use crate::outputs::{print_note, print_warning};
+use crate::failure::{print_note, print_warning};
 use opruga::blueprint::Recorded;
 use opruga::core::spec::Role;
 use opruga::io::tables::NumberTable;

@@ -3,9 +3,10 @@
 use crate::arguments::Replay;
 use crate::errors::{CallFault, CallRange, CallWarning, ResumeHint};
 use crate::exports::{self, Tracks};
+use crate::failure::print_warning;
 use crate::failure::{Failure, print_data};
 use crate::interrupt;
-use crate::outputs::{Outputs, print_warning};
+use crate::outputs::Outputs;
 use crate::recorder::Recorder;
 use crate::recordings;
 use crate::run::{default_folder, simd_from_environment};

@@ -3,11 +3,11 @@
 use crate::arguments::Run;
 use crate::checkpoints::{self, Calling, Keeper, SavedRun};
 use crate::errors::{CallFault, CallNote, CallRange, CallWarning, CheckFault, Crossing};
-use crate::failure::{Failure, print_data};
+use crate::failure::{Failure, print_data, print_note, print_warning};
 use crate::forecast::{Forecast, duration};
 use crate::interrupt;
 use crate::language::translation;
-use crate::outputs::{self, Outputs};
+use crate::outputs::Outputs;
 use crate::recorder::Recorder;
 use crate::recordings;
 use crate::source::{Source, Whole, overrides};
@@ -77,7 +77,7 @@ pub(crate) fn run(call: &Run, registries: &Registries) -> Result<u8, Failure> {
     let above = (world.threads > cores).then_some(CallWarning::AboveCores { threads: world.threads, cores });
     let of_call: Vec<Warning> = other_simd().into_iter().chain(above).map(|about| Warning::new(about, 1)).collect();
     if !call.json {
-        of_call.iter().for_each(outputs::print_warning);
+        of_call.iter().for_each(print_warning);
     }
     let reported = notices.into_iter().map(Warning::from).chain(of_call).collect();
     let job = Job { call, source: &source, reading, files, world, reported, resumed };
@@ -206,9 +206,9 @@ impl Job<'_> {
         // What is odd from the start is told before the run, the rest behind it.
         let early = world.warnings();
         if !call.json {
-            early.iter().for_each(outputs::print_warning);
-            whole_frames(frames, frame, seconds).iter().for_each(outputs::print_note);
-            recorder.thinned().iter().for_each(outputs::print_warning);
+            early.iter().for_each(print_warning);
+            whole_frames(frames, frame, seconds).iter().for_each(print_note);
+            recorder.thinned().iter().for_each(print_warning);
         }
         let first = world.frames();
         let mut progress = Progress::new(frames, first, call.json);
@@ -234,7 +234,7 @@ impl Job<'_> {
             failure = failure.or(untaped);
             looking += recorder.record(&mut *world);
             if let Some(failed) = keeper.write_if_due(&*world, &recorder.table) {
-                progress.bar.suspend(|| outputs::print_warning(&failed));
+                progress.bar.suspend(|| print_warning(&failed));
             }
             progress.after_frame(&*world, frame);
         }
@@ -303,7 +303,7 @@ impl Progress {
             return;
         }
         if let Some(forecast) = self.forecast.of(world, done, left, wall) {
-            self.bar.suspend(|| outputs::print_note(&forecast));
+            self.bar.suspend(|| print_note(&forecast));
             self.last_line = wall;
         }
         if self.bar.is_hidden() && wall - self.last_line >= TALK_EVERY {
