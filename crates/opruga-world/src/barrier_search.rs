@@ -238,6 +238,7 @@ impl<const D: usize> Search<'_, '_, D> {
             rounds += u32::from(found);
             let (most, accepts) = self.most_iterations();
             if !found && self.iterations >= most {
+                self.rubbing = before;
                 return self.accept_or_refuse(accepts).map(|_| ());
             }
         }
