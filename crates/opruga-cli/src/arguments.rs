@@ -38,7 +38,7 @@ pub(crate) enum Command {
         /// A scene file, or the name of a scene that comes with the program [default: ball]
         scene: Option<String>,
     },
-    /// Look at a recorded run in the window: any moment at once, and on from there by hand
+    /// Show a recorded run in the window: jump to any moment and continue from there
     View {
         /// The recording, as `opruga run --record` writes it
         recording: std::path::PathBuf,
@@ -98,7 +98,7 @@ pub(crate) struct Mesh {
     /// About the length of edges of the cells [m]: surfaces and drawings need it
     ///
     /// In space it is the side of the cubes of a lattice whose points move to the surface; edges are 0.9 of it on average.
-    /// What is thinner than that may be lost, which is told.
+    /// Thinner parts may be lost; a message reports this.
     #[arg(long, value_name = "H", allow_negative_numbers = true)]
     pub(crate) size: Option<f64>,
     /// The longest side of the whole body [m], instead of the units of the file; drawings need it
@@ -110,7 +110,7 @@ pub(crate) struct Mesh {
     /// 2: a node in the middle of every edge too
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=2))]
     pub(crate) order: u32,
-    /// Turn inverted cells round, leave out nodes without cells, join vertices at the same place; all counted
+    /// Repair the mesh: flip inverted cells, drop nodes that no cell uses, merge vertices at the same position; report the number of each
     #[arg(long)]
     pub(crate) mend: bool,
     /// Where the picture goes [default: beside the mesh]
@@ -171,8 +171,8 @@ pub(crate) struct Sweep {
     pub(crate) each: bool,
     /// Visit so many random points instead of a grid; ranges then have no COUNT
     ///
-    /// They are a Latin hypercube: if the range of a parameter is cut into as many parts as there are points, each part
-    /// holds one.
+    /// The points form a Latin hypercube sample: if the range of a parameter is divided into as many equal parts as there are points,
+    /// each part contains exactly one point.
     #[arg(long, value_name = "COUNT", conflicts_with = "resume")]
     pub(crate) sample: Option<usize>,
     /// Random points that know nothing of each other, instead of a Latin hypercube
@@ -192,7 +192,7 @@ pub(crate) struct Sweep {
     pub(crate) seconds: Option<f64>,
     /// The folder for the output [default: out/SCENE-sweep]
     ///
-    /// A sweep that was stopped goes on where the same question is asked of the same folder.
+    /// If you repeat the same call for the same folder, an interrupted sweep continues.
     #[arg(long, value_name = "FOLDER", conflicts_with = "resume")]
     pub(crate) out: Option<PathBuf>,
     /// Go on with the sweep of this folder, whose question it holds
@@ -227,7 +227,7 @@ pub(crate) struct Pictures {
     /// 1/60 s there are 60, 30, 20, 15, 12, … pictures a second, and the nearest rate counts.
     #[arg(long, allow_negative_numbers = true)]
     pub(crate) fps: Option<f64>,
-    /// No strip, video and plots
+    /// Write no strip, video or plots
     #[arg(long)]
     no_pictures: bool,
     /// Write the animation as video.gif instead of video.mp4
@@ -286,13 +286,13 @@ pub(crate) struct Run {
     pub(crate) threads: u16,
     /// Write Cauchy's stress, the von Mises stress and J of every node to final.csv too
     ///
-    /// A node has of the cells of finite elements around it the mean by their volume at rest: columns sxx, syy, szz, sxy, in 3D syz
-    /// and szx, von_mises (of that mean), volume_ratio. Nodes of bodies without finite elements have NaN.
+    /// The value at a node is the mean over the finite elements around it, weighted by their volume at rest. Columns: sxx, syy, szz, sxy,
+    /// in 3D syz and szx, von_mises (of that mean), volume_ratio. Nodes of bodies without finite elements have NaN.
     #[arg(long)]
     pub(crate) stress: bool,
     /// Override a parameter, such as time.substeps=64; may be given several times
     ///
-    /// The path is the way through the scene file: integrator.kind=heun, body.ball.models.pressure.nRT=50,
+    /// PATH is the position of the field in the scene file, with dots between the parts: integrator.kind=heun, body.ball.models.pressure.nRT=50,
     /// body.0.mass=2, world.gravity=[0,0]. Entries of lists go by number, name or kind.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub(crate) set: Vec<String>,
@@ -319,14 +319,14 @@ pub(crate) struct Run {
     pub(crate) record: Option<PathBuf>,
     /// Keep one state in so many frames of the recording; 1: all
     ///
-    /// Those between are computed again when they are asked for, and compared by their hashes. Without this option so many that recording takes less
-    /// than a tenth of the run, at most 32.
+    /// States between them are computed again on request, and compared by their hashes. By default, the interval is chosen so that recording
+    /// takes less than a tenth of the run; it is at most 32 frames.
     #[arg(long, value_name = "FRAMES", requires = "record", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) record_every: Option<u32>,
     /// Write one row of diagnostics.csv for so many frames; 1: all
     ///
-    /// The first frame and the last one always have a row. Without this option every frame has one, as long as the table has 67 MB
-    /// at most; of more frames so many are left out, with a warning that counts them.
+    /// The first and the last frame always have a row. By default, every frame has a row if the table then stays below 67 MB. If it would be
+    /// larger, rows are left out, and a warning counts them.
     #[arg(long, value_name = "FRAMES", value_parser = clap::value_parser!(u32).range(1..=1_000_000_000))]
     pub(crate) diagnostics_every: Option<u32>,
     /// Check after every frame that no surfaces cross; a run in which some do ends with exit code 1

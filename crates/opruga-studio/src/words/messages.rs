@@ -130,18 +130,18 @@ impl Language {
             }
             Report::RecordingEnds(time) => either!(
                 self,
-                "The recording ends here, at t = {time:.2} s. What comes later is computed: a new course",
+                "The recording ends here, at t = {time:.2} s. What follows is computed: a new run",
                 "Snimka ovdje završava, u t = {time:.2} s. Što slijedi tek se računa: to je novi tijek"
             ),
             Report::OwnCourse(time) => either!(
                 self,
-                "From t = {time:.2} s on this is a new course; the file of the recording stays as it is",
+                "From t = {time:.2} s on, this is a new run; the recorded file does not change",
                 "Od t = {time:.2} s ovo je novi tijek; datoteka snimke ostaje kakva jest"
             ),
             Report::TakesLong(seconds) => either!(
                 self,
-                "A frame takes longer than {seconds} s, and nothing can be asked for meanwhile: time stands at the last good frame. \
-                 Fewer substeps or vertices take less; the program with a window and `opruga run` are not bound by this",
+                "A frame takes longer than {seconds} s, and the page cannot respond in the meantime. Time has stopped at the last good frame. \
+                 Fewer substeps or vertices make a frame faster. The desktop studio and `opruga run` do not have this limit",
                 "Sličica traje dulje od {seconds} s, a dotle se ništa ne može tražiti: vrijeme stoji na zadnjoj dobroj sličici. \
                  Manje podkoraka ili vrhova traje kraće; program s prozorom i `opruga run` nisu time vezani"
             ),
@@ -161,11 +161,11 @@ impl Language {
             ),
             Report::NoDifference(about) => either!(
                 self,
-                "`{about}` stands nowhere in the scene itself; the two sides can differ in bodies that are there from the start \
-                 and are no copies",
+                "The scene itself does not contain `{about}`. The two sides can differ only in bodies that exist from the start and are not \
+                 copies",
                 "`{about}` ne stoji u samom prizoru; strane se mogu razlikovati u tijelima koja su ondje od početka i nisu kopije"
             ),
-            Report::NoText(file) => either!(self, "{file} is no text in UTF-8", "{file} nije tekst u UTF-8"),
+            Report::NoText(file) => either!(self, "{file} is not text in UTF-8", "{file} nije tekst u UTF-8"),
             Report::NoShapeFile(file, known) => either!(
                 self,
                 "{file} is neither a scene nor a shape; allowed: {known}",
@@ -222,7 +222,7 @@ impl Language {
             Report::AddressStays => {
                 either!(
                     self,
-                    "the browser does not let its address be changed",
+                    "the browser does not allow the address of the page to be changed",
                     "preglednik ne da mijenjati svoju adresu"
                 )
             }
