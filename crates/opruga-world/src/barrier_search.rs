@@ -41,8 +41,8 @@ const SETTLED: f64 = 1e-3;
 /// in motion, and the ledger of a tower closes to 2 % (`a_barrier_with_a_budget_leaves_bodies_where_exact_steps_do`).
 const ENOUGH: f64 = 0.05;
 
-/// The part of that which the linear solver may leave, and the part of its right-hand side that it leaves at most: so a step takes few more iterations than
-/// with exact solutions. Both trade products for iterations; the end of a search does not depend on them.
+/// The part of that which the linear solver may leave, and the part of its right-hand side that it leaves at most. They trade products for iterations;
+/// the residual with which a search ends does not depend on them.
 const LINEAR_SHARE: f64 = 0.5;
 const MOST_LEFT: f64 = 0.1;
 
