@@ -70,6 +70,7 @@ mod collider;
 mod contacts;
 mod coupled;
 mod creases;
+mod distances;
 mod elimination;
 mod entries;
 mod facet_contacts;

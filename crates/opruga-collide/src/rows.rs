@@ -1,6 +1,7 @@
 //! From candidates to contacts: the gaps that count.
 
 use crate::ccd::{edge_meets_edge, vertex_meets_facet};
+use crate::distances::Distances;
 use crate::gap::Gap;
 use crate::law::PairLaw;
 use crate::row::Row;
@@ -20,6 +21,7 @@ impl<const D: usize> Touching<D> {
         self.heads.clear();
         self.spread.clear();
         self.close.iter_mut().for_each(Vec::clear);
+        self.apart.iter_mut().for_each(Vec::clear);
         let pairs = self.candidates.vertex_facet.len();
         let mut k = 0;
         while k < pairs {
@@ -36,7 +38,35 @@ impl<const D: usize> Touching<D> {
                 self.take_gap_of_edges(k, h);
             }
         }
+        self.measure_apart();
         self.put_passing(h);
+    }
+
+    /// Takes the distances of candidates whose boxes do not meet: how far boxes are apart says little of features that lie across the axes, and would be
+    /// asked for again in every step.
+    fn measure_apart(&mut self) {
+        let Touching {
+            surface,
+            before: [x, _],
+            candidates,
+            clearance,
+            apart,
+            apart_features: pairs,
+            distances,
+            simd,
+            ..
+        } = self;
+        for (list, apart) in apart.iter().enumerate() {
+            let all = [&candidates.vertex_facet, &candidates.edge_edge][list];
+            pairs.clear();
+            pairs.extend(apart.iter().map(|k| all[*k as usize]));
+            simd.run(Distances { surface, x, pairs, with_facet: list == 0, distances });
+            for (k, distance) in apart.iter().zip(distances.iter()) {
+                let [own, other] = clearance.bodies(list, *k as usize);
+                let holds_on_both_sides = own == other || list == 0 && !surface.closed[all[*k as usize][1] as usize];
+                clearance.raise(list, *k as usize, if holds_on_both_sides { distance.abs() } else { *distance });
+            }
+        }
     }
 
     /// Takes the gaps of all candidates of one vertex.
@@ -73,6 +103,7 @@ impl<const D: usize> Touching<D> {
         let law = *self.laws.of(bodies[0], bodies[1]);
         let apart = self.reach.apart(&edges[0], &edges[1]);
         if apart > law.thickness {
+            self.apart[1].push(candidate as u32);
             return self.clearance.note(1, candidate, apart);
         }
         if self.are_entangled(bodies) {
@@ -138,6 +169,7 @@ impl<const D: usize> Touching<D> {
             let law = *self.laws.of(own, other);
             let apart = self.reach.apart(&[vertex], corners);
             if apart > law.thickness + distance {
+                self.apart[0].push(k as u32);
                 self.clearance.note(0, k, apart);
                 continue;
             }

@@ -14,7 +14,7 @@ use crate::surface::Surface;
 use crate::vector::{dot, length, subtract};
 use crate::zones::Zones;
 use opruga_core::contacts::Touch;
-use opruga_math::Lane;
+use opruga_math::{Lane, Simd};
 
 /// The surfaces of bodies that may touch, and what is known of their contacts.
 ///
@@ -60,6 +60,8 @@ pub struct Touching<const D: usize> {
     pub report: bool,
     /// What contact did since the beginning of the frame, ascending by bodies.
     pub reports: Vec<Report<D>>,
+    /// The vector instructions to use; the bits of the results do not depend on them.
+    pub simd: Simd,
     /// The margin of the search [m].
     pub margin: f64,
     /// The most candidates.
@@ -67,6 +69,11 @@ pub struct Touching<const D: usize> {
     pub(crate) candidates: Candidates<D>,
     pub(crate) reach: Reach<D>,
     pub(crate) clearance: Clearance<D>,
+    /// Candidates of a vertex and a facet, and of two edges, whose boxes do not meet in the step although their bound allows it; their features, and
+    /// their distances [m].
+    pub(crate) apart: [Vec<u32>; 2],
+    pub(crate) apart_features: Vec<[u32; 2]>,
+    pub(crate) distances: Vec<f64>,
     /// The laws for which candidates were looked for.
     found_for: Laws,
     /// The contacts that are solved for: once solved, in the order of that.

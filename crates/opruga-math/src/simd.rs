@@ -21,6 +21,13 @@ pub enum Simd {
     Avx512,
 }
 
+impl Default for Simd {
+    /// The best set that this processor has.
+    fn default() -> Simd {
+        Simd::best()
+    }
+}
+
 impl Simd {
     /// The name that `OPRUGA_SIMD` and the summaries use.
     pub fn name(self) -> &'static str {
