@@ -1,4 +1,4 @@
-//! Models of Opruga: one folder per model, each an energy and its derivatives.
+//! Models of Opruga: one folder per model, each with an energy and its derivatives.
 
 pub mod as_published;
 pub mod bending;
@@ -47,7 +47,7 @@ pub fn all<const D: usize>() -> Vec<Box<dyn Model<D>>> {
     every.downcast().map_or_else(|_| Vec::new(), |models| *models)
 }
 
-// Not generic: the models are compiled once, with this crate, and not again with every crate that asks for them.
+// Not generic, so that the models are compiled once, with this crate, and not again with every crate that uses them.
 fn of_the_plane() -> Vec<Box<dyn Model<2>>> {
     let mut models = list();
     models.push(Box::new(fem::FemModel));
@@ -61,7 +61,7 @@ fn of_space() -> Vec<Box<dyn Model<3>>> {
     models
 }
 
-// Those that are one source for both dimensions.
+// Models with one source for both dimensions.
 fn list<const D: usize>() -> Vec<Box<dyn Model<D>>> {
     vec![
         Box::new(mass_spring::MassSpring),

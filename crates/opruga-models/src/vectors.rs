@@ -1,21 +1,21 @@
-//! Vectors of space over lanes.
+//! Vectors in space over lanes.
 
 use opruga_math::Lane;
 
-/// The number's inverse; zero for what is smaller than the smallest normal number.
+/// The inverse of the number; zero for numbers below the smallest normal number.
 #[inline(always)]
 pub(crate) fn inverse<S: Lane>(a: S) -> S {
     let real = S::splat(f64::MIN_POSITIVE).less_or_equal(a);
     S::select(real, S::one() / S::select(real, a, S::one()), S::zero())
 }
 
-/// A vector of space; in the plane its third coordinate is zero.
+/// A vector as one in space; in the plane its third coordinate is zero.
 #[inline(always)]
 pub(crate) fn in_space<S: Lane, const D: usize>(a: &[S; D]) -> [S; 3] {
     [a[0], a[1], if D == 3 { a[D - 1] } else { S::zero() }]
 }
 
-/// The vector without what exceeds the dimension.
+/// The components of the vector within the dimension.
 #[inline(always)]
 pub(crate) fn in_dimension<S: Lane, const D: usize>(a: &[S; 3]) -> [S; D] {
     opruga_math::lanes!(S, d => a[d])

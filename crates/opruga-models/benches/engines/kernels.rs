@@ -6,18 +6,18 @@ use opruga_math::matrix;
 use opruga_models::materials::material::{Material, Parameters};
 use std::marker::PhantomData;
 
-/// Of every spring [N/m].
+/// The stiffness of every spring [N/m].
 pub(crate) const STIFFNESS: f64 = 1e3;
 /// Young's modulus [Pa].
 pub(crate) const MODULUS: f64 = 1e5;
-/// Poisson's ratio that `fem` has where none is given.
+/// The default Poisson's ratio of `fem`.
 const RATIO: f64 = 0.3;
 
 /// A spring; parameters: length at rest, stiffness, damping.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Spring;
 
-/// d, |d| and 1/|d| from the second node to the first.
+/// d, |d| and 1/|d|, with d from the second node to the first.
 #[inline(always)]
 fn apart<S: Lane, const D: usize>(x: &[[S; D]; 2]) -> ([S; D], S, S) {
     let mut d = x[0];

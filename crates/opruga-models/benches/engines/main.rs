@@ -1,13 +1,13 @@
-//! What one engine for all stencils costs: `cargo bench -p opruga-models --bench engines`.
+//! Measures the cost of one engine for all stencils: `cargo bench -p opruga-models --bench engines`.
 //!
-//! Springs and linear tetrahedra, evaluated by turns on one thread
+//! Springs and linear tetrahedra are evaluated in turns on one thread
 //!
 //! * by the models as they are: runs and lists of partners (`mass_spring`), sections of elements (`fem`),
-//! * by `Stencils`, tile by tile, with slots that are added up at the nodes,
-//! * by `Scattered`, each once, as sections are, but with any kernel.
+//! * by `Stencils`, tile by tile, with slots that are summed at the nodes,
+//! * by `Scattered`, each once, as in sections, but with any kernel.
 //!
-//! Each row says the least time of all stretches of a millisecond in all turns [ns per spring or tetrahedron of a body], and how
-//! many times that of the model it is. `cargo bench … -- TEXT` measures the bodies whose titles contain the text.
+//! Each row shows the shortest time of all intervals of a millisecond in all turns [ns per spring or tetrahedron of a body], and
+//! its ratio to the time of the model. `cargo bench … -- TEXT` measures the bodies whose titles contain the text.
 #![allow(missing_docs)]
 
 mod kernels;
@@ -30,7 +30,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 const TURNS: usize = 12;
-/// Of larger bodies no matrices are measured: the clamped ones of `Stencils` take microseconds a tetrahedron.
+/// Matrices are not measured for larger bodies: the clamped ones of `Stencils` take microseconds per tetrahedron.
 const MOST_IN_MATRICES: usize = 40_000;
 
 type Rivals<const D: usize> = Vec<(&'static str, Box<dyn Potential<D>>)>;
@@ -62,7 +62,7 @@ fn main() {
     tetrahedra("eight bodies of 4 x 4 x 4 cubes", &small, Layout::Batch);
 }
 
-/// Nodes of a mesh of tetrahedra in another order within every 64: no two neighbours follow each other but by chance.
+/// Permutes the nodes of a mesh of tetrahedra within every 64, so that neighbours are consecutive only by chance.
 fn shuffled(mesh: &Mesh<3>) -> Mesh<3> {
     let mut new: Vec<u32> = (0..mesh.positions.len() as u32).collect();
     let mut state = 1u64;
@@ -145,7 +145,7 @@ fn build<const D: usize>(
     model.build(&ingredients).unwrap()
 }
 
-/// A potential with all that its evaluation writes.
+/// A potential, with everything that its evaluation writes.
 struct Run<'a, const D: usize> {
     potential: &'a dyn Potential<D>,
     view: View<'a, D>,
@@ -252,7 +252,7 @@ fn compare<const D: usize>(title: &str, mesh: &Mesh<D>, layout: Layout, elements
     println!("  {colours} colours of nodes from the description, {:.1} ms", start.elapsed().as_secs_f64() * 1e3);
 }
 
-/// All give the same forces and energies up to rounding, and name the same stencils.
+/// Checks that all give the same forces and energies up to rounding, and visit the same stencils.
 fn check_same<const D: usize>(runs: &mut [Run<D>]) {
     let mut first: Option<(Vec<f64>, f64, Vec<Vec<u32>>)> = None;
     for run in runs {
@@ -274,7 +274,7 @@ fn check_same<const D: usize>(runs: &mut [Run<D>]) {
     }
 }
 
-/// How often each stencil is evaluated where every tile evaluates those that touch it.
+/// How often each stencil is evaluated if every tile evaluates the stencils that touch it.
 fn by_tiles<const D: usize>(potential: &dyn Potential<D>, layout: Layout, elements: usize) -> f64 {
     let mut count = 0;
     potential.stencils(&mut |nodes| {
@@ -286,12 +286,12 @@ fn by_tiles<const D: usize>(potential: &dyn Potential<D>, layout: Layout, elemen
     count as f64 / elements as f64
 }
 
-/// Times of so many rivals in so many turns.
+/// The times of `rivals` implementations in several turns.
 fn turns(rivals: usize, mut time: impl FnMut(usize) -> f64) -> Vec<Vec<f64>> {
     (0..TURNS).map(|_| (0..rivals).map(&mut time).collect()).collect()
 }
 
-/// The least time of a piece of work in five stretches of at least a millisecond [s].
+/// The shortest time of a piece of work in five intervals of at least a millisecond [s].
 fn least(mut work: impl FnMut()) -> f64 {
     let (mut together, mut done, mut best) = (1, 0, f64::INFINITY);
     while done < 5 {
@@ -320,7 +320,7 @@ fn print_row<const D: usize>(what: &str, rivals: &Rivals<D>, times: &[Vec<f64>])
     println!("{text}");
 }
 
-/// The blocks of nodes with themselves, from what a model delivers for a whole matrix.
+/// The diagonal blocks of nodes, from what a model delivers for a whole matrix.
 struct NodeBlocks<const D: usize>(Vec<[[f64; D]; D]>);
 impl<const D: usize> NodeBlocks<D> {
     fn add(&mut self, node: usize, value: &[[f64; D]; D]) {
@@ -347,7 +347,7 @@ impl<const D: usize> Sink<D> for NodeBlocks<D> {
     }
 }
 
-/// Colours of nodes, none of which a stencil has twice: each node takes the first one that is left.
+/// The number of colours of nodes, such that no stencil has a colour twice: each node takes the first free colour.
 fn colours<const D: usize>(potential: &dyn Potential<D>, nodes: usize) -> usize {
     let mut stencils = Vec::new();
     potential.stencils(&mut |of| stencils.push(of.to_vec()));

@@ -1,4 +1,5 @@
-//! Any stencil evaluated once, as sections of finite elements are: positions copied to rows, forces added to rows of nodes.
+//! Any stencil, evaluated once, as in sections of finite elements: positions are copied to rows, forces are added to rows of
+//! nodes.
 
 use opruga_core::error::StepError;
 use opruga_core::potential::{Observe, Potential, Properties, Views};
@@ -8,10 +9,10 @@ use opruga_core::tile::Tile;
 use opruga_math::{Column, Lane, Pack, ROW, Register, Simd, WIDTH, Work, fetch_early, sum_in_fixed_order};
 use std::marker::PhantomData;
 
-/// Partial sums of the energies of eight bodies.
+/// The length of the partial sums of the energies of eight bodies.
 const ENERGY: usize = WIDTH * WIDTH;
 
-/// Packs between a pack and the one whose numbers are fetched.
+/// The distance, in packs, of the pack whose data are prefetched.
 const AHEAD: usize = 4;
 
 /// All stencils of one kind. The first `FIXED` parameters belong to the rest shape, which eight bodies share.
@@ -21,9 +22,9 @@ pub(crate) struct Scattered<L, const N: usize, const K: usize, const FIXED: usiz
     layout: Layout,
     nodes: usize,
     elements: Vec<[u32; N]>,
-    /// The nodes of every pack: `[node][lane]` of one body, `[node]` of eight.
+    /// The nodes of every pack: `[node][lane]` for one body, `[node]` for eight.
     list: Vec<u32>,
-    /// The first parameters of every pack: `[parameter][lane]` of one body, `[parameter]` of eight.
+    /// The first parameters of every pack: `[parameter][lane]` for one body, `[parameter]` for eight.
     fixed: Column,
     others: Vec<Parameter>,
 }

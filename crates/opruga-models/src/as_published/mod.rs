@@ -1,8 +1,8 @@
 //! # The published ball
 //!
-//! The step of the program in D. Križaić, *Postupci izrade elastično deformabilnih objekata* (bachelor's thesis 2460,
-//! University of Zagreb, 2012), to rounding: what was printed, beside what was meant. Every edge of the outline is a
-//! spring that joins i and j, with d = x_i − x_j and r = |d|:
+//! The step of the program in D. Križaić, *Postupci izrade elastično deformabilnih objekata* (bachelor's thesis 2460, University
+//! of Zagreb, 2012), reproduced to rounding: what was printed, beside what was meant. Every edge of the outline is a spring
+//! between i and j, with d = x_i − x_j and r = |d|:
 //!
 //! - F_i −= (d/r) f, F_j += (d/r) f with f = (r − l) KS + ((v_i − v_j)·d) KD / r, if r ≠ 0;
 //! - n = (d_y/r, −d_x/r), "volume" V = Σ ½ |d_x| |n_x| r;
@@ -11,26 +11,25 @@
 //! - the mouse: with d = x − pointer and r = |d|, F −= (d/r)(r + (v·d)/r) on the vertex nearest to it;
 //! - v_x += F_x/MASS · DT, v_y += F_y · DT, x += v · DT.
 //!
-//! It is an ordinary model: forces are worked out in `prepare`, the ramp and the vertex that the mouse holds are its
-//! memory, F_y is handed over times the mass of its node, so that the integrator's division gives the published
-//! v_y (E9). The published floor (y = 500, v_y = −½ v_y on crossing) is the engine's collider with restitution ½ and no
-//! friction. Edges run with the interior to their left (y downwards: the outline runs the way of the thesis), i is
-//! their second node.
+//! It is an ordinary model. `prepare` computes the forces; the ramp and the vertex that the mouse holds are its memory. F_y is
+//! multiplied by the mass of its node, so that the integrator's division gives the published v_y (E9). The published floor (y =
+//! 500, v_y = −½ v_y on crossing) is the engine's collider with restitution ½ and no friction. Edges run with the interior to
+//! their left (with y downwards, this is the direction of the thesis); i is their second node.
 //!
 //! ## Where it is not the physics
 //!
 //! | | as published | the physics (`mass_spring`, `pressure`) |
 //! |---|---|---|
-//! | E1 | Σ ½ \|Δx\| \|n_x\| r = Σ ½ \|Δx Δy\| is no area: 2πR²/N for a ring of N, so pressure depends on the number of vertices and on how the body is turned | divergence theorem: A = ½ Σ (x_i y_j − x_j y_i) |
-//! | E2 | both ends of an edge get its whole pressure force: twice the pressure | half to each end: P ∂V/∂x |
+//! | E1 | Σ ½ \|Δx\| \|n_x\| r = Σ ½ \|Δx Δy\| is no area: 2πR²/N for a ring of N, so pressure depends on the number of vertices and on the orientation of the body | divergence theorem: A = ½ Σ (x_i y_j − x_j y_i) |
+//! | E2 | both ends of an edge get its whole pressure force, which doubles the pressure | half to each end: P ∂V/∂x |
 //! | E3 | a factor of 1000 takes the place of nRT | `nRT` or `pressure`, with units |
-//! | E4 | no pressure outside: at rest the body is always blown up | `ambient`; equal to the inner pressure, the rest shape is in equilibrium |
-//! | E5 | no gravity while the pressure is ramped up | gravity always acts; `ramp` is a matter of the gas |
-//! | E6 | the normal divides by r also where r = 0: an edge that collapses makes no number (kept here) | finite in every state |
+//! | E4 | no outside pressure, so the body is always inflated at rest | `ambient`; equal to the inner pressure, the rest shape is in equilibrium |
+//! | E5 | no gravity while the pressure is ramped up | gravity always acts; `ramp` affects only the gas |
+//! | E6 | the normal divides by r even if r = 0: a collapsed edge gives NaN (kept here) | finite in every state |
 //! | E7 | the mouse's spring has stiffness and damping 1, whatever the scene, and divides by r = 0 on the vertex (kept) | the command `drag`: critically damped, stiffness in units of the scene |
-//! | E8 | springs are counted by the number of points, which is right on a ring only | loops over edges |
+//! | E8 | springs are counted by the number of points, which is right only on a ring | loops over edges |
 //! | E9 | v_y is not divided by MASS: for MASS ≠ 1 the axes differ in inertia | one mass for both |
-//! | E10 | the text has the ramp restore pressure and spare vertices from gravity; the code ramps once, for all | P follows from nRT/V at every instant |
+//! | E10 | in the text the ramp restores pressure and exempts vertices from gravity; the code ramps once, for all vertices | P follows from nRT/V at every instant |
 //! | E11 | n is called the number of particles, with R | n is an amount in moles |
 
 mod refusals;
@@ -51,7 +50,7 @@ use opruga_math::{Simd, WIDTH};
 #[derive(Debug)]
 pub struct AsPublishedModel;
 
-/// The published forces on one body, or on eight alike ones.
+/// The published forces on one body, or on eight identical ones.
 #[derive(Debug)]
 pub struct AsPublished {
     layout: Layout,
@@ -75,10 +74,10 @@ struct Constants {
     presses: Vec<[f64; 2]>,
 }
 
-/// Memory of each body: Pressure, the number of the press whose vertex is held (from 1; 0 for none), the vertex.
+/// Memory of each body: Pressure, the number of the press whose vertex is held (from 1; 0 if none is), the vertex.
 const MEMORY: usize = 3 * WIDTH;
 
-/// In the scratch, behind the forces: "volume", press and vertex of each body.
+/// In the scratch, after the forces: "volume", press and vertex of each body.
 const NUMBERS: usize = 3 * WIDTH;
 
 impl<const D: usize> Model<D> for AsPublishedModel {
@@ -136,7 +135,7 @@ impl Constants {
             presses,
         }
     }
-    /// The number of the press that holds at a time, from 1; 0 for none.
+    /// Returns the number of the press that is active at a time, from 1; 0 if none is.
     fn press(&self, time: f64) -> usize {
         self.presses.iter().position(|[press, release]| *press <= time && time < *release).map_or(0, |n| n + 1)
     }
@@ -147,7 +146,7 @@ impl AsPublished {
         &self.constants[body.min(self.constants.len() - 1)]
     }
 
-    /// The published forces of a step on one body; returns its "volume".
+    /// Computes the published forces of a step on one body and returns its "volume".
     fn step<const D: usize>(&self, view: &View<D>, body: usize, pressure: f64, forces: &mut [f64]) -> f64 {
         let c = self.constants(body);
         let index_count = forces.len() / 2;
@@ -178,7 +177,7 @@ impl AsPublished {
             volume += 0.5 * dx.abs() * (dy / r).abs() * r;
         }
 
-        // 5. Pressure, the whole of it to both ends.
+        // 5. Pressure: its whole force on both ends.
         for &[i, j] in &self.springs {
             let (i, j) = (at(i), at(j));
             let (dx, dy, r) = difference(view, i, j);
@@ -207,7 +206,7 @@ impl AsPublished {
         };
         let mut vertex = memory[2 * WIDTH + body] as usize;
         if memory[WIDTH + body] as usize != press {
-            // Just pressed: the nearest vertex, the first of several.
+            // A new press takes the nearest vertex; if several are equally near, the first.
             vertex = 0;
             for node in 1..self.nodes {
                 if away(node).2 < away(vertex).2 {

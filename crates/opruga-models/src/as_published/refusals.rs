@@ -1,4 +1,4 @@
-//! Why the published program does not take a body.
+//! Why the published program refuses a body.
 
 use super::SPEC;
 use opruga_core::error::BuildError;
@@ -8,19 +8,19 @@ messages! {
     /// Why `as_published` refuses a body, its parameters or a state.
     #[derive(Clone, Debug, PartialEq)]
     pub enum Refusal {
-        /// A body in space.
+        /// A three-dimensional body.
         "model.dimension" #[error("the published program is plane")] #[allowed("dimension = 2")]
         Dimension {},
-        /// No facets.
+        /// A body without facets.
         "model.open_surface" #[error("the body has no outline")]
         NoOutline {},
-        /// A pointer that is held and goes nowhere.
+        /// A held pointer without a path.
         "model.one_of" #[error("`held` needs `pointer`")] #[parameters("held", "pointer")]
         NoPointer {},
         /// Intervals that end before they begin.
         "model.interval" #[error("each row of `held` is [press, release] with press < release")] #[parameters("held")]
         Interval {},
-        /// A volume by which nothing can be divided.
+        /// A zero volume, by which the pressure would be divided.
         "run.model" #[error("the published \"volume\" Σ ½ |Δx| |Δy| is zero: every edge lies along an axis")] #[hint("turn the body a little")]
         NoPublishedVolume {},
     }

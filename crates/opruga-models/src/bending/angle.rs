@@ -1,4 +1,4 @@
-//! Angles for the hinges, the same bits on every machine.
+//! Angles of the hinges, with the same bits on every machine.
 
 use opruga_math::Lane;
 
@@ -17,11 +17,11 @@ const SERIES: [f64; 11] = [
     1.628_582_011_536_578_2e-2,
 ];
 
-/// The angle of the point (x, y) from the x axis, in −π … π; zero at the origin.
+/// Returns the angle of the point (x, y) from the x axis, in −π … π; zero at the origin.
 #[inline(always)]
 pub(super) fn angle<S: Lane>(y: S, x: S) -> S {
     let (ax, ay) = (x.abs(), y.abs());
-    // The quotient of the lesser and the greater, brought below tan(π/8) by atan t = π/4 + atan((t − 1)/(t + 1)).
+    // The quotient of the smaller and the larger, reduced below tan(π/8) by atan t = π/4 + atan((t − 1)/(t + 1)).
     let steep = ax.less(ay);
     let (low, high) = (S::select(steep, ax, ay), S::select(steep, ay, ax));
     let turned = (S::splat(0.414_213_562_373_095_03) * high).less(low);

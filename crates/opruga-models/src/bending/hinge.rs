@@ -16,12 +16,12 @@ use opruga_math::Lane;
 ///        \ /           ∂θ/∂c = −|e| n₁/|n₁|²,  ∂θ/∂d = −|e| n₂/|n₂|²
 ///         d
 /// ```
-/// ∂θ/∂a and ∂θ/∂b follow, since moving the edge by itself along a normal is moving c or d the other way, in proportion
-/// to how far along the edge they stand.
+/// ∂θ/∂a and ∂θ/∂b follow: moving the edge along a normal is the same as moving c or d the opposite way, in proportion to their
+/// positions along the edge.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hinge;
 
-/// The edge, the normals and what turns θ.
+/// The edge, the normals and the vectors that determine θ.
 struct Folded<S> {
     sine: S,
     cosine: S,
@@ -46,7 +46,7 @@ impl Hinge {
         let present = S::splat(f64::MIN_POSITIVE).less_or_equal(square);
         let length = S::select(present, S::select(present, square, S::one()).sqrt(), S::zero());
         let per_length = inverse(square);
-        // Where c and d stand along the edge: 0 at a, 1 at b.
+        // The positions of c and d along the edge: 0 at a, 1 at b.
         let (alpha, beta) = (dot(&ac, &e) * per_length, dot(&ad, &e) * per_length);
         let of_c = scaled(&n1, -(length * inverse(dot(&n1, &n1))));
         let of_d = scaled(&n2, -(length * inverse(dot(&n2, &n2))));
@@ -57,7 +57,7 @@ impl Hinge {
         }
         Folded { sine: -(length * dot(&n1, &ad)), cosine: dot(&n1, &n2), slope }
     }
-    /// θ − θ₀, the short way round.
+    /// θ − θ₀, reduced to −π … π.
     #[inline(always)]
     fn excess<S: Lane>(folded: &Folded<S>, [_, _, cos, sin]: &[S; 4]) -> S {
         angle(folded.sine * *cos - folded.cosine * *sin, folded.cosine * *cos + folded.sine * *sin)
@@ -91,7 +91,7 @@ impl<const D: usize> Kernel<D, 4, 4> for Hinge {
     #[inline(always)]
     fn damping<S: Lane>(p: &[S; 4], x: &[[S; D]; 4], v: &[[S; D]; 4]) -> ([[S; D]; 4], S) {
         let folded = Hinge::folded(x);
-        // Rates relative to a, so that no digits are lost in a fast flight.
+        // Velocities relative to a, so that no digits are lost in fast flight.
         let va = in_space(&v[0]);
         let mut rate = S::zero();
         for node in 1..4 {

@@ -1,19 +1,19 @@
 //! # Bending
 //!
-//! Outlines, chains and shells that resist a change of their angles, as thin walls do (Grinspun et al. 2003; for
-//! outlines the two-dimensional counterpart). Over all hinges, nodes between two edges or edges between two triangles,
+//! Outlines, chains and shells that resist a change of their angles, as thin walls do (Grinspun et al. 2003; for outlines, the
+//! two-dimensional counterpart). A hinge is a node between two edges or an edge between two triangles. Over all hinges,
 //!
 //! U = Σ ½ k (θ − θ₀)²,  f = −k (θ − θ₀) ∇θ − c θ̇ ∇θ.
 //!
-//! θ comes from atan2 of its sine and cosine, so that it is accurate at every angle; ∇θ is exact and the Hessian is its
-//! exact derivative by dual numbers. How k follows from a modulus and a thickness, and what happens to degenerate
-//! hinges, is said in [`SPEC`].
+//! θ comes from atan2 of its sine and cosine, so that it is accurate at every angle; ∇θ is exact and the Hessian is its exact
+//! derivative by dual numbers. [`SPEC`] describes how k follows from a modulus and a thickness, and what happens to degenerate
+//! hinges.
 //!
-//! Two closed forms hold for the outline with k = EI/ℓ: the ring buckles under the outer pressure 3EI/R³ (Lévy), and a
-//! clamped strip bends by PL³/3EI. A shell has the flexural rigidity E t³/12 when rolled up to a cylinder, on a regular
-//! triangular lattice in every direction, with a Poisson's ratio of −1/3 in bending (Seung and Nelson 1988). Hinges see
-//! angles across edges alone: a shell that may warp deflects more than a plate, by an eighth on the regular lattice and
-//! by a quarter on grids of right triangles.
+//! Two closed forms hold for the outline with k = EI/ℓ: a ring buckles under the outer pressure 3EI/R³ (Lévy), and a clamped
+//! strip bends by PL³/3EI. A shell that is rolled into a cylinder has the flexural rigidity E t³/12. On a regular triangular
+//! lattice this holds in every direction, with a Poisson's ratio of −1/3 in bending (Seung and Nelson 1988). Hinges measure only
+//! the angles across edges, so a shell that may warp deflects more than a plate: by an eighth on the regular lattice and by a
+//! quarter on grids of right triangles.
 //!
 //! Limits: chains in space resist bending but no twist, and their damping does not act on a change of the plane in
 //! which they bend; a chain in space with a rest angle has no force where it is exactly straight.
@@ -43,12 +43,12 @@ use turn::Turn;
 #[derive(Debug)]
 pub struct BendingModel;
 
-/// Hinges of one body, or of eight alike ones.
+/// The hinges of one body, or of eight identical ones.
 #[derive(Debug)]
 pub struct Bending {
-    /// Of outlines and chains.
+    /// The hinges of outlines and chains.
     turns: Stencils<Turn, 3, 4>,
-    /// Of surfaces.
+    /// The hinges of surfaces.
     hinges: Stencils<Hinge, 4, 4>,
     damped: bool,
 }
@@ -85,7 +85,7 @@ impl<const D: usize> Model<D> for BendingModel {
             let mut sine = if D == 2 { normal[2] } else { dot(&normal, &normal).sqrt() };
             let cosine = dot(&u, &w);
             if D == 3 && cosine > 0.0 && sine < 1e-9 * cosine {
-                // Straight but for rounding: then every direction of bending is alike.
+                // Straight except for rounding, so all directions of bending are equivalent.
                 sine = 0.0;
             }
             let length = 0.5 * (dot(&u, &u).sqrt() + dot(&w, &w).sqrt());
@@ -120,7 +120,7 @@ impl<const D: usize> Model<D> for BendingModel {
     }
 }
 
-/// A hinge at rest.
+/// The rest shape of a hinge.
 #[derive(Clone, Copy, Debug)]
 struct Shape {
     sine: f64,
@@ -130,7 +130,7 @@ struct Shape {
 }
 
 impl Shape {
-    /// From sine and cosine times a common factor.
+    /// Makes a shape from sine and cosine, both multiplied by a common factor.
     fn new(sine: f64, cosine: f64, factor: f64) -> Shape {
         let length = (sine * sine + cosine * cosine).sqrt();
         Shape { sine: sine / length, cosine: cosine / length, factor }

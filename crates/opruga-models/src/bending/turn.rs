@@ -11,12 +11,12 @@ use opruga_math::Lane;
 ///             w   2        θ from u to w: signed in the plane (left is positive), 0 … π in space
 ///   0 ──u──▶ 1 ──▶
 /// ```
-/// With n = u × w, s = |n| (n itself in the plane) and d = u·w the angle is atan2(s, d), and
-/// ∂θ/∂w = n̂ × w/|w|², ∂θ/∂u = −n̂ × u/|u|².
+/// With n = u × w, s = |n| (n itself in the plane) and d = u·w, the angle is atan2(s, d), and ∂θ/∂w = n̂ × w/|w|², ∂θ/∂u = −n̂ ×
+/// u/|u|².
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Turn;
 
-/// The angle and its surroundings.
+/// The angle and the vectors that determine it.
 struct Bent<S> {
     u: [S; 3],
     w: [S; 3],
@@ -35,19 +35,19 @@ impl Turn {
         let sine = if D == 2 { normal[2] } else { dot(&normal, &normal).sqrt() };
         Bent { u, w, normal, sine, cosine: dot(&u, &w) }
     }
-    /// θ − θ₀, the short way round.
+    /// θ − θ₀, reduced to −π … π.
     #[inline(always)]
     fn excess<S: Lane>(bent: &Bent<S>, [_, _, cos, sin]: &[S; 4]) -> S {
         angle(bent.sine * *cos - bent.cosine * *sin, bent.cosine * *cos + bent.sine * *sin)
     }
-    /// n̂ × w/|w|², n̂ × u/|u|² with n = factor-less normal: ∂θ/∂w and −∂θ/∂u once multiplied with 1/s.
+    /// n̂ × w/|w|², n̂ × u/|u|² with the unnormalised n: ∂θ/∂w and −∂θ/∂u after multiplication by 1/s.
     #[inline(always)]
     fn levers<S: Lane>(bent: &Bent<S>, normal: &[S; 3]) -> [[S; 3]; 2] {
         let (iu, iw) = (inverse(dot(&bent.u, &bent.u)), inverse(dot(&bent.w, &bent.w)));
         let (nu, nw) = (cross(normal, &bent.u), cross(normal, &bent.w));
         [[nu[0] * iu, nu[1] * iu, nu[2] * iu], [nw[0] * iw, nw[1] * iw, nw[2] * iw]]
     }
-    /// `moment` times ∂θ/∂x for the levers of both edges.
+    /// `moment` times ∂θ/∂x, from the levers of both edges.
     #[inline(always)]
     fn spread<S: Lane, const D: usize>(moment: S, [u, w]: &[[S; 3]; 2]) -> [[S; D]; 3] {
         let mut out = [[S::zero(); 3]; 3];
@@ -59,7 +59,7 @@ impl Turn {
         }
         [in_dimension(&out[0]), in_dimension(&out[1]), in_dimension(&out[2])]
     }
-    /// The unit normal: the third axis in the plane; zero in space where the edges lie in one line.
+    /// The unit normal: the third axis in the plane; zero in space if the edges are collinear.
     #[inline(always)]
     fn unit_normal<S: Lane, const D: usize>(bent: &Bent<S>) -> [S; 3] {
         if D == 2 {
@@ -88,7 +88,7 @@ impl<const D: usize> Kernel<D, 3, 4> for Turn {
             let levers = Turn::levers(&bent, &Turn::unit_normal::<S, D>(&bent));
             return Turn::spread(p[0] * excess, &levers);
         }
-        // In space (θ − θ₀)/s with the normal n = s n̂: smooth for a straight rest shape, also where it is straight.
+        // In space, (θ − θ₀)/s with the normal n = s n̂. For a straight rest shape this is smooth, even in the straight state.
         let square = dot(&bent.normal, &bent.normal);
         let forward = S::splat(f64::MIN_POSITIVE).less(bent.cosine);
         let i = inverse(S::select(forward, bent.cosine, S::one()));

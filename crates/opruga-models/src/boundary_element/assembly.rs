@@ -4,8 +4,8 @@
 //!
 //! interior ∫ T (u(y) − u(ξ)) dS = ∫ U t dS,  exterior u(ξ) + ∫ T (u(y) − u(ξ)) dS = ∫ U t dS,
 //!
-//! holds at corners too, has no strongly singular integral, and has the translation of the body as a solution to rounding. Rotations
-//! are one to the error of the integrals, which is what taking them out changes.
+//! holds at corners too, has no strongly singular integral, and is solved by translations of the body to rounding. Rotations
+//! solve it to the error of the integrals; removing them from the stiffness corrects that error.
 
 use super::integrals::{Integrator, Sums};
 use super::kernels::{Block, Kelvin};
@@ -18,28 +18,28 @@ use opruga_core::dense::Dense;
 use opruga_solve::dense_system::{DenseCholesky, DenseFactors, clamp};
 use std::sync::Arc;
 
-/// Columns that are solved for together: between them the end can be asked for.
+/// The number of columns that are solved together. A request to stop is noticed between such groups.
 const SIDES: usize = 256;
 
-/// What was done to a stiffness so that it is that of a body, as parts of itself.
+/// The relative changes that were made to a matrix to obtain the stiffness of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Changes {
     /// |K − Kᵀ|/|K + Kᵀ| before the symmetric part was taken.
     pub(super) asymmetry: f64,
-    /// The share of K that pulled at rigid motion, |QQᵀK|/|K|, after its columns were freed of it.
+    /// The part of K that exerted forces under rigid motion, |QQᵀK|/|K|, after rigid motion was removed from its columns.
     pub(super) rigid: f64,
-    /// The largest traction of a rotation by 1 rad, over μ: what the integrals are in error by.
+    /// The largest traction of a rotation by 1 rad, over μ; it measures the error of the integrals.
     pub(super) rotation: f64,
-    /// The norm of the part with negative eigenvalues that was taken out, over that of K.
+    /// The norm of the removed part with negative eigenvalues, over that of K.
     pub(super) negative: f64,
 }
 
-/// The stiffness of a boundary for a shear modulus of 1 and lengths of its size.
+/// The stiffness of a boundary, for a shear modulus of 1 and lengths in units of its size.
 #[derive(Debug)]
 pub(super) struct Stiffness {
     pub(super) matrix: Arc<Dense>,
     pub(super) changes: Changes,
-    /// The stress at asked points for the displacements of the vertices, a row for each component of each.
+    /// The stress at the requested points for the displacements of the vertices, a row for each component of each point.
     pub(super) stresses: Vec<Vec<f64>>,
 }
 
@@ -62,7 +62,7 @@ impl System {
         let columns = surface.nodes * D;
         let mut system = System { rows, g: vec![0.0; rows * rows], h: vec![0.0; rows * columns] };
         let integrator = Integrator::new(kelvin);
-        // The rows of a source are made side by side, and go to their columns at once.
+        // The rows of a source are computed together and then written to their columns.
         let (mut own_g, mut own_h) = (vec![[[0.0; D]; D]; surface.sources.len()], vec![[[0.0; D]; D]; surface.nodes]);
         for (number, source) in surface.sources.iter().enumerate() {
             progress.step(1.0 / surface.sources.len() as f64)?;
@@ -92,7 +92,7 @@ fn equation<const D: usize>(
     g: &mut [Block<D>],
     h: &mut [Block<D>],
 ) {
-    // What stands before u(ξ).
+    // The coefficient of u(ξ).
     let mut own = [[0.0; D]; D];
     if exterior {
         for d in 0..D {
@@ -134,7 +134,7 @@ fn add<const D: usize>(to: &mut Block<D>, factor: f64, value: &Block<D>) {
     }
 }
 
-/// Rigid motions of the vertices, orthonormal; translations first. Vertices on a line have fewer.
+/// Rigid motions of the vertices, orthonormal, translations first. Collinear vertices have fewer.
 pub(super) fn rigid_motions<const D: usize>(points: &[[f64; D]]) -> Vec<Vec<f64>> {
     let mut raw: Vec<Vec<f64>> = Vec::new();
     for d in 0..D {
@@ -170,7 +170,7 @@ pub(super) fn rigid_motions<const D: usize>(points: &[[f64; D]]) -> Vec<Vec<f64>
     out
 }
 
-/// Σ rows of a matrix, given column by column, along a vector: A q.
+/// Computes A q, for a matrix A given column by column.
 fn times(matrix: &[f64], rows: usize, vector: &[f64]) -> Vec<f64> {
     let mut out = vec![0.0; rows];
     for (column, weight) in matrix.chunks_exact(rows).zip(vector) {
@@ -180,7 +180,8 @@ fn times(matrix: &[f64], rows: usize, vector: &[f64]) -> Vec<f64> {
 }
 
 impl Stiffness {
-    /// Makes the stiffness; points at which the stress is asked for are in lengths of the size, about the mean of the vertices.
+    /// Computes the stiffness. The points at which the stress is requested are in units of the size, relative to the mean of the
+    /// vertices.
     pub(super) fn new<const D: usize>(
         surface: &Surface<D>,
         poisson: f64,
@@ -232,7 +233,7 @@ fn larger(a: f64, b: f64) -> f64 {
     if b > a { b } else { a }
 }
 
-/// The largest traction of a rotation by 1 rad, where the motion has length one over all vertices.
+/// The largest traction of a rotation by 1 rad. The motion has length one over all vertices.
 fn rotation_traction<const D: usize>(
     surface: &Surface<D>,
     factors: &DenseFactors,
@@ -248,7 +249,7 @@ fn rotation_traction<const D: usize>(
     most * reach.fold(0.0, larger) / moved.fold(0.0, larger)
 }
 
-/// K = Mᵀ t of every column: ∫ N_a N_b dS is measure (1 + δ)/(D (D + 1)).
+/// K = Mᵀ t for every column: ∫ N_a N_b dS is measure (1 + δ)/(D (D + 1)).
 fn forces_of_tractions<const D: usize>(surface: &Surface<D>, rows: usize, tractions: &[f64]) -> Vec<f64> {
     let columns = surface.nodes * D;
     let mut k = vec![0.0; columns * columns];
@@ -268,7 +269,7 @@ fn forces_of_tractions<const D: usize>(surface: &Surface<D>, rows: usize, tracti
     k
 }
 
-/// Takes rigid motion out of the rows, as it was out of the columns, and then the symmetric part.
+/// Removes rigid motion from the rows, as it was removed from the columns, and then takes the symmetric part.
 fn free_and_symmetrise(size: usize, motions: &[Vec<f64>], k: &mut [f64], changes: &mut Changes) {
     let (mut rigid, mut all) = (0.0, 0.0);
     for column in k.chunks_exact_mut(size) {
@@ -293,13 +294,15 @@ fn free_and_symmetrise(size: usize, motions: &[Vec<f64>], k: &mut [f64], changes
     changes.asymmetry = (skew / even).sqrt();
 }
 
-/// Vertices up to which negative eigenvalues are looked for one by one: all eigenvectors take as long as the rest.
+/// The largest number of vertices for which negative eigenvalues are searched one by one: finding all eigenvectors takes as long
+/// as everything else.
 const MOST_CLAMPED: usize = 1000;
 
-/// The part of a stiffness that may be taken out with its negative eigenvalues.
+/// The largest part of a stiffness that may be removed with its negative eigenvalues.
 const MOST_NEGATIVE: f64 = 0.05;
 
-/// Takes negative eigenvalues out, with which some motion would make energy: collocation may have them where sides are uneven.
+/// Removes negative eigenvalues, with which some motion would create energy. Collocation may have them if sides are of unequal
+/// size.
 fn make_positive(
     size: usize,
     vertices: usize,
@@ -318,7 +321,7 @@ fn make_positive(
     if changes.negative > MOST_NEGATIVE {
         return Err(refused(NoSolution::ManyNegative));
     }
-    // Rounding of eigenvectors is no rigid motion.
+    // Rounding of the eigenvectors must not add rigid motion.
     for _ in 0..2 {
         for column in k.chunks_exact_mut(size) {
             for motion in motions {
@@ -342,7 +345,7 @@ fn make_positive(
     Ok(())
 }
 
-/// Whether a stiffness has no negative eigenvalue but those of rounding, given its rigid motions.
+/// Whether a stiffness, given its rigid motions, has no negative eigenvalues beyond rounding.
 fn is_positive(size: usize, motions: &[Vec<f64>], k: &[f64]) -> bool {
     let mean = (0..size).map(|n| k[n * size + n]).sum::<f64>() / size as f64;
     let mut shifted = k.to_vec();

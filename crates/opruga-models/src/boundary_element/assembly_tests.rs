@@ -61,7 +61,7 @@ fn a_ball_shrinks_under_pressure() {
         let (surface, stiffness) = report("ball", &Mesh::icosphere(1.0, subdivisions).unwrap(), false);
         let u: Vec<f64> = surface.points.iter().flatten().copied().collect();
         let force = applied(&stiffness, &u);
-        // Of μ = 1: σ = 3K ε = 2 (1 + ν)/(1 − 2ν) for ε = 1, on lumped areas.
+        // For μ = 1: σ = 3K ε = 2 (1 + ν)/(1 − 2ν) for ε = 1, on lumped areas.
         let mut expected = vec![0.0; u.len()];
         for (facet, side) in surface.facets.iter().zip(&surface.sides) {
             for node in facet {
@@ -74,8 +74,8 @@ fn a_ball_shrinks_under_pressure() {
         let size: f64 = expected.iter().map(|x| x * x).sum();
         errors.push((error / size).sqrt());
     }
-    // The exact tractions belong to the facets. On the coarsest ball each facet is a part of its own (its normals differ by 41.8°);
-    // on finer ones the facets at a vertex share one traction, which comes close to theirs.
+    // The exact tractions belong to the facets. On the coarsest ball each facet is a smooth part of its own (its normals differ
+    // by 41.8°); on finer ones the facets at a vertex share one traction, which approximates theirs.
     assert!(
         errors[0] < 1e-10 && errors[1..].windows(2).all(|pair| pair[1] < pair[0]) && errors[3] < 0.01,
         "{errors:?}"

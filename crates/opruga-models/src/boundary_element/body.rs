@@ -16,7 +16,7 @@ use opruga_core::tile::Tile;
 use opruga_math::{Simd, WIDTH};
 use std::sync::Arc;
 
-/// One body, or eight alike ones with their own moduli.
+/// One body, or eight identical ones with their own moduli.
 #[derive(Debug)]
 pub struct BoundaryElement<const D: usize> {
     layout: Layout,
@@ -28,28 +28,30 @@ pub struct BoundaryElement<const D: usize> {
     indices: Vec<Vec<u32>>,
     /// What the frame follows at rest ([`Rest::follows`]).
     follows: Arc<Vec<f64>>,
-    /// Numbers of a column.
+    /// The length of a column.
     column: usize,
     turned: usize,
 }
 
-/// What is of one body.
+/// The data of one body.
 #[derive(Debug)]
 struct Body {
     stiffness: Arc<Stiffness>,
-    /// What makes the forces of a stiffness of units those of the body [N/m].
+    /// The factor from the forces of the scaled stiffness to those of the body [N/m].
     strength: f64,
-    /// What makes the stresses those of the body [Pa/m].
+    /// The factor from the scaled stresses to those of the body [Pa/m].
     stress: f64,
     law: Constants,
 }
 
-/// Numbers of a state in the scratch beside x, y, u and g: its frame, λ, U, and when it was asked for last, counted in states; 0: never.
+/// The numbers of a state in the scratch besides x, y, u and g: its frame, λ, U, and when it was last requested (counted in
+/// states; 0 means never).
 const NUMBERS: usize = 32;
 const ASKED: usize = NUMBERS - 1;
 
-/// States that are kept. A step goes to and fro between where it began, where it has come to, and where the motion as a whole is balanced; a
-/// product with K takes most of its time. One state gives the same results, and takes a free body up to a fifth longer.
+/// The number of states that are kept. A step alternates between its initial state, its present state, and the state in which the
+/// rigid motion is balanced, and a product with K takes most of the time. Keeping only one state gives the same results, but a
+/// free body takes up to a fifth longer.
 const STATES: usize = 3;
 
 impl<const D: usize> BoundaryElement<D> {
@@ -97,7 +99,7 @@ impl Body {
         let young = values.number("youngs_modulus").unwrap_or(0.0);
         let ratio = values.number("poissons_ratio").unwrap_or(0.0);
         let shear = young / (2.0 * (1.0 + ratio));
-        // Without stress across the plane: that of another ratio at the same shear modulus.
+        // Plane stress is plane strain with another Poisson's ratio and the same shear modulus.
         let stress = D == 2 && values.text("plane") == Some("stress");
         let poisson = if stress { ratio / (1.0 + ratio) } else { ratio };
         let asked: Vec<[f64; D]> = values
@@ -118,7 +120,7 @@ impl Body {
     }
 }
 
-/// What `prepare` leaves of a body.
+/// The results of `prepare` for a body.
 struct Known<'a, const D: usize> {
     frame: Frame<D>,
     multiplier: [f64; 3],
@@ -135,14 +137,14 @@ impl<const D: usize> BoundaryElement<D> {
     fn forces_len(&self) -> usize {
         D * self.layout.index_count(self.rest.weights.len())
     }
-    /// Numbers of a state, and of all states of a body.
+    /// The length of one state, and of all states of a body.
     fn of_state(&self) -> usize {
         4 * self.column + NUMBERS
     }
     fn of_body(&self) -> usize {
         STATES * self.of_state()
     }
-    /// The state of a body that was asked for last.
+    /// The state of a body that was last requested.
     fn known<'a>(&self, scratch: &'a [f64], body: usize) -> Known<'a, D> {
         let states = &scratch[self.forces_len() + body * self.of_body()..][..self.of_body()];
         let (_, own) = states[last_asked(states, self.of_state()) * self.of_state()..].split_at(self.column);
@@ -187,11 +189,11 @@ impl<const D: usize> BoundaryElement<D> {
             (0..D).for_each(|d| scratch[d * indices + index(node)] = force[d]);
         }
     }
-    /// Where the numbers of a state begin.
+    /// The offset of the numbers of a state.
     fn numbers(&self) -> usize {
         4 * self.column
     }
-    /// Works out a state.
+    /// Computes a state.
     fn compute(&self, simd: Simd, view: &View<D>, body: usize, state: &mut [f64]) {
         let (x, own) = state.split_at_mut(self.column);
         let (y, own) = own.split_at_mut(self.column);
@@ -220,7 +222,7 @@ impl<const D: usize> BoundaryElement<D> {
     }
 }
 
-/// The number of the state that was asked for last.
+/// The index of the state that was last requested.
 fn last_asked(states: &[f64], length: usize) -> usize {
     let asked = |number: &usize| states[number * length + length - NUMBERS + ASKED];
     (0..STATES).max_by(|a, b| asked(a).total_cmp(&asked(b))).unwrap_or(0)

@@ -1,4 +1,5 @@
-//! Stiffnesses that bodies hold, by what they follow from: a body that is built again, or alike another, takes what is there.
+//! The stiffnesses that bodies hold, by the data that determine them. A body that is built again, or is identical to another,
+//! reuses the existing stiffness.
 
 use super::assembly::Stiffness;
 use super::refusals::Refusal;
@@ -6,11 +7,11 @@ use super::surface::Surface;
 use opruga_core::break_off::BreakOff;
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
-/// The bits of all that a stiffness follows from.
+/// The bits of all data that determine a stiffness.
 type Key = Vec<u64>;
 
-/// Those that somebody holds, and the one that was asked for last: whoever reads a scene builds its bodies more than once, one after the
-/// other.
+/// The stiffnesses in use, and the one that was last requested: a program that reads a scene builds its bodies more than once,
+/// one after the other.
 struct Known {
     shared: Vec<(Key, Weak<Stiffness>)>,
     last: Option<Arc<Stiffness>>,
@@ -34,7 +35,7 @@ fn key<const D: usize>(surface: &Surface<D>, poisson: f64, exterior: bool, asked
     key
 }
 
-/// The stiffness of a boundary, made where nobody holds it.
+/// Returns the stiffness of a boundary; computes it if nobody holds it.
 pub(super) fn stiffness<const D: usize>(
     surface: &Surface<D>,
     poisson: f64,
@@ -46,7 +47,8 @@ pub(super) fn stiffness<const D: usize>(
     if let Some(shared) = KNOWN.lock().unwrap_or_else(PoisonError::into_inner).find(&key) {
         return Ok(shared);
     }
-    // Not under the lock: others build their own meanwhile, and the same numbers twice are the same bits.
+    // Not under the lock, so that other threads can build their own meanwhile. If the same stiffness is computed twice, the bits
+    // are equal.
     let made = Arc::new(Stiffness::new(surface, poisson, exterior, asked, break_off)?);
     let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(shared) = known.find(&key) {

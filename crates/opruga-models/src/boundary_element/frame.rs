@@ -1,29 +1,30 @@
-//! The frame of a body that moves: the rotation nearest to its deformation, forces and second derivatives in it.
+//! The frame of a moving body: the rotation nearest to its deformation, with forces and second derivatives in this frame.
 //!
 //! With weights w of the vertices (their shares of the boundary, Σ w = 1, Σ w X = 0), A = Σ w (x − x̄) Xᵀ, R the rotation nearest to
 //! A, y = Rᵀ(x − x̄), u = y − X and g = K u,
 //!
 //! U = ½ uᵀ g,  f = −R (g − w λ × X),  G λ = τ = Σ y × g,  G = (tr B) 1 − B,  B = Rᵀ A.
 //!
-//! R follows a displacement R d by the spin θ = G⁻¹ Σ w X × d; so f is the exact gradient of U, and Σ y × f = τ − G λ = 0. The second
+//! Under a displacement R d, R turns by θ = G⁻¹ Σ w X × d, so f is the exact gradient of U, and Σ y × f = τ − G λ = 0. The second
 //! derivatives are
 //!
 //! δ²U = dᵀK d + 2 θ·Z d + θᵀ S θ,
 //! θ·Z d = −(θ × y)ᵀ K d − θ·Σ d × g + Σ w (θ·λ X·d − X·θ λ·d),
 //! θᵀ S θ = (θ × y)ᵀ K (θ × y) + Σ (g·θ y·θ − g·y θ·θ) + λ·(θ × B θ),
 //!
-//! or (d − θ × y)ᵀ K (d − θ × y) and the parts of g and λ, which vanish at rest ([`Following`]). Without these the sum is never negative.
+//! or (d − θ × y)ᵀ K (d − θ × y) plus the terms of g and λ, which vanish at rest ([`Following`]). Without these terms the sum is
+//! never negative.
 //!
-//! Why not the R that makes U least: K knows strains and no rotation, so U(R) is of fourth order in a rotation from rest, and any
-//! uniform expansion 1 + e of the plane has U = 0 in the frame turned by arccos 1/(1 + e). A body in that frame would not resist
-//! expansion (docs/boundary-elements.md, "The frame").
+//! R is not chosen to minimise U, because K contains only strains and no rotations. U(R) would be of fourth order in a rotation
+//! from rest, and any uniform expansion 1 + e of the plane has U = 0 in the frame turned by arccos 1/(1 + e). A body in that
+//! frame would not resist expansion (docs/boundary-elements.md, "The frame").
 
 use opruga_core::potential::{Definiteness, Following};
 use opruga_math::rotation::nearest_rotation;
 use opruga_math::{matrix, symmetric};
 use std::sync::Arc;
 
-/// Less than this part of what a body has at rest, and its rotation is not determined: then it does not follow.
+/// Below this fraction of the value of the body at rest, its rotation is not determined; the frame then does not follow.
 const UNDETERMINED: f64 = 1e-12;
 
 type Vector = [f64; 3];
@@ -39,7 +40,7 @@ pub(super) struct Rest<const D: usize> {
     pub(super) inertia: f64,
 }
 
-/// A frame, and how it follows.
+/// A frame, and how it follows displacements.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Frame<const D: usize> {
     pub(super) rotation: [[f64; D]; D],
@@ -64,13 +65,13 @@ fn times(a: &[[f64; 3]; 3], x: &Vector) -> Vector {
 fn axis(k: usize) -> Vector {
     core::array::from_fn(|d| if d == k { 1.0 } else { 0.0 })
 }
-/// The axes of rotations: the third alone in the plane.
+/// The axes of rotation: only the third in the plane.
 fn axes<const D: usize>() -> core::ops::Range<usize> {
     if D == 2 { 2..3 } else { 0..3 }
 }
 
 impl<const D: usize> Rest<D> {
-    /// From positions about any point [m] and the shares of vertices, of any sum.
+    /// Makes a body from positions about any point [m] and the shares of its vertices, which need not sum to 1.
     pub(super) fn new(positions: &[[f64; D]], shares: &[f64]) -> Rest<D> {
         let all: f64 = shares.iter().sum();
         let weights: Vec<f64> = shares.iter().map(|share| share / all).collect();
@@ -83,7 +84,7 @@ impl<const D: usize> Rest<D> {
         Rest { positions, weights, inertia }
     }
 
-    /// The frame of a state; leaves y and u, vertex by vertex.
+    /// Computes the frame of a state; writes y and u, vertex by vertex.
     pub(super) fn frame(&self, x: impl Fn(usize) -> [f64; D], y: &mut [f64], u: &mut [f64]) -> Frame<D> {
         let first = x(0);
         let mut mean = [0.0; D];
@@ -142,7 +143,7 @@ impl<const D: usize> Rest<D> {
         core::array::from_fn(|i| -(0..D).map(|j| frame.rotation[i][j] * pulled[j]).sum::<f64>())
     }
 
-    /// J without the inverse of G, w e × X for each axis: vectors of `length` numbers, one after the other.
+    /// J without the inverse of G: w e × X for each axis, as vectors of `length` numbers, one after the other.
     pub(super) fn follows(&self, length: usize) -> Vec<f64> {
         let mut out = vec![0.0; axes::<D>().len() * length];
         for (k, out) in axes::<D>().zip(out.chunks_exact_mut(length)) {
@@ -154,8 +155,8 @@ impl<const D: usize> Rest<D> {
         out
     }
 
-    /// How the frame follows displacements, as the second derivatives have it. `factor` is what K is multiplied with; without `Exact` the
-    /// parts of forces are left out.
+    /// How the frame follows displacements, for the second derivatives. K is multiplied by `factor`; the terms of forces are
+    /// included only with `Exact`.
     pub(super) fn following(
         &self,
         frame: &Frame<D>,
@@ -200,7 +201,7 @@ impl<const D: usize> Rest<D> {
         out
     }
 
-    /// The parts of S that forces have.
+    /// Adds the terms of S that depend on forces.
     fn add_stress(&self, frame: &Frame<D>, multiplier: &Vector, [y, g]: [&[f64]; 2], s: &mut [[f64; 3]; 3]) {
         let mut pull = [[0.0; 3]; 3];
         for (y, g) in y.chunks_exact(D).zip(g.chunks_exact(D)).take(self.weights.len()) {
@@ -223,7 +224,7 @@ impl<const D: usize> Rest<D> {
     }
 }
 
-/// G⁻¹ without the axes about which G is not above `least`.
+/// G⁻¹ without the axes for which G is not above `least`.
 fn inverse_of<const D: usize>(stretch: &[[f64; 3]; 3], least: f64) -> [[f64; 3]; 3] {
     let trace = matrix::trace(stretch);
     let mut out = [[0.0; 3]; 3];

@@ -1,10 +1,11 @@
 //! Integrals of Kelvin's solution over one side: an edge of the plane, a triangle of space.
 //!
-//! Where the source lies on the side, the side is cut into parts with their apex there, r = s ρ(t): then U dS does not depend on s, nor
-//! does T (u(y) − u(ξ)) dS, and s is integrated by hand. What is left along t is smooth in the variable τ with
-//! dt/ρ = dτ/ℓ; pieces of length 1 of it take 12 points. Elsewhere Gauss's rules take as many points as the distance asks for, and sides
-//! that are nearer than 1.6 of their size (in the plane than their length) are halved in each direction. Of all, the parts that are left out are below 1e-9 of the
-//! whole: the rotation of a body, which pulls at nothing, says by how much (docs/boundary-elements.md).
+//! If the source lies on the side, the side is divided into parts with their apex at the source, r = s ρ(t). Neither U dS nor T
+//! (u(y) − u(ξ)) dS depends on s then, so the integral over s is done analytically. The remaining integrand is smooth in the
+//! variable τ with dt/ρ = dτ/ℓ; each piece of length 1 takes 12 points. Otherwise Gauss's rules take as many points as the
+//! distance requires, and sides that are nearer than 1.6 times their size (in the plane, than their length) are halved in each
+//! direction. The total error is below 1e-9 of the integrals; the tractions of a rotation, which should be zero, measure it
+//! (docs/boundary-elements.md).
 
 use super::kernels::{Block, Kelvin};
 use super::quadrature::{Rule, SimplexRule};
@@ -21,7 +22,7 @@ impl<const D: usize> Sums<D> {
     const NONE: Self = Sums { displacement: [[[0.0; D]; D]; D], traction: [[[0.0; D]; D]; D] };
 }
 
-/// A side: its corners [scaled lengths] and unit normal, which points out of the body.
+/// A side: its corners [scaled lengths] and its unit normal, which points out of the body.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Side<const D: usize> {
     pub(super) corners: [[f64; D]; D],
@@ -42,12 +43,12 @@ struct Piece<const D: usize> {
 #[derive(Clone, Debug)]
 pub(super) struct Integrator<const D: usize> {
     pub(super) kelvin: Kelvin,
-    /// From which distance on, in sizes of a piece, a rule is good enough; falling.
+    /// The distance, in sizes of a piece, from which a rule is accurate enough; descending.
     rules: Vec<(f64, SimplexRule<D>)>,
     along: Rule,
 }
 
-/// How often a side is halved at most: a source is then as near as rounding lets it be.
+/// The largest number of halvings of a side: a source is then as near as rounding permits.
 const MOST_HALVINGS: u32 = 40;
 
 fn minus<const D: usize>(a: &[f64; D], b: &[f64; D]) -> [f64; D] {
@@ -70,7 +71,7 @@ impl<const D: usize> Integrator<D> {
         Integrator { kelvin, rules, along: Rule::of(12) }
     }
 
-    /// The integrals over a side that the source does not lie on.
+    /// Computes the integrals over a side that does not contain the source.
     pub(super) fn regular(&self, source: &[f64; D], side: &Side<D>) -> Sums<D> {
         let mut sums = Sums::NONE;
         self.visit(source, side, &mut |r, shape, weight| {
@@ -88,7 +89,8 @@ impl<const D: usize> Integrator<D> {
         sums
     }
 
-    /// Calls back with r = y − ξ, shape functions and weight of points y that are enough for kernels that are large near the source.
+    /// Calls `visit` with r = y − ξ, shape functions and weight at points y that suffice for kernels that are large near the
+    /// source.
     #[inline(always)]
     pub(super) fn visit(&self, source: &[f64; D], side: &Side<D>, visit: &mut impl FnMut(&[f64; D], &[f64; D], f64)) {
         let mut shape = [[0.0; D]; D];
@@ -119,7 +121,8 @@ impl<const D: usize> Integrator<D> {
         }
     }
 
-    /// The integrals over the side that the source lies on, where its shape functions are `shape`. Those of T are of N_k(y) − N_k(ξ).
+    /// Computes the integrals over the side that contains the source, where its shape functions are `shape`. Those of T are of
+    /// N_k(y) − N_k(ξ).
     pub(super) fn singular(&self, source: &[f64; D], shape: &[f64; D], side: &Side<D>) -> Sums<D> {
         let mut sums = Sums::NONE;
         for k in 0..D {
@@ -128,7 +131,7 @@ impl<const D: usize> Integrator<D> {
             let step =
                 |a: usize| -> [f64; D] { core::array::from_fn(|m| if m == a { 1.0 - shape[m] } else { -shape[m] }) };
             let reach = |a: usize| minus(&side.corners[a], source);
-            // The source is that share of the side away from the edge without k.
+            // The distance of the source from the edge without k, as a fraction of the height of the side.
             if shape[k] <= 1e-12 {
                 continue;
             }
@@ -159,7 +162,7 @@ impl<const D: usize> Integrator<D> {
         }
     }
 
-    /// Over the triangle of the source and two arms, whose area is half of `twice`.
+    /// Over the triangle of the source and two arms; `twice` is double its area.
     fn of_triangle(
         &self,
         arms: &[[f64; D]; 2],
@@ -201,7 +204,7 @@ impl<const D: usize> Integrator<D> {
     }
 }
 
-/// How far a source is from a piece at least, in sizes of it.
+/// A lower bound of the distance of a source from a piece, in sizes of the piece.
 fn distance<const D: usize>(source: &[f64; D], piece: &Piece<D>) -> f64 {
     let center: [f64; D] =
         core::array::from_fn(|d| piece.corners.iter().map(|corner| corner[d]).sum::<f64>() / D as f64);

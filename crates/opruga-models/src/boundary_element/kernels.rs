@@ -1,4 +1,4 @@
-//! Kelvin's solution: displacement and traction in an infinite body that a force pulls at in one point.
+//! Kelvin's solution: displacement and traction in an infinite body under a force at one point.
 //!
 //! With r = y − ξ, ρ = |r|, e = r/ρ, the unit normal n in y and the shear modulus μ = 1,
 //!
@@ -7,14 +7,14 @@
 //! plane  U = (1/8π(1 − ν)) [−(3 − 4ν) ln ρ 1 + e eᵀ],
 //!        T = (−1/4π(1 − ν)ρ) {e·n [(1 − 2ν) 1 + 2 e eᵀ] − (1 − 2ν)(e nᵀ − n eᵀ)},
 //!
-//! rows by the direction of the force. The plane is that of plane strain.
+//! Rows correspond to directions of the force. The plane formulas are those of plane strain.
 //!
 //! Source: Brebbia, Telles, Wrobel 1984, *Boundary element techniques*, equations 5.1.6 to 5.1.9.
 
 use core::f64::consts::PI;
 use opruga_math::elementary::natural_logarithm;
 
-/// A block of D rows and columns.
+/// A block with D rows and columns.
 pub(super) type Block<const D: usize> = [[f64; D]; D];
 
 /// Kelvin's solution for one Poisson's ratio.
@@ -24,7 +24,7 @@ pub(super) struct Kelvin {
 }
 
 impl Kelvin {
-    /// The factor of U, and the factors of 1 and of e eᵀ in it; that of 1 stands before −ln ρ in the plane.
+    /// The factor of U, and the factors of 1 and of e eᵀ in it. In the plane, the factor of 1 multiplies −ln ρ.
     pub(super) fn displacement_factors<const D: usize>(self) -> [f64; 2] {
         let whole = 1.0 / (if D == 2 { 8.0 } else { 16.0 } * PI * (1.0 - self.poisson));
         [whole * (3.0 - 4.0 * self.poisson), whole]
@@ -50,12 +50,12 @@ impl Kelvin {
         }
         out
     }
-    /// T for r = y − ξ, which is not zero, and the unit normal in y.
+    /// T for r = y − ξ, which is not zero, and the unit normal at y.
     #[inline(always)]
     pub(super) fn traction<const D: usize>(self, r: &[f64; D], n: &[f64; D]) -> Block<D> {
         let square = r.iter().map(|x| x * x).sum::<f64>();
         let inverse = 1.0 / square;
-        // 1/ρᴰ: one power of ρ is that of e.
+        // 1/ρᴰ: one power of ρ comes from e.
         let power = if D == 2 { inverse } else { inverse * inverse.sqrt() };
         let factor = -power / (if D == 2 { 4.0 } else { 8.0 } * PI * (1.0 - self.poisson));
         let skew = factor * (1.0 - 2.0 * self.poisson);
@@ -78,7 +78,7 @@ mod tests {
     use super::*;
     use opruga_math::Lane;
 
-    /// The traction of U by differences: σ = λ tr ε 1 + 2 μ ε.
+    /// The traction of U by finite differences: σ = λ tr ε 1 + 2 μ ε.
     fn by_differences<const D: usize>(kelvin: Kelvin, r: [f64; D], n: [f64; D]) -> Block<D> {
         let h = 1e-5;
         let mut slope = [[[0.0; D]; D]; D];

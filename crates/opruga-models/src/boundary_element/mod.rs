@@ -1,15 +1,16 @@
 //! # Boundary elements
 //!
-//! A linear elastic solid by its boundary alone. Kelvin's solution U and its tractions T turn the equations of elasticity inside into
-//! one on the boundary (Somigliana), which collocation makes G t = H u for linear displacements u and tractions t. The forces on the
-//! vertices are those of the tractions, f = Mᵀ G⁻¹ H u, so the stiffness is the symmetric part of Mᵀ G⁻¹ H, freed of rigid motion (file
-//! `assembly`). A body that moves has U = ½ uᵀ K u with u = Rᵀ(x − x̄) − X in the frame R that is nearest to it (file `frame`). The
-//! infinite medium around a boundary (`exterior`) does not turn: u = x − X.
+//! A linear elastic solid, represented by its boundary alone. With Kelvin's solution U and its tractions T, the equations of
+//! elasticity in the interior become an equation on the boundary (Somigliana). Collocation turns it into G t = H u for linear
+//! displacements u and tractions t. The forces on the vertices follow from the tractions, f = Mᵀ G⁻¹ H u, so the stiffness is the
+//! symmetric part of Mᵀ G⁻¹ H without rigid motion (file `assembly`). A moving body has U = ½ uᵀ K u with u = Rᵀ(x − x̄) − X in
+//! the nearest frame R (file `frame`). The infinite medium around a boundary (`exterior`) does not rotate: u = x − X.
 //!
-//! Collocation, and not Galerkin's method: one integral instead of two, and what it loses, symmetry, is small (the readings say how small).
+//! Collocation is used instead of Galerkin's method: it needs one integral instead of two. It loses symmetry, but only a little
+//! (the readings report how much).
 //!
-//! Limits: strain is small in the frame R, and there is one frame, so a slender body that bends by large angles is too stiff and
-//! grows. The mass lies on the boundary. Vertices: at most 2000, since all matrices are dense.
+//! Limits: strain is small in the frame R, and there is only one frame, so a slender body that bends by large angles is too stiff
+//! and grows. The mass is on the boundary. There are at most 2000 vertices, since all matrices are dense.
 
 #[cfg(not(target_arch = "wasm32"))]
 mod assembly;
@@ -46,14 +47,15 @@ use opruga_core::memory::{Counts, Need};
 use opruga_core::potential::{Ingredients, Model, Potential};
 use opruga_core::spec::Spec;
 
-/// Vertices at most.
+/// The largest number of vertices.
 pub const MOST_VERTICES: usize = 2000;
 
 /// The kind `boundary_element`.
 #[derive(Debug)]
 pub struct BoundaryElementModel;
 
-/// What the matrices take while they are made [bytes]: three of them of D rows for each traction, which are a seventh more than vertices.
+/// The memory that the matrices take while they are computed [bytes]: three matrices with D rows for each traction. There are a
+/// seventh more tractions than vertices.
 fn bytes(dimensions: usize, nodes: f64) -> f64 {
     let rows = 1.15 * dimensions as f64 * nodes;
     8.0 * 3.5 * rows * rows
@@ -71,7 +73,7 @@ impl<const D: usize> Model<D> for BoundaryElementModel {
         if nodes > MOST_VERTICES {
             return Err(Refusal::TooMany { nodes, bytes: bytes(D, nodes as f64), most: MOST_VERTICES }.into());
         }
-        // Large dense systems would take a twentieth of the page, and grow the other models.
+        // Dense systems would increase the size of the page by a twentieth and slow down the other models.
         #[cfg(target_arch = "wasm32")]
         return Err(Refusal::Page {}.into());
         #[cfg(not(target_arch = "wasm32"))]

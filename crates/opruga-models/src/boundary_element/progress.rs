@@ -1,16 +1,16 @@
-//! How far the preparation of a stiffness is.
+//! The progress of the preparation of a stiffness.
 
 use super::refusals::Refusal;
 use opruga_core::break_off::BreakOff;
 
-/// The parts of a preparation, in their order.
+/// The parts of a preparation, in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Part {
     /// Integrals over all facets for each source.
     Integrals,
     /// The factors of G.
     Factors,
-    /// G⁻¹ H, some columns at a time.
+    /// G⁻¹ H, in groups of columns.
     Solutions,
     /// Forces, rigid motion, symmetric part.
     Symmetry,
@@ -18,22 +18,23 @@ pub(super) enum Part {
     Signs,
 }
 
-/// Reports the share that is done, and looks whether somebody asks for the end.
+/// Reports the fraction that is done and checks whether a stop was requested.
 pub(super) struct Progress<'a> {
     break_off: &'a BreakOff,
-    /// The costs of the parts, of any sum.
+    /// The relative costs of the parts; their sum is arbitrary.
     costs: [f64; 5],
     part: Part,
-    /// The share of the present part.
+    /// The fraction of the present part that is done.
     share: f64,
 }
 
 impl<'a> Progress<'a> {
-    /// For a system with this many rows.
+    /// For a system with `rows` rows.
     pub(super) fn new(break_off: &'a BreakOff, rows: usize) -> Progress<'a> {
         let n = rows as f64;
-        // Multiplications: some 1500 for a pair of a source and a facet, which is nine entries; the rest as in every textbook. Solving
-        // for many columns goes at the speed of products of matrices, as the factors do; what is written by hand goes at that of memory.
+        // The numbers of multiplications: about 1500 for a pair of a source and a facet (nine entries), the rest as in textbooks.
+        // Solving for many columns and factorising run at the speed of matrix products; the other parts run at the speed of
+        // memory.
         let costs = [200.0 * n * n, n * n * n / 3.0, n * n * n, 40.0 * n * n, n * n * n / 6.0];
         Progress { break_off, costs, part: Part::Integrals, share: 0.0 }
     }
@@ -42,7 +43,7 @@ impl<'a> Progress<'a> {
         (self.part, self.share) = (part, 0.0);
         self.step(0.0)
     }
-    /// Adds a share to what is done of the present part.
+    /// Adds a fraction to the progress of the present part.
     pub(super) fn step(&mut self, share: f64) -> Result<(), Refusal> {
         self.share += share;
         let part = self.part as usize;

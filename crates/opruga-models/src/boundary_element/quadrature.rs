@@ -1,4 +1,4 @@
-//! Rules of Gauss and Legendre.
+//! Gauss–Legendre rules.
 
 /// Points and weights on the interval from 0 to 1.
 #[derive(Clone, Debug)]
@@ -7,7 +7,7 @@ pub(super) struct Rule {
     pub(super) weights: Vec<f64>,
 }
 
-/// P_n and its derivative.
+/// Returns P_n and its derivative.
 fn legendre(n: usize, x: f64) -> [f64; 2] {
     let (mut before, mut value) = (1.0, x);
     for k in 2..=n {
@@ -20,7 +20,7 @@ fn legendre(n: usize, x: f64) -> [f64; 2] {
 impl Rule {
     /// The rule of n > 1 points, exact for polynomials of degree 2n − 1.
     pub(super) fn of(n: usize) -> Rule {
-        // Between two neighbours of a fine grid the polynomial changes its sign once.
+        // Between two neighbouring points of a fine grid the polynomial changes its sign at most once.
         let grid = 64 * n * n;
         let at = |k: usize| (k as f64 + 0.5) / grid as f64 * 2.0 - 1.0;
         let mut rule = Rule { points: Vec::new(), weights: Vec::new() };
@@ -41,14 +41,15 @@ impl Rule {
     }
 }
 
-/// Points of a simplex of D nodes by their barycentric coordinates, and weights of sum 1.
+/// Points of a simplex with D nodes in barycentric coordinates, and weights that sum to 1.
 #[derive(Clone, Debug)]
 pub(super) struct SimplexRule<const D: usize> {
     pub(super) points: Vec<([f64; D], f64)>,
 }
 
 impl<const D: usize> SimplexRule<D> {
-    /// n points along each direction: of an interval in the plane, of a triangle with a corner drawn out to a side in space.
+    /// The rule with n points along each direction: of an interval in the plane; in space, of a square whose one side is
+    /// collapsed to a corner of the triangle.
     pub(super) fn of(n: usize) -> SimplexRule<D> {
         let rule = Rule::of(n);
         let mut points = Vec::new();
@@ -67,7 +68,7 @@ impl<const D: usize> SimplexRule<D> {
         }
         SimplexRule { points }
     }
-    /// The rule for what is smooth: 4 points of an interval, the 7 of Radon in a triangle, exact to degree 5.
+    /// The rule for smooth integrands: 4 points of an interval; in a triangle, Radon's 7 points, exact to degree 5.
     pub(super) fn far() -> SimplexRule<D> {
         if D == 2 {
             return SimplexRule::of(4);

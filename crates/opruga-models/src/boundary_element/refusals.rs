@@ -1,4 +1,4 @@
-//! Why a body has no surface that the boundary element method can be written on.
+//! Why the boundary element method cannot be applied to a body.
 
 use super::SPEC;
 use opruga_core::error::BuildError;
@@ -20,7 +20,7 @@ messages! {
     /// Why `boundary_element` refuses a body or its parameters.
     #[derive(Clone, Debug, PartialEq)]
     pub enum Refusal {
-        /// No facets.
+        /// A body without facets.
         "model.no_surface"
         #[error("the body has no closed boundary: it is a line, a sheet, a chain or a node")]
         #[allowed("closed outlines in the plane, closed surfaces in space")]
@@ -31,17 +31,17 @@ messages! {
         #[allowed("a closed boundary")]
         #[hint("`cap = true` closes a surface from a file")]
         Open { problem: MeshError },
-        /// A boundary that is none at some places.
+        /// A boundary that is not a manifold.
         "model.not_manifold"
         #[error("{problem}")]
         #[allowed("a boundary that has an inside and an outside everywhere")]
         NotManifold { problem: MeshError },
-        /// Facets that face against one another.
+        /// Facets with opposite orientations.
         "model.orientation"
         #[error("{problem}")]
         #[allowed("facets that all face the same way")]
         Orientation { problem: MeshError },
-        /// Facets that cross.
+        /// Facets that intersect.
         "model.crossing_surface"
         #[error("{count} pairs of facets cross or touch, the first of them facets {first} and {second}")]
         #[allowed("a boundary that does not meet itself")]
@@ -63,12 +63,12 @@ messages! {
         #[allowed("one, with cavities")]
         #[hint("a body for each")]
         SeveralSolids { solids: usize },
-        /// A boundary in a boundary, outside of which all is filled.
+        /// A boundary inside another one, while the solid is the exterior.
         "model.nested_exterior"
         #[error("`exterior` is true, and facet {facet} belongs to a boundary inside another one")] #[parameters("exterior")]
         #[allowed("cavities beside one another")]
         NestedExterior { facet: u32 },
-        /// More vertices than a dense matrix is made for.
+        /// More vertices than dense matrices allow.
         "limit.memory"
         #[error("the boundary has {nodes} vertices, whose dense matrices take about {} bytes while they are made", number(*bytes))]
         #[allowed("at most {most} vertices")]
@@ -79,11 +79,11 @@ messages! {
         #[error("the page does not compute boundary elements")]
         #[hint("the studio and the command line do")]
         Page {},
-        /// Somebody has asked for the end of the preparation.
+        /// The preparation was stopped on request.
         "run.broken_off"
         #[error("the preparation was broken off")]
         Ended {},
-        /// A system without a solution.
+        /// A singular system.
         "model.singular"
         #[error("the equations of the boundary have no solution: {reason}")]
         #[hint("facets of more even size")]
@@ -92,7 +92,7 @@ messages! {
 }
 
 messages! {
-    /// What was done to facets.
+    /// Facets whose orientation was changed.
     #[derive(Clone, Debug, PartialEq)]
     pub enum TurnedFacets {
         /// Facets of cavities.

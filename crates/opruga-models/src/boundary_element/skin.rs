@@ -1,19 +1,19 @@
-//! Stress on the boundary, from tractions and strains along it.
+//! Stress on the boundary, from tractions and from strains along the boundary.
 //!
 //! With the normal n, tangents a and b, tractions t = σ n and the strains ε along the facet,
 //!
 //! σ_nn = t·n,  σ_an = t·a,  σ_aa = 2μ/(1 − ν) (ε_aa + ν ε_bb) + ν/(1 − ν) σ_nn,  σ_ab = 2μ ε_ab,
 //!
-//! in the plane with ε_bb = 0. A traction is the force on a vertex over its share of the boundary. At an edge or a corner the
-//! force belongs to several smooth parts and tells no traction of one of them: a facet takes those of its other vertices, if
-//! it has any.
+//! with ε_bb = 0 in the plane. A traction is the force on a vertex over its share of the boundary. At an edge or a corner the
+//! force belongs to several smooth parts, and the traction of a single part cannot be determined; a facet takes the tractions of
+//! its other vertices, if it has any.
 //!
 //! Source: Brebbia, Telles, Wrobel 1984, section 5.11 (stresses on the boundary).
 
 use super::surface::Surface;
 use opruga_core::potential::CellState;
 
-/// What tells the stress of a facet from displacements and forces of its vertices.
+/// The data from which the stress of a facet follows from the displacements and forces of its vertices.
 #[derive(Debug)]
 pub(super) struct Skin<const D: usize> {
     facets: Vec<Facet<D>>,
@@ -26,7 +26,7 @@ struct Facet<const D: usize> {
     axes: [[f64; D]; D],
     /// The gradient of each shape function along each tangent [1/m].
     slopes: [[f64; D]; D],
-    /// What makes a force on each vertex its part of the mean traction [1/m²].
+    /// The factor of the force on each vertex in the mean traction [1/m²].
     pulls: [f64; D],
     /// Length times thickness, or area [m²].
     measure: f64,
@@ -38,7 +38,7 @@ pub(super) struct Constants {
     /// μ [Pa].
     pub(super) shear: f64,
     pub(super) poisson: f64,
-    /// Whether nothing acts across the plane.
+    /// Whether the stress across the plane is zero.
     pub(super) plane_stress: bool,
 }
 
@@ -46,7 +46,7 @@ fn dot<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
     (0..D).map(|d| a[d] * b[d]).sum()
 }
 
-/// Tangents of a facet with a normal: the first along its first edge.
+/// The tangents of a facet with a normal; the first points along its first edge.
 fn axes<const D: usize>(corners: &[[f64; D]; D], normal: &[f64; D]) -> [[f64; D]; D] {
     let edge: [f64; D] = core::array::from_fn(|d| corners[1][d] - corners[0][d]);
     let length = dot(&edge, &edge).sqrt();
@@ -64,7 +64,7 @@ fn axes<const D: usize>(corners: &[[f64; D]; D], normal: &[f64; D]) -> [[f64; D]
 }
 
 impl<const D: usize> Skin<D> {
-    /// From vertices at rest [m] and, in the plane, the thickness [m].
+    /// Made from vertices at rest [m] and, in the plane, the thickness [m].
     pub(super) fn new(surface: &Surface<D>, thickness: f64) -> Skin<D> {
         let scale = if D == 2 { surface.size * thickness } else { surface.size * surface.size };
         let mut shares = vec![0.0; surface.nodes];
@@ -93,14 +93,14 @@ impl<const D: usize> Skin<D> {
         Skin { facets: facets.collect() }
     }
 
-    /// The stress of every facet from u [m] and the forces g [N], turned from the frame of the body into that of the world.
+    /// The stress of every facet from u [m] and the forces g [N], rotated from the frame of the body into that of the world.
     pub(super) fn states(&self, law: Constants, frame: &[[f64; D]; D], u: &[f64], g: &[f64]) -> Vec<CellState> {
         let of = |facet: &Facet<D>| -> [[f64; 3]; 3] {
             let local = facet.stress(law, u, g);
             let mut out = [[0.0; 3]; 3];
             for i in 0..D {
                 for j in 0..D {
-                    // Σ a_i σ_ab b_j with axes turned by R.
+                    // Σ a_i σ_ab b_j with axes rotated by R.
                     for a in 0..D {
                         for b in 0..D {
                             out[i][j] += dot(&frame[i], &facet.axes[a]) * local[a][b] * dot(&frame[j], &facet.axes[b]);
@@ -133,13 +133,13 @@ impl<const D: usize> Skin<D> {
 }
 
 impl<const D: usize> Facet<D> {
-    /// In its own axes [Pa].
+    /// The stress in the axes of the facet [Pa].
     fn stress(&self, law: Constants, u: &[f64], g: &[f64]) -> [[f64; D]; D] {
         let n = D - 1;
         let of = |all: &[f64], corner: usize| -> [f64; D] {
             core::array::from_fn(|d| all[self.nodes[corner] as usize * D + d])
         };
-        // Tractions and the slopes of u along the tangents, both in the axes.
+        // Tractions and the gradients of u along the tangents, both in these axes.
         let (mut traction, mut gradient) = ([0.0; D], [[0.0; D]; D]);
         for corner in 0..D {
             let (moved, force) = (of(u, corner), of(g, corner));
@@ -148,7 +148,7 @@ impl<const D: usize> Facet<D> {
                 (0..n).for_each(|b| gradient[a][b] += dot(&moved, &self.axes[a]) * self.slopes[corner][b]);
             }
         }
-        // Plane stress has the same shear modulus and another ratio.
+        // Plane stress has the same shear modulus and another Poisson's ratio.
         let nu = if law.plane_stress { law.poisson / (1.0 + law.poisson) } else { law.poisson };
         let strain = |a: usize, b: usize| 0.5 * (gradient[a][b] + gradient[b][a]);
         let trace: f64 = (0..n).map(|a| strain(a, a)).sum();

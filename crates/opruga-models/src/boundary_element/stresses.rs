@@ -20,7 +20,7 @@ pub(super) const fn components(dimensions: usize) -> &'static [(usize, usize, &'
     if dimensions == 2 { ALL.split_at(3).0 } else { ALL }
 }
 
-/// One row over the displacements of all vertices for every component at every point; given the tractions of every displacement.
+/// For every component at every point, one row over the displacements of all vertices, given the tractions of every displacement.
 pub(super) fn rows<const D: usize>(
     surface: &Surface<D>,
     kelvin: Kelvin,

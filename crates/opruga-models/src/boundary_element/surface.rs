@@ -1,49 +1,50 @@
-//! The boundary of a body: its sides, the smooth parts that meet at its vertices, and the points at which equations hold.
+//! The boundary of a body: its sides, the smooth parts that meet at its vertices, and the collocation points.
 
 use super::integrals::Side;
 use super::refusals::Refusal;
 use opruga_mesh::{Mesh, MeshError, THIN_ELEMENT, crossing_edges, winding_number};
 
-/// Sides belong to one smooth part where their normals differ by less than 40°.
+/// Sides belong to one smooth part if their normals differ by less than 40°.
 const COSINE_OF_SMOOTH: f64 = 0.766_044_443_118_978;
 
-/// Where a vertex has several normals, equations hold so far from it inside a side, as a part of the way to each other corner. A quarter
-/// of an edge is near the point that is best for linear elements with a jump at their ends, (1 − 1/√3)/2.
+/// If a vertex has several normals, its collocation points lie inside the sides. This is their distance from the vertex, as a
+/// fraction of the way to each other corner. A quarter of an edge is close to the best point for linear elements with a jump at
+/// their ends, (1 − 1/√3)/2.
 const INSET: [f64; 2] = [0.25, 1.0 / 6.0];
 
-/// A point at which the equation holds.
+/// A collocation point.
 #[derive(Clone, Debug)]
 pub(super) struct Source<const D: usize> {
     pub(super) at: [f64; D],
-    /// The vertex that it is, or none where it lies inside a side.
+    /// The vertex at this point; none if the point lies inside a side.
     pub(super) vertex: Option<u32>,
-    /// A side that it lies on, and the shape functions of that side there.
+    /// A side that contains it, and the shape functions of that side there.
     pub(super) side: u32,
     pub(super) shape: [f64; D],
 }
 
-/// A boundary in lengths of its own size.
+/// A boundary, in units of its own size.
 #[derive(Clone, Debug)]
 pub(super) struct Surface<const D: usize> {
     pub(super) nodes: usize,
-    /// Vertices of each side, with the solid behind it.
+    /// The vertices of each side, oriented with the solid behind it.
     pub(super) facets: Vec<[u32; D]>,
     pub(super) sides: Vec<Side<D>>,
     /// The number of the traction at each corner of each side.
     pub(super) corners: Vec<[u32; D]>,
-    /// One for each traction.
+    /// One source for each traction.
     pub(super) sources: Vec<Source<D>>,
-    /// The vertices about their mean, in units of the size.
+    /// The vertices relative to their mean, in units of the size.
     pub(super) points: Vec<[f64; D]>,
-    /// The length of the diagonal of its box [m], and the mean of its vertices [m].
+    /// The length of the diagonal of the bounding box [m], and the mean of the vertices [m].
     pub(super) size: f64,
     pub(super) center: [f64; D],
-    /// How many sides were turned, so that the solid is behind each.
+    /// The number of sides whose orientation was reversed so that the solid is behind each.
     pub(super) turned: usize,
 }
 
 impl<const D: usize> Surface<D> {
-    /// Takes the boundary of a mesh; the solid is inside, or all around.
+    /// Takes the boundary of a mesh; the solid is inside, or with `exterior` all around.
     pub(super) fn of(mesh: &Mesh<D>, exterior: bool) -> Result<Surface<D>, Refusal> {
         let nodes = mesh.nodes();
         if mesh.facets.is_empty() {
@@ -64,7 +65,7 @@ impl<const D: usize> Surface<D> {
         let mut center = [0.0; D];
         for x in &mesh.positions {
             for d in 0..D {
-                // From a corner on, so that bodies far from the origin keep their digits.
+                // Relative to a corner, so that bodies far from the origin keep their digits.
                 center[d] += (x[d] - low[d]) / nodes as f64;
             }
         }
@@ -89,7 +90,7 @@ impl<const D: usize> Surface<D> {
         Ok(surface)
     }
 
-    /// Gives every smooth part at every vertex a traction, and a point for its equation.
+    /// Assigns every smooth part at every vertex a traction and a collocation point.
     fn number_tractions(&mut self) {
         let mut around: Vec<Vec<(u32, usize)>> = vec![Vec::new(); self.nodes];
         for (number, facet) in self.facets.iter().enumerate() {
@@ -104,7 +105,7 @@ impl<const D: usize> Surface<D> {
                 for (facet, corner) in part {
                     self.corners[*facet as usize][*corner] = number;
                 }
-                // The side with the widest angle: there is most room in it.
+                // The side with the widest angle, which has the most room.
                 let mut widest = part[0];
                 let mut least = 2.0;
                 for own in part {
@@ -128,13 +129,13 @@ impl<const D: usize> Surface<D> {
         }
     }
 
-    /// The sides around a vertex by smooth parts, each by its first side.
+    /// Groups the sides around a vertex by smooth parts, in the order of their first sides.
     fn smooth_parts(&self, vertex: u32, around: &[(u32, usize)]) -> Vec<Vec<(u32, usize)>> {
         let mut part: Vec<usize> = (0..around.len()).collect();
         for a in 0..around.len() {
             for b in a + 1..around.len() {
                 let (own, other) = (around[a].0 as usize, around[b].0 as usize);
-                // In the plane the vertex is all they share; in space it is an edge from the vertex.
+                // In the plane they share only the vertex; in space, an edge from the vertex.
                 let shared = self.facets[own].iter().filter(|node| self.facets[other].contains(node)).count();
                 let cosine: f64 = (0..D).map(|d| self.sides[own].normal[d] * self.sides[other].normal[d]).sum();
                 if shared >= D - 1 && cosine >= COSINE_OF_SMOOTH {
@@ -154,7 +155,7 @@ impl<const D: usize> Surface<D> {
         parts
     }
 
-    /// The cosine of the angle of a side at a corner; the same of all edges.
+    /// The cosine of the angle of a side at a corner; in the plane the same for all edges.
     fn cosine_at(&self, (facet, corner): (u32, usize)) -> f64 {
         if D == 2 {
             return 0.0;
@@ -168,7 +169,7 @@ impl<const D: usize> Surface<D> {
     }
 }
 
-/// A side by its corners.
+/// Makes a side from its corners.
 fn side<const D: usize>(corners: &[[f64; D]; D]) -> Side<D> {
     let arm = |k: usize| -> [f64; D] { core::array::from_fn(|d| corners[k][d] - corners[0][d]) };
     let mut normal = [0.0; D];
@@ -197,8 +198,8 @@ fn bounds<const D: usize>(positions: &[[f64; D]]) -> ([f64; D], [f64; D]) {
     (low, high)
 }
 
-/// The facets with the solid behind each, and how many were turned: a closed boundary inside another one is a cavity, whatever way it
-/// faces.
+/// Orients the facets with the solid behind each, and returns how many were reversed. A closed boundary inside another one is a
+/// cavity, whatever its orientation.
 fn oriented<const D: usize>(mesh: &Mesh<D>, exterior: bool) -> Result<(Vec<[u32; D]>, usize), Refusal> {
     let components = mesh.components()?;
     let of = |component: &opruga_mesh::Component| -> Vec<[u32; D]> {
@@ -218,7 +219,7 @@ fn oriented<const D: usize>(mesh: &Mesh<D>, exterior: bool) -> Result<(Vec<[u32;
             return Err(Refusal::NestedExterior { facet: component.facets[0] });
         }
         solids += usize::from(!is_inside);
-        // Normals point out of the solid. That of the medium around a boundary is turned by who asks for it.
+        // Normals point out of the solid. For the medium around a boundary, the caller reverses the normal.
         if (component.signed_volume > 0.0) == is_inside {
             turned += component.facets.len();
             component.facets.iter().for_each(|facet| facets[*facet as usize].swap(0, 1));
@@ -253,7 +254,7 @@ fn refuse_degenerate<const D: usize>(mesh: &Mesh<D>) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// Refuses boundaries that meet themselves.
+/// Refuses boundaries that intersect themselves.
 fn refuse_crossing<const D: usize>(mesh: &Mesh<D>) -> Result<(), Refusal> {
     if D == 3 {
         let lifted = Mesh::<3> {

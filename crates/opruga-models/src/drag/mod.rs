@@ -1,12 +1,12 @@
 //! # Drag
 //!
-//! Every node is braked in proportion to its mass and velocity, as in a thin, resting air:
+//! Every node is braked in proportion to its mass and velocity, as in thin air at rest:
 //!
 //! f_i = −λ m_i v_i, so a_i = −λ v_i and v falls as e^(−λt).
 //!
-//! By design it brakes rigid motion as well: a falling body tends to the speed g/λ, a flying one loses momentum. Where
-//! only oscillations are to die out, damping along springs or of bending is the right choice; they are zero under rigid
-//! motion. There is no energy, and dissipated power is λ Σ m v². Also known as mass-proportional (Rayleigh) damping.
+//! By design it brakes rigid motion as well: a falling body tends to the speed g/λ, and a flying body loses momentum. To damp
+//! oscillations alone, use the damping of springs or of bending, which is zero under rigid motion. Drag has no energy; the
+//! dissipated power is λ Σ m v². Also known as mass-proportional (Rayleigh) damping.
 
 mod spec;
 
@@ -85,7 +85,7 @@ impl<const D: usize> Work for Force<'_, '_, '_, D> {
         let mut power = P::from_array(*tile.power);
         for index in tile.range.clone().step_by(WIDTH) {
             let strength = drag.rate.load::<P>(index) * drag.mass.load::<P>(index);
-            // Indices behind the last node carry nothing.
+            // Indices after the last node carry no force.
             let strength = P::select(P::first(end.saturating_sub(index)), strength, P::zero());
             for d in 0..D {
                 let v = P::load(&view.v[d][index..]);

@@ -1,4 +1,4 @@
-//! From the cells of a mesh to a solid, and what is refused on the way.
+//! Builds a solid from the cells of a mesh, and refuses bad input.
 
 use super::elements::{Cell, Shape, rest_gradient};
 use super::mass;
@@ -13,17 +13,17 @@ use opruga_core::error::BuildError;
 use opruga_core::potential::Ingredients;
 use opruga_mesh::Mesh;
 
-/// det ∂X/∂ξ below this fraction of the cube (square) of the longest edge is no volume.
+/// Below this fraction of the cube (square) of the longest edge, det ∂X/∂ξ counts as no volume.
 const NO_VOLUME: f64 = 1e-12;
 
-/// What is the same for all cells while a solid is built.
+/// The data that are common to all cells while a solid is built.
 pub(super) struct Builder<'a, const D: usize> {
     ingredients: &'a Ingredients<'a, D>,
-    /// Which cells are of this material.
+    /// Which cells have this material.
     chosen: Vec<bool>,
     numbers: Numbers<'a>,
     pub(super) stress: bool,
-    /// The density [kg/m³, in the plane per area] of every cell where the mass matrix is consistent.
+    /// The density [kg/m³, in the plane per area] of every cell, if the mass matrix is consistent.
     density: Option<Vec<f64>>,
 }
 
@@ -66,12 +66,12 @@ impl<'a, const D: usize> Builder<'a, D> {
         Ok(if self.numbers.heated { &entry.heated } else { &entry.cold })
     }
 
-    /// What holds for linear simplices near incompressibility.
+    /// How linear simplices near incompressibility are treated.
     fn locking(&self) -> &str {
         self.ingredients.values[0].text("locking").unwrap_or("refuse")
     }
 
-    /// The section of one kind of cells, the first of which has the number `first` in the mesh.
+    /// Adds a section of one kind of cells; the first of them has the number `first` in the mesh.
     pub(super) fn add<E: Shape<D, N>, const N: usize>(
         &self,
         built: &mut Built<D>,
@@ -146,7 +146,7 @@ impl<'a, const D: usize> Builder<'a, D> {
         Ok(())
     }
 
-    /// Refuses a cell that is flat or turned inside out at rest; returns its volume, in the plane its area.
+    /// Refuses a cell that is flat or inverted at rest; returns its volume, in the plane its area.
     fn check<E: Shape<D, N>, const N: usize>(&self, cell: &Cell<N>, positions: &[[f64; D]]) -> Result<f64, BuildError> {
         let rest: [[f64; D]; N] = cell.nodes.map(|n| positions[n as usize]);
         let mut longest = 0.0;
@@ -158,7 +158,7 @@ impl<'a, const D: usize> Builder<'a, D> {
         }
         let size = longest.sqrt();
         let least = NO_VOLUME * (0..D).map(|_| size).product::<f64>();
-        // Boxes are looked at in the middle too.
+        // Boxes are checked at the centre too.
         let middle = E::BOX.then(|| E::at([0.0; 3]).1);
         let mut measure = 0.0;
         for (slopes, weight) in E::SLOPES.iter().chain(&middle).zip(E::WEIGHTS.iter().chain(&[0.0])) {
@@ -174,7 +174,7 @@ impl<'a, const D: usize> Builder<'a, D> {
             }
             measure += weight * determinant;
         }
-        // A quadratic cell may be folded where no point of its own lies.
+        // A quadratic cell may be folded at a point that is not an integration point.
         let folded = if E::BOX || E::SIMPLEX { None } else { opruga_mesh::least_jacobian(&rest) };
         if let Some(found) = folded.map(|jacobian| jacobian.found).filter(|found| *found < -least) {
             let (cell, nodes) = (cell.number, format!("{:?}", cell.nodes));
@@ -196,7 +196,7 @@ impl<'a, const D: usize> Builder<'a, D> {
     }
 }
 
-/// The density of every cell [kg/m³, in the plane per area], where they do not differ from the masses of the nodes.
+/// The density of every cell [kg/m³, in the plane per area]: as given, or else the total mass over the measure.
 fn densities<const D: usize>(ingredients: &Ingredients<D>) -> Result<Vec<f64>, BuildError> {
     if let Some(densities) = ingredients.densities {
         let depth = if D == 2 { ingredients.thickness } else { 1.0 };
@@ -210,7 +210,7 @@ fn densities<const D: usize>(ingredients: &Ingredients<D>) -> Result<Vec<f64>, B
     ])
 }
 
-/// That a mesh has no group of cells of a name.
+/// The refusal of a group that the mesh does not have.
 fn no_group<const D: usize>(mesh: &Mesh<D>, name: &str) -> Refusal {
     let (name, names) = (name.to_string(), mesh.cell_groups.keys().map(|n| format!("`{n}`")).collect::<Vec<_>>());
     match names.is_empty() {

@@ -1,4 +1,4 @@
-//! Tangents at the points of elements to the blocks of their matrices, for every set of vector instructions.
+//! Contracts tangents at the points of elements to the blocks of their matrices, for every set of vector instructions.
 
 use super::elements::Shape;
 use super::group::Group;
@@ -8,11 +8,11 @@ use core::marker::PhantomData;
 use opruga_math::matrix::{self, Matrix};
 use opruga_math::{Lane, Pack, Register, WIDTH, Work};
 
-/// Tangents at the points of one pack of elements to blocks K_ab, a ≤ b, `[(a N + b)][i][k]` packs.
+/// Contracts tangents at the points of one pack of elements to blocks K_ab, a ≤ b, `[(a N + b)][i][k]` packs.
 pub(super) struct Contract<'a, E, const D: usize, const N: usize> {
     pub(super) shape: PhantomData<E>,
     pub(super) group: Group<'a>,
-    /// Which pack of the group.
+    /// The index of the pack in the group.
     pub(super) pack: usize,
     /// D⁴ packs for every pack of points.
     pub(super) tangent: &'a [f64],
@@ -23,7 +23,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Contract<'_, E, D,
     type Output = ();
     #[inline(always)]
     fn run<P: Pack>(self) {
-        // The first node of a simplex has what the others leave.
+        // The blocks of the first node of a simplex follow from the others.
         let start = usize::from(E::SIMPLEX);
         let pack = self.group.first + self.pack;
         let tangents = &self.tangent[self.pack * self.group.points * D * D * D * D * WIDTH..];
@@ -83,7 +83,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Contract<'_, E, D,
     }
 }
 
-/// The blocks of the first node of a simplex: sums over b of K_ab are zero.
+/// Computes the blocks of the first node of a simplex: the sums over b of K_ab are zero.
 #[inline(always)]
 fn complete<R: Register, const D: usize, const N: usize>(blocks: &mut [[Matrix<R, D>; N]; N]) {
     for b in 1..N {
@@ -110,12 +110,12 @@ fn complete<R: Register, const D: usize, const N: usize>(blocks: &mut [[Matrix<R
 
 /// The same for simplices from tangents in the frame of the singular vectors, F = U diag(σ) Vᵀ.
 ///
-/// With ĝ = Vᵀ ∂N/∂X the block K_ab is U K̂ Uᵀ, where K̂ᵢₖ = Hᵢₖ ĝᵃᵢ ĝᵇₖ + Tᵢₖ ĝᵃₖ ĝᵇᵢ off the diagonal and
-/// K̂ᵢᵢ = Hᵢᵢ ĝᵃᵢ ĝᵇᵢ + Σⱼ Sᵢⱼ ĝᵃⱼ ĝᵇⱼ on it: D⁴ numbers are never written out.
+/// With ĝ = Vᵀ ∂N/∂X the block K_ab is U K̂ Uᵀ, where K̂ᵢₖ = Hᵢₖ ĝᵃᵢ ĝᵇₖ + Tᵢₖ ĝᵃₖ ĝᵇᵢ off the diagonal and K̂ᵢᵢ = Hᵢᵢ ĝᵃᵢ ĝᵇᵢ +
+/// Σⱼ Sᵢⱼ ĝᵃⱼ ĝᵇⱼ on it, so the D⁴ numbers are never written out.
 pub(super) struct ContractPrincipal<'a, E, const D: usize, const N: usize> {
     pub(super) shape: PhantomData<E>,
     pub(super) group: Group<'a>,
-    /// Which pack of the group.
+    /// The index of the pack in the group.
     pub(super) pack: usize,
     /// As [`crate::materials::law::Law::principal`] writes them.
     pub(super) principal: &'a [f64],
@@ -141,7 +141,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for ContractPrincipal<
                 for i in 0..D {
                     left[i] = measure * left[i];
                 }
-                // What of K̂ does not depend on b.
+                // The part of K̂ that does not depend on b.
                 let mut own = second;
                 let mut other = pairs;
                 let mut along = pairs;
@@ -189,11 +189,11 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for ContractPrincipal<
 pub(super) struct ContractInvariants<'a, E, const D: usize, const N: usize> {
     pub(super) shape: PhantomData<E>,
     pub(super) group: Group<'a>,
-    /// Which pack of the group.
+    /// The index of the pack in the group.
     pub(super) pack: usize,
     /// Deformation gradients.
     pub(super) gradient: &'a [f64],
-    /// As [`crate::materials::law::Form::Invariants`] says.
+    /// As described at [`crate::materials::law::Form::Invariants`].
     pub(super) invariants: &'a [f64],
     pub(super) blocks: &'a mut [f64],
 }
@@ -228,7 +228,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for ContractInvariants
                     let block = &mut blocks[a + 1][b + 1];
                     for i in 0..D {
                         for k in 0..D {
-                            // What is symmetric is so to the bit.
+                            // Symmetric blocks are symmetric to the bit.
                             block[i][k] = if a == b && k < i {
                                 block[k][i]
                             } else {
@@ -252,7 +252,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for ContractInvariants
     }
 }
 
-/// Adds s εᵢₖₘ wₘ with w = F (a × b); in the plane, where F has nothing to do with it, the same of vectors along it.
+/// Adds s εᵢₖₘ wₘ with w = F (a × b). In the plane F has no part in it: the product is along the normal of the plane.
 #[inline(always)]
 fn add_turn<R: Register, const D: usize>(block: &mut Matrix<R, D>, s: R, f: &Matrix<R, D>, a: &[R; D], b: &[R; D]) {
     let cross = |i: usize, j: usize| a[i] * b[j] - a[j] * b[i];

@@ -1,4 +1,4 @@
-//! The elements: shape functions on reference cells, and the points where they are integrated.
+//! The elements: shape functions on reference cells, and their integration points.
 //!
 //! Nodes are numbered as in [`opruga_mesh::Cells`]. Reference simplices have the corner 0 at the origin and the others at the
 //! unit vectors; reference boxes are [−1, 1]ᴰ.
@@ -14,7 +14,7 @@ pub(super) trait Shape<const D: usize, const N: usize>: Copy + Debug + Send + Sy
     const WEIGHTS: &'static [f64];
     /// ∂Nₐ/∂ξ at the points, `[point][node][axis]`.
     const SLOPES: &'static [[[f64; D]; N]];
-    /// Corners: D + 1 are those of a simplex.
+    /// The number of corners; D + 1 in a simplex.
     const CORNERS: usize;
     /// The shape functions and ∂Nₐ/∂ξ at a point of the reference cell.
     fn at(xi: [f64; 3]) -> ([f64; N], [[f64; D]; N]);
@@ -22,13 +22,13 @@ pub(super) trait Shape<const D: usize, const N: usize>: Copy + Debug + Send + Sy
     fn lumped() -> [f64; N] {
         [1.0 / N as f64; N]
     }
-    /// Whether ∂x/∂ξ is made of differences to the first node.
+    /// Whether ∂x/∂ξ is computed from differences to the first node.
     const SIMPLEX: bool;
-    /// Whether bending has the strain that [`super::boxes`] assumes.
+    /// Whether bending has the assumed strain of [`super::boxes`].
     const BOX: bool = false;
 }
 
-/// What an element is made of, for its section.
+/// An element, as its section needs it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cell<const N: usize> {
     /// Its number in the mesh.
@@ -231,7 +231,7 @@ const fn box_slopes<const D: usize, const N: usize>(at: [f64; 3]) -> [[f64; D]; 
     out
 }
 
-/// Slopes at Gauss's two points per axis.
+/// Slopes at the two Gauss points per axis.
 const fn gauss_slopes<const D: usize, const N: usize>() -> [[[f64; D]; N]; N] {
     // 1/√3.
     let gauss = 0.577_350_269_189_625_8;
@@ -279,7 +279,7 @@ impl Shape<3, 8> for Hexahedron {
 mod tests {
     use super::*;
 
-    /// Slopes of every point sum to zero, and reproduce ξ from the nodes of the reference cell.
+    /// The slopes at every point sum to zero, and reproduce ξ from the nodes of the reference cell.
     fn reproduces<E: Shape<D, N>, const D: usize, const N: usize>(nodes: [[f64; D]; N]) {
         assert_eq!((E::SLOPES.len(), E::WEIGHTS.len()), (E::POINTS, E::POINTS));
         for slopes in E::SLOPES {

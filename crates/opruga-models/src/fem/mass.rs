@@ -1,8 +1,8 @@
-//! The consistent mass matrix of cells: ρ ∫ Nₐ Nᵦ dX, less the lumped masses of the cell.
+//! The consistent mass matrix of cells: ρ ∫ Nₐ Nᵦ dX, minus the lumped masses of the cell.
 
 use super::elements::{Shape, rest_gradient};
 
-/// Gauss's points and weights on [0, 1], exact to degree 7.
+/// Gauss points and weights on [0, 1], exact to degree 7.
 const GAUSS: [(f64, f64); 4] = [
     (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
     (0.330_009_478_207_571_9, 0.326_072_577_431_273_1),
@@ -10,8 +10,8 @@ const GAUSS: [(f64, f64); 4] = [
     (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
 ];
 
-/// Points and weights of a reference cell: products of Gauss's, for simplices with a side of the box drawn together to a
-/// point (Duffy 1982), which integrates Nₐ Nᵦ of curved quadratic cells exactly too.
+/// Points and weights of a reference cell: products of Gauss points. For simplices a side of the box is collapsed to a point
+/// (Duffy 1982), which also integrates Nₐ Nᵦ of curved quadratic cells exactly.
 fn points<const D: usize>(simplex: bool) -> Vec<([f64; 3], f64)> {
     let mut out = Vec::new();
     for number in 0..GAUSS.len().pow(D as u32) {
@@ -57,7 +57,7 @@ pub(super) fn of_cell<E: Shape<D, N>, const D: usize, const N: usize>(rest: &[[f
     out
 }
 
-/// Entries of the consistent mass matrix of a cell of a density, less its lumped masses: as
+/// Entries of the consistent mass matrix of a cell with a given density, minus its lumped masses, as
 /// [`opruga_core::potential::Potential::inertia`] gives them.
 pub(super) fn entries<E: Shape<D, N>, const D: usize, const N: usize>(
     nodes: &[u32; N],
@@ -81,7 +81,7 @@ mod tests {
     use super::super::elements::*;
     use super::*;
 
-    /// The corners of a reference cell, moved by a quadratic map that keeps straight cells straight where `bend` is zero.
+    /// The corners of a reference cell, moved by a quadratic map that keeps straight cells straight if `bend` is zero.
     fn cell<E: Shape<D, N>, const D: usize, const N: usize>(nodes: [[f64; D]; N], bend: f64) -> [[f64; D]; N] {
         nodes.map(|x| {
             core::array::from_fn(|i| {
@@ -91,7 +91,7 @@ mod tests {
         })
     }
 
-    /// Row sums are ∫ Nₐ; a linear field has the exact ∫ x² of a cell, which lumped masses of linear cells overestimate.
+    /// Row sums are ∫ Nₐ. A linear field has the exact ∫ x² of a cell, which lumped masses of linear cells overestimate.
     fn check<E: Shape<D, N>, const D: usize, const N: usize>(nodes: [[f64; D]; N], square: f64) {
         let matrix = of_cell::<E, D, N>(&nodes);
         let mut found = 0.0;

@@ -1,30 +1,31 @@
 //! # Finite elements
 //!
-//! A solid whose energy is that of its points (Bonet and Wood 2008; Zienkiewicz and Taylor 2005): with the shape functions
-//! Nₐ of a cell x = Σ Nₐ(ξ) xₐ, and at each integration point of the measure V
+//! A solid whose energy is a sum over integration points (Bonet and Wood 2008; Zienkiewicz and Taylor 2005). With the shape
+//! functions Nₐ of a cell, x = Σ Nₐ(ξ) xₐ, and at each integration point with the measure V
 //!
 //! F = ∂x/∂X = (Σ xₐ ⊗ ∂Nₐ/∂ξ)(∂X/∂ξ)⁻¹,  U = Σ V ψ(F),  fₐ = −Σ V P(F) ∂Nₐ/∂X,  Kₐᵦ = Σ V ∂Nₐ/∂X · ∂P/∂F · ∂Nᵦ/∂X.
 //!
 //! | cell | points | locks |
 //! |---|---|---|
-//! | triangle, tetrahedron | 1 | in bending; near incompressibility unless volumes are those of nodes (file `nodal_volume`): refused above ν = 0.45 |
+//! | triangle, tetrahedron | 1 | in bending; near incompressibility unless the nodes resist the volume (file `nodal_volume`): refused above ν = 0.45 |
 //! | quadrilateral, hexahedron | 4, 8, and the mean above ν = 1/3 | no |
 //! | quadratic triangle, tetrahedron | 3, 4 | no |
 //!
-//! Quadrilaterals and hexahedra have a mean deformation gradient (Flanagan and Belytschko 1981, so that patches of any cells are
-//! exact). How they bend and twist besides is the strain that assumed stresses have at small strain (Pian and Sumihara 1984, Pian
-//! and Tong 1986), carried along by the mean, and the law is asked at Gauss's points with that: see the folder `boxes`. A rectangular cell bends exactly for every ν, in plane strain, plane stress and space.
+//! Quadrilaterals and hexahedra have a mean deformation gradient (Flanagan and Belytschko 1981), so that patches of arbitrary
+//! cells are exact. Bending and twisting add the small strain of assumed stresses (Pian and Sumihara 1984, Pian and Tong 1986),
+//! transformed by the mean gradient, and the law is evaluated with that strain at the Gauss points: see the folder `boxes`. A
+//! rectangular cell bends exactly for every ν, in plane strain, plane stress and space.
 //!
-//! **Materials** are functions of F in a file each: see [`crate::materials`].
+//! **Materials** are functions of F, one file each: see [`crate::materials`].
 //!
-//! **Damping** is that of Kelvin and Voigt: P = F S, S = τ (2μ Ė + λ tr Ė 1), Ė = sym FᵀḞ; zero under rigid motion.
+//! **Damping** is of the Kelvin–Voigt type: P = F S, S = τ (2μ Ė + λ tr Ė 1), Ė = sym FᵀḞ; zero under rigid motion.
 //!
-//! **Heat**: a point that has grown by g = 1 + α ΔT has the energy g³ ψ(F/g), under the law of small strain ψ(ε − αΔT 1) (file
-//! `materials/heat`); where nothing expands, nothing of that is computed.
+//! **Heat**: a point that has expanded by the factor g = 1 + α ΔT has the energy g³ ψ(F/g), or ψ(ε − αΔT 1) under the law of
+//! small strain (file `materials/heat`). Without expansion none of this is computed.
 //!
-//! Limits: energies of quadratic cells are integrated at points of degree 2, exact for straight sides and linear laws. Boxes bend
-//! at small strain as Hooke's law of their E and ν lets them; how much a bent cell swells across is taken from there in all states.
-//! Corotated laws have no unique rotation, and so no unique force, where the two smallest stretches are opposite.
+//! Limits: energies of quadratic cells are integrated at points of degree 2, exact for straight sides and linear laws. At small
+//! strain, boxes bend according to Hooke's law with their E and ν; this also determines, in all states, how much a bent cell
+//! swells across. Corotated laws have no unique rotation, and so no unique force, if the two smallest stretches are opposite.
 
 mod boxes;
 mod builder;

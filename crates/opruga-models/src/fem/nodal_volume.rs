@@ -1,17 +1,19 @@
 //! Volumes of nodes, for linear triangles and tetrahedra near incompressibility.
 //!
-//! A cell of one point cannot keep its volume and bend too: there are more cells than nodes have axes. So what resists volume
-//! beyond λ′ = min(λ, 2μ) sees the volumes of nodes instead, of which there are fewer (Bonet and Burton 1998). A node has of
-//! every cell around it an equal share, V/(D + 1), and
+//! Cells with one integration point cannot both bend and keep their volume, because there are more cells than degrees of freedom.
+//! So the volumetric stiffness beyond λ′ = min(λ, 2μ) acts on the volumes of nodes instead, of which there are fewer (Bonet and
+//! Burton 1998). A node has an equal share V/(D + 1) of every cell around it, and
 //!
 //! U = Σₐ ½ κₐ Vₐ (Jₐ − 1)²,  Jₐ = Σ share · det F / Vₐ,  Vₐ = Σ share,  κₐ = Σ share · (λ − λ′) / Vₐ.
 //!
-//! In every cell that is a stress p in all directions, the mean of κₐ (Jₐ − 1) over its corners, with P = p cof F. Under `linear` det F is 1 + tr (F − 1).
+//! In every cell this is an isotropic stress p, the mean of κₐ (Jₐ − 1) over its corners, with P = p cof F. Under `linear` det F
+//! is 1 + tr (F − 1).
 //!
-//! All cells are asked for their J first, then every node sums up those around it, then cells are worked on as they always are, with
-//! p cof F beside the stress of their law ([`super::pressures`]).
+//! First J is computed for all cells, then every node sums over the cells around it. Then the cells are evaluated as usual, with
+//! p cof F added to the stress of their law ([`super::pressures`]).
 //!
-//! Its second derivatives tie every node to those of all cells that share a cell with it: wide rows, no matrix of cells.
+//! The second derivatives couple every node with all nodes of the cells around its neighbours. They form wide rows and are not
+//! matrices of cells.
 
 use super::elements::rest_gradient;
 use super::numbers::beyond;
@@ -21,13 +23,13 @@ use opruga_core::threads::each_part;
 use opruga_math::WIDTH;
 use opruga_math::matrix::{self, Matrix};
 
-/// The cells of a body whose nodes resist their volume.
+/// The cells of a body whose nodes resist changes of volume.
 #[derive(Debug)]
 pub(super) struct NodalVolumes<const D: usize> {
     layout: Layout,
-    /// Whether the law knows of rotations.
+    /// Whether the law accounts for rotations.
     turns: bool,
-    /// Nodes of the body.
+    /// The number of nodes of the body.
     nodes: usize,
     cells: Vec<Simplex>,
     /// ∂Nₐ/∂X of the corners of the cells, D + 1 each [1/m].
@@ -36,19 +38,19 @@ pub(super) struct NodalVolumes<const D: usize> {
     volumes: Vec<f64>,
     /// κₐ [Pa], node by node and body by body.
     moduli: Vec<f64>,
-    /// The cells around each node: where its list begins, and the lists.
+    /// The cells around each node: the start of its list, and the lists.
     start: Vec<u32>,
     around: Vec<u32>,
-    /// Where J − 1 of these lies, once it is known.
+    /// The location of J − 1 of these cells, once it is known.
     grown: Vec<u32>,
-    /// Where the energies and pressures of every block of nodes begin.
+    /// The start of the energies and pressures of every block of nodes.
     starts: Vec<usize>,
 }
 
-/// Nodes that one thread works on at a time.
+/// The number of nodes that one thread processes at a time.
 const BLOCK: usize = 512;
 
-/// Pressures of nodes [Pa].
+/// The pressures of the nodes [Pa].
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Pressures<'a> {
     scratch: &'a [f64],
@@ -59,7 +61,7 @@ impl<'a> Pressures<'a> {
     pub(super) fn is_empty(&self) -> bool {
         self.scratch.is_empty()
     }
-    /// Those of a node, body by body.
+    /// The pressures of a node, body by body.
     #[inline(always)]
     pub(super) fn of(&self, node: usize) -> &'a [f64] {
         let block = node / BLOCK * (WIDTH + BLOCK * self.bodies) + WIDTH;
@@ -72,14 +74,14 @@ impl<'a> Pressures<'a> {
 struct Simplex {
     /// Its number in the mesh.
     number: u32,
-    /// D + 1 of them.
+    /// The nodes, D + 1 of them.
     nodes: [u32; 4],
-    /// Its measure over D + 1: what each of its corners has of it [m³].
+    /// The measure of the cell over D + 1, the share of each of its corners [m³].
     share: f64,
 }
 
 impl<const D: usize> NodalVolumes<D> {
-    /// Of the cells of a mesh, with μ and λ of a cell of a body.
+    /// From the cells of a mesh, with μ and λ of each cell of each body.
     pub(super) fn new<const N: usize>(
         layout: Layout,
         turns: bool,
@@ -176,7 +178,7 @@ impl<const D: usize> NodalVolumes<D> {
         core::array::from_fn(|i| (0..D).map(|j| cofactors[i][j] * own[j]).sum())
     }
 
-    /// Says where J − 1 of the packs of cells lies in what the cells of a solid leave.
+    /// Sets the location of J − 1 of the packs of cells in the scratch of the cells of a solid.
     pub(super) fn locate(&mut self, grown_at: impl Fn(usize) -> Option<usize>) {
         let offset = |cell: u32| {
             let (pack, lane) = match self.layout {
@@ -188,12 +190,12 @@ impl<const D: usize> NodalVolumes<D> {
         self.grown = self.around.iter().map(|cell| offset(*cell)).collect();
     }
 
-    /// Numbers that [`NodalVolumes::press`] leaves: for every block of nodes energies and pressures.
+    /// The length of the scratch of [`NodalVolumes::press`]: energies and pressures for every block of nodes.
     pub(super) fn scratch_len(&self) -> usize {
         self.starts.len() * (WIDTH + BLOCK * self.bodies())
     }
 
-    /// κₐ (Jₐ − 1) of all nodes, of what their cells have grown by; returns the energies of the bodies [J].
+    /// Computes κₐ (Jₐ − 1) of all nodes from the growth of their cells; returns the energies of the bodies [J].
     pub(super) fn press(&self, threads: usize, grown: &[f64], scratch: &mut [f64]) -> [f64; WIDTH] {
         let bodies = self.bodies();
         each_part(threads, scratch, &self.starts, |block, scratch| {
@@ -226,18 +228,18 @@ impl<const D: usize> NodalVolumes<D> {
         energy
     }
 
-    /// What [`NodalVolumes::press`] has left.
+    /// Returns the results of [`NodalVolumes::press`].
     pub(super) fn pressures<'a>(&self, scratch: &'a [f64]) -> Pressures<'a> {
         Pressures { scratch, bodies: self.bodies() }
     }
 
-    /// The pressure of a cell: the mean of its corners'.
+    /// The pressure of a cell: the mean over its corners.
     fn pressure(&self, cell: &Simplex, pressures: &Pressures<'_>, body: usize) -> f64 {
         let sum: f64 = self.corners(cell).iter().map(|node| pressures.of(*node as usize)[body]).sum();
         sum / (D + 1) as f64
     }
 
-    /// The nodes of all cells around every node.
+    /// Visits, for every node, the nodes of all cells around it.
     pub(super) fn stencils(&self, visit: &mut dyn FnMut(&[u32])) {
         let mut nodes = Vec::new();
         for node in 0..self.nodes {
@@ -251,10 +253,11 @@ impl<const D: usize> NodalVolumes<D> {
         }
     }
 
-    /// Delivers κ V ∂J/∂x ∂J/∂x of every node. What the pressures make of the second derivatives of J comes with the cells.
+    /// Delivers κ V ∂J/∂x ∂J/∂x for every node. The products of the pressures with the second derivatives of J are delivered with
+    /// the cells.
     pub(super) fn hessian(&self, view: &View<D>, sink: &mut dyn Sink<D>) {
         let bodies = self.bodies();
-        // Where a node lies in the list of those around another.
+        // The index of a node in the list of those around another node.
         let mut seat = vec![u32::MAX; self.nodes];
         let mut around: Vec<(usize, [f64; D])> = Vec::new();
         let mut slopes = vec![[0.0; D]; self.slopes.len()];
@@ -280,7 +283,7 @@ impl<const D: usize> NodalVolumes<D> {
                         (0..D).for_each(|d| sum[d] += own.share * slope[d]);
                     }
                 }
-                // ∂J/∂x is that over V.
+                // ∂J/∂x is the sum over V.
                 let factor = self.moduli[node * bodies + body] / self.volumes[node];
                 for (a, u) in &around {
                     for (b, v) in &around {
@@ -293,7 +296,7 @@ impl<const D: usize> NodalVolumes<D> {
         }
     }
 
-    /// Adds its pressure to the stresses of the cells of a body.
+    /// Adds the pressure of the nodes to the stresses of the cells of a body.
     pub(super) fn add_stresses(&self, pressures: &Pressures<'_>, body: usize, states: &mut [CellState]) {
         let mut of_cell = std::collections::BTreeMap::new();
         for cell in &self.cells {

@@ -1,4 +1,4 @@
-//! The numbers of the material of every cell: of the scene, or of the cells of the mesh.
+//! The material parameters of every cell, from the scene or from the cells of the mesh.
 
 use super::SPEC;
 use super::refusals::{Refusal, Simplices};
@@ -7,10 +7,10 @@ use opruga_core::error::BuildError;
 use opruga_core::potential::Ingredients;
 use opruga_core::spec::{Field, Values};
 
-/// Numbers of an element: μ, λ, the material's own, growth by heat, retardation time.
+/// The parameters of an element: μ, λ, the material's own, thermal growth, retardation time.
 pub(super) const NUMBERS: usize = 5;
 
-/// λ − λ′ with λ′ = min(λ, 2μ): what resists volume so much that few cells could keep theirs and bend.
+/// λ − λ′ with λ′ = min(λ, 2μ): the volumetric stiffness that few cells could have at every point and still bend.
 pub(super) fn beyond(mu: f64, lambda: f64) -> f64 {
     if lambda > 2.0 * mu { lambda - 2.0 * mu } else { 0.0 }
 }
@@ -18,8 +18,8 @@ pub(super) fn beyond(mu: f64, lambda: f64) -> f64 {
 /// Poisson's ratio above which linear triangles and tetrahedra are refused.
 const LOCKS_ABOVE: f64 = 0.45;
 
-/// What the mesh may say of its cells: the field of the scene that holds for all cells, and the one that names numbers of the
-/// mesh.
+/// Parameters that the mesh may give per cell: the field of the scene that holds for all cells, and the field that names values
+/// of the mesh.
 pub(super) const YOUNGS_MODULUS: [&str; 2] = ["youngs_modulus", "youngs_modulus_of_cells"];
 const POISSONS_RATIO: [&str; 2] = ["poissons_ratio", "poissons_ratio_of_cells"];
 const DAMPING: [&str; 2] = ["damping", "damping_of_cells"];
@@ -27,9 +27,9 @@ pub(super) const EXPANSION: [&str; 2] = ["thermal_expansion", "thermal_expansion
 const TEMPERATURE: [&str; 2] = ["temperature", "temperature_of_cells"];
 const REFERENCE: [&str; 2] = ["reference_temperature", "reference_temperature_of_cells"];
 
-/// The numbers of the material of all cells.
+/// The material parameters of all cells.
 pub(super) struct Numbers<'a> {
-    /// The fields of every body of a block.
+    /// The fields of every body of a batch.
     values: &'a [&'a Values],
     moduli: Option<&'a [f64]>,
     ratios: Option<&'a [f64]>,
@@ -37,19 +37,19 @@ pub(super) struct Numbers<'a> {
     expansions: Option<&'a [f64]>,
     temperatures: Option<&'a [f64]>,
     references: Option<&'a [f64]>,
-    /// Whether any cell takes energy out.
+    /// Whether any cell dissipates energy.
     pub(super) damped: bool,
-    /// Whether any cell has grown or shrunk by heat.
+    /// Whether any cell has expanded or shrunk thermally.
     pub(super) heated: bool,
 }
 
 impl<'a> Numbers<'a> {
-    /// The numbers of the chosen cells, within their ranges.
+    /// The parameters of the chosen cells, checked against their ranges.
     pub(super) fn new<const D: usize>(
         ingredients: &'a Ingredients<'a, D>,
         chosen: &[bool],
     ) -> Result<Numbers<'a>, BuildError> {
-        // What the mesh says of its cells is the same for all bodies of a block.
+        // The values that the mesh gives for its cells are the same for all bodies of a batch.
         let first = ingredients.values[0];
         let of = |field| of_cells(ingredients, field, chosen);
         let mut numbers = Numbers {
@@ -81,7 +81,7 @@ impl<'a> Numbers<'a> {
         Ok(numbers)
     }
 
-    /// μ, λ, the material's own number, the growth by heat and the retardation time of a cell of a body.
+    /// μ, λ, the material's own parameter, the thermal growth and the retardation time of a cell of a body.
     pub(super) fn of(&self, cell: u32, body: usize) -> [f64; NUMBERS] {
         let modulus = self.number(YOUNGS_MODULUS[0], self.moduli, cell, body);
         let ratio = self.ratio(cell, body);
@@ -105,7 +105,7 @@ impl<'a> Numbers<'a> {
     fn ratio(&self, cell: u32, body: usize) -> f64 {
         self.number(POISSONS_RATIO[0], self.ratios, cell, body)
     }
-    /// T and T₀ [K]: a body of which nothing is said has the temperature of rest.
+    /// T and T₀ [K]. If no temperature is given, T is the reference temperature.
     fn temperatures(&self, cell: u32, body: usize) -> [f64; 2] {
         let reference = self.number(REFERENCE[0], self.references, cell, body);
         let own = || self.values[body.min(self.values.len() - 1)].number(TEMPERATURE[0]).unwrap_or(reference);
@@ -131,7 +131,7 @@ impl<'a> Numbers<'a> {
     }
 }
 
-/// The numbers of the mesh that a field names, which for the chosen cells must lie in the range of the field they stand for.
+/// The values of the mesh that a field names. For the chosen cells they must be in the range of the field that they replace.
 fn of_cells<'a, const D: usize>(
     ingredients: &'a Ingredients<'a, D>,
     [field, of_cells]: [&'static str; 2],

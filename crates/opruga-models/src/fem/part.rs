@@ -1,4 +1,4 @@
-//! A section as a solid sees it: shares that are evaluated side by side, matrices, states of cells.
+//! The interface of a section to its solid: shares that are evaluated in parallel, matrices, states of cells.
 
 use super::elements::{Cell, Shape};
 use super::nodal_volume::Pressures;
@@ -16,12 +16,12 @@ use opruga_math::{ROW, Simd, WIDTH};
 
 /// A section, whatever its elements.
 pub(super) trait Part<const D: usize>: Send + Sync + Debug {
-    /// The shares, which may be evaluated side by side.
+    /// The shares, which may be evaluated in parallel.
     fn shares(&self) -> &[Share];
-    /// The nodes of every element.
+    /// Visits the nodes of every element.
     fn stencils(&self, visit: &mut dyn FnMut(&[u32]));
-    /// Numbers that the evaluation of a share leaves: energies [J] and powers [W] of the bodies, forces [N] (−∂U/∂x and
-    /// damping), and copies of what it read. For one body the forces of a node are a row, for eight a pack for every axis.
+    /// The length of the scratch of a share: energies [J] and powers [W] of the bodies, forces [N] (−∂U/∂x and damping), and
+    /// copies of the data read. For one body the forces of a node are a row; for eight, a pack for every axis.
     fn scratch_len(&self, share: &Share) -> usize;
     /// Evaluates the elements of a share.
     fn evaluate(
@@ -32,11 +32,11 @@ pub(super) trait Part<const D: usize>: Send + Sync + Debug {
         pressures: Pressures<'_>,
         scratch: &mut [f64],
     ) -> Result<(), StepError>;
-    /// Leaves J − 1 of the elements of a share in its scratch, where their nodes resist volume.
+    /// Writes J − 1 of the elements of a share to its scratch, if their nodes resist volume.
     fn grow(&self, share: &Share, simd: Simd, view: &View<D>, scratch: &mut [f64]);
-    /// Where that of a pack lies in the scratch of the section, if it does.
+    /// The location of J − 1 of a pack in the scratch of the section, if it is there.
     fn grown_at(&self, pack: usize) -> Option<usize>;
-    /// Delivers ∂²U/∂x∂x, after all shares were evaluated in the same state.
+    /// Delivers ∂²U/∂x∂x, after all shares have been evaluated in the same state.
     fn hessian(
         &self,
         view: &View<D>,
@@ -45,7 +45,7 @@ pub(super) trait Part<const D: usize>: Send + Sync + Debug {
         keep: Definiteness,
         sink: &mut dyn Sink<D>,
     );
-    /// Delivers −∂F/∂v, likewise.
+    /// Delivers −∂F/∂v, on the same condition.
     fn damping_matrix(&self, view: &View<D>, scratch: &[f64], sink: &mut dyn Sink<D>);
     /// Stress and volume ratio of the cells of a body.
     fn cell_states(&self, view: &View<D>, body: usize, out: &mut Vec<CellState>);
@@ -53,7 +53,7 @@ pub(super) trait Part<const D: usize>: Send + Sync + Debug {
     fn heap_bytes(&self) -> usize;
 }
 
-/// A vector of some nodes in rows.
+/// Copies a vector of some nodes to rows.
 fn to_rows<const D: usize>(columns: &[&[f64]; D], nodes: &[u32], rows: &mut [f64]) {
     for (node, row) in nodes.iter().zip(rows.chunks_exact_mut(ROW)) {
         for d in 0..D {
@@ -103,7 +103,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Part<D> for Section<E, D, N
         if self.layout == Layout::Single {
             to_rows(&view.x, &share.nodes, x);
             to_rows(&view.v, &share.nodes, v);
-            // What a row has more numbers than axes carries the pressure.
+            // The spare number of a row carries the pressure.
             for (node, row) in share.nodes.iter().zip(x.chunks_exact_mut(ROW)).filter(|_| self.nodal) {
                 row[ROW - 1] = pressures.of(*node as usize)[0];
             }

@@ -1,7 +1,7 @@
 //! Passes over the elements of a section: forces, matrices, stresses.
 //!
-//! All of them look at a few packs of elements at a time: deformation gradients into a buffer, a law over the buffer, and
-//! what they are after out of it.
+//! All of them process a few packs of elements at a time: they write deformation gradients to a buffer, apply a law to the
+//! buffer, and compute their results from it.
 
 use super::boxes::{self, Deform, DeformRates, KEPT, Of, Push, Rates};
 use super::contraction::{Contract, ContractInvariants, ContractPrincipal};
@@ -21,10 +21,10 @@ use opruga_core::potential::{CellState, Definiteness, StencilPack, StencilPacks}
 use opruga_core::state::{Layout, View};
 use opruga_math::{Simd, WIDTH};
 
-/// Packs of points whose tangents are held at a time where elements have one point: what fits the first-level cache.
+/// The number of packs of points whose tangents are kept at a time if elements have one point; they fit the first-level cache.
 const TANGENTS: usize = 4;
 
-/// Packs of boxes that are looked at together, at most.
+/// The largest number of packs of boxes that are processed together.
 const MOST_BOXES: usize = 2;
 
 /// A pass, with the buffers that it needs.
@@ -32,7 +32,7 @@ pub(super) struct Pass<'a, E, const D: usize, const N: usize> {
     section: &'a Section<E, D, N>,
     simd: Simd,
     gradient: PackBuffer<{ MOST_PACKS * 9 * WIDTH }>,
-    /// What boxes keep.
+    /// Kept data of boxes.
     kept: PackBuffer<{ MOST_BOXES * KEPT * WIDTH }>,
     numbers: PackBuffer<{ MOST_PACKS * PARAMETERS * WIDTH }>,
     times: PackBuffer<{ MOST_PACKS * WIDTH }>,
@@ -40,7 +40,7 @@ pub(super) struct Pass<'a, E, const D: usize, const N: usize> {
     pressures: PackBuffer<{ MOST_PACKS * WIDTH }>,
 }
 
-/// What a matrix is made of: tangents at the points, or what damping adds.
+/// The quantity whose matrix is computed: tangents at the points, or damping.
 #[derive(Clone, Copy, Debug)]
 enum Matrix {
     Hessian(Definiteness),
@@ -58,7 +58,7 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
             times: PackBuffer([0.0; MOST_PACKS * WIDTH]),
             pressures: PackBuffer([0.0; MOST_PACKS * WIDTH]),
         };
-        // What holds for all elements is written once.
+        // Parameters that hold for all elements are written once.
         if section.uniform && section.packs() > 0 {
             let together = (MOST_PACKS / section.points).max(1);
             pass.read_parameters(&section.group(0, together));
@@ -70,7 +70,7 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
         parameters_of_points(group, E::POINTS, &mut self.numbers.0, &mut self.times.0);
     }
 
-    /// Deformation gradients and parameters at the points of some packs of elements.
+    /// Computes deformation gradients and parameters at the points of some packs of elements.
     fn deform(&mut self, group: &Group<'_>, nodes: Nodes<'_, D>, pressures: Pressures<'_>) {
         let (of, shape, gradient) = (*group, PhantomData, &mut self.gradient.0);
         if E::BOX {
@@ -92,7 +92,7 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
         Points { count: group.packs * group.points, gradient: &self.gradient.0, parameters: &self.numbers.0 }
     }
 
-    /// Adds forces and totals of a share.
+    /// Adds the forces and totals of a share.
     pub(super) fn forces(
         mut self,
         share: &Share,
@@ -161,7 +161,7 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
         Ok(())
     }
 
-    /// Delivers the matrices of the packs of a share that have a node among some.
+    /// Delivers the matrices of those packs of a share that contain any of the given nodes.
     fn assemble(
         &mut self,
         share: &Share,
@@ -189,7 +189,7 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
             }
             self.deform(&group, positions, pressures);
             let points = self.points(&group);
-            // What the pressures make of the second derivatives of J may be negative.
+            // The products of the pressures with the second derivatives of J may be negative.
             let pressed = section.nodal && group.turns && matches!(matrix, Matrix::Hessian(Definiteness::Exact));
             let form = match matrix {
                 Matrix::Hessian(keep) if E::SIMPLEX && !pressed => {
@@ -207,7 +207,7 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
             if pressed {
                 simd.run(PressedTangents::<D> { points, pressures: &self.pressures.0, tangent });
             }
-            // Boxes turn and stretch what their points are under.
+            // Boxes rotate and stretch the strains of their points, so the stress is needed too.
             if E::BOX && matches!(matrix, Matrix::Hessian(Definiteness::Exact)) {
                 section.law.stress(simd, points, &mut density.0, &mut stress.0);
             }
@@ -266,14 +266,14 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
         for group in section.groups(share, 1) {
             self.deform(&group, positions, Pressures::default());
             let points = self.points(&group);
-            // Rows of stresses as they are stored: of three axes where the law in space is asked.
+            // Stresses have three rows and columns if the law in space is evaluated.
             let axes = if let Some(law) = &section.law_in_space {
                 raise::<D>(&self.gradient.0, section.points, &mut in_space.0);
                 law.stress(simd, Points { gradient: &in_space.0, ..points }, &mut density.0, &mut stress.0);
                 3
             } else {
                 section.law.stress(simd, points, &mut density.0, &mut stress.0);
-                // Forces of plane stress go by the rest, Cauchy's stress by the plate as thick as it has become.
+                // Forces in plane stress refer to the rest thickness, the Cauchy stress to the present thickness.
                 section.law.thickness(simd, points, &mut across.0);
                 D
             };
@@ -283,7 +283,7 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
                 let at = |node: u32, axis: usize| positions.columns[axis][section.layout.index(node as usize, body)];
                 let (mut measure, mut sum, mut now) = (0.0, [[0.0; 3]; 3], 0.0);
                 let mut smallest = f64::INFINITY;
-                // What is no number stays.
+                // NaN is kept.
                 let mut look =
                     |ratio: f64| smallest = if ratio < smallest || ratio.is_nan() { ratio } else { smallest };
                 for q in 0..section.points {
@@ -296,13 +296,13 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
                     let matrix: [[f64; 3]; 3] = core::array::from_fn(|i| core::array::from_fn(|j| f(i, j)));
                     let ratio = opruga_math::matrix::determinant(&matrix);
                     look(ratio);
-                    // The mean of a box is its points once more.
+                    // The mean of a box repeats its points, so it does not count again.
                     if q < E::POINTS {
                         measure += weight;
                         now += weight * ratio;
                     }
-                    // ∫ P Fᵀ over the rest shape is ∫ σ over the present one; a law of small motions knows of one shape, and of
-                    // one symmetric stress.
+                    // ∫ P Fᵀ over the rest shape is ∫ σ over the present one. A law of small motions has only one shape and one
+                    // symmetric stress.
                     for i in 0..axes {
                         for j in 0..3 {
                             for k in 0..axes {
@@ -312,7 +312,8 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
                         }
                     }
                 }
-                // Laws of boxes see bending as the mean carries it along, which stays right side out where the cell does not.
+                // In boxes, F at the points contains bending as transformed by the mean. It may have J > 0 where the cell itself
+                // is inverted, so the true J is checked too.
                 for (q, slopes) in E::SLOPES.iter().enumerate().filter(|_| E::BOX) {
                     let side = |i: usize, j: usize| match (i < D, j < D) {
                         (true, true) => (0..N).map(|a| at(cell.nodes[a], i) * slopes[a][j]).sum(),
@@ -326,7 +327,7 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
                 let over = if turns { now } else { measure };
                 let stress = sum.map(|row| row.map(|s| s / over));
                 let (cell, volume_ratio) = (cell.number, now / measure);
-                // A simplex has one J, which the mean rounds.
+                // A simplex has one J; taking it from the mean includes the same rounding.
                 let smallest_volume_ratio = if E::SIMPLEX { volume_ratio } else { smallest };
                 out.push(CellState { cell, stress, volume_ratio, smallest_volume_ratio, measure });
             }
@@ -334,7 +335,7 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
     }
 }
 
-/// The matrices of the elements of a section in the state that was evaluated last.
+/// The matrices of the elements of a section in the last evaluated state.
 #[derive(Debug)]
 pub(super) struct Matrices<'a, E, const D: usize, const N: usize> {
     section: &'a Section<E, D, N>,
@@ -357,7 +358,7 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Matrices<'a, E, D, N> {
     }
     /// −∂F/∂v.
     pub(super) fn damping(section: &'a Section<E, D, N>, view: &'a View<'a, D>, scratch: &'a [f64]) -> Self {
-        // What damps knows no pressures.
+        // Damping does not depend on the pressures.
         Matrices { section, view, pressures: Pressures::default(), scratch, matrix: Matrix::Damping }
     }
 }
@@ -387,7 +388,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> StencilPacks<D> for Matrice
     }
 }
 
-/// Deformation gradients of space in which nothing moves across the plane.
+/// Deformation gradients in space without motion across the plane.
 fn raise<const D: usize>(plane: &[f64], points: usize, space: &mut [f64]) {
     space.fill(0.0);
     for q in 0..points {

@@ -1,4 +1,5 @@
-//! What cells give to the volumes of their nodes, and what their pressures do to cells, for every set of vector instructions.
+//! The contributions of cells to the volumes of their nodes, and the effect of their pressures on cells, for every set of vector
+//! instructions.
 
 use super::elements::Shape;
 use super::group::Group;
@@ -11,12 +12,12 @@ use opruga_core::state::Layout;
 use opruga_math::matrix;
 use opruga_math::{Lane, Pack, ROW, Register, WIDTH, Work};
 
-/// J − 1 of linear simplices; under a law that knows of no rotations tr (F − 1).
+/// J − 1 of linear simplices; under a law that does not account for rotations, tr (F − 1).
 pub(super) struct Growth<'a, E, const D: usize, const N: usize> {
     pub(super) shape: PhantomData<E>,
     pub(super) group: Group<'a>,
     pub(super) nodes: Nodes<'a, D>,
-    /// A pack for every pack.
+    /// One pack for every pack of elements.
     pub(super) grown: &'a mut [f64],
 }
 
@@ -47,7 +48,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Growth<'_, E, D, N
     }
 }
 
-/// The pressures of cells: the means of those of their corners.
+/// The pressures of cells: the means over their corners.
 pub(super) struct Means<'a, E, const D: usize, const N: usize> {
     pub(super) shape: PhantomData<E>,
     pub(super) group: Group<'a>,
@@ -55,7 +56,7 @@ pub(super) struct Means<'a, E, const D: usize, const N: usize> {
     pub(super) nodes: Nodes<'a, D>,
     /// For eight bodies.
     pub(super) pressures: Pressures<'a>,
-    /// A pack for every pack.
+    /// One pack for every pack of elements.
     pub(super) means: &'a mut [f64],
 }
 
@@ -87,7 +88,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Means<'_, E, D, N>
     }
 }
 
-/// Adds p ∂J/∂F to stresses at points, one for each cell.
+/// Adds p ∂J/∂F to stresses at points, with one p for each cell.
 pub(super) struct PressedStress<'a, const D: usize> {
     pub(super) points: Points<'a>,
     pub(super) turns: bool,
@@ -114,7 +115,7 @@ impl<const D: usize> Work for PressedStress<'_, D> {
     }
 }
 
-/// Adds p ∂²J/∂F∂F to tangents at points, one for each cell.
+/// Adds p ∂²J/∂F∂F to tangents at points, with one p for each cell.
 pub(super) struct PressedTangents<'a, const D: usize> {
     pub(super) points: Points<'a>,
     pub(super) pressures: &'a [f64],

@@ -1,4 +1,4 @@
-//! Why a body is no solid of finite elements.
+//! Why a body cannot be a solid of finite elements.
 
 use super::SPEC;
 use opruga_core::error::BuildError;
@@ -16,7 +16,7 @@ messages! {
     /// Why `fem` refuses a body, its parameters or a state.
     #[derive(Clone, Debug, PartialEq)]
     pub enum Refusal {
-        /// Nothing to fill.
+        /// A body without cells.
         "model.no_cells" #[error("the body has no cells: it is an outline, a surface or a chain")]
         #[allowed("filled shapes: `grid`, shapes from files with a `filling`, and volume meshes")]
         NoCellsAtAll {},
@@ -29,7 +29,7 @@ messages! {
         /// A mesh without groups.
         "model.no_group" #[error("the mesh has no group of cells `{name}`")] #[allowed("it has none")]
         NoGroupsOfCells { name: String },
-        /// Growth by heat that leaves nothing.
+        /// Thermal growth to zero or below.
         "model.temperature"
         #[error("cell {cell} would be {growth} times as long by `thermal_expansion` = {expansion} 1/K from {reference} K to {now} K")] #[parameters("thermal_expansion")]
         #[allowed("more than 0")] #[hint("steel has 1.2e-5 1/K, rubber 2e-4 1/K")]
@@ -38,27 +38,27 @@ messages! {
         "model.locking" #[error("`poissons_ratio` is {ratio} for linear {cells}, which lock near incompressibility")] #[value("{ratio}")] #[parameters("poissons_ratio")] #[allowed("at most {most}")]
         #[hint("`order = 2` for the body, or `locking = \"nodal_volume\"`")]
         LinearCellsLock { ratio: f64, cells: Simplices, most: f64 },
-        /// Volumes of nodes that do not know heat.
+        /// Nodal volumes together with thermal expansion.
         "model.locking" #[error("`locking` is \"nodal_volume\", and the body expands by heat, which the volumes of nodes do not know")] #[value("\"nodal_volume\"")] #[parameters("locking")]
         #[allowed("\"refuse\" or \"accept\"")] #[hint("`order = 2` for the body, or quadrilaterals and hexahedra, do not lock either")]
         NodalVolumeAndHeat {},
-        /// Volumes of nodes where the thickness is free.
+        /// Nodal volumes in plane stress.
         "model.locking" #[error("`locking` is \"nodal_volume\" in plane stress, where the thickness is free and nothing locks")] #[value("\"nodal_volume\"")] #[parameters("locking")]
         #[allowed("\"refuse\" or \"accept\"")] #[hint("leave `locking` out")]
         NodalVolumeInPlaneStress {},
-        /// Volumes of nodes of cells that do not lock.
+        /// Nodal volumes for cells that do not lock.
         "model.locking" #[error("`locking` is \"nodal_volume\", but the cells are no linear triangles or tetrahedra, and do not lock")] #[value("\"nodal_volume\"")] #[parameters("locking")]
         #[allowed("\"refuse\" or \"accept\"")] #[hint("leave `locking` out")]
         NodalVolumeOfOthers {},
-        /// Numbers of cells that the mesh lacks.
+        /// Values of cells that the mesh does not have.
         "model.no_values" #[error("`{field}` is \"{name}\", and the cells of the mesh have no such numbers")] #[value("\"{name}\"")] #[parameters(field)] #[allowed("{known}")]
         #[hint("`{instead}` gives one number for all cells")]
         NoValues { field: &'static str, name: String, known: String, instead: &'static str },
-        /// A mesh without numbers of cells.
+        /// A mesh without values of cells.
         "model.no_values" #[error("`{field}` is \"{name}\", and the cells of the mesh have no such numbers")] #[value("\"{name}\"")] #[parameters(field)]
         #[allowed("none, the mesh has no numbers of cells")] #[hint("`{instead}` gives one number for all cells")]
         NoValuesAtAll { field: &'static str, name: String, instead: &'static str },
-        /// A number of a cell out of range.
+        /// A value of a cell that is out of range.
         "model.cell_value" #[error("`{field}` of cell {cell} is {value}")] #[value("{value}")] #[parameters(field)] #[allowed("{allowed}")]
         #[hint("the numbers are in the file of the mesh; `{instead}` gives one for all cells")]
         CellValue { field: &'static str, cell: usize, value: String, allowed: AllowedValues, instead: &'static str },
@@ -70,10 +70,10 @@ messages! {
         "model.inverted_cell" #[error("cell {cell} with the nodes {nodes} has no volume at rest: det ∂X/∂ξ = {determinant}")]
         #[allowed("more than {least}")]
         FlatCell { cell: u32, nodes: String, determinant: String, least: String },
-        /// A body without a measure.
+        /// A body without volume or area.
         "model.mass" #[error("{problem}")]
         Measure { problem: MeshError },
-        /// No thickness without stress across.
+        /// No thickness for which the stress across the plane is zero.
         "run.no_thickness"
         #[error("cell {cell} has no positive thickness without stress across the plane at t = {} s: it is stretched or inverted beyond what its material can follow in plane stress", number(*time))]
         NoThicknessLeft { cell: u32, time: f64 },

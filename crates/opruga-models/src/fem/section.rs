@@ -1,4 +1,4 @@
-//! Elements of one kind and one material on a body, or on eight alike ones.
+//! Elements of one kind and one material, on one body or on eight identical ones.
 //!
 //! ```text
 //! positions ─gather→ F at the points of some packs of elements ─law→ P ─→ forces of the elements ─scatter→ forces of the nodes
@@ -7,9 +7,9 @@
 //!
 //! Every element is evaluated once. A pack is eight neighbouring elements of one body, or the same one of eight bodies.
 //!
-//! The elements of a body are cut into *shares* that threads may work on. A share has rows of its own for the nodes that it
-//! touches, whose forces are added up in the order of its elements, and those of a node in the order of the shares. Shares
-//! are the same for every number of threads and for both layouts, and so are the bits.
+//! The elements of a body are divided into *shares* for threads. A share has its own rows for the nodes that it touches; forces
+//! are summed there in the order of its elements, and then at each node in the order of the shares. Shares are the same for every
+//! number of threads and for both layouts, and so are the bits.
 
 use super::boxes::{self, Boxes};
 use super::elements::{Cell, Shape, rest_gradient};
@@ -24,10 +24,10 @@ use opruga_core::error::StepError;
 use opruga_core::state::{Layout, View};
 use opruga_math::{Column, ROW, WIDTH};
 
-/// Packs of points in a share: a hundred kilobytes, half a millisecond at most.
+/// The number of packs of points in a share: a hundred kilobytes, half a millisecond at most.
 const SHARE: usize = 512;
 
-/// Where the forces of a share begin in its scratch, behind energies and powers.
+/// The offset of the forces of a share in its scratch, after energies and powers.
 pub(super) const FORCES: usize = 2 * WIDTH;
 
 /// Elements of one kind and one material.
@@ -38,43 +38,43 @@ pub(super) struct Section<E, const D: usize, const N: usize> {
     pub(super) law: Box<dyn Law<D>>,
     /// The law in space, for stresses across the plane; none in plane stress.
     pub(super) law_in_space: Option<Box<dyn Law<3>>>,
-    /// Elements by lowest node.
+    /// The elements, ordered by lowest node.
     pub(super) cells: Vec<Cell<N>>,
-    /// Points of an element where the law is asked.
+    /// The number of points of an element at which the law is evaluated.
     pub(super) points: usize,
     pub(super) shares: Vec<Share>,
-    /// Where elements find their nodes: N packs of rows of the share for every pack of elements of one body, N indices for every
-    /// element of eight.
+    /// The location of the nodes of the elements: for one body, N packs of rows of the share for every pack of elements; for
+    /// eight, N indices for every element.
     pub(super) node_indices: Vec<u32>,
-    /// For eight bodies the N rows of the share for every element.
+    /// For eight bodies, the N rows of the share for every element.
     pub(super) targets: Vec<u32>,
-    /// (∂X/∂ξ)⁻¹ row by row and the measure [m³], point by point; in packs for one body. Boxes have their own.
+    /// (∂X/∂ξ)⁻¹ row by row and the measure [m³], point by point; in packs for one body. Boxes have data of their own.
     pub(super) geometry: Column,
     pub(super) boxes: Boxes,
-    /// [`NUMBERS`] packs for every pack of elements, or for all.
+    /// [`NUMBERS`] packs for every pack of elements, or one set for all.
     pub(super) parameters: Column,
     /// Whether the parameters of the first pack hold for all.
     pub(super) uniform: bool,
     pub(super) damped: bool,
-    /// Whether the nodes resist the volume beyond λ′.
+    /// Whether the nodes resist changes of volume beyond λ′.
     pub(super) nodal: bool,
     /// Depth out of the plane [m]; 1 in space.
     pub(super) thickness: f64,
 }
 
-/// Packs of elements that are worked on by one thread at a time.
+/// Packs of elements that one thread processes at a time.
 #[derive(Debug)]
 pub(super) struct Share {
-    /// The first pack, and how many.
+    /// The first pack, and the number of packs.
     pub(super) first: usize,
     pub(super) packs: usize,
-    /// The nodes of its elements, rising: a row each.
+    /// The nodes of its elements, ascending, with a row for each.
     pub(super) nodes: Vec<u32>,
-    /// Where its scratch begins in that of the section.
+    /// The offset of its scratch in that of the section.
     pub(super) start: usize,
 }
 
-/// What a section is built from.
+/// The data from which a section is built.
 pub(super) struct Plan<'a, const D: usize> {
     pub(super) layout: Layout,
     pub(super) law: Box<dyn Law<D>>,
@@ -82,20 +82,20 @@ pub(super) struct Plan<'a, const D: usize> {
     pub(super) positions: &'a [[f64; D]],
     /// Depth out of the plane [m]; 1 in space.
     pub(super) thickness: f64,
-    /// Whether no stress acts across the plane.
+    /// Whether the stress across the plane is zero.
     pub(super) plane_stress: bool,
-    /// Whether the nodes resist the volume beyond λ′.
+    /// Whether the nodes resist changes of volume beyond λ′.
     pub(super) nodal: bool,
     pub(super) damped: bool,
 }
 
-/// Numbers of the geometry of the points of an element that is no box.
+/// The number of geometric data of the points of an element other than a box.
 const fn stored<E: Shape<D, N>, const D: usize, const N: usize>() -> usize {
     if E::BOX { 0 } else { E::POINTS * (D * D + 1) }
 }
 
 impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
-    /// Lays out elements; `numbers` gives those of a cell of a body.
+    /// Lays out elements; `numbers` gives the parameters of a cell of a body.
     pub(super) fn new(
         plan: Plan<'_, D>,
         mut cells: Vec<Cell<N>>,
@@ -111,7 +111,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
                 beyond(mu, lambda) > 0.0
             })
         };
-        // Boxes ask the law at their mean too where it resists volume much.
+        // Boxes evaluate the law at their mean too if it resists volume strongly.
         let mean = E::BOX && !plane_stress && cells.iter().any(resists_volume);
         let points = E::POINTS + usize::from(mean);
         let stored = stored::<E, D, N>();
@@ -119,7 +119,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
         let packs = cells.len().div_ceil(lanes);
         let cell = |pack: usize, lane: usize| &cells[(pack * lanes + lane).min(cells.len() - 1)];
 
-        // As many elements in both layouts, whatever the material of the other bodies.
+        // The number of elements is the same in both layouts, whatever the material of the other bodies.
         let shares = shares(&cells, packs, lanes, (SHARE / E::POINTS).max(1) * WIDTH / lanes);
         let mut node_indices = vec![0; packs * N * lanes];
         let mut targets = vec![0; if layout == Layout::Batch { packs * N } else { 0 }];
@@ -150,7 +150,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
         for pack in 0..packs {
             for lane in 0..lanes {
                 let this = cell(pack, lane);
-                // What fills a pack up has no measure.
+                // Lanes that fill up the last pack have no measure.
                 let there = pack * lanes + lane < cells.len();
                 let rest: [[f64; D]; N] = this.nodes.map(|n| positions[n as usize]);
                 let mut put = |k: usize, value: f64| geometry[(pack * stored + k) * lanes + lane] = value;
@@ -226,7 +226,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
         }
     }
 
-    /// All packs of a share, as many together as have so many packs of points, or one by one.
+    /// All packs of a share, in groups of at most `points` packs of points, or one by one.
     pub(super) fn groups(&self, share: &Share, points: usize) -> impl Iterator<Item = Group<'_>> {
         let together = (points / self.points).max(1);
         let end = share.first + share.packs;
@@ -246,30 +246,30 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
         out
     }
 
-    /// Numbers of the copy of a vector of every node of a share.
+    /// The length of the copy of a vector of every node of a share.
     pub(super) fn copy(&self, share: &Share) -> usize {
         if self.layout == Layout::Single { share.nodes.len() * ROW } else { 0 }
     }
-    /// Numbers of the forces of a share.
+    /// The length of the forces of a share.
     pub(super) fn forces(&self, share: &Share) -> usize {
         share.nodes.len() * if self.layout == Layout::Single { ROW } else { WIDTH * D }
     }
-    /// The positions that the evaluation of a share has copied.
+    /// The positions that were copied when the share was evaluated.
     pub(super) fn positions<'a>(&self, share: &Share, view: &View<'a, D>, scratch: &'a [f64]) -> Nodes<'a, D> {
         let start = share.start + FORCES + self.forces(share);
         Nodes { rows: &scratch[start..start + self.copy(share)], columns: view.x }
     }
-    /// Where J − 1 of the elements begins in the scratch of a share.
+    /// The offset of J − 1 of the elements in the scratch of a share.
     pub(super) fn grown(&self, share: &Share) -> usize {
         FORCES + self.forces(share) + self.copy(share) * if self.damped { 2 } else { 1 }
     }
 
-    /// Numbers of the scratch of a share.
+    /// The length of the scratch of a share.
     pub(super) fn numbers_of(&self, share: &Share) -> usize {
         self.grown(share) + if self.nodal { share.packs * WIDTH } else { 0 }
     }
 
-    /// The measure of a point of an element [m³]; of the mean of a box that of the box.
+    /// The measure of a point of an element [m³]; at the mean of a box, the measure of the box.
     pub(super) fn measure(&self, pack: usize, point: usize, lane: usize) -> f64 {
         let (lanes, lane) = if self.layout == Layout::Single { (WIDTH, lane) } else { (1, 0) };
         if E::BOX {
@@ -290,13 +290,13 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
         }
     }
 
-    /// Whether the law may have no energy. Laws of space and of plane strain have one everywhere; what overflows there has
-    /// diverged, and is found so.
+    /// Whether the law may have no energy. Laws in space and in plane strain have one everywhere; if it overflows, the motion has
+    /// diverged, which is detected elsewhere.
     pub(super) fn may_refuse(&self) -> bool {
         self.law_in_space.is_none() && D < 3
     }
 
-    /// The refusal of the first element of a pack whose nodes are somewhere but whose energy is not a number.
+    /// The refusal of the first element of a pack whose nodes have finite positions but whose energy is NaN.
     pub(super) fn refusal(&self, view: &View<D>, pack: usize, energy: &[f64]) -> Option<StepError> {
         (0..WIDTH).filter(|l| energy[*l].is_nan()).find_map(|l| {
             let (element, body) = self.item(pack, l);
@@ -310,7 +310,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
     }
 }
 
-/// Cuts packs of so many cells into shares.
+/// Divides packs into shares of `each` packs.
 fn shares<const N: usize>(cells: &[Cell<N>], packs: usize, lanes: usize, each: usize) -> Vec<Share> {
     let firsts = (0..packs).step_by(each);
     let share = |first: usize| {

@@ -1,4 +1,4 @@
-//! The solid of one body: what all kinds of its cells have together.
+//! The solid of one body: the part that is common to all kinds of cells.
 
 use super::SPEC;
 use super::nodal_volume::{NodalVolumes, Pressures};
@@ -12,7 +12,7 @@ use opruga_core::tile::Tile;
 use opruga_math::{ROW, Simd, WIDTH};
 use std::sync::{Mutex, PoisonError};
 
-/// The solid of one body, or of eight alike ones.
+/// The solid of one body, or of eight identical ones.
 #[derive(Debug)]
 pub struct Solid<const D: usize> {
     layout: Layout,
@@ -20,19 +20,19 @@ pub struct Solid<const D: usize> {
     parts: Vec<Box<dyn Part<D>>>,
     /// The shares of all parts.
     shares: Vec<Task>,
-    /// Where the scratch of each begins, behind that of the whole.
+    /// The offset of the scratch of each share, after that of the whole.
     starts: Vec<usize>,
     sums: Sums,
-    /// What the consistent mass matrix has more than the lumped masses.
+    /// The consistent mass matrix minus the lumped masses.
     inertia: Vec<(u32, u32, f64)>,
-    /// What resists the volumes of nodes.
+    /// The resistance of nodes to changes of volume.
     volumes: Option<NodalVolumes<D>>,
     damped: bool,
-    /// What [`Potential::energy_parts`] tells [J].
+    /// The value of [`Potential::energy_parts`] [J].
     energy_parts: f64,
 }
 
-/// What a solid is built of.
+/// The data from which a solid is built.
 pub(super) struct Built<const D: usize> {
     pub(super) parts: Vec<Box<dyn Part<D>>>,
     pub(super) inertia: Vec<(u32, u32, f64)>,
@@ -45,7 +45,7 @@ impl<const D: usize> Built<D> {
         Built { parts: Vec::new(), inertia: Vec::new(), volumes: None, energy_parts: 0.0 };
 }
 
-/// A share of one of the parts, and where its scratch lies.
+/// A share of one of the parts, and the location of its scratch.
 #[derive(Clone, Copy, Debug)]
 struct Task {
     part: usize,
@@ -54,12 +54,12 @@ struct Task {
     length: usize,
 }
 
-/// Where the forces of the nodes lie in the scratch.
+/// The location of the forces of the nodes in the scratch.
 #[derive(Debug)]
 enum Sums {
-    /// All of them one after the other from here on.
+    /// All of them, consecutive from this index.
     Whole(usize),
-    /// For every node in rows of several shares: where its list begins, and the lists of indices [`ROW`] by [`ROW`].
+    /// For every node, rows of several shares: the start of its list, and the lists of row indices in units of [`ROW`].
     Listed { start: Vec<u32>, rows: Vec<u32> },
 }
 
@@ -250,7 +250,7 @@ impl<const D: usize> Observe<D> for Solid<D> {
 }
 
 impl<const D: usize> Solid<D> {
-    /// Of some kinds of cells.
+    /// From some kinds of cells.
     pub(super) fn new(layout: Layout, nodes: usize, built: Built<D>, damped: bool) -> Self {
         let Built { parts, inertia, mut volumes, energy_parts } = built;
         let (mut shares, mut starts) = (Vec::<Task>::new(), Vec::new());
@@ -264,7 +264,7 @@ impl<const D: usize> Solid<D> {
             }
         }
         if let Some(volumes) = &mut volumes {
-            // Behind the sums of the whole solid.
+            // After the sums of the whole solid.
             let start =
                 |part: usize| shares.iter().find(|task| task.part == part).map_or(0, |task| task.start - FORCES);
             let mut of_parts = parts.iter().enumerate();
@@ -275,7 +275,7 @@ impl<const D: usize> Solid<D> {
         Solid { layout, nodes, parts, shares, starts, sums, inertia, volumes, damped, energy_parts }
     }
 
-    /// The pressures of the nodes that resist volume, in their scratch; returns their energies [J].
+    /// Computes the pressures of the nodes that resist volume, in their scratch; returns their energies [J].
     fn press(&self, simd: Simd, view: &View<D>, cells: &mut [f64], of_volumes: &mut [f64]) -> [f64; WIDTH] {
         let Some(volumes) = &self.volumes else { return [0.0; WIDTH] };
         each_part(view.threads, cells, &self.starts, |number, scratch| {
@@ -289,7 +289,7 @@ impl<const D: usize> Solid<D> {
         self.volumes.as_ref().map_or(Pressures::default(), |volumes| volumes.pressures(of_volumes))
     }
 
-    /// Numbers that the evaluation of the cells leaves.
+    /// The length of the scratch of the cells.
     fn cells_len(&self) -> usize {
         self.shares.last().map_or(FORCES, |task| task.start + task.length)
     }

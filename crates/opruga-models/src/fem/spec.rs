@@ -159,7 +159,7 @@ the volumes of nodes instead of those of cells, which does not lock (for them al
         ),
     ], roles: &[Role::OwnsCells], };
 
-/// The fields of `fem` that say something of a law alone, beside `youngs_modulus`, `poissons_ratio` and `plane`.
+/// The fields of `fem` that belong to one law only, besides `youngs_modulus`, `poissons_ratio` and `plane`.
 pub fn own_fields(material: &str) -> impl Iterator<Item = &'static str> + use<'_> {
     let own = move |condition: &Condition| matches!(condition, Condition::Word("material", words) if words.contains(&material));
     SPEC.fields.iter().filter(move |field| field.applies.iter().any(own)).map(|field| field.name)

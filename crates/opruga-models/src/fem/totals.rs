@@ -1,4 +1,4 @@
-//! Energies and powers of a share, added up in an order that does not depend on the layout.
+//! Energies and powers of a share, summed in an order that does not depend on the layout.
 
 use opruga_core::state::Layout;
 use opruga_math::{WIDTH, sum_in_fixed_order};
@@ -6,13 +6,13 @@ use opruga_math::{WIDTH, sum_in_fixed_order};
 /// Sums over elements whose bits do not depend on the layout.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Totals {
-    /// Energy [J]: one body eight partial sums in the first row, eight bodies a column each.
+    /// Energy [J]: for one body, eight partial sums in the first row; for eight bodies, a column each.
     pub(super) energy: [[f64; WIDTH]; WIDTH],
     /// Power of damping [W].
     pub(super) power: [[f64; WIDTH]; WIDTH],
 }
 
-/// One number for one body, or one for each of eight.
+/// One total for one body, or one for each of eight.
 pub(super) fn total(layout: Layout, partial: &[[f64; WIDTH]; WIDTH]) -> [f64; WIDTH] {
     let mut out = [0.0; WIDTH];
     match layout {

@@ -1,6 +1,6 @@
 //! The work on some packs of elements, compiled for every set of vector instructions.
 //!
-//! It goes register by register: what a point needs at a time hardly fits the registers of one.
+//! It proceeds register by register, because the data of a point barely fit into the registers.
 
 use super::elements::Shape;
 use super::group::Group;
@@ -46,16 +46,16 @@ pub(super) fn geometry<R: Register, const D: usize>(
     }
 }
 
-/// A vector of every node, laid out as elements read it.
+/// A vector of every node, in the layout that elements read.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Nodes<'a, const D: usize> {
-    /// For one body: [`ROW`] numbers a node.
+    /// For one body: [`ROW`] numbers per node.
     pub(super) rows: &'a [f64],
     /// For eight bodies: the columns of the state.
     pub(super) columns: [&'a [f64]; D],
 }
 
-/// A vector of the nodes of the elements of a part of a pack.
+/// Gathers a vector at the nodes of the elements of one part of a pack.
 #[inline(always)]
 pub(super) fn gather<R: Register, const D: usize, const N: usize>(
     group: &Group<'_>,
@@ -172,8 +172,8 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Gradients<'_, E, D
     }
 }
 
-/// The parameters of the points of a group, and their retardation times. Where the law is asked at the mean of a box behind
-/// its points, what resists volume beyond λ′ is asked there.
+/// The parameters of the points of a group, and their retardation times. If the law is also evaluated at the mean of a box, after
+/// its points, the volumetric stiffness beyond λ′ is evaluated there.
 pub(super) fn parameters_of_points(group: &Group<'_>, points: usize, parameters: &mut [f64], times: &mut [f64]) {
     for k in 0..group.packs {
         let numbers = &group.parameters[(group.first + k) * group.step..][..NUMBERS * WIDTH];
@@ -191,7 +191,7 @@ pub(super) fn parameters_of_points(group: &Group<'_>, points: usize, parameters:
     }
 }
 
-/// Forces of elements onto nodes; densities of energy and power become energies and powers of elements.
+/// Forces of elements on nodes; densities of energy and power become energies and powers of elements.
 pub(super) struct Forces<'a, E, const D: usize, const N: usize> {
     pub(super) shape: PhantomData<E>,
     pub(super) group: Group<'a>,
@@ -201,7 +201,7 @@ pub(super) struct Forces<'a, E, const D: usize, const N: usize> {
     pub(super) force: &'a mut [f64],
 }
 
-/// The sum over the points of an element of a density times the measure, in the place of the pack.
+/// Replaces, in the pack, the densities at the points of an element by the sum of density times measure.
 #[inline(always)]
 fn integrate<P: Pack, const D: usize>(group: &Group<'_>, k: usize, density: &mut [f64]) {
     for part in 0..P::PARTS {
@@ -211,14 +211,14 @@ fn integrate<P: Pack, const D: usize>(group: &Group<'_>, k: usize, density: &mut
             let (_, measure) = geometry::<P::Part, D>(group, group.first + k, q, part);
             sum += measure * P::Part::load(&density[(k * group.points + q) * WIDTH + offset..]);
         }
-        // Packs are summed in order, so no density that is still needed lies here.
+        // Packs are summed in order, so no density that is still needed is overwritten.
         sum.store(&mut density[k * WIDTH + offset..]);
     }
 }
 
 impl<E, const D: usize, const N: usize> Forces<'_, E, D, N> {
-    /// Brings near what the next group reads of a pack: more than a cache holds passes by with every step, and not a line of it while the law
-    /// works.
+    /// Prefetches the data of a pack for the next group. Every step reads more than fits into a cache, and the processor fetches
+    /// none of it by itself while the law is evaluated.
     #[inline(always)]
     fn fetch(&self, pack: usize) {
         if self.group.layout == Layout::Single {
@@ -278,7 +278,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Forces<'_, E, D, N
     }
 }
 
-/// Adds the stress of damping, F·S with S = τ (2μ Ė + λ tr Ė 1) and Ė = sym FᵀḞ, and gives the power S:Ė.
+/// Adds the damping stress, F·S with S = τ (2μ Ė + λ tr Ė 1) and Ė = sym FᵀḞ, and computes the power S:Ė.
 pub(super) struct ViscousStress<'a, const D: usize> {
     pub(super) points: Points<'a>,
     pub(super) rate: &'a [f64],
@@ -325,7 +325,7 @@ impl<const D: usize> Work for ViscousStress<'_, D> {
     }
 }
 
-/// Derivatives of the stress of damping by Ḟ.
+/// Derivatives of the damping stress by Ḟ.
 pub(super) struct ViscousTangents<'a, const D: usize> {
     pub(super) points: Points<'a>,
     pub(super) times: &'a [f64],

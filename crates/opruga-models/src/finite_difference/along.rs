@@ -1,24 +1,25 @@
 //! The forces of a curve in one walk along it, for nodes that are numbered along the curve.
 //!
-//! Stretch and bending pull at edges: with g = (x₊ − x)/L of every edge and ∂U/∂g there, the force on a node is N of the edge behind
-//! it less N of the edge before it,
+//! Stretch and bending exert forces N along edges, which follow from g = (x₊ − x)/L and ∂U/∂g of every edge. The force on a node
+//! is N of the edge after it minus N of the edge before it:
 //!
 //! ```text
 //!   ── i−1 ──Nᵢ₋₁── i ──Nᵢ── i+1 ──        Fᵢ = Nᵢ − Nᵢ₋₁,  Nᵢ = EA ε g + (∂U/∂b of the bend at i + ∂U/∂a of that at i + 1)/L
 //! ```
 //!
-//! so eight nodes at a time are computed once, from their neighbours in the registers and without any index. The edge that closes a ring
-//! comes by itself. These are the forces of the stencils in [`super::curve`] up to rounding; energy and Hessian are theirs.
+//! Eight nodes at a time are computed once, from their neighbours in the registers and without any index. The edge that closes a
+//! ring is computed separately. The forces equal those of the stencils in [`super::curve`] up to rounding; energy and Hessian
+//! come from the stencils.
 
 use crate::vectors::{cross, dot, in_space, inverse};
 use opruga_core::state::{Layout, Parameter, View};
 use opruga_core::tile::Tile;
 use opruga_math::{Lane, Pack, Register, RepeatStrip, Simd, Strip, StripMut, WIDTH, Work, lanes};
 
-/// Numbers of a node and the edge behind it: see [`Along::numbers`].
+/// The data of a node and the edge after it: see [`Along::numbers`].
 pub(super) const NUMBERS: usize = 6;
-/// 1/L [1/m] of the edge; of the bend the share of the edge before it in the tangent, 1/ℓ [1/m] and B₀ [1/m]; and where damping is asked L
-/// and ℓ [m]. What is not there has 1/L = 0 and 1/ℓ = B₀ = 0.
+/// 1/L [1/m] of the edge; for the bend, the share of the edge before it in the tangent, 1/ℓ [1/m] and B₀ [1/m]; for damping, L
+/// and ℓ [m]. A missing edge or bend has 1/L = 0, or 1/ℓ = B₀ = 0.
 const INVERSE: usize = 0;
 const SHARE: usize = 1;
 const PER_MEAN: usize = 2;
@@ -26,7 +27,7 @@ const REST: usize = 3;
 const LENGTH: usize = 4;
 const MEAN: usize = 5;
 
-/// A curve of one body, or of eight alike ones.
+/// The curve of one body, or of eight identical ones.
 #[derive(Debug)]
 pub(super) struct Along {
     layout: Layout,
@@ -36,11 +37,11 @@ pub(super) struct Along {
     /// EA [N], EI [N·m²] and the retardation time τ [s] of each body.
     section: [Parameter; 3],
     damped: bool,
-    /// Of a ring, the numbers of its last node with the closing edge, and of its first node.
+    /// For a ring, the data of its last node with the closing edge, and of its first node.
     closing: Option<[[Parameter; NUMBERS]; 2]>,
 }
 
-/// The section of a curve, as eight numbers or fewer.
+/// The section of a curve, for eight lanes or fewer.
 #[derive(Clone, Copy)]
 struct Section<S> {
     stretch: S,
@@ -57,7 +58,7 @@ struct Sides<S, const D: usize> {
     rate_behind: [S; D],
 }
 
-/// Tension of an edge EA (ε + τ dε/dt) g, and what damping takes [W].
+/// Tension of an edge, EA (ε + τ dε/dt) g, and the power that damping dissipates [W].
 #[inline(always)]
 fn tension<S: Lane, const D: usize>(
     g: &[S; D],
@@ -84,7 +85,8 @@ fn tension<S: Lane, const D: usize>(
     (lanes!(S, d => stress * g[d]), power)
 }
 
-/// ∂U/∂a and ∂U/∂b of the bend between two edges, with its damping, and what that takes [W]; the formulas of [`super::curve::Bend`].
+/// ∂U/∂a and ∂U/∂b of the bend between two edges, with its damping, and the power that damping dissipates [W]. The formulas are
+/// those of [`super::curve::Bend`].
 #[inline(always)]
 fn bend<S: Lane, const D: usize>(
     sides: &Sides<S, D>,
@@ -94,7 +96,7 @@ fn bend<S: Lane, const D: usize>(
 ) -> ([[S; D]; 2], S) {
     let (of_a, of_b) = (numbers[SHARE], S::one() - numbers[SHARE]);
     let tangent = lanes!(S, d => of_a * sides.before[d] + of_b * sides.behind[d]);
-    // How fast the tangent's length changes, times that length.
+    // The squared length of the tangent, and that length times its rate.
     let (mut square, mut longer) = (S::zero(), S::zero());
     for d in 0..D {
         square += tangent[d] * tangent[d];
@@ -140,7 +142,7 @@ fn bend<S: Lane, const D: usize>(
     let positive = S::zero().less(curvature_square);
     let curvature = S::select(positive, S::select(positive, curvature_square, S::one()).sqrt(), S::zero());
     let per_curvature = inverse(curvature);
-    // Without a curvature at rest the force is smooth where the curve is straight; with one it has no direction there.
+    // Without a curvature at rest the force is smooth in the straight state; otherwise it has no direction there.
     let curved = S::zero().less(numbers[REST]);
     let mut part = S::one() - S::select(curved, numbers[REST] * per_curvature, S::zero());
     let scale = numbers[PER_MEAN] * per_square;
@@ -161,8 +163,8 @@ fn bend<S: Lane, const D: usize>(
 }
 
 impl Along {
-    /// Of edges and bends that follow the numbers of the nodes, open or closed; nothing for others. `of_node` gives the six numbers of a
-    /// node with the edges before and behind it, of which one may be missing.
+    /// Builds the walk if edges and bends follow the numbers of the nodes (open or closed), and returns `None` otherwise.
+    /// `of_node` gives the six numbers of a node from the edges before and after it, one of which may be missing.
     pub(super) fn new(
         layout: Layout,
         nodes: usize,
@@ -187,7 +189,7 @@ impl Along {
             _ => of_node(edge(node - 1), edge(node)),
         };
         let each: Vec<[f64; NUMBERS]> = (0..nodes).map(numbers_of).collect();
-        // What is read behind the last node has no effect.
+        // The values read after the last node have no effect.
         let none = [0.0; NUMBERS];
         let packed = nodes.next_multiple_of(WIDTH) + 2 * WIDTH;
         let numbers = core::array::from_fn(|k| {
@@ -233,10 +235,11 @@ impl<const D: usize, const BATCH: bool, const DAMPED: bool> Work for Force<'_, '
     }
 }
 
-/// What the nodes before leave behind: of their edges g with its rate, 1/L and what is known of N; and N of the edges before them.
+/// The results of the previous nodes that the next ones need: g of their edges with its rate, 1/L and the known part of N; and N
+/// of the edges before them.
 ///
-/// Of bodies side by side that is a pack, the node before of each. Of one body it is the register before, in the first part of each
-/// pack.
+/// For bodies side by side this is a pack, the previous node of each. For one body it is the previous register, in the first part
+/// of each pack.
 struct Walker<'a, P, const D: usize> {
     x: Strip<'a, D>,
     v: Strip<'a, D>,
@@ -251,19 +254,20 @@ struct Walker<'a, P, const D: usize> {
     before: [P; D],
 }
 
-/// The numbers that are one node back.
+/// The numbers of the previous node.
 #[inline(always)]
 fn back<R: Register, const BATCH: bool>(now: R, previous: R) -> R {
     if BATCH { previous } else { now.after(previous) }
 }
 
 impl<P: Pack, const D: usize> Walker<'_, P, D> {
-    /// One part of eight nodes from index `k` of the strips on: the forces on the nodes one back, and what damping takes. Register by
-    /// register: what a bend computes with fits the registers of any processor.
+    /// Processes one part of eight nodes from index `k` of the strips on: returns the forces on the nodes one before, and the
+    /// power that damping dissipates. It proceeds register by register, because the data of a bend fit into the registers of any
+    /// processor.
     #[inline(always)]
     fn step<const BATCH: bool, const DAMPED: bool>(&mut self, k: usize, part: usize) -> ([P::Part; D], P::Part) {
         let (next, slot) = if BATCH { (WIDTH, part) } else { (1, 0) };
-        // Of bodies side by side nothing lies behind the padding; there 1/L is zero.
+        // For bodies side by side nothing follows the padding; 1/L is zero there.
         let there = if BATCH && k + next > self.end { self.end } else { k + next };
         let mut numbers = [P::Part::zero(); NUMBERS];
         for n in 0..if DAMPED { NUMBERS } else { LENGTH } {
@@ -307,7 +311,7 @@ impl<P: Pack, const D: usize> Walker<'_, P, D> {
         }
         (force, loss + more)
     }
-    /// All parts, without the forces.
+    /// Processes all parts, without the forces.
     #[inline(always)]
     fn lead<const BATCH: bool, const DAMPED: bool>(&mut self, k: usize) -> P {
         let mut power = P::zero();
@@ -317,7 +321,7 @@ impl<P: Pack, const D: usize> Walker<'_, P, D> {
         }
         power
     }
-    /// The first node of a curve, in all places.
+    /// Starts with the first node of a curve, in all lanes.
     #[inline(always)]
     fn begin<const DAMPED: bool>(&mut self) -> P {
         let per_length = P::splat(self.numbers[INVERSE].load::<P>(0).to_array()[0]);
@@ -351,7 +355,8 @@ fn walk<P: Pack, const D: usize, const BATCH: bool, const DAMPED: bool>(
 ) {
     let next = if BATCH { WIDTH } else { 1 };
     let (start, length) = (tile.range.start, tile.range.len());
-    // The nodes before the first one, whose edges pull at it: two nodes of bodies side by side, or those of one pack.
+    // The walk starts before the first node of the tile, with the nodes whose edges exert forces on it: two nodes for bodies side
+    // by side, or those of one pack.
     let from = start.saturating_sub(if BATCH { 2 * WIDTH } else { WIDTH - 1 });
     let lead = start - from;
     let read = (lead + length + 2 * next).min(view.x[0].len() - from);

@@ -45,8 +45,8 @@ impl<const D: usize> Kernel<D, 2, 3> for Stretch {
 ///   x′ = (L₊ a + L₋ b)/(L₋ + L₊),  x″ = (b − a)/ℓ,  x′ × x″ = a × b/ℓ
 ///   B = n·x″ = |a × b|/(ℓ |x′|), signed in the plane
 /// ```
-/// U = ½ EI ℓ (B − B₀)². In space the force is −EI ℓ (1 − B₀/B) ½∇B², which is smooth where a curve that is straight at rest
-/// is straight; a curve that is curved at rest has no direction there and no force.
+/// U = ½ EI ℓ (B − B₀)². In space the force is −EI ℓ (1 − B₀/B) ½∇B². If the curve is straight at rest, this is smooth in the
+/// straight state; if it is curved at rest, the force has no direction in the straight state and is set to zero.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bend;
 
@@ -71,7 +71,7 @@ impl Bend {
         let square = dot(&tangent, &tangent);
         let per_square = inverse(square);
         let normal = cross(&a, &b);
-        // What the tangent's length takes away, along the tangent.
+        // The change of the length of the tangent subtracts a part along the tangent.
         if D == 2 {
             let length = S::select(S::zero().less(square), square, S::one()).sqrt();
             let scale = p[4] * inverse(length);
@@ -99,12 +99,12 @@ impl Bend {
         let root = S::select(positive, S::select(positive, curvature_square, S::one()).sqrt(), S::zero());
         Bent { curvature: root, slope }
     }
-    /// What the slopes are multiplied with, so that `moment` times ∂B/∂x is left.
+    /// The factor of the slopes for which the product is `moment` times ∂B/∂x.
     #[inline(always)]
     fn factor<S: Lane, const D: usize>(bent: &Bent<S>, moment: S) -> S {
         if D == 2 { moment } else { moment * inverse(bent.curvature) }
     }
-    /// The nodes' parts of a factor times the slopes.
+    /// Distributes a factor times the slopes to the nodes.
     #[inline(always)]
     fn spread<S: Lane, const D: usize>(p: &[S; 7], bent: &Bent<S>, factor: S) -> [[S; D]; 3] {
         let (a, b) = (scaled(&bent.slope[0], factor * p[1]), scaled(&bent.slope[1], factor * p[2]));
@@ -126,7 +126,7 @@ impl<const D: usize> Kernel<D, 3, 7> for Bend {
         let factor = if D == 2 {
             p[0] * (bent.curvature - p[5])
         } else {
-            // Without a curvature at rest the root is not asked: its derivative has no value where the curve is straight.
+            // Without a curvature at rest the square root is not used: its derivative is undefined where the curve is straight.
             let curved = S::zero().less(p[5]);
             let quotient = p[5] * inverse(S::select(curved, bent.curvature, S::one()));
             p[0] * (S::one() - S::select(curved, quotient, S::zero()))

@@ -1,17 +1,17 @@
-//! What is odd about the shape of a curve or a surface: edges that its law does not push back, and folds.
+//! Suspicious shapes of a curve or a surface: folds, and edges that are compressed so far that their force falls.
 
 use super::FiniteDifferenceWarning;
 use opruga_core::potential::Count;
 use opruga_core::state::View;
 
-/// Below this square of its stretch the force of an edge falls, as St. Venant and Kirchhoff's law softens.
+/// Below this squared stretch the force of an edge falls, because the St. Venant–Kirchhoff law softens.
 const TURNING_POINT: f64 = 1.0 / 3.0;
 
-/// The cosine of 60°. Edges that turn by less at rest are of one line; those that then turn by more than 120° fold back. A smooth curve of six
-/// edges and more stays below.
+/// The cosine of 60°. Edges whose angle at rest is smaller count as one line; if their angle then exceeds 120°, they are folded
+/// back. A smooth curve with at least six edges stays below.
 const IN_LINE: f64 = 0.5;
 
-/// The edges of a curve or a surface, and nodes between two edges of one line.
+/// The edges of a curve or a surface, and the nodes between two edges of one line.
 #[derive(Debug)]
 pub(super) struct Folds {
     /// Two nodes and the square of their distance at rest [m²].
@@ -25,7 +25,7 @@ fn minus<const D: usize>(a: &[f64; D], b: &[f64; D]) -> [f64; D] {
 fn dot<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
     (0..D).map(|d| a[d] * b[d]).sum()
 }
-/// The cosine between the directions from a to b and from b to c; not a number where two coincide.
+/// The cosine between the directions from a to b and from b to c; NaN if two of them coincide.
 fn cosine<const D: usize>([a, b, c]: [[f64; D]; 3]) -> f64 {
     let (first, second) = (minus(&b, &a), minus(&c, &b));
     dot(&first, &second) / (dot(&first, &first) * dot(&second, &second)).sqrt()
@@ -56,7 +56,7 @@ impl Folds {
         Folds { edges: edges.into_iter().map(square).collect(), between }
     }
 
-    /// How many edges of all bodies are compressed beyond the turning point of the law or fold back.
+    /// The number of edges, in all bodies, that are compressed beyond the turning point of the law or folded back.
     pub(super) fn found<const D: usize>(&self, view: &View<D>) -> Count {
         let mut count = 0;
         for body in 0..view.layout.stride() {

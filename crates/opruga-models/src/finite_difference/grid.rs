@@ -1,24 +1,24 @@
-//! What a body is as a grid: curve, surface or solid, with its spacings.
+//! The grid of a body: a curve, surface or solid, with its spacings.
 
 use super::FiniteDifferenceError as Refusal;
 use opruga_mesh::Mesh;
 use std::collections::BTreeMap;
 
-/// The part of a spacing by which the cells of a grid may deviate from equal rectangles.
+/// The fraction of a spacing by which the cells of a grid may deviate from equal rectangles.
 ///
-/// Differences of second order become differences of first order where spacings change from node to node. Rest positions are
-/// computed in double precision, so that what is meant to be regular is regular to some 1e-12 of a spacing.
+/// If spacings vary from node to node, second-order differences become first-order. Rest positions are in double precision, so a
+/// grid that is meant to be regular is regular to about 1e-12 of a spacing.
 const DEVIATION: f64 = 1e-6;
 
 /// A body as a grid.
 pub(super) enum Grid {
     /// Edges, and nodes between two edges.
     Curve { edges: Vec<[u32; 2]>, nodes: Vec<[u32; 3]> },
-    /// Cells of a surface, whose nodes are numbered alike.
+    /// The cells of a surface, with consistent numbering of their nodes.
     Surface { cells: Vec<[u32; 4]>, inner: Vec<[u32; 5]>, edge: Vec<[u32; 4]> },
-    /// Cells of a body of the plane.
+    /// The cells of a body in the plane.
     Plane { cells: Vec<[u32; 4]> },
-    /// Cells of a body of space.
+    /// The cells of a body in space.
     Space { cells: Vec<[u32; 8]> },
 }
 
@@ -27,8 +27,8 @@ fn distance<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
 }
 
-/// The spacings of a cell whose corners lie at a corner plus whole steps along axes that stand at right angles; `steps` says which
-/// axes lead from corner 0 to each corner, and the first node along each axis comes with it.
+/// The spacings of a cell that is a rectangle or box: each corner is corner 0 plus the steps of `steps` along perpendicular axes,
+/// and `neighbours` gives the corner one step along each axis. Other cells are refused.
 pub(super) fn spacings<const D: usize, const N: usize, const A: usize>(
     mesh: &Mesh<D>,
     number: usize,
@@ -63,7 +63,7 @@ pub(super) fn spacings<const D: usize, const N: usize, const A: usize>(
     Ok(spacing)
 }
 
-/// The axes that lead to the corners of a quadrilateral and of a hexahedron.
+/// For quadrilaterals and hexahedra: the corner one step along each axis, and the steps to every corner.
 pub(super) const QUADRILATERAL: ([usize; 2], [[u8; 2]; 4]) = ([1, 3], [[0, 0], [1, 0], [1, 1], [0, 1]]);
 pub(super) const HEXAHEDRON: ([usize; 3], [[u8; 3]; 8]) =
     ([1, 3, 4], [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]]);
@@ -82,7 +82,7 @@ impl Grid {
             };
         }
         if !mesh.sheets.is_empty() {
-            // Every triangle of a grid is a half of one of its quadrilaterals.
+            // Every triangle of a grid is half of one of its quadrilaterals.
             if 2 * mesh.sheet_quadrilaterals.len() != mesh.sheets.len() {
                 return Err(Refusal::NotAGrid {});
             }
@@ -98,7 +98,7 @@ impl Grid {
         Grid::curve(edges)
     }
 
-    /// Edges that follow each other, none of them branching.
+    /// Edges that follow each other without branching.
     fn curve(edges: Vec<[u32; 2]>) -> Result<Grid, Refusal> {
         let (mut next, mut before) = (BTreeMap::new(), BTreeMap::new());
         for &[a, b] in &edges {
@@ -112,7 +112,7 @@ impl Grid {
 
     /// Nodes with all four neighbours, and nodes on the edge with both neighbours along it and one inside.
     fn surface(cells: &[[u32; 4]]) -> Result<Grid, Refusal> {
-        // The neighbours of every node: behind and ahead along both axes.
+        // The neighbours of every node: backward and forward along both axes.
         let mut around: BTreeMap<u32, [Option<u32>; 4]> = BTreeMap::new();
         for &[a, b, c, d] in cells {
             for (from, to, axis) in [(a, b, 0), (d, c, 0), (a, d, 1), (b, c, 1)] {

@@ -1,27 +1,27 @@
 //! # Finite differences
 //!
-//! Elastic curves, surfaces and solids by differences of the metric tensor G and the curvature tensor B from those at rest, on a
-//! regular grid of material coordinates (Terzopoulos, Platt, Barr and Fleischer 1987, equations 5 to 8 and 14). With
-//! ε = ½ (G − G₀) and β = B − B₀,
+//! Elastic curves, surfaces and solids, whose energy depends on the changes of the metric tensor G and the curvature tensor B
+//! from rest, on a regular grid of material coordinates (Terzopoulos, Platt, Barr and Fleischer 1987, equations 5 to 8 and 14).
+//! With ε = ½ (G − G₀) and β = B − B₀,
 //!
 //! U = ∫ ½ EA ε² + ½ EI β² for curves,
 //! U = ∫ ½ Et/(1 − ν²) [(1 − ν) ε:ε + ν (tr ε)²] + ½ Et³/12(1 − ν²) [(1 − ν) β:β + ν (tr β)²] for surfaces,
 //! U = ∫ ½ λ (tr ε)² + μ ε:ε for solids (St. Venant and Kirchhoff).
 //!
-//! Differences are staggered: strains along an axis live on edges, shear strains in the middle of cells (of faces in space),
-//! curvatures at nodes and twists in the middle of cells. So the error falls with the square of the spacing, and no checkerboard is
-//! free. The paper puts all differences at nodes, which leaves one.
+//! Differences are staggered: strains along an axis are defined on edges, shear strains at the centres of cells (of faces in
+//! space), curvatures at nodes and twists at the centres of cells. So the error falls with the square of the spacing, and no
+//! checkerboard mode has zero energy. The paper puts all differences at nodes, which leaves such a mode.
 //!
-//! Forces are the exact gradient of the discrete energy. The paper's force (its equation 9) leaves out how the normal n in
-//! B = n·x″ turns with the surface; what that costs is measured in docs/finite-differences.md.
+//! Forces are the exact gradient of the discrete energy. The paper's force (its equation 9) neglects that the normal n in B =
+//! n·x″ rotates with the surface; docs/finite-differences.md reports measurements of the consequences.
 //!
 //! A curve in space may also resist a change of its Frenet torsion τ, U = ∫ ½ GJ (τ − τ₀)²: on an edge of length L between two
 //! nodes with a curvature, τ is the angle between their osculating planes over L.
 //!
-//! Limits: the Frenet torsion is that of the centre line and no twist of the section; where a curve becomes straight it has no value
-//! and no force, and close to that its force grows with the inverse of the curvature. A curve with a curvature at rest has no force where it is exactly
-//! straight, for then no direction is that of its curvature. St. Venant and Kirchhoff's law gives way below 1/√3 of the length. A
-//! degenerate tangent plane has no normal and no moment.
+//! Limits: the Frenet torsion describes the centre line and not the twist of the section. It has no value and no force where a
+//! curve is straight, and its force grows with the inverse of the curvature near that state. A curve with a curvature at rest has
+//! no force where it is exactly straight, because its curvature has no direction there. The St. Venant–Kirchhoff law softens
+//! below 1/√3 of the length. A degenerate tangent plane has no normal and no moment.
 
 mod along;
 mod curve;
@@ -56,7 +56,7 @@ use plate::{Edge, Inner, Twist};
 use solid::{Hexahedron, Quadrilateral};
 use states::Cells;
 
-/// The word in scenes.
+/// The name of the model in scenes.
 const KIND: &str = "finite_difference";
 
 opruga_math::messages! {
@@ -68,7 +68,7 @@ opruga_math::messages! {
         #[error("the body is not a regular grid")]
         #[allowed("line, ring, polyline, sheet, and a grid of quadrilaterals or hexahedra")]
         NotAGrid {},
-        /// A cell is no rectangle or box; how far off it is, as a part of its least spacing.
+        /// A cell is not a rectangle or box; the deviation is a fraction of its smallest spacing.
         "model.not_rectangular"
         #[error("cell {cell} deviates from a rectangle by {} of its spacing", number(*deviation))]
         #[allowed("at most 1e-6")]
@@ -87,11 +87,11 @@ opruga_math::messages! {
         "model.solid_thickness"
         #[error("`thickness` belongs to curves and surfaces; a solid has none")] #[parameters("thickness")]
         SolidThickness {},
-        /// Torsion belongs to curves.
+        /// Torsion of a surface or solid.
         "model.torsion_of_surface"
         #[error("`torsion` belongs to curves (`line`, `ring`, `polyline`); a surface or solid resists its own shear")] #[parameters("torsion")]
         TorsionOfSurface {},
-        /// A curve without curvature has no torsion.
+        /// Torsion of a curve without curvature.
         "model.no_torsion"
         #[error("the curve is straight at node {node}, where its torsion has no value")]
         #[hint("leave `torsion` out, or bend the rest shape")]
@@ -105,7 +105,7 @@ opruga_math::messages! {
 }
 
 opruga_math::messages! {
-    /// What deserves attention in curves and surfaces.
+    /// Warnings about curves and surfaces.
     #[derive(Clone, Debug, PartialEq)]
     pub enum FiniteDifferenceWarning {
         /// Edges are crushed or folded.
@@ -128,20 +128,20 @@ impl From<FiniteDifferenceError> for BuildError {
 #[derive(Debug)]
 pub struct FiniteDifferenceModel;
 
-/// Stencils of one body, or of eight alike ones, kind by kind.
+/// The stencils of one body, or of eight identical ones, kind by kind.
 #[derive(Debug)]
 struct FiniteDifference<const D: usize> {
     parts: Vec<Box<dyn Potential<D>>>,
-    /// The forces of the first two parts of a curve, where its nodes follow each other.
+    /// The forces of the first two parts of a curve, if its nodes follow each other.
     along: Option<Along>,
     damped: bool,
-    /// The cells of a solid, and the elastic numbers of each body.
+    /// The cells of a solid, and the elastic parameters of each body.
     solid: Option<(Cells<D>, Vec<Elastic>)>,
     /// The edges of a curve or a surface.
     folds: Option<Folds>,
 }
 
-/// The elastic numbers of one body.
+/// The elastic parameters of one body.
 #[derive(Clone, Copy, Debug)]
 struct Elastic {
     youngs_modulus: f64,
@@ -186,7 +186,7 @@ impl Elastic {
     fn torsional_rigidity(&self) -> f64 {
         self.section(None)[1] / (1.0 + self.poissons_ratio)
     }
-    /// EA [N] and EI [N·m²] of a curve, which is so deep out of the plane [m], or round in space.
+    /// EA [N] and EI [N·m²] of a curve with this depth out of the plane [m], or with a round section in space.
     fn section(&self, depth: Option<f64>) -> [f64; 2] {
         let t = self.thickness;
         let round = core::f64::consts::PI * t * t / 4.0;
@@ -200,8 +200,8 @@ impl<const D: usize> Model<D> for FiniteDifferenceModel {
         &SPEC
     }
     fn need(&self, counts: &Counts) -> Need {
-        // Eight numbers a stencil, and where their forces lie.
-        // A curve has no cell pairs; its torsion couples nodes three edges apart.
+        // Eight numbers per stencil, and the location of their forces. A curve has no cell pairs; its torsion couples nodes that
+        // are three edges apart.
         let couplings = 2.0 * counts.edges + 2.0 * counts.hinges + counts.cell_pairs;
         Need { bytes: 160.0 * counts.edges, couplings }
     }
@@ -254,7 +254,7 @@ type Parts<const D: usize> = Vec<Box<dyn Potential<D>>>;
 /// The parts of a solid and its cells.
 type Solid<const D: usize> = (Parts<D>, Option<Cells<D>>);
 
-/// What all parts of a body are built from.
+/// The data from which all parts of a body are built.
 struct Plan<'a, const D: usize> {
     ingredients: &'a Ingredients<'a, D>,
     elastic: Vec<Elastic>,
@@ -305,7 +305,7 @@ impl<const D: usize> Plan<'_, D> {
         }
         Ok(parts)
     }
-    /// The same stretch and bending in one walk, where edges follow the numbers of the nodes.
+    /// Stretch and bending in one walk, if edges follow the numbers of the nodes.
     fn along(&self, edges: &[[u32; 2]]) -> Option<Along> {
         let depth = (D == 2).then_some(self.ingredients.thickness);
         let (layout, count) = self.layout();
@@ -325,18 +325,18 @@ impl<const D: usize> Plan<'_, D> {
             [inverse, share, 1.0 / mean, rest, high, mean]
         })
     }
-    /// The torsion of a curve in space, on its edges between two nodes with a curvature.
+    /// The torsion of a curve in space, on its edges between two nodes with curvature.
     fn torsion(&self, nodes: &[[u32; 3]]) -> Result<Box<dyn Potential<D>>, Refusal> {
         for &[before, at, after] in nodes {
             let (a, b) = (minus(&self.at(at), &self.at(before)), minus(&self.at(after), &self.at(at)));
             let normal = cross(&a, &b);
-            // The plane of three nodes has a direction down to where rounding decides it.
+            // The plane of three nodes has a direction unless rounding determines it.
             if dot(&normal, &normal) <= 1e-18 * dot(&a, &a) * dot(&b, &b) {
                 return Err(Refusal::NoFrame { node: at });
             }
         }
         let (layout, count) = self.layout();
-        // Where each node stands between its neighbours.
+        // Each inner node with its neighbours before and after.
         let mut around = vec![None; count];
         for node in nodes {
             around[node[1] as usize] = Some(*node);
@@ -363,7 +363,7 @@ impl<const D: usize> Plan<'_, D> {
         let normal = cross(&a, &b);
         let size = dot(&tangent, &tangent).sqrt() * 0.5 * (low + high);
         let across = if D == 2 { normal[2] } else { dot(&normal, &normal).sqrt() };
-        // Straight but for rounding: then every direction of bending is alike.
+        // Straight except for rounding, so all directions of bending are equivalent.
         if D == 3 && across < 1e-9 { 0.0 } else { across / size }
     }
 
@@ -435,7 +435,8 @@ impl<const D: usize> Plan<'_, D> {
         }
         let area = h1 * h2;
         let (layout, count) = self.layout();
-        // The grid is flat at rest, since its cells are equal rectangles; a rolled sheet has rectangles too, so B₀ is computed.
+        // The grid is usually flat at rest, since its cells are equal rectangles. A rolled sheet has rectangles too, so B₀ is
+        // computed.
         let at_inner = Stencils::<Inner, 5, 7>::new(layout, count, inner, self.damped, |node, body| {
             let own = self.of(body);
             let p = [own.rigidity() * area, own.poissons_ratio, 1.0 / h1, 1.0 / h2, 0.0, 0.0, own.damping];

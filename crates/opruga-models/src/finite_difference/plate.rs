@@ -1,4 +1,4 @@
-//! Differences on a surface: its curvature at nodes, on its edge, and in the middle of its cells.
+//! Differences on a surface: its curvature at inner nodes, on its edge, and at the centres of its cells.
 //!
 //! ```text
 //!         v₊            B₁₁ = n·(u₊ − 2x + u₋)/h₁²  at inner nodes,
@@ -7,14 +7,14 @@
 //!         │             n = x₁ × x₂/|x₁ × x₂| by central differences.
 //!         v₋
 //! ```
-//! On a free edge no moment acts across it, so B across the edge has the value of least energy, and ½ D (1 − ν²) B² of the
-//! curvature along the edge is left.
+//! No moment acts across a free edge, so B across the edge has the value of least energy, which leaves ½ D (1 − ν²) B² for the
+//! curvature along the edge.
 
 use crate::vectors::{cross, dot, in_dimension, in_space, minus, scaled};
 use opruga_core::stencil::Kernel;
 use opruga_math::Lane;
 
-/// The unit normal of two tangents, and the inverse length of their product.
+/// The unit normal of two tangents, and the inverse length of their cross product.
 #[inline(always)]
 fn normal<S: Lane>(first: &[S; 3], second: &[S; 3]) -> ([S; 3], S) {
     let product = cross(first, second);
@@ -30,13 +30,13 @@ fn second<S: Lane>(before: &[S; 3], at: &[S; 3], after: &[S; 3]) -> [S; 3] {
     minus(&minus(after, at), &minus(at, before))
 }
 
-/// What one moment does: by its second difference, and by the tangents that turn the normal.
+/// The contributions of one moment: through its second difference, and through the tangents that rotate the normal.
 struct Moved<S> {
     by_second: [S; 3],
     by_first: [[S; 3]; 2],
 }
 
-/// The parts of M ∂B/∂x with B = n·d: M n for d, and M (d − B n)/|m| · ∂m with m = p × q for the tangents.
+/// The terms of M ∂B/∂x with B = n·d: M n for d, and M (d − B n)/|m| · ∂m with m = p × q for the tangents.
 #[inline(always)]
 fn moved<S: Lane>(moment: S, d: &[S; 3], n: &[S; 3], per_length: S, p: &[S; 3], q: &[S; 3]) -> Moved<S> {
     let curvature = dot(n, d);
@@ -44,7 +44,7 @@ fn moved<S: Lane>(moment: S, d: &[S; 3], n: &[S; 3], per_length: S, p: &[S; 3], 
     Moved { by_second: scaled(n, moment), by_first: [cross(q, &turned), cross(&turned, p)] }
 }
 
-/// Rate of B where nodes move: n·ḋ + (d − B n)/|m| · (ṗ × q + p × q̇).
+/// The rate of B when nodes move: n·ḋ + (d − B n)/|m| · (ṗ × q + p × q̇).
 #[inline(always)]
 fn rate<S: Lane>(unit: &Moved<S>, d: &[S; 3], p: &[S; 3], q: &[S; 3]) -> S {
     dot(&unit.by_second, d) + dot(&unit.by_first[0], p) + dot(&unit.by_first[1], q)
@@ -81,7 +81,7 @@ fn raised<S: Lane, const D: usize, const N: usize>(x: &[[S; D]; N]) -> [[S; 3]; 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Inner;
 
-/// Differences at an inner node: second along both axes, first along both axes.
+/// The differences at an inner node: second along both axes, first along both axes.
 struct Differences<S> {
     second: [[S; 3]; 2],
     first: [[S; 3]; 2],
@@ -161,12 +161,12 @@ impl<const D: usize> Kernel<D, 5, 7> for Inner {
     }
 }
 
-/// The curvature along the edge of a surface: nodes x, before and after it on the edge, and inside of it; parameters
-/// D (1 − ν²) A [N·m³], 1/h along the edge, 1/h across it [1/m], the curvature at rest [1/m] and τ [s].
+/// The curvature along the edge of a surface. Nodes: x, the nodes before and after it on the edge, and the one inside.
+/// Parameters: D (1 − ν²) A [N·m³], 1/h along the edge, 1/h across it [1/m], the curvature at rest [1/m] and τ [s].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Edge;
 
-/// Second difference along the edge, first along it, first across it.
+/// The second difference along the edge, the first along it, the first across it.
 type AtEdge<S> = [[S; 3]; 3];
 
 impl Edge {
@@ -243,7 +243,7 @@ impl Twist {
     fn spread<S: Lane, const D: usize>(p: &[S; 5], m: &Moved<S>) -> [[S; D]; 4] {
         let mut out = [[S::zero(); 3]; 4];
         let (area, half) = (p[1] * p[2], S::splat(0.5));
-        // Signs of the corners in the twist and in both mean differences.
+        // Signs of the corners in the twist and in the two mean differences.
         let signs = [[1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [1.0, 1.0, 1.0], [-1.0, -1.0, 1.0]];
         for node in 0..4 {
             add(&mut out, node, &m.by_second, S::splat(signs[node][0]) * area);
@@ -282,7 +282,7 @@ impl<const D: usize> Kernel<D, 4, 5> for Twist {
     }
 }
 
-/// Both curvatures of an inner node at rest [1/m].
+/// Both curvatures at an inner node at rest [1/m].
 pub(super) fn curvatures(p: &[f64; 7], x: &[[f64; 3]; 5]) -> [f64; 2] {
     Inner::excess(p, &Inner::differences(p, x)).0
 }

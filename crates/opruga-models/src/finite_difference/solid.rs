@@ -1,13 +1,14 @@
 //! Differences in the cells of a grid: Green's strain of its edges and faces.
 //!
-//! Strains along an axis live on edges, shear strains on the middle of faces; where the law multiplies strains of two axes, it
-//! takes the means of the cell. Every edge and every face has its own energy, so no checkerboard of displacements is free.
+//! Strains along an axis are defined on edges, shear strains at the centres of faces. Where the law multiplies strains of two
+//! axes, it uses their means over the cell. Every edge and every face has its own energy, so no checkerboard of displacements has
+//! zero energy.
 
 use opruga_core::stencil::Kernel;
 use opruga_math::Lane;
 
-/// A quadrilateral cell, of a body of the plane or of a surface in space; parameters c₁ A, c₂ A, c₃ A [N·m], 1/h₁², 1/h₂²,
-/// 1/(h₁ h₂) [1/m²] and the retardation time τ [s].
+/// A quadrilateral cell of a body in the plane or of a surface in space; parameters c₁ A, c₂ A, c₃ A [N·m], 1/h₁², 1/h₂², 1/(h₁
+/// h₂) [1/m²] and the retardation time τ [s].
 ///
 /// ```text
 ///   3 ──── 2     ε₁₁ = ½ (|Δ₁x|²/h₁² − 1) on the edges 0–1 and 3–2, ε₂₂ likewise on 0–3 and 1–2
@@ -18,7 +19,7 @@ use opruga_math::Lane;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Quadrilateral;
 
-/// Differences of two nodes.
+/// The difference of two nodes.
 #[inline(always)]
 fn difference<S: Lane, const D: usize>(from: &[S; D], to: &[S; D]) -> [S; D] {
     opruga_math::lanes!(S, d => to[d] - from[d])
@@ -83,7 +84,7 @@ impl Quadrilateral {
         let [first, second] = [sum(&edges[0][0], &edges[0][1]), sum(&edges[1][0], &edges[1][1])];
         Strained { edges, along, shear: S::splat(0.125) * product(&first, &second) * p[5] }
     }
-    /// Stresses times area: of the edges and of the shear.
+    /// Stresses times area, for the edges and for the shear.
     #[inline(always)]
     fn stresses<S: Lane>(p: &[S; 7], along: &[[S; 2]; 2], shear: S) -> ([[S; 2]; 2], S) {
         let half = S::splat(0.5);
@@ -165,8 +166,8 @@ impl<const D: usize> Kernel<D, 4, 7> for Quadrilateral {
 
 /// A hexahedral cell; parameters c₁ V, c₂ V, c₃ V [N·m], 1/h² of the three axes [1/m²] and the retardation time τ [s].
 ///
-/// The strains of an axis live on its four edges, the shear of two axes on two opposite faces.
-/// U = ½ V [c₁ Σ mean εᵢᵢ² + 2 c₂ Σ (mean εᵢᵢ)(mean εⱼⱼ) + c₃ Σ mean εᵢⱼ²], sums over i and over i < j.
+/// The strains of an axis are defined on its four edges, the shear of two axes on two opposite faces. U = ½ V [c₁ Σ mean εᵢᵢ² + 2
+/// c₂ Σ (mean εᵢᵢ)(mean εⱼⱼ) + c₃ Σ mean εᵢⱼ²], sums over i and over i < j.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Hexahedron;
 
@@ -177,7 +178,7 @@ const EDGES: [[[usize; 2]; 4]; 3] =
 /// The two edges of each of two axes on a face, by their index in [`EDGES`].
 type Face = [[usize; 2]; 2];
 
-/// For the axes (0, 1), (0, 2), (1, 2) both opposite faces.
+/// Both opposite faces for each of the axes (0, 1), (0, 2), (1, 2).
 const FACES: [([usize; 2], [Face; 2]); 3] = [
     ([0, 1], [[[0, 1], [0, 1]], [[2, 3], [2, 3]]]),
     ([0, 2], [[[0, 2], [0, 1]], [[1, 3], [2, 3]]]),
@@ -186,7 +187,7 @@ const FACES: [([usize; 2], [Face; 2]); 3] = [
 
 type Edges<S, const D: usize> = [[[S; D]; 4]; 3];
 
-/// Strains or stresses of a hexahedron: of its edges, and of its faces.
+/// Strains or stresses of a hexahedron: on its edges and on its faces.
 struct Tensor<S> {
     along: [[S; 4]; 3],
     shear: [[S; 2]; 3],
@@ -229,7 +230,7 @@ impl Hexahedron {
         }
         out
     }
-    /// Stresses times volume that belong to strains or to their rates.
+    /// Stresses times volume, from strains or from their rates.
     #[inline(always)]
     fn stresses<S: Lane>(p: &[S; 10], strain: &Tensor<S>) -> Tensor<S> {
         let mut mean = [S::zero(); 3];

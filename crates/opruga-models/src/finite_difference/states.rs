@@ -7,10 +7,10 @@ use opruga_core::state::View;
 use opruga_math::Lane;
 use opruga_math::matrix::determinant;
 
-/// The cells of a solid with their spacings along the axes [m].
+/// The cells of a solid, with their spacings along the axes [m].
 #[derive(Debug)]
 pub(super) struct Cells<const D: usize> {
-    /// The corners, four or eight a cell.
+    /// The corners, four or eight per cell.
     nodes: Vec<u32>,
     spacings: Vec<[f64; D]>,
     /// Depth out of the plane [m]; 1 in space.
@@ -39,7 +39,7 @@ impl<const D: usize> Cells<D> {
         cells.map(state).collect()
     }
     fn state(&self, cell: u32, at: &[[f64; D]], spacing: &[f64; D], elastic: &Elastic) -> CellState {
-        // The corner that lies one step along an axis, and whether a corner has made that step.
+        // Whether a corner is at the far end of an axis, and the corner at the other end of that axis.
         let stepped = |corner: usize, axis: usize| match D {
             2 => QUADRILATERAL.1[corner][axis] == 1,
             _ => HEXAHEDRON.1[corner][axis] == 1,
@@ -48,7 +48,7 @@ impl<const D: usize> Cells<D> {
             let wanted = |other: &usize| (0..D).all(|d| stepped(*other, d) == (stepped(corner, d) != (d == axis)));
             (0..at.len()).find(wanted).unwrap_or(corner)
         };
-        // Row k: the edge from a corner along axis k, per its length at rest.
+        // Row k: the edge from a corner along axis k, divided by its length at rest.
         let edges = |corner: usize| -> [[f64; D]; D] {
             core::array::from_fn(|axis| {
                 let (other, sign) = (across(corner, axis), if stepped(corner, axis) { -1.0 } else { 1.0 });
@@ -67,13 +67,13 @@ impl<const D: usize> Cells<D> {
             }
         }
         let ratio = determinant(&mean);
-        // S = λ tr ε 1 + 2μ ε by the axes of the grid, σ = F S Fᵀ/J.
+        // S = λ tr ε 1 + 2μ ε in the axes of the grid, σ = F S Fᵀ/J.
         let [_, lambda, four_mu] = elastic.solid();
         let product = |a: &[f64; D], b: &[f64; D]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let strain = |i: usize, j: usize| 0.5 * (product(&mean[i], &mean[j]) - if i == j { 1.0 } else { 0.0 });
         let trace: f64 = (0..D).map(|i| strain(i, i)).sum();
         let stress = |i: usize, j: usize| 0.5 * four_mu * strain(i, j) + if i == j { lambda * trace } else { 0.0 };
-        // Without stress across the plane the depth changes; otherwise it stays, and stress acts across.
+        // Without stress across the plane the depth changes. Otherwise it stays, and a stress acts across the plane.
         let poisson = elastic.poissons_ratio;
         let deepened = 1.0 - 2.0 * poisson / (1.0 - poisson) * trace;
         let (deep, across) = match (D, elastic.plane_stress) {

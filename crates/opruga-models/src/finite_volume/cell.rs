@@ -1,8 +1,8 @@
-//! Dual faces of cells: where they are, and their area vectors.
+//! Dual faces of cells: their location and their area vectors.
 //!
 //! Every edge (i, j) of a cell has one dual face between the parts of the cell that belong to i and to j. In the plane it is the
-//! segment from the middle of the edge to the centre; in space the quadrilateral through the middle of the edge, the two sides of the
-//! cell that meet there, and the centre. Its area vector points from i to j.
+//! segment from the midpoint of the edge to the centre of the cell. In space it is the quadrilateral through the midpoint of the
+//! edge, the centres of the two adjacent sides, and the centre of the cell. Its area vector points from i to j.
 //!
 //! ```text
 //!  3 ──── 2      3           quadrilaterals counter-clockwise; hexahedra 0123 below
@@ -16,15 +16,15 @@ use opruga_math::matrix::{self, Matrix};
 
 /// A kind of cells with N nodes.
 pub(super) trait Cell<const D: usize, const N: usize>: Copy + core::fmt::Debug + Send + Sync + 'static {
-    /// Whether F is the same everywhere in it.
+    /// Whether F is constant in the cell.
     const SIMPLEX: bool;
     /// The nodes of every edge.
     const EDGES: &'static [[usize; 2]];
-    /// The other corners of the sides that meet at every edge of a cell in space: two lists for each edge.
+    /// For cells in space, the other corners of the two sides that meet at each edge: two lists for each edge.
     const SIDES: &'static [[&'static [usize]; 2]];
-    /// ∂Nₐ/∂ξ at the middle of every dual face; one for all where F is the same.
+    /// ∂Nₐ/∂ξ at the centre of every dual face; only one entry if F is constant.
     const SLOPES: &'static [[[f64; D]; N]];
-    /// How many points there are at which F is asked for.
+    /// The number of points at which F is evaluated.
     const POINTS: usize = Self::SLOPES.len();
 }
 
@@ -97,7 +97,7 @@ const CORNERS: [[f64; 3]; 8] = [
     [-1.0, 1.0, 1.0],
 ];
 
-/// ∂Nₐ/∂ξ of a box at the middle of the dual face of every edge: half way from the middle of the edge to the centre.
+/// ∂Nₐ/∂ξ of a box at the centre of the dual face of every edge: half-way from the midpoint of the edge to the centre of the box.
 const fn slopes<const D: usize, const N: usize, const E: usize>(edges: &[[usize; 2]; E]) -> [[[f64; D]; N]; E] {
     let mut out = [[[0.0; D]; N]; E];
     let mut e = 0;
@@ -163,7 +163,7 @@ pub(super) fn dual_faces<C: Cell<D, N>, const D: usize, const N: usize>(x: &[[f6
             (turned[0], turned[1]) = (out[1], -out[0]);
             return turned;
         }
-        // Half the product of the diagonals, on the side of the second node.
+        // Half the cross product of the diagonals, oriented towards the second node.
         let [one, other] = C::SIDES[number].map(|rest| mean(x, rest.iter().copied().chain([i, j])));
         let across: [f64; D] = core::array::from_fn(|d| other[d] - one[d]);
         let mut area = [0.0; D];
@@ -189,7 +189,7 @@ fn mean<const D: usize, const N: usize>(x: &[[f64; D]; N], of: impl IntoIterator
     sum.map(|s| s / count)
 }
 
-/// The volume that the dual faces enclose with the nodes, by the theorem of the divergence: (1/D) Σ S·(xⱼ − xᵢ) [m³].
+/// The volume that the dual faces enclose with the nodes, by the divergence theorem: (1/D) Σ S·(xⱼ − xᵢ) [m³].
 pub(super) fn volume<C: Cell<D, N>, const D: usize, const N: usize>(x: &[[f64; D]; N], faces: &[[f64; D]]) -> f64 {
     let along = |(&[i, j], face): (&[usize; 2], &[f64; D])| (0..D).map(|d| face[d] * (x[j][d] - x[i][d])).sum::<f64>();
     C::EDGES.iter().zip(faces).map(along).sum::<f64>() / D as f64
@@ -199,8 +199,8 @@ pub(super) fn volume<C: Cell<D, N>, const D: usize, const N: usize>(x: &[[f64; D
 mod tests {
     use super::*;
 
-    /// The part of a cell around a node has as much surface on every side: dual faces and shares of the outer sides close it. So
-    /// Σ S ⊗ (xⱼ − xᵢ) over the edges of a simplex is its volume times the unit matrix.
+    /// The part of a cell around a node is closed: the area vectors of its dual faces and of its shares of the outer sides sum to
+    /// zero. So Σ S ⊗ (xⱼ − xᵢ) over the edges of a simplex is its volume times the unit matrix.
     fn check<C: Cell<D, N>, const D: usize, const N: usize>(x: [[f64; D]; N], measure: f64, is_exact: bool) {
         let faces = dual_faces::<C, D, N>(&x);
         assert!(
@@ -216,7 +216,7 @@ mod tests {
                 assert!(!C::SIMPLEX || (sum - expected).abs() < 1e-14, "{sum}");
             }
         }
-        // All shape functions together are one, everywhere.
+        // The shape functions sum to one everywhere.
         for slopes in C::SLOPES {
             for d in 0..D {
                 assert!(slopes.iter().map(|s| s[d]).sum::<f64>().abs() < 1e-15);

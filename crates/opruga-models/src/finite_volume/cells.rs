@@ -6,7 +6,7 @@ use core::marker::PhantomData;
 use opruga_core::state::Layout;
 use opruga_math::{Column, WIDTH, fetch_early};
 
-/// det ∂X/∂ξ below this fraction of the cube (square) of the longest edge is no volume.
+/// Below this fraction of the cube (square) of the longest edge, det ∂X/∂ξ counts as no volume.
 const NO_VOLUME: f64 = 1e-12;
 
 /// Cells of one kind.
@@ -14,15 +14,16 @@ const NO_VOLUME: f64 = 1e-12;
 pub(super) struct Cells<C, const D: usize, const N: usize> {
     pub(super) kind: PhantomData<C>,
     pub(super) layout: Layout,
-    /// The number in the mesh of the first one.
+    /// The number of the first cell in the mesh.
     pub(super) first: usize,
     pub(super) list: Vec<[u32; N]>,
     /// The nodes of every pack, `[corner][lane]`.
     pub(super) nodes: Vec<u32>,
-    /// ∂ξ/∂X [1/m] at every point, row by row; of a simplex ∇Nₐ of all corners but the first. The last pack is filled up with the last cell.
+    /// ∂ξ/∂X [1/m] at every point, row by row; for a simplex, ∇Nₐ of all corners but the first. The last pack is filled up with
+    /// copies of the last cell.
     pub(super) inverse: Column,
-    /// The area vectors of the dual faces [m², in the plane times the thickness]; empty for simplices, whose Wₐ = −V ∇Nₐ. What fills up the
-    /// last pack has none, and no volume.
+    /// The area vectors of the dual faces [m², in the plane times the thickness]; empty for simplices, whose Wₐ = −V ∇Nₐ. Copies
+    /// that fill up the last pack have zero area and volume.
     pub(super) areas: Column,
     /// Volume [m³].
     pub(super) volume: Column,
@@ -86,7 +87,7 @@ impl<C: Cell<D, N>, const D: usize, const N: usize> Cells<C, D, N> {
             }
         }
         if C::SIMPLEX {
-            // Around a corner, the sum of all dual faces of the cell is Wₐ, and by the divergence theorem ∇Nₐ = −Wₐ/V.
+            // Around a corner, the sum of all dual faces of the cell is Wₐ, so by the divergence theorem ∇Nₐ = −Wₐ/V.
             for a in 1..=D {
                 for d in 0..D {
                     let mut around = 0.0;
@@ -106,7 +107,7 @@ impl<C: Cell<D, N>, const D: usize, const N: usize> Cells<C, D, N> {
         Ok(())
     }
 
-    /// Asks the memory for what a pass reads of a pack of one body: more than a cache holds goes by in each.
+    /// Prefetches the data that a pass reads of a pack of one body: each pass reads more than fits into a cache.
     #[inline(always)]
     pub(super) fn fetch(&self, pack: usize) {
         if self.layout == Layout::Single {

@@ -9,14 +9,14 @@ use opruga_core::state::Layout;
 use opruga_math::matrix::{self, Matrix};
 use opruga_math::{Lane, Pack, ROW, Register, WIDTH, Work};
 
-/// Positions: of one body in rows, of eight bodies in the columns.
+/// Positions: in rows for one body, in columns for eight bodies.
 #[derive(Clone, Copy)]
 pub(super) struct Positions<'a, const D: usize> {
     pub(super) rows: &'a [f64],
     pub(super) columns: [&'a [f64]; D],
 }
 
-/// Some packs, and some points of each of their cells: those that a law is asked for together.
+/// Some packs, and some points of each of their cells, at which a law is evaluated together.
 #[derive(Clone)]
 pub(super) struct Group {
     pub(super) packs: Range<usize>,
@@ -24,7 +24,7 @@ pub(super) struct Group {
 }
 
 impl Group {
-    /// How many packs of points.
+    /// The number of packs of points.
     pub(super) fn len(&self) -> usize {
         self.packs.len() * self.points.len()
     }
@@ -58,7 +58,8 @@ fn corners<R: Register, C: Cell<D, N>, const D: usize, const N: usize>(
     out
 }
 
-/// The area vector k of a cell, of lanes of a pack [m²]: of a simplex Wₐ around the corner k + 1, else that of a dual face.
+/// The area vector k of a cell, for the lanes of a pack [m²]: for a simplex, Wₐ of the corner k + 1; otherwise that of a dual
+/// face.
 #[inline(always)]
 fn area<R: Register, C: Cell<D, N>, const D: usize, const N: usize>(
     cells: &Cells<C, D, N>,
@@ -77,7 +78,7 @@ fn area<R: Register, C: Cell<D, N>, const D: usize, const N: usize>(
     }
 }
 
-/// F of a group, D² packs for every pack of points.
+/// F of a group, with D² packs for every pack of points.
 pub(super) struct Gradients<'a, C, const D: usize, const N: usize> {
     pub(super) cells: &'a Cells<C, D, N>,
     pub(super) group: Group,
@@ -115,7 +116,7 @@ impl<C: Cell<D, N>, const D: usize, const N: usize> Work for Gradients<'_, C, D,
     }
 }
 
-/// Adds the tractions P S of a group to the forces on nodes: rows of nodes of one body, columns of packs of eight.
+/// Adds the tractions P S of a group to the forces on nodes: rows of nodes for one body, columns of packs for eight.
 pub(super) struct Tractions<'a, C, const D: usize, const N: usize> {
     pub(super) cells: &'a Cells<C, D, N>,
     pub(super) group: Group,
@@ -128,7 +129,7 @@ impl<C: Cell<D, N>, const D: usize, const N: usize> Work for Tractions<'_, C, D,
     fn run<P: Pack>(self) {
         let cells = self.cells;
         for pack in self.group.packs.clone() {
-            // The law reads no cells, so the memory has time to bring those of the next group.
+            // The law does not read the cells, so there is time to fetch those of the next group from memory.
             cells.fetch(pack + self.group.packs.len());
             let mut corners = [[P::zero(); D]; N];
             for part in 0..P::PARTS {
@@ -145,7 +146,8 @@ impl<C: Cell<D, N>, const D: usize, const N: usize> Work for Tractions<'_, C, D,
                             for j in 0..D {
                                 traction += stress[i][j] * area[j];
                             }
-                            // What acts on the part of one node acts against that of the other; the first corner has what the others leave.
+                            // The force on the part of one node is opposite to that of the other; the first corner of a simplex
+                            // gets the negative sum.
                             let [to, from] = if C::SIMPLEX { [k + 1, 0] } else { C::EDGES[q] };
                             force[to][i] += traction;
                             force[from][i] -= traction;
@@ -163,7 +165,8 @@ impl<C: Cell<D, N>, const D: usize, const N: usize> Work for Tractions<'_, C, D,
     }
 }
 
-/// Adds the forces on corners of a pack to those on nodes, cell by cell, so that one body and eight bodies add in the same order.
+/// Adds the forces on corners of a pack to those on nodes, cell by cell, so that the order of additions is the same for one body
+/// and for eight.
 #[inline(always)]
 fn scatter<P: Pack, C: Cell<D, N>, const D: usize, const N: usize>(
     cells: &Cells<C, D, N>,
@@ -230,7 +233,7 @@ impl<C: Cell<D, N>, const D: usize, const N: usize> Work for Contract<'_, C, D, 
                 }
                 let areas = if C::SIMPLEX { 0..D } else { q..q + 1 };
                 for k in areas {
-                    // S pulled through the tangent: Sⱼ ∂Pᵢⱼ/∂Fₖₗ.
+                    // S contracted with the tangent: Sⱼ ∂Pᵢⱼ/∂Fₖₗ.
                     let area = area::<P::Part, C, D, N>(cells, pack, k, offset);
                     let mut pulled = [[[P::Part::zero(); D]; D]; D];
                     for i in 0..D {

@@ -1,25 +1,26 @@
 //! # Finite volumes
 //!
-//! The force on a node is what the stress pulls at the part of the body that belongs to it (Teran, Blemker, Ng-Thow-Hing, Fedkiw 2003).
-//! That part is the node's dual cell, with faces between the middles of edges, sides and cells. With the area vectors S of the dual
-//! faces at rest,
+//! The force on a node is the force of the stress on the part of the body that belongs to the node (Teran, Blemker, Ng-Thow-Hing,
+//! Fedkiw 2003). That part is the dual cell of the node, with faces between the centres of edges, sides and cells. With the area
+//! vectors S of the dual faces at rest,
 //!
 //! fᵢ = Σ P(F) S,  fⱼ = −Σ P(F) S over the dual faces from i to j,
 //!
-//! so the net force is zero to the bit of each face, and Σ x × f = 0 wherever P Fᵀ is symmetric and F is that of all faces of a cell.
+//! so the net force of each face is exactly zero, and Σ x × f = 0 if P Fᵀ is symmetric and F is the same for all faces of a cell.
 //!
 //! | cell | F | energy |
 //! |---|---|---|
 //! | triangle, tetrahedron | constant, ∇Nₐ = −Wₐ/V with Wₐ = Σ S around a corner | V ψ(F); forces and Hessian are those of linear finite elements |
-//! | quadrilateral, hexahedron | at the middle of each dual face | none: the tangent is not symmetric where F differs between faces |
+//! | quadrilateral, hexahedron | at the centre of each dual face | none: the tangent is not symmetric if F differs between faces |
 //!
-//! For triangles and tetrahedra Kₐᵦ = Wₐ · ∂P/∂F · Wᵦ/V. For boxes the tangent is −∂fᵢ/∂x_b = −Σ S · ∂P/∂F · ∇N_b of the middle of the face:
-//! `equilibrium` takes it, and implicit rules refuse it with its reason. Materials are those of [`crate::materials`].
+//! For triangles and tetrahedra Kₐᵦ = Wₐ · ∂P/∂F · Wᵦ/V. For boxes the tangent is −∂fᵢ/∂x_b = −Σ S · ∂P/∂F · ∇N_b at the centre
+//! of the face: `equilibrium` accepts it, and implicit integrators refuse it with a reason. Materials are those of
+//! [`crate::materials`].
 //!
-//! A constant F is exact on cells of any form: the dual faces around an inner node close.
+//! A constant F is exact on cells of any shape, because the dual faces around an inner node form a closed surface.
 //!
-//! Limits: triangles and tetrahedra lock as linear finite elements do. Boxes of finite volumes have no moment of momentum that is
-//! conserved to rounding where a cell bends: F differs between its faces, and P Fᵀ with it.
+//! Limits: triangles and tetrahedra lock as linear finite elements do. Boxes do not conserve angular momentum to rounding when a
+//! cell bends, because F, and with it P Fᵀ, differs between its faces.
 
 mod cell;
 mod cells;
@@ -56,12 +57,12 @@ const LOCKS_ABOVE: f64 = 0.45;
 /// Some bodies have no energy; all have a tangent.
 const VIEWS: Views = Views { energy: false, hessian: true, symmetric: false, damping: false };
 
-/// What holds for both dimensions.
+/// The data common to both dimensions.
 struct Builder<'a, const D: usize> {
     ingredients: &'a Ingredients<'a, D>,
     laws: &'static Laws,
     parts: Vec<Box<dyn Part<D>>>,
-    /// The sum of volumes at rest [m³].
+    /// The total volume at rest [m³].
     volume: f64,
     is_simplicial: bool,
 }

@@ -1,4 +1,4 @@
-//! Cells of one kind as a solid sees them.
+//! Cells of one kind, as a solid uses them.
 
 use super::cell::Cell;
 use super::cells::Cells;
@@ -11,13 +11,13 @@ use opruga_core::potential::{CellState, Definiteness, Sink, StencilPack};
 use opruga_core::state::{Layout, View};
 use opruga_math::{Simd, WIDTH, matrix};
 
-/// The law of a solid, and its numbers.
+/// The law of a solid, and its parameters.
 #[derive(Debug)]
 pub(super) struct Matter<const D: usize> {
     pub(super) law: Box<dyn Law<D>>,
-    /// The law in space, where it says what acts across the plane.
+    /// The law in space, if it gives the stress across the plane.
     pub(super) in_space: Option<Box<dyn Law<3>>>,
-    /// μ, λ, the material's own number and no growth by heat, of [`MOST_PACKS`] packs of points.
+    /// μ, λ, the material's own parameter and a thermal growth of one, for [`MOST_PACKS`] packs of points.
     pub(super) parameters: Vec<f64>,
 }
 
@@ -25,15 +25,15 @@ impl<const D: usize> Matter<D> {
     fn points<'a>(&'a self, count: usize, gradient: &'a [f64]) -> Points<'a> {
         Points { count, gradient, parameters: &self.parameters[..count * PARAMETERS * WIDTH] }
     }
-    /// Whether the law may have no value: in plane stress.
+    /// Whether the law may have no value, as in plane stress.
     fn may_refuse(&self) -> bool {
         D == 2 && self.in_space.is_none()
     }
 }
 
-/// Cells, whatever their kind.
+/// Cells of any kind.
 pub(super) trait Part<const D: usize>: Send + Sync + Debug {
-    /// Adds forces, and of triangles and tetrahedra V ψ to eight partial sums for each body.
+    /// Adds forces; for triangles and tetrahedra also adds V ψ to eight partial sums for each body.
     fn evaluate(
         &self,
         matter: &Matter<D>,
@@ -47,21 +47,21 @@ pub(super) trait Part<const D: usize>: Send + Sync + Debug {
     fn tangent(&self, matter: &Matter<D>, positions: Positions<'_, D>, keep: Definiteness, sink: &mut dyn Sink<D>);
     /// Stress and volume ratio of the cells of a body.
     fn cell_states(&self, matter: &Matter<D>, positions: Positions<'_, D>, body: usize, out: &mut Vec<CellState>);
-    /// Calls back with the nodes of every cell.
+    /// Calls `visit` with the nodes of every cell.
     fn stencils(&self, visit: &mut dyn FnMut(&[u32]));
     /// Bytes on the heap.
     fn heap_bytes(&self) -> usize;
 }
 
-/// The most points of a cell, those of a hexahedron: a law is asked for half of them at a time.
+/// The largest number of points of a cell, that of a hexahedron; the law is evaluated at half of them at a time.
 const MOST_POINTS: usize = 12;
 
-/// Points of a pack that a law is asked for together.
+/// The number of points of a pack at which the law is evaluated together.
 const fn points_together<C: Cell<D, N>, const D: usize, const N: usize>() -> usize {
     if C::POINTS > MOST_PACKS { C::POINTS / 2 } else { C::POINTS }
 }
 
-/// Packs whose tractions are added together: as many as there is room for.
+/// Groups of packs whose tractions are added together: as many as the buffer holds.
 fn groups<C: Cell<D, N>, const D: usize, const N: usize>(packs: usize) -> impl Iterator<Item = Group> {
     let together = (8 / C::POINTS).max(1);
     (0..packs)
@@ -185,7 +185,7 @@ impl<C: Cell<D, N>, const D: usize, const N: usize> Part<D> for Cells<C, D, N> {
                             core::array::from_fn::<_, 3, _>(|j| f(i, j))
                         }));
                         *ratios += ratio;
-                        // What is no number stays.
+                        // NaN is kept.
                         *smallest = if ratio < *smallest || ratio.is_nan() { ratio } else { *smallest };
                         for i in 0..axes {
                             for j in 0..3 {
@@ -200,7 +200,7 @@ impl<C: Cell<D, N>, const D: usize, const N: usize> Part<D> for Cells<C, D, N> {
             }
             for (l, (sum, ratios, smallest)) in sums.iter().enumerate() {
                 let Some((cell, _)) = self.item(pack, l).filter(|(_, of)| *of == body) else { continue };
-                // ∫ P Fᵀ over the rest shape is ∫ σ over the present one; a law of small motions knows of one shape.
+                // ∫ P Fᵀ over the rest shape is ∫ σ over the present one. A law of small motions has only one shape.
                 let over = if turns { *ratios } else { C::POINTS as f64 };
                 out.push(CellState {
                     cell: (self.first + cell) as u32,
@@ -221,7 +221,7 @@ impl<C: Cell<D, N>, const D: usize, const N: usize> Part<D> for Cells<C, D, N> {
     }
 }
 
-/// Deformation gradients of space, in which nothing moves across the plane.
+/// Deformation gradients in space, without motion across the plane.
 fn raise<const D: usize>(plane: &[f64], points: usize, space: &mut [f64]) {
     for point in 0..points {
         for i in 0..3 {

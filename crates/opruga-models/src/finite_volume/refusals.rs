@@ -1,4 +1,4 @@
-//! Why a body is no solid of finite volumes.
+//! Why a body cannot be a solid of finite volumes.
 
 use super::SPEC;
 use opruga_core::error::BuildError;
@@ -9,18 +9,18 @@ messages! {
     /// Why `finite_volume` refuses a body, its parameters or an integrator.
     #[derive(Clone, Debug, PartialEq)]
     pub enum Refusal {
-        /// Nothing to fill.
+        /// A body without cells.
         "model.no_cells"
         #[error("the body has no cells: it is an outline, a surface or a chain")]
         #[allowed("triangles, quadrilaterals, tetrahedra and hexahedra, as `grid`, shapes from files with a `filling` and volume meshes have")]
         NoCells {},
-        /// Cells with nodes in the middle of edges.
+        /// Cells with nodes at the midpoints of edges.
         "model.quadratic_cells"
         #[error("the body has {count} quadratic cells, which have no dual faces here")]
         #[allowed("linear cells")]
         #[hint("`order = 1` for the body")]
         Quadratic { count: usize },
-        /// A cell without volume, or inside out.
+        /// A cell that has no volume or is inverted.
         "model.inverted_cell"
         #[error("cell {cell} has no volume or is turned inside out at rest: det ∂X/∂ξ = {} of a cell {} m long", number(*determinant), number(*size))]
         #[allowed("more than 1e-12 of its size")]
@@ -31,15 +31,15 @@ messages! {
         #[allowed("at most {}", number(*most))]
         #[hint("`locking = \"accept\"` takes them as they are, and `fem` has `order = 2` and `locking = \"nodal_volume\"`")]
         Locks { ratio: f64, most: f64 },
-        /// A material that is not there.
+        /// An unknown material.
         "scene.unknown_name"
         #[error("there is no material `{name}`")]
         NoMaterial { name: String },
-        /// What quadrilaterals and hexahedra lack, as a part of a refusal.
+        /// The reason why quadrilaterals and hexahedra have no potential, as a part of a refusal.
         "part.no_potential"
         #[error("forces of quadrilaterals and hexahedra, with F at the middle of each dual face, are the gradient of no energy; triangles and tetrahedra have one (`simplices = true`, `order = 1`)")]
         NoPotentialOfFaces {},
-        /// No thickness without stress across.
+        /// No thickness for which the stress across the plane is zero.
         "run.no_thickness"
         #[error("cell {cell} has no positive thickness without stress across the plane at t = {} s: it is stretched or turned inside out beyond what its material can follow in plane stress", number(*time))]
         NoThickness { cell: usize, time: f64 },

@@ -1,4 +1,4 @@
-//! A solid of finite volumes as a potential, or as a force with a tangent where it is none.
+//! A solid of finite volumes: a potential, or a force with a tangent if there is no potential.
 
 use super::SPEC;
 use super::kernels::Positions;
@@ -11,10 +11,10 @@ use opruga_core::tile::Tile;
 use opruga_math::message::AnyMessage;
 use opruga_math::{ROW, Simd, WIDTH, sum_in_fixed_order};
 
-/// Partial sums of the energies of eight bodies.
+/// The length of the partial sums of the energies of eight bodies.
 const ENERGY: usize = WIDTH * WIDTH;
 
-/// A solid of one body, or of eight alike ones.
+/// The solid of one body, or of eight identical ones.
 #[derive(Debug)]
 pub struct Solid<const D: usize> {
     pub(super) layout: Layout,
@@ -27,7 +27,7 @@ pub struct Solid<const D: usize> {
 }
 
 impl<const D: usize> Solid<D> {
-    /// Numbers of the rows of positions.
+    /// The length of the rows of positions.
     fn rows(&self) -> usize {
         if self.layout == Layout::Single { self.nodes * ROW } else { 0 }
     }

@@ -4,7 +4,7 @@ use opruga_core::pair::{PairLaw, PairTerm};
 use opruga_core::state::Parameter;
 use opruga_math::{Lane, Pack, lanes};
 
-/// A linear spring with damping along its axis, over the parameters of all springs.
+/// A linear spring with damping along its axis, for the parameters of all springs.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SpringLaw<'a, const DAMPED: bool> {
     pub(super) rest_length: &'a Parameter,
@@ -12,7 +12,7 @@ pub(super) struct SpringLaw<'a, const DAMPED: bool> {
     pub(super) damping: &'a Parameter,
 }
 
-/// 1/|d|; zero for coincident ends, whose force has no direction and is taken as zero.
+/// 1/|d|; zero for coincident ends, whose force has no direction and is set to zero.
 #[inline(always)]
 fn inverse_length<S: Lane, const D: usize>(d: &[S; D]) -> S {
     let square = dot(d, d);
@@ -21,7 +21,7 @@ fn inverse_length<S: Lane, const D: usize>(d: &[S; D]) -> S {
     S::select(S::splat(f64::MIN_POSITIVE).less_or_equal(square), inverse, S::zero())
 }
 
-/// Length of d and its inverse; both zero for coincident ends.
+/// The length of d and its inverse; both zero for coincident ends.
 #[inline(always)]
 pub(super) fn length<S: Lane, const D: usize>(d: &[S; D]) -> (S, S) {
     let inverse = inverse_length(d);
@@ -61,11 +61,11 @@ impl<const DAMPED: bool, const D: usize> PairLaw<D> for SpringLaw<'_, DAMPED> {
         inverse: S,
     ) -> ([S; D], S) {
         let length = dot(&d, &d) * inverse;
-        // Positive where the spring pushes its ends apart.
+        // Positive if the spring pushes its ends apart.
         let mut thrust = stiffness * (rest_length - length);
         let mut power = S::zero();
         if DAMPED {
-            // Rate of the length; zero under any rigid motion.
+            // The rate of the length; zero under any rigid motion.
             let speed = dot(&rate, &d) * inverse;
             let drag = damping * speed;
             thrust -= drag;

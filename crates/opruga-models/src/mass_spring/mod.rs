@@ -1,12 +1,12 @@
 //! # Mass–spring system
 //!
-//! Particles joined by linear springs (Nealen et al. 2005, §4; thesis 3.2). Energy of one spring between a and b with
-//! d = x_a − x_b and r = |d|:
+//! Particles joined by linear springs (Nealen et al. 2005, §4; thesis 3.2). The energy of one spring between a and b, with d =
+//! x_a − x_b and r = |d|:
 //!
 //! U = ½ k (r − l₀)²,  f_a = −k (r − l₀) d/r − c (ḋ·d/r) d/r,  f_b = −f_a,
 //!
-//! ∂²U/∂x_a∂x_a = k (n nᵀ + (1 − l₀/r)(1 − n nᵀ)), n = d/r. A compressed spring has a negative eigenvalue across its
-//! axis; the clamped Hessian drops it. −∂f_a/∂v_a = c n nᵀ. Springs resist neither bending nor a change of enclosed area.
+//! ∂²U/∂x_a∂x_a = k (n nᵀ + (1 − l₀/r)(1 − n nᵀ)), n = d/r. A compressed spring has a negative eigenvalue across its axis, which
+//! the clamped Hessian omits. −∂f_a/∂v_a = c n nᵀ. Springs resist neither bending nor a change of enclosed area.
 
 mod law;
 mod refusals;
@@ -30,7 +30,7 @@ use opruga_mesh::EdgeSet;
 #[derive(Debug)]
 pub struct MassSpring;
 
-/// Springs of one body, or of eight alike ones.
+/// The springs of one body, or of eight identical ones.
 #[derive(Debug)]
 pub struct Springs {
     layout: Layout,
@@ -78,7 +78,7 @@ impl<const D: usize> Model<D> for MassSpring {
         let values = |body: usize| ingredients.values[body.min(ingredients.values.len() - 1)];
         let count = table.parameter_count();
         let each = |number: &dyn Fn(usize, usize) -> f64| {
-            // The pair without effect behind the last one has no stiffness and no damping.
+            // The padding pair after the last one has no stiffness and no damping.
             Parameter::from_items(ingredients.layout, count, |spring, body| {
                 if spring < edges.len() { number(spring, body) } else { 0.0 }
             })
@@ -141,7 +141,8 @@ impl<const D: usize> Potential<D> for Springs {
                 let (xa, xb) = (view.position(a), view.position(b));
                 let d: [f64; D] = core::array::from_fn(|i| xa[i] - xb[i]);
                 let (length, inverse) = law::length(&d);
-                // Coincident ends have no force and no direction; their blocks are zero, so that the order of calls stays.
+                // Coincident ends have no force and no direction. Their blocks are delivered as zeros, so that the order of calls
+                // does not change.
                 let (k, mut across) = if inverse == 0.0 {
                     (0.0, 0.0)
                 } else {

@@ -9,7 +9,7 @@ messages! {
     /// Why `mass_spring` refuses a body or its parameters.
     #[derive(Clone, Debug, PartialEq)]
     pub enum Refusal {
-        /// Nothing to hold springs.
+        /// A body without edges.
         "model.no_edges" #[error("the body has no edges to carry springs (`edges = \"{edges}\"`)")] #[parameters("edges")]
         NoEdges { edges: String },
         /// An edge between two nodes at one point.
@@ -18,7 +18,7 @@ messages! {
         /// A modulus without an area.
         "model.no_area" #[error("`modulus` needs triangles next to the edges")] #[parameters("modulus")] #[hint("give `stiffness` for a chain or outline")]
         NoTriangles {},
-        /// A mesh that has no areas.
+        /// A mesh whose areas cannot be determined.
         "model.mesh" #[error("{problem}")]
         Mesh { problem: MeshError },
     }

@@ -1,4 +1,4 @@
-//! What a law says at one deformation gradient: for tables, and to compare with other programs.
+//! The values of a law at one deformation gradient, for tables and for comparison with other programs.
 
 use super::law::Law;
 use super::moduli::{lame, refuse_what_is_not_convex};
@@ -9,7 +9,7 @@ use opruga_core::potential::Definiteness;
 use opruga_core::spec::{Values, nearest};
 use opruga_math::{Simd, WIDTH};
 
-/// What a law says at a point.
+/// The values of a law at a point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AtPoint<const D: usize> {
     /// μ and λ [Pa].
@@ -20,15 +20,15 @@ pub struct AtPoint<const D: usize> {
     pub stress: [[f64; D]; D],
     /// ∂Pᵢⱼ/∂Fₖₗ in row i·D + j and column k·D + l [Pa].
     pub tangent: Vec<Vec<f64>>,
-    /// The stretch across the plane: 1 in plane strain, in plane stress that without stress across; none in space.
+    /// The stretch across the plane: 1 in plane strain; in plane stress the one without stress across the plane; none in space.
     pub across: Option<f64>,
 }
 
-/// What the law of these fields of a model says in the plane.
+/// Evaluates the law that these fields of a model describe, in the plane.
 ///
 /// # Errors
-/// `scene.unknown_name` where there is no such material, `model.not_convex`, and `model.no_value` where the law has no finite
-/// energy, stress and tangent.
+/// `scene.unknown_name` if there is no such material, `model.not_convex`, and `model.no_value` if the law has no finite energy,
+/// stress and tangent.
 pub fn in_plane(values: &Values, gradient: &[[f64; 2]; 2]) -> Result<AtPoint<2>, BuildError> {
     let entry = entry(values)?;
     let law =
@@ -38,7 +38,7 @@ pub fn in_plane(values: &Values, gradient: &[[f64; 2]; 2]) -> Result<AtPoint<2>,
     Ok(point)
 }
 
-/// What the law of these fields of a model says in space.
+/// Evaluates the law that these fields of a model describe, in space.
 ///
 /// # Errors
 /// As [`in_plane`].
@@ -59,7 +59,7 @@ fn ask<const D: usize>(law: &dyn Law<D>, values: &Values, gradient: &[[f64; D]; 
     let (ratio, own) = (number("poissons_ratio"), number("mooney_share"));
     refuse_what_is_not_convex(values, ratio)?;
     let [mu, lambda] = lame(number("youngs_modulus"), ratio);
-    // One point in all lanes of a pack.
+    // The same point in all lanes of a pack.
     let spread = |numbers: &[f64]| numbers.iter().flat_map(|x| [*x; WIDTH]).collect::<Vec<f64>>();
     let (f, parameters) = (spread(gradient.as_flattened()), spread(&[mu, lambda, own, 1.0]));
     debug_assert_eq!(parameters.len(), PARAMETERS * WIDTH);

@@ -1,4 +1,4 @@
-//! Corotated linear elasticity: Hooke's law beside the nearest rotation.
+//! Corotated linear elasticity: Hooke's law relative to the nearest rotation.
 
 use super::material::{Material, Parameters, Principal};
 use opruga_math::Lane;
@@ -7,15 +7,15 @@ use opruga_math::rotation::nearest_rotation;
 
 /// ψ = μ |F − R|² + λ/2 tr²(RᵀF − 1) with the rotation R nearest to F; P = 2μ(F − R) + λ tr(RᵀF − 1) R.
 ///
-/// R is proper (det R = 1), so a point turned inside out is pushed back. Volume is not resisted beyond the linear strain:
-/// under strong compression a bar can be squeezed flat at a finite force.
+/// R is proper (det R = 1), so an inverted point is pushed back. The law resists changes of volume only through the linear
+/// strain: strong compression can flatten a bar with a finite force.
 ///
 /// # Source
 /// Müller, Gross, "Interactive virtual materials" (2004); R differentiated exactly as in McAdams et al. (2011).
 #[derive(Clone, Copy, Debug)]
 pub struct Corotated;
 
-/// The least σᵢ + σⱼ that is divided by: the rotation is not defined where it is zero.
+/// The smallest σᵢ + σⱼ that is used as a divisor: the rotation is undefined if it is zero.
 const LEAST_SUM: f64 = 1e-9;
 
 /// The second derivatives of μ Σ(σᵢ − 1)² in principal stretches.

@@ -1,13 +1,13 @@
 //! Thermal expansion: laws of bodies that are warmer or colder than at rest.
 //!
-//! A point that has grown by g = 1 + α ΔT in every direction is under the law of what is left of its deformation,
+//! If a point has expanded by the factor g = 1 + α ΔT in every direction, the law applies to the remaining, elastic deformation:
 //!
 //! F = g F_e,  ψ_T(F) = g³ ψ(F/g),  P = g² P_e,  ∂P/∂F = g ∂P_e/∂F_e:
 //!
-//! g³ is the volume of the free heated body over that at rest, for which ψ counts. The law of small strain takes the thermal strain
-//! away instead, ψ_T = ψ(ε − αΔT 1), which is g² ψ(F/g) with that law. Both hold in space and for a plate, whose
-//! thickness finds its own stretch. In plane strain nothing moves across the plane, so that what is left there is 1/g, and
-//! the law is asked in space.
+//! g³ is the ratio of the volume of the unconstrained heated body to that at rest, to which ψ refers. The law of small strain
+//! subtracts the thermal strain instead, ψ_T = ψ(ε − αΔT 1), which is g² ψ(F/g) with that law. Both forms hold in space and for a
+//! plate, whose stretch of the thickness is free. In plane strain nothing moves across the plane, so the elastic stretch in that
+//! direction is 1/g, and the law in space is evaluated.
 //!
 //! # Source
 //! Vujošević, Lubarda, "Finite-strain thermoelasticity based on multiplicative decomposition of deformation gradient",
@@ -18,11 +18,12 @@ use super::points::{MOST_PACKS, PARAMETERS, PackBuffer, Points};
 use opruga_core::potential::Definiteness;
 use opruga_math::{Simd, WIDTH};
 
-/// A law in space, or of a plate, under heat.
+/// A law in space, or of a plate, with thermal expansion.
 #[derive(Debug)]
 pub(crate) struct Heated<const D: usize>(pub(crate) Box<dyn Law<D>>);
 
-/// A law in plane strain under heat: that of space where a point is warmer or colder, that of the plane where it is not.
+/// A law in plane strain with thermal expansion: the law in space where a point has expanded, and the law in the plane where it
+/// has not.
 #[derive(Debug)]
 pub(crate) struct HeatedSlice {
     pub(crate) plane: Box<dyn Law<2>>,
@@ -57,7 +58,7 @@ fn power(turns: bool) -> i32 {
 }
 
 impl<const D: usize> Heated<D> {
-    /// What is left of the deformation gradients.
+    /// The elastic deformation gradients F/g.
     fn elastic(points: &Points<'_>) -> PackBuffer<{ MOST_PACKS * 9 * WIDTH }> {
         let mut out = PackBuffer([0.0; MOST_PACKS * 9 * WIDTH]);
         let count = points.count * D * D * WIDTH;
@@ -97,7 +98,7 @@ impl<const D: usize> Law<D> for Heated<D> {
 }
 
 impl HeatedSlice {
-    /// Deformation gradients of space: nothing moves across the plane, where 1/g is left.
+    /// Elastic deformation gradients in space: nothing moves across the plane, which leaves 1/g there.
     fn raised(points: &Points<'_>) -> PackBuffer<{ MOST_PACKS * 9 * WIDTH }> {
         let mut out = PackBuffer([0.0; MOST_PACKS * 9 * WIDTH]);
         for point in 0..points.count {
@@ -111,8 +112,8 @@ impl HeatedSlice {
         out
     }
 
-    /// Puts what the law of the plane says in the place of what that of space says, where a point has not grown: a body is under
-    /// the same numbers whatever those beside it are.
+    /// Replaces the results of the law in space by those of the law in the plane where a point has not expanded. So the result of
+    /// a body does not depend on the bodies next to it.
     fn keep_what_is_cold(points: &Points<'_>, packs: usize, cold: &[f64], numbers: &mut [f64]) {
         for point in 0..points.count {
             let growths = growths(points, point);

@@ -1,7 +1,7 @@
-//! Materials behind one call per handful of points, so that elements and materials are compiled once each and not in pairs.
+//! Materials behind one call for several points, so that elements and materials are compiled separately and not in pairs.
 //!
-//! Elements write deformation gradients of some packs of points into a buffer of the first-level cache, a law makes
-//! stresses of them, elements make forces of these: two calls for 64 points cost less than a nanosecond per point.
+//! Elements write deformation gradients of some packs of points to a buffer in the first-level cache, a law computes stresses
+//! from them, and elements compute forces from these. Two calls for 64 points cost less than a nanosecond per point.
 
 use super::material::Material;
 use super::points::{INVARIANTS, MOST_PACKS, PRINCIPAL, PackBuffer, Points, read, write_matrix, write_tangent};
@@ -10,28 +10,29 @@ use core::fmt::Debug;
 use opruga_core::potential::Definiteness;
 use opruga_math::{Lane, Pack, Register, Simd, WIDTH, Work};
 
-/// A material as elements see it.
+/// A material as elements use it.
 pub(crate) trait Law<const D: usize>: Send + Sync + Debug {
-    /// Energy densities (one pack per pack of points) and stresses (D² packs).
+    /// Computes energy densities (one pack per pack of points) and stresses (D² packs).
     fn stress(&self, simd: Simd, points: Points<'_>, energy: &mut [f64], stress: &mut [f64]);
-    /// Tangents (D⁴ packs per pack of points).
+    /// Computes tangents (D⁴ packs per pack of points).
     fn tangent(&self, simd: Simd, points: Points<'_>, keep: Definiteness, tangent: &mut [f64]);
-    /// Tangents as short as the law knows to say them, in the form that it names.
+    /// Computes tangents in the shortest form that the law has, and returns that form.
     fn short_tangent(&self, simd: Simd, points: Points<'_>, keep: Definiteness, out: &mut [f64]) -> Form {
         self.tangent(simd, points, keep, out);
         Form::Whole
     }
-    /// Writes the stretch across the plane that the law finds at every point (a pack per pack of points); whether it finds one.
+    /// Writes the stretch across the plane that the law determines at every point (a pack per pack of points); returns whether
+    /// the law determines one.
     fn thickness(&self, _simd: Simd, _points: Points<'_>, _out: &mut [f64]) -> bool {
         false
     }
-    /// Whether it knows of rotations.
+    /// Whether the law accounts for rotations.
     fn turns(&self) -> bool;
     /// Whether its energy at rest is a difference of parts as large as the moduli.
     fn cancels(&self) -> bool;
 }
 
-/// How a tangent is said.
+/// The form of a tangent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Form {
     /// D⁴ packs per pack of points.
@@ -80,7 +81,7 @@ impl<M: Material<D>, const D: usize> Law<D> for Lift<M> {
 }
 
 impl<M> Lift<M> {
-    /// Tangents without negative eigenvalues, as [`Form::Principal`] says them.
+    /// Computes tangents without negative eigenvalues, in the form [`Form::Principal`].
     fn principal<const D: usize>(&self, simd: Simd, points: Points<'_>, out: &mut [f64])
     where
         M: Material<D>,
@@ -132,7 +133,7 @@ impl<M: Material<D>, const D: usize> Work for Tangents<'_, M, D> {
     }
 }
 
-/// Whether the material has a tangent by invariants, and what it is made of.
+/// Computes the data of the tangent by invariants; returns whether the material has them.
 struct ByInvariants<'a, M, const D: usize> {
     points: Points<'a>,
     out: &'a mut [f64],

@@ -6,7 +6,7 @@ use opruga_math::matrix::{self, Matrix};
 
 /// Hooke's law of the small strain ε = ½(F + Fᵀ) − 1: ψ = μ ε:ε + λ/2 tr² ε, P = 2με + λ tr ε 1.
 ///
-/// A rotation counts as strain: a turned body grows. It is for small motion, and to compare with.
+/// A rotation counts as strain, so a rotated body grows. The law is meant for small motion and for comparison.
 #[derive(Clone, Copy, Debug)]
 pub struct Linear;
 

@@ -1,4 +1,4 @@
-//! What a material is: energy density, stress and tangent as functions of the deformation gradient.
+//! The definition of a material: energy density, stress and tangent as functions of the deformation gradient.
 
 use core::fmt::Debug;
 use opruga_math::matrix::{self, Matrix};
@@ -12,7 +12,7 @@ pub struct Parameters<S> {
     pub mu: S,
     /// Lamé's first parameter λ = Eν/((1 + ν)(1 − 2ν)) [Pa].
     pub lambda: S,
-    /// A number of the material's own; the share of the second constant for Mooney–Rivlin.
+    /// A parameter of the material's own; for Mooney–Rivlin, the share of the second constant.
     pub own: S,
 }
 
@@ -21,26 +21,26 @@ pub type Tangent<S, const D: usize> = [[[[S; D]; D]; D]; D];
 
 /// A law of the deformation gradient F = ∂x/∂X, in the plane (plane strain) or in space.
 ///
-/// Formulas are straight code over [`Lane`], without closures and branches on values; a new material is a file with this
+/// Formulas are straight-line code over [`Lane`], without closures or branches on values. A new material is a file with this
 /// trait and a line in the list of materials.
 pub trait Material<const D: usize>: Copy + Debug + Send + Sync + 'static {
-    /// The word in scenes.
+    /// The name of the material in scenes.
     const NAME: &'static str;
-    /// Whether a turned body has no energy: all but the law of small rotation.
+    /// Whether a rotated body has no energy: true for all laws but that of small rotation.
     const TURNS: bool = true;
-    /// Whether ψ at rest is a difference of parts as large as the moduli, and no sum of squares: rounding leaves something of
-    /// these parts.
+    /// Whether ψ at rest is a difference of terms as large as the moduli instead of a sum of squares. Rounding then leaves a
+    /// remainder of these terms.
     const CANCELS: bool = false;
     /// Energy density ψ(F) [J/m³], zero at rest, and first Piola–Kirchhoff stress P = ∂ψ/∂F [Pa].
     fn energy_and_stress<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> (S, Matrix<S, D>);
     /// The second derivatives by the principal stretches σ of F: ∂P/∂F in the frame of its singular vectors [Pa].
     fn principal<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>, sigma: &[S; D]) -> Principal<S, D>;
-    /// The derivatives by tr FᵀF and det F, of a law that knows of nothing else: its tangent needs no more.
+    /// The derivatives by tr FᵀF and det F, for a law that depends on nothing else; its tangent needs no more.
     #[inline(always)]
     fn invariants<S: Lane>(_p: &Parameters<S>, _f: &Matrix<S, D>) -> Option<Invariants<S>> {
         None
     }
-    /// The tangent ∂P/∂F [Pa]; worth a formula of its own where it needs neither invariants nor singular vectors.
+    /// The tangent ∂P/∂F [Pa]. A formula of its own pays if the tangent needs neither invariants nor singular vectors.
     #[inline(always)]
     fn tangent<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> Tangent<S, D> {
         if let Some(invariants) = Self::invariants(p, f) {
@@ -51,13 +51,13 @@ pub trait Material<const D: usize>: Copy + Debug + Send + Sync + 'static {
     }
 }
 
-/// Derivatives of an energy ψ(I, J) with I = tr FᵀF and J = det F [Pa]: all that its tangent is made of,
-/// ∂P/∂F = 2ψ_I 1 + 4ψ_II F ⊗ F + ψ_JJ cof F ⊗ cof F + ψ_J ∂(cof F)/∂F, where ψ_IJ = 0.
+/// Derivatives of an energy ψ(I, J) with I = tr FᵀF and J = det F [Pa]. If ψ_IJ = 0, they determine the tangent, ∂P/∂F = 2ψ_I 1 +
+/// 4ψ_II F ⊗ F + ψ_JJ cof F ⊗ cof F + ψ_J ∂(cof F)/∂F.
 #[derive(Clone, Copy, Debug)]
 pub struct Invariants<S> {
     /// 2 ∂ψ/∂I.
     pub stretch: S,
-    /// 4 ∂²ψ/∂I²; none of a law that is linear in I.
+    /// 4 ∂²ψ/∂I²; none if the law is linear in I.
     pub stretch_twice: Option<S>,
     /// ∂ψ/∂J.
     pub volume: S,
@@ -80,7 +80,7 @@ impl<S: Lane> Invariants<S> {
     }
 }
 
-/// Second derivatives of an isotropic energy ψ(σ₁, …) by principal stretches: all that its tangent is made of.
+/// Second derivatives of an isotropic energy ψ(σ₁, …) by principal stretches, which determine its tangent.
 ///
 /// In the frame of the singular vectors the tangent has the eigenvectors uᵢvⱼᵀ ± uⱼvᵢᵀ with the eigenvalues
 /// (ψᵢ − ψⱼ)/(σᵢ − σⱼ) and (ψᵢ + ψⱼ)/(σᵢ + σⱼ), and the matrix ψᵢⱼ between the uᵢvᵢᵀ.
@@ -98,7 +98,7 @@ pub struct Principal<S, const D: usize> {
 }
 
 impl<S: Lane, const D: usize> Principal<S, D> {
-    /// Zero in every entry.
+    /// Zeros in every entry.
     #[inline(always)]
     pub fn zeros() -> Self {
         Principal { second: matrix::zeros(), difference: matrix::zeros(), sum: matrix::zeros() }
@@ -154,14 +154,14 @@ impl<S: Lane, const D: usize> Principal<S, D> {
         own
     }
 
-    /// What the tangent makes of u_a v_bᵀ, a < b: its parts along u_a v_bᵀ and along u_b v_aᵀ.
+    /// The product of the tangent with u_a v_bᵀ, a < b: its components along u_a v_bᵀ and along u_b v_aᵀ.
     #[inline(always)]
     pub fn pair(&self, a: usize, b: usize) -> (S, S) {
         let half = S::splat(0.5);
         (half * (self.difference[a][b] + self.sum[a][b]), half * (self.difference[a][b] - self.sum[a][b]))
     }
 
-    /// For every pair of axes a < b what [`Principal::pair`] gives, at [a][b] and at [b][a].
+    /// The values of [`Principal::pair`] for every pair of axes a < b, at [a][b] and at [b][a].
     #[inline(always)]
     pub(crate) fn pairs(&self) -> Matrix<S, D> {
         let mut out = matrix::zeros();
@@ -180,7 +180,7 @@ impl<S: Lane, const D: usize> Principal<S, D> {
     }
 }
 
-/// The tangent of a law from what it is in the frame of the singular vectors: its second derivatives by stretches, and
+/// The tangent of a law from its form in the frame of the singular vectors: its second derivatives by stretches, and
 /// [`Principal::pairs`].
 #[inline(always)]
 pub(crate) fn out_of_frame<S: Lane, const D: usize>(
@@ -192,7 +192,7 @@ pub(crate) fn out_of_frame<S: Lane, const D: usize>(
     let mut out = no_tangent();
     for a in 0..D {
         for b in 0..D {
-            // u_a v_bᵀ, and what the tangent makes of it.
+            // u_a v_bᵀ, and the product of the tangent with it.
             let mut image = matrix::zeros::<S, D>();
             if a == b {
                 for c in 0..D {
@@ -236,7 +236,7 @@ fn add_outer<S: Lane, const D: usize>(
     }
 }
 
-/// The product of all stretches but two, or but one where both are the same.
+/// The product of all stretches except σᵢ and σⱼ, or except σᵢ if i = j.
 #[inline(always)]
 fn others<S: Lane, const D: usize>(sigma: &[S; D], i: usize, j: usize) -> S {
     let mut out = S::one();
@@ -304,8 +304,8 @@ pub(crate) fn add_cofactor_derivative<S: Lane, const D: usize>(to: &mut Tangent<
     }
 }
 
-/// Adds the tangent of a stress F·S with S = 2μE + λ tr E 1 but for the part of S itself:
-/// μ ((F Fᵀ)ᵢₖ δⱼₗ + Fᵢₗ Fₖⱼ) + λ Fᵢⱼ Fₖₗ.
+/// Adds the tangent of a stress F·S with S = 2μE + λ tr E 1, except the term with S itself: μ ((F Fᵀ)ᵢₖ δⱼₗ + Fᵢₗ Fₖⱼ) + λ Fᵢⱼ
+/// Fₖₗ.
 #[inline(always)]
 pub(crate) fn add_strain_tangent<S: Lane, const D: usize>(to: &mut Tangent<S, D>, mu: S, lambda: S, f: &Matrix<S, D>) {
     let left = matrix::product_transposed(f, f);
@@ -322,18 +322,18 @@ pub(crate) fn add_strain_tangent<S: Lane, const D: usize>(to: &mut Tangent<S, D>
     }
 }
 
-/// Where the logarithm of the volume ratio goes over into a parabola: 1 % of the volume at rest.
+/// The volume ratio below which the logarithm is continued as a parabola: 1 % of the volume at rest.
 pub(crate) const LEAST_VOLUME: f64 = 0.01;
 
-/// ln J with its first two derivatives; below [`LEAST_VOLUME`] its parabola there, so that a point that is flat or turned
-/// inside out has an energy and is pushed back.
+/// ln J with its first two derivatives. Below [`LEAST_VOLUME`] it is continued as a parabola, so that a flat or inverted point
+/// has an energy and is pushed back.
 #[inline(always)]
 pub(crate) fn logarithm_of_volume<S: Lane>(j: S) -> [S; 3] {
     let least = S::splat(LEAST_VOLUME);
     let flat = j.less(least);
     let real = S::select(flat, least, j);
     let inverse = S::one() / real;
-    // r = (J − J₀)/J₀: zero where the logarithm itself holds.
+    // r = (J − J₀)/J₀; zero where the logarithm itself is used.
     let r = S::select(flat, (j - least) * inverse, S::zero());
     let value = real.ln() + r - S::splat(0.5) * r * r;
     [value, inverse - inverse * r, -(inverse * inverse)]

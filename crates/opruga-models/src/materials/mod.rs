@@ -1,10 +1,10 @@
 //! # Materials
 //!
-//! Functions of the deformation gradient F in a file each, for every model of a solid: [`Linear`], [`StVenantKirchhoff`],
-//! [`Corotated`], [`FixedCorotated`], [`NeoHookean`], [`StableNeoHookean`], [`MooneyRivlin`]. Each has an energy density ψ(F),
-//! P = ∂ψ/∂F and ∂P/∂F, in space and in plane strain. Plane stress makes a law of the plane of the law of space: the stretch of
-//! the thickness is that without stress across, at every point, and is condensed out of the tangent. Heat makes a law of
-//! F/g of any of these (file `heat`).
+//! Functions of the deformation gradient F, one file each, for every model of a solid: [`Linear`], [`StVenantKirchhoff`],
+//! [`Corotated`], [`FixedCorotated`], [`NeoHookean`], [`StableNeoHookean`], [`MooneyRivlin`]. Each has an energy density ψ(F), P
+//! = ∂ψ/∂F and ∂P/∂F, in space and in plane strain. Plane stress derives a law in the plane from the law in space: at every point
+//! the thickness has the stretch for which the stress across the plane is zero, and this stretch is condensed out of the tangent.
+//! Thermal expansion applies any of these laws to F/g (file `heat`).
 //!
 //! Clamped tangents come from the analytic eigensystem of isotropic energies ([`material::Principal`]; Smith et al. 2019).
 
@@ -40,16 +40,16 @@ use heat::{Heated, HeatedSlice};
 use law::{Law, Lift};
 use plane_stress::PlaneStress;
 
-/// A material of the list: its word and its laws.
+/// An entry of the list of materials: its name and its laws.
 pub(crate) struct Entry {
     pub(crate) name: &'static str,
-    /// At the temperature of rest.
+    /// At the reference temperature.
     pub(crate) cold: Laws,
-    /// Where any point may be warmer or colder.
+    /// If any point may have another temperature.
     pub(crate) heated: Laws,
 }
 
-/// Laws of a material in the plane (strain and stress) and in space.
+/// The laws of a material in the plane (plane strain and plane stress) and in space.
 pub(crate) struct Laws {
     pub(crate) plane_strain: fn() -> Box<dyn Law<2>>,
     pub(crate) plane_stress: fn() -> Box<dyn Law<2>>,
@@ -58,7 +58,7 @@ pub(crate) struct Laws {
 
 macro_rules! entries {
     ($($name:literal $material:ident),*) => {
-        /// The words of all materials.
+        /// The names of all materials.
         pub const NAMES: &[&str] = &[$($name),*];
         /// All materials.
         pub(crate) const ALL: &[Entry] = &[$(Entry {

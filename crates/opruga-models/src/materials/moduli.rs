@@ -1,4 +1,4 @@
-//! Moduli of materials, and which of them have no meaning together.
+//! Moduli of materials, and checks of their combinations.
 
 use super::Refusal;
 use opruga_core::error::BuildError;
@@ -9,7 +9,7 @@ pub(crate) fn lame(modulus: f64, ratio: f64) -> [f64; 2] {
     [modulus / (2.0 * (1.0 + ratio)), modulus * ratio / ((1.0 + ratio) * (1.0 - 2.0 * ratio))]
 }
 
-/// Refuses a Mooney–Rivlin solid that is not convex with a Poisson's ratio.
+/// Refuses a Mooney–Rivlin solid whose constants are not convex with a Poisson's ratio.
 pub(crate) fn refuse_what_is_not_convex(values: &Values, ratio: f64) -> Result<(), BuildError> {
     if values.text("material") != Some("mooney_rivlin") {
         return Ok(());
@@ -18,10 +18,10 @@ pub(crate) fn refuse_what_is_not_convex(values: &Values, ratio: f64) -> Result<(
     if share > most { Err(BuildError::of(values.kind(), not_convex(share, ratio, most))) } else { Ok(()) }
 }
 
-/// Why a share of the second constant of Mooney and Rivlin is refused with a Poisson's ratio that allows at most `most`.
+/// The refusal of a Mooney–Rivlin share for a Poisson's ratio that allows at most `most`.
 fn not_convex(share: f64, ratio: f64, most: f64) -> Refusal {
     if most < 0.0 {
-        // No share is allowed at all: λ < 0.
+        // No share is allowed, because λ < 0.
         let least = share / (1.0 + 2.0 * share);
         return Refusal::NeverConvex { ratio, least: least.to_string(), share: share.to_string() };
     }

@@ -10,8 +10,8 @@ use opruga_math::matrix::{self, Matrix};
 /// ψ = C₁ (I₁ − 3) + C₂ (I₂ − 3) + a (J² − 1) − b ln J with C₁ + C₂ = μ/2, a = λ/4 − C₂, b = 2(C₁ + C₂) + λ/2; I₁ = tr C,
 /// I₂ = ½(I₁² − tr C²), C = FᵀF (in plane strain with the stretch 1 along z), J = det F.
 ///
-/// Rubber at larger stretch. `own` is the share C₂/(C₁ + C₂). It is polyconvex for a ≥ 0, that is for a share up to
-/// ν/(1 − 2ν). Below J = 0.01 the logarithm goes on as its parabola.
+/// For rubber at larger stretch. `own` is the share C₂/(C₁ + C₂). The law is polyconvex for a ≥ 0, that is, for a share up to
+/// ν/(1 − 2ν). Below J = 0.01 the logarithm is continued as a parabola.
 ///
 /// # Source
 /// Ciarlet, Geymonat, "Sur les lois de comportement en élasticité non linéaire compressible" (1982); Ciarlet, *Mathematical
@@ -19,7 +19,7 @@ use opruga_math::matrix::{self, Matrix};
 #[derive(Clone, Copy, Debug)]
 pub struct MooneyRivlin;
 
-/// C₁, C₂, a, b; in the plane C₂ I₂ = C₂ (I + J² + …) is shared out to C₁ and a.
+/// C₁, C₂, a, b. In the plane C₂ I₂ = C₂ (I + J² + …) is distributed to C₁ and a.
 #[inline(always)]
 fn constants<S: Lane, const D: usize>(p: &Parameters<S>) -> [S; 4] {
     let half = S::splat(0.5);
@@ -30,7 +30,7 @@ fn constants<S: Lane, const D: usize>(p: &Parameters<S>) -> [S; 4] {
     if D == 2 { [first + second, S::zero(), a + second, b] } else { [first, second, a, b] }
 }
 
-/// First and second derivative of a J² − b ln J.
+/// The first and second derivatives of a J² − b ln J.
 #[inline(always)]
 fn volumetric<S: Lane>(a: S, b: S, j: S) -> (S, S) {
     let [_, first, second] = logarithm_of_volume(j);

@@ -6,15 +6,15 @@ use opruga_math::matrix::{self, Matrix};
 
 /// ψ = μ/2 (I₁ − D) − μ ln J + λ/2 ln² J with I₁ = tr FᵀF and J = det F; P = μF + (λ ln J − μ) J⁻¹ cof F.
 ///
-/// Rubber at moderate stretch. Below J = 0.01 the logarithm goes on as its parabola, so that elements that are flat or
-/// turned inside out have a finite energy and are pushed back.
+/// For rubber at moderate stretch. Below J = 0.01 the logarithm is continued as a parabola, so that flat or inverted elements
+/// have a finite energy and are pushed back.
 ///
 /// # Source
 /// Bonet, Wood, *Nonlinear continuum mechanics for finite element analysis*, eq. 6.27; in the plane J and I₁ of plane strain.
 #[derive(Clone, Copy, Debug)]
 pub struct NeoHookean;
 
-/// First and second derivative of −μ ln J + λ/2 ln² J.
+/// The first and second derivatives of −μ ln J + λ/2 ln² J.
 #[inline(always)]
 fn volumetric<S: Lane>(p: &Parameters<S>, j: S) -> (S, S) {
     let [log, first, second] = logarithm_of_volume(j);

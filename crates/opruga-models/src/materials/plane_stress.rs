@@ -1,4 +1,4 @@
-//! Plane stress: a law of space whose thickness finds its own stretch.
+//! Plane stress: a law in space with a free stretch of the thickness.
 
 use super::law::Law;
 use super::material::Tangent;
@@ -6,17 +6,17 @@ use super::points::{MOST_PACKS, PARAMETERS, PackBuffer, Points, read_matrix, wri
 use opruga_core::potential::Definiteness;
 use opruga_math::{Lane, Pack, Register, Simd, WIDTH, Work, symmetric};
 
-/// A law of space in a thin plate: at every point the stretch t of the thickness is that for which P₃₃ = 0.
+/// A law in space, for a thin plate: at every point the stretch t of the thickness has the value for which P₃₃ = 0.
 ///
-/// ψ(F) = min over t of ψ₃(diag(F, t)); P is the part of P₃ in the plane, and the tangent is condensed:
-/// Cᵢⱼₖₗ − Cᵢⱼ₃₃ C₃₃ₖₗ / C₃₃₃₃. Where no t > 0 has P₃₃ = 0, energy and stress are not numbers, and the step is refused.
+/// ψ(F) = min over t of ψ₃(diag(F, t)); P is the in-plane part of P₃, and the tangent is condensed: Cᵢⱼₖₗ − Cᵢⱼ₃₃ C₃₃ₖₗ / C₃₃₃₃.
+/// If P₃₃ = 0 for no t > 0, energy and stress are NaN, and the step is refused.
 #[derive(Debug)]
 pub(crate) struct PlaneStress(pub(crate) Box<dyn Law<3>>);
 
-/// The most Newton iterations for the thickness; five are usual.
+/// The largest number of Newton iterations for the thickness; five are usual.
 const MOST_ITERATIONS: usize = 60;
 
-/// The relative change of the thickness after which it is found.
+/// The relative change of the thickness below which it has converged.
 const FOUND: f64 = 1e-12;
 
 /// Packs of points in space.
@@ -25,12 +25,12 @@ struct Space {
     energy: PackBuffer<{ MOST_PACKS * WIDTH }>,
     stress: PackBuffer<{ MOST_PACKS * 9 * WIDTH }>,
     tangent: PackBuffer<{ MOST_PACKS * 81 * WIDTH }>,
-    /// 1 where the thickness is still sought.
+    /// 1 while the thickness has not converged.
     open: PackBuffer<{ MOST_PACKS * WIDTH }>,
 }
 
 impl PlaneStress {
-    /// Finds the thickness of all points; then gradients and stresses in space are those there.
+    /// Finds the thickness of all points; then gradients and stresses in space belong to it.
     fn solve(&self, simd: Simd, points: Points<'_>, space: &mut Space) {
         for point in 0..points.count {
             for i in 0..3 {
@@ -109,7 +109,8 @@ impl Law<2> for PlaneStress {
     }
 }
 
-/// One Newton iteration for the thickness; whether all are found. At the `last` call what is not found is not a number.
+/// One Newton iteration for the thickness; returns whether all points have converged. In the `last` call, those that have not
+/// become NaN.
 struct Thin<'a> {
     count: usize,
     space: &'a mut Space,
@@ -132,7 +133,7 @@ impl Work for Thin<'_> {
                     t.store(&mut self.space.gradient.0[corner..]);
                     continue;
                 }
-                // Newton for t P₃₃ = 0 in ln t, which keeps t positive.
+                // Newton's method for t P₃₃ = 0 in ln t, which keeps t positive.
                 let value = P::Part::load(&self.space.stress.0[corner..]);
                 let stiffness = P::Part::load(&self.space.tangent.0[(point * 81 + 80) * WIDTH + offset..]);
                 let slope = value + t * stiffness;
@@ -151,7 +152,7 @@ impl Work for Thin<'_> {
     }
 }
 
-/// Tangents in space without stress across the plane.
+/// Condenses tangents in space for zero stress across the plane.
 struct Condense<'a> {
     count: usize,
     keep: Definiteness,

@@ -1,23 +1,24 @@
-//! Numbers at points of elements in packs: deformation gradients, parameters, tangents, and how a part of a pack is read and written.
+//! Data at points of elements in packs: deformation gradients, parameters, tangents, and functions that read and write a part of
+//! a pack.
 
 use super::material::{Parameters, Tangent};
 use opruga_math::matrix::Matrix;
 use opruga_math::{Register, WIDTH};
 
-/// Packs of points that are looked at together, at most.
+/// The largest number of packs of points that are processed together.
 pub(crate) const MOST_PACKS: usize = 9;
 
 /// Memory for some packs of points.
 #[repr(align(64))]
 pub(crate) struct PackBuffer<const SIZE: usize>(pub(crate) [f64; SIZE]);
 
-/// Numbers at a point: those of [`Parameters`], and the growth by heat.
+/// The number of parameters at a point: those of [`Parameters`], and the thermal growth.
 pub(crate) const PARAMETERS: usize = 4;
 
 /// Packs of points: for each pack D² packs of F, row by row, and [`PARAMETERS`] packs.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Points<'a> {
-    /// Packs.
+    /// The number of packs.
     pub(crate) count: usize,
     /// Deformation gradients.
     pub(crate) gradient: &'a [f64],
@@ -25,14 +26,14 @@ pub(crate) struct Points<'a> {
     pub(crate) parameters: &'a [f64],
 }
 
-/// Numbers of [`super::material::Invariants`].
+/// The number of values of [`super::material::Invariants`].
 pub(crate) const INVARIANTS: usize = 4;
 
-/// Matrices of a tangent in the frame of the singular vectors: U, V, the second derivatives by stretches, and for pairs of
-/// axes what the tangent makes of u_a v_bᵀ (a < b): along itself at [a][b], along u_b v_aᵀ at [b][a].
+/// The number of matrices of a tangent in the frame of the singular vectors: U, V, the second derivatives by stretches, and for
+/// pairs of axes the components of the tangent times u_a v_bᵀ (a < b): along itself at [a][b], along u_b v_aᵀ at [b][a].
 pub(crate) const PRINCIPAL: usize = 4;
 
-/// The numbers of a part of a pack of points.
+/// Reads the parameters and F of a part of a pack of points.
 #[inline(always)]
 pub(crate) fn read<R: Register, const D: usize>(
     points: &Points<'_>,
@@ -45,7 +46,7 @@ pub(crate) fn read<R: Register, const D: usize>(
     (parameters, read_matrix(&points.gradient[pack * D * D * WIDTH..(pack + 1) * D * D * WIDTH], part))
 }
 
-/// A part of D² packs, row by row.
+/// Reads a part of D² packs, row by row.
 #[inline(always)]
 pub(crate) fn read_matrix<R: Register, const D: usize>(from: &[f64], part: usize) -> Matrix<R, D> {
     let from = &from[..D * D * WIDTH];

@@ -1,12 +1,12 @@
-//! Tangents in the frame of the singular vectors, in passes of which only one knows the material.
+//! Tangents in the frame of the singular vectors, in passes of which only one depends on the material.
 //!
 //! ```text
 //! F ──▶ U, V, σ ──▶ ψᵢⱼ, differences, sums ──▶ without negative eigenvalues ──▶ the whole tangent, where one asks for it
 //!      whatever the material  the material      whatever the material
 //! ```
-//! So singular vectors and eigenvalues are compiled once and not with every material. What the passes hand on lies in
-//! [`PRINCIPAL`] matrices for every pack of points: U, V, ψᵢⱼ (before: σ in its first row), and for pairs of axes a < b
-//! the parts of [`Principal::pair`] at [a][b] and [b][a] (before: the difference and the sum).
+//! So singular vectors and eigenvalues are compiled once and not with every material. The passes exchange [`PRINCIPAL`] matrices
+//! for every pack of points: U, V, ψᵢⱼ (before: σ in its first row), and for pairs of axes a < b the components of
+//! [`Principal::pair`] at [a][b] and [b][a] (before: the difference and the sum).
 
 use super::material::{Material, Parameters, Principal, out_of_frame};
 use super::points::{PRINCIPAL, Points, read, read_matrix, write_matrix, write_tangent};
@@ -14,17 +14,18 @@ use opruga_math::matrix::{self, Matrix};
 use opruga_math::singular::singular;
 use opruga_math::{Lane, Pack, Register, Twin, WIDTH, Work};
 
-/// Packs and parts of two registers: so many at a time, since singular vectors and eigenvalues wait for roots and divisions.
+/// The packs and parts of two registers. Two are processed at a time, because singular vectors and eigenvalues wait for square
+/// roots and divisions.
 type Two = [(usize, usize); 2];
 
-/// The two registers from one of `parts` on, the last of an odd number twice.
+/// Two registers of `parts` from `first` on; if their number is odd, the last one is repeated.
 #[inline(always)]
 fn two<P: Pack>(first: usize, parts: usize) -> Two {
     let second = (first + 1).min(parts - 1);
     [(first / P::PARTS, first % P::PARTS), (second / P::PARTS, second % P::PARTS)]
 }
 
-/// One of the [`PRINCIPAL`] matrices of two parts.
+/// Reads one of the [`PRINCIPAL`] matrices for two parts.
 #[inline(always)]
 fn read_twin<R: Register, const D: usize>(from: &[f64], number: usize, at: Two) -> Matrix<Twin<R>, D> {
     let [(pack, part), (other_pack, other_part)] = at;
@@ -33,7 +34,7 @@ fn read_twin<R: Register, const D: usize>(from: &[f64], number: usize, at: Two) 
     twin(&one, &other)
 }
 
-/// Writes one of the [`PRINCIPAL`] matrices of two parts.
+/// Writes one of the [`PRINCIPAL`] matrices for two parts.
 #[inline(always)]
 fn write_twin<R: Register, const D: usize>(to: &mut [f64], number: usize, at: Two, matrix: &Matrix<Twin<R>, D>) {
     let mut one = [[R::zero(); D]; D];
@@ -59,10 +60,10 @@ fn twin<R: Lane, const D: usize>(one: &Matrix<R, D>, other: &Matrix<R, D>) -> Ma
     out
 }
 
-/// Singular vectors and values of F.
+/// Computes singular vectors and values of F.
 pub(crate) struct Frames<'a, const D: usize> {
     pub(crate) points: Points<'a>,
-    /// Whether the law knows of rotations; one that does not is the same in every frame, and has that of the unit vectors.
+    /// Whether the law accounts for rotations. A law that does not is the same in every frame, and uses the unit vectors.
     pub(crate) turns: bool,
     pub(crate) out: &'a mut [f64],
 }
@@ -90,7 +91,7 @@ impl<const D: usize> Work for Frames<'_, D> {
     }
 }
 
-/// What the material makes of the singular values.
+/// Applies the material to the singular values.
 pub(crate) struct InFrame<'a, M, const D: usize> {
     pub(crate) points: Points<'a>,
     pub(crate) out: &'a mut [f64],
@@ -122,7 +123,7 @@ impl<M: Material<D>, const D: usize> Work for InFrame<'_, M, D> {
     }
 }
 
-/// Leaves out negative eigenvalues.
+/// Removes negative eigenvalues.
 pub(crate) struct Clamp<'a, const D: usize> {
     pub(crate) count: usize,
     pub(crate) out: &'a mut [f64],
@@ -149,7 +150,7 @@ impl<const D: usize> Work for Clamp<'_, D> {
     }
 }
 
-/// The whole tangents.
+/// Computes the whole tangents.
 pub(crate) struct OutOfFrame<'a, const D: usize> {
     pub(crate) count: usize,
     pub(crate) principal: &'a [f64],

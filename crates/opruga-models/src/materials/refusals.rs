@@ -2,33 +2,33 @@
 
 use opruga_math::messages;
 
-/// The hint that names the nearest word; empty where there is none.
+/// The hint with the nearest name; empty if there is none.
 fn did_you_mean(word: &Option<String>) -> String {
     word.as_ref().map_or_else(String::new, |word| format!("did you mean `{word}`?"))
 }
 
 messages! {
-    /// Why a material or its numbers are refused, by all solids alike.
+    /// Why a solid of any model refuses a material or its parameters.
     #[derive(Clone, Debug, PartialEq)]
     pub enum Refusal {
-        /// A material that is not there.
+        /// An unknown material.
         "scene.unknown_name" #[error("there is no material `{name}`")] #[hint("{}", did_you_mean(nearest))]
         Unknown { name: String, nearest: Option<String> },
-        /// A deformation that the law cannot follow.
+        /// A deformation for which the law has no value.
         "model.no_value" #[error("`{material}` has no value at this deformation gradient, whose determinant is {determinant}: the numbers are too large")]
         #[allowed("det F > 0, and stretches that the law can follow")]
         TooLarge { material: String, determinant: f64 },
-        /// A deformation without a thickness in plane stress.
+        /// A deformation for which plane stress has no thickness.
         "model.no_value"
         #[error("`{material}` has no value at this deformation gradient, whose determinant is {determinant}: no positive thickness is without stress across the plane")]
         #[allowed("det F > 0, and stretches that the law can follow")]
         NoThicknessAcross { material: String, determinant: f64 },
-        /// A Poisson's ratio that allows no second constant of Mooney and Rivlin.
+        /// A Poisson's ratio that allows no second constant of Mooney–Rivlin.
         "model.not_convex"
         #[error("`poissons_ratio` is {ratio}, with which `mooney_rivlin` is not convex, whatever the `mooney_share`")] #[value("{ratio}")] #[parameters("poissons_ratio", "mooney_share")]
         #[allowed("at least {least}, so that {share} <= ν/(1 − 2ν)")] #[hint("a smaller `mooney_share` allows a smaller one, down to 0")]
         NeverConvex { ratio: f64, least: String, share: String },
-        /// A second constant of Mooney and Rivlin that is too large.
+        /// A second constant of Mooney–Rivlin that is too large.
         "model.not_convex" #[error("`mooney_share` is {share} with `poissons_ratio` = {ratio}, and not convex")] #[value("{share}")] #[parameters("mooney_share", "poissons_ratio")]
         #[allowed("at most {most} = ν/(1 − 2ν)")] #[hint("a larger `poissons_ratio` allows a larger one")]
         NotConvex { share: f64, ratio: f64, most: String },

@@ -6,12 +6,12 @@ use opruga_math::matrix::{self, Matrix};
 
 /// ψ = μ E:E + λ/2 tr² E with E = ½(FᵀF − 1); P = F S, S = 2μE + λ tr E 1.
 ///
-/// Exact for large rotation, but it softens under compression: below a stretch of 1/√3 a bar gives way and may turn
-/// inside out, where it is as content as before. For large strain take another.
+/// It is exact for large rotation, but it softens under compression: below a stretch of 1/√3 a bar collapses and may invert, and
+/// the inverted state has the same energy. Use another law for large strain.
 #[derive(Clone, Copy, Debug)]
 pub struct StVenantKirchhoff;
 
-/// Green's strain and 2μE + λ tr E 1.
+/// Green's strain and S = 2μE + λ tr E 1.
 #[inline(always)]
 fn strain_and_stress<S: Lane, const D: usize>(p: &Parameters<S>, f: &Matrix<S, D>) -> (Matrix<S, D>, Matrix<S, D>) {
     let mut strain = matrix::transposed_product(f, f);

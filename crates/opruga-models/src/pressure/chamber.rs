@@ -1,4 +1,4 @@
-//! The boundary of a chamber: its volume and how it changes with every node.
+//! The boundary of a chamber: its volume and the derivatives of the volume.
 
 use super::curved::{CurvedSides, second_of_pair, second_of_triple};
 use opruga_core::pair::{PairLaw, PairTable, PairTerm};
@@ -13,26 +13,26 @@ use opruga_mesh::Adjacency;
 pub(super) enum Boundary {
     /// Oriented edges in the plane, interior to the left.
     Plane(PairTable),
-    /// The ring of neighbours of every node of a triangulated surface, counter-clockwise seen from outside.
+    /// The ring of neighbours of every node of a triangulated surface, counter-clockwise when seen from outside.
     Space(NodeRings),
-    /// Sides of cells that bend.
+    /// Sides of cells with curved sides.
     Curved(CurvedSides),
 }
 
-/// Rings of neighbours, eight nodes side by side.
+/// Rings of neighbours, for eight nodes side by side.
 #[derive(Debug)]
 pub(super) struct NodeRings {
     pub(super) width: usize,
-    /// The longest ring of each pack of nodes: the slots behind it add nothing.
+    /// The length of the longest ring of each pack of nodes; the slots after it are not used.
     pub(super) widths: Vec<u32>,
     /// `[node / 8][slot][node % 8]`; a shorter ring repeats its first neighbour, which adds nothing.
     pub(super) neighbour: Vec<u32>,
-    /// `[node / 8][slot]`: whether the eight neighbours follow each other, so that they can be read at once.
+    /// `[node / 8][slot]`: whether the eight neighbours are consecutive, so that they can be read at once.
     pub(super) together: Vec<bool>,
     pub(super) facets: Vec<[u32; 3]>,
 }
 
-/// Edges of the plane: each end gets half of the outward normal times the gauge pressure.
+/// Edges in the plane: each end gets half of the outward normal times the gauge pressure.
 #[derive(Clone, Copy)]
 struct EdgePush<'a> {
     layout: Layout,
@@ -87,8 +87,8 @@ impl<P: Pack, const D: usize> PairTerm<P, D> for TwiceArea<'_, P, D> {
     }
 }
 
-/// One number of each body. Of one body it is read as one number: eight that were just written one by one would have to be
-/// waited for.
+/// Loads one number of each body. For one body a single number is read: reading eight that have just been written one by one
+/// would stall.
 #[inline(always)]
 fn of_bodies<P: Pack>(layout: Layout, numbers: &[f64]) -> P {
     match layout {
@@ -120,7 +120,7 @@ impl<const D: usize> Work for Push<'_, '_, D> {
     }
 }
 
-/// What all bodies subtract from positions so that far from the origin no digits are lost: the first node.
+/// The position that each body subtracts, so that no digits are lost far from the origin: that of the first node.
 #[inline(always)]
 fn origin<P: Pack, const D: usize>(view: &View<D>) -> [P; D] {
     match view.layout {
@@ -130,7 +130,8 @@ fn origin<P: Pack, const D: usize>(view: &View<D>) -> [P; D] {
 }
 
 impl Boundary {
-    /// Volume of each body (area in the plane); in space also ∂V/∂x of every node into `area`, column by column.
+    /// Computes the volume of each body (area in the plane); in space also writes ∂V/∂x of every node to `area`, column by
+    /// column.
     #[inline(always)]
     pub(super) fn volume<P: Pack, const D: usize>(&self, view: &View<D>, area: &mut [f64]) -> P {
         let origin = origin::<P, D>(view);
@@ -151,7 +152,7 @@ impl Boundary {
         }
     }
 
-    /// Adds gauge pressure times ∂V/∂x on the nodes of a tile.
+    /// Adds gauge pressure times ∂V/∂x to the forces on the nodes of a tile.
     pub(super) fn add_force<const D: usize>(
         &self,
         simd: Simd,
@@ -234,7 +235,7 @@ impl Boundary {
         }
     }
 
-    /// The nodes of every facet.
+    /// Visits the nodes of every facet.
     pub(super) fn stencils(&self, visit: &mut dyn FnMut(&[u32])) {
         match self {
             Boundary::Plane(edges) => edges.pairs().iter().for_each(|edge| visit(edge)),
@@ -243,7 +244,7 @@ impl Boundary {
         }
     }
 
-    /// The nodes of the boundary; one that several facets meet is there as often.
+    /// The nodes of the boundary; a node on several facets may be repeated.
     pub(super) fn nodes(&self) -> &[u32] {
         match self {
             Boundary::Plane(edges) => edges.pairs().as_flattened(),
@@ -252,7 +253,7 @@ impl Boundary {
         }
     }
 
-    /// Numbers of scratch for the area vectors.
+    /// The length of the scratch for the area vectors.
     pub(super) fn area_len<const D: usize>(&self, layout: Layout, nodes: usize) -> usize {
         match self {
             Boundary::Plane(_) => 0,
@@ -277,7 +278,7 @@ impl Boundary {
 }
 
 impl NodeRings {
-    /// Lays out the rings of neighbours; nodes that are not on the boundary have an empty one.
+    /// Lays out the rings of neighbours; nodes that are not on the boundary have an empty ring.
     pub(super) fn new(rings: &Adjacency, facets: Vec<[u32; 3]>) -> NodeRings {
         let nodes = rings.nodes();
         let width = (0..nodes as u32).map(|n| rings.of(n).len()).max().unwrap_or(0);

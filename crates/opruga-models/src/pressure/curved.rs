@@ -1,8 +1,8 @@
-//! Boundaries of quadratic cells and of boxes: sides that bend, and the volume that they enclose as the shape functions of the
-//! cells have it.
+//! Boundaries of quadratic cells and of boxes: curved sides, and the volume that they enclose according to the shape functions of
+//! the cells.
 //!
-//! With sides cut into straight pieces a gas would push an end and the middle of a side with ¼ and ½ of its area, and the cells
-//! answer an even pressure with ⅙ and ⅔: stresses would waver from node to node.
+//! If sides were divided into straight pieces, the gas would load an end and the midpoint of a side with ¼ and ½ of its area,
+//! while the shape functions of the cells give ⅙ and ⅔ for a uniform pressure. Stresses would then oscillate from node to node.
 
 use opruga_core::potential::Sink;
 use opruga_core::state::View;
@@ -11,20 +11,21 @@ use std::collections::BTreeMap;
 /// The volume as a sum over groups of nodes: ½ Σ w xₐ × x_b in the plane, ⅙ Σ w xₐ·(x_b × x_c) in space.
 #[derive(Debug)]
 pub(super) struct CurvedSides {
-    /// The nodes of a group, the last of two of them twice, and w.
+    /// The nodes of a group (of two nodes, the last one twice), and w.
     pub(super) terms: Vec<([u32; 3], f64)>,
     /// The nodes of the boundary, ascending.
     pub(super) nodes: Vec<u32>,
 }
 
-/// ∫ x × x′ over a parabola through both ends and the middle, as parts of the products of two of its nodes (0, 1 ends).
+/// ∫ x × x′ over a parabola through both ends and the midpoint, as coefficients of products of two of its nodes (0 and 1 are the
+/// ends).
 const PARABOLA: [Term; 3] = [([0, 2, 2], 4.0 / 3.0), ([2, 1, 1], 4.0 / 3.0), ([0, 1, 1], -1.0 / 3.0)];
 
-/// The same of the bilinear side of a box: the mean of both ways to cut it into triangles.
+/// The same for the bilinear side of a box: the mean of the two divisions into triangles.
 const SADDLE: [Term; 4] = [([0, 1, 2], 0.5), ([0, 2, 3], 0.5), ([0, 1, 3], 0.5), ([1, 2, 3], 0.5)];
 
-/// The same of x·(∂x/∂ξ × ∂x/∂η) over a quadratic triangle of corners 0–2 and middles 3 (0–1), 4 (1–2), 5 (2–0): twice the
-/// alternating sum of ∫ Nᵢ ∂Nⱼ/∂ξ ∂N_k/∂η, a polynomial of fourth degree.
+/// The same for x·(∂x/∂ξ × ∂x/∂η) over a quadratic triangle with the corners 0–2 and the midpoints 3 (0–1), 4 (1–2), 5 (2–0):
+/// twice the alternating sum of ∫ Nᵢ ∂Nⱼ/∂ξ ∂N_k/∂η, a polynomial of fourth degree.
 const CAP: [Term; 20] = [
     ([0, 1, 2], 2.0 / 15.0),
     ([0, 1, 3], 0.2),
@@ -48,13 +49,13 @@ const CAP: [Term; 20] = [
     ([3, 4, 5], 16.0 / 15.0),
 ];
 
-/// Nodes of a side by their index in it, and the weight of their product.
+/// The nodes of a side by their index in it, and the weight of their product.
 type Term = ([usize; 3], f64);
 
 /// Facets by the indices of their nodes in a side.
 type Facets = [[usize; 3]];
 
-/// The ways in which the facets of a side of cells may have been cut, and what it adds to the volume; none of a straight side.
+/// The possible divisions of a side of a cell into facets, and the terms that it adds to the volume; none for a straight side.
 fn kind<const D: usize>(nodes: usize) -> Option<(&'static [&'static Facets], &'static [Term])> {
     match (D, nodes) {
         (2, 3) => Some((&[&[[0, 2, 2], [2, 1, 1]]], &PARABOLA)),
@@ -70,14 +71,14 @@ fn ascending<const D: usize>(facet: &[u32; D]) -> [u32; D] {
     key
 }
 
-/// Whether two facets of the same nodes face the same way.
+/// Whether two facets with the same nodes have the same orientation.
 fn face_alike<const D: usize>(one: &[u32; D], other: &[u32; D]) -> bool {
     let shift = (0..D).find(|k| other[*k] == one[0]).unwrap_or(0);
     (0..D).all(|k| one[k] == other[(k + shift) % D]) && (D != 2 || shift == 0)
 }
 
 impl CurvedSides {
-    /// Those of a chamber's facets, of which some are pieces of sides of cells that bend; none where none is.
+    /// The curved sides of a chamber, from its facets, some of which are pieces of such sides; none if there are no curved sides.
     pub(super) fn of<const D: usize>(facets: &[[u32; D]], sides: &[Vec<u32>]) -> Option<CurvedSides> {
         let mut left: BTreeMap<[u32; D], [u32; D]> = facets.iter().map(|facet| (ascending(facet), *facet)).collect();
         let mut terms = Vec::new();
@@ -89,7 +90,7 @@ impl CurvedSides {
                 if own.len() != pieces.len() {
                     continue;
                 }
-                // The boundary of a cavity faces away from the cells.
+                // The boundary of a cavity is oriented away from the cells.
                 let sign = if face_alike(own[0], &pieces[0]) { 1.0 } else { -1.0 };
                 pieces.iter().for_each(|piece| {
                     left.remove(&ascending(piece));
@@ -107,13 +108,13 @@ impl CurvedSides {
         Some(CurvedSides { terms, nodes })
     }
 
-    /// The volume (area in the plane) at positions; `slope` gets ∂V/∂x, node by node.
+    /// The volume (area in the plane) at positions; `slope` receives ∂V/∂x, node by node.
     pub(super) fn volume<const D: usize>(
         &self,
         at: impl Fn(u32) -> [f64; D],
         mut slope: impl FnMut(u32, [f64; D]),
     ) -> f64 {
-        // Far from the origin no digits are lost.
+        // Relative to a node, so that no digits are lost far from the origin.
         let origin = at(self.nodes[0]);
         let relative = |node: u32| {
             let x = at(node);
@@ -196,7 +197,8 @@ mod tests {
     use super::*;
     use opruga_mesh::Mesh;
 
-    /// Straight sides enclose what their pieces do, and an even pressure pushes corners and middles by their shape functions.
+    /// Straight sides enclose the same volume as their pieces, and a uniform pressure loads corners and midpoints according to
+    /// their shape functions.
     #[test]
     fn straight_sides_push_as_the_shape_functions_say() {
         let mesh =
@@ -226,7 +228,7 @@ mod tests {
             |node, by| (0..3).for_each(|d| push[node as usize][d] += by[d]),
         );
         assert!((volume - 1.0).abs() < 1e-14, "{volume}");
-        // A third of a triangle's area for each of its middles, nothing for its corners.
+        // A third of the area of a triangle for each of its midpoints, nothing for its corners.
         let mut expected = vec![0.0; all.len()];
         for side in list.iter().filter(|side| side.iter().all(|n| mesh.positions[*n as usize][0] == 1.0)) {
             side[3..].iter().for_each(|middle| expected[*middle as usize] += 0.5 / 3.0);
@@ -236,7 +238,7 @@ mod tests {
         }
     }
 
-    /// The corners of a box's side share an even pressure evenly, whichever way its facets were cut.
+    /// The corners of the side of a box get equal shares of a uniform pressure, whichever way its facets were divided.
     #[test]
     fn sides_of_boxes_push_their_corners_evenly() {
         let mesh = Mesh::<3>::grid([0.0; 3], [1.0; 3], [2; 3]).expect("a cube");
@@ -254,7 +256,7 @@ mod tests {
         }
     }
 
-    /// A tetrahedron with curved faces encloses what its determinant integrates to, and ∂V/∂x is the slope of that.
+    /// A tetrahedron with curved faces encloses the integral of its determinant, and ∂V/∂x is the derivative of that.
     #[test]
     fn curved_sides_enclose_the_volume_of_their_cell() {
         let mut mesh = Mesh::<3> {

@@ -3,9 +3,9 @@
 use opruga_core::spec::Values;
 use opruga_math::Lane;
 
-/// The part of the rest volume below which the pressure no longer rises, where a scene does not say: fifty times the pressure at
-/// rest. With a thousandth a ball that is thrown or shaken so hard that it is flattened gained energy without bound in steps of a
-/// fraction of the stable one, because they jump from one side of the passage to the other.
+/// The fraction of the rest volume below which the pressure no longer rises, if it is not given; the pressure is then fifty times
+/// that at rest. With a thousandth, a ball that was thrown or shaken hard enough to be flattened gained energy without bound,
+/// even in steps of a fraction of the stable step, because the steps jump across the narrow range of high pressure.
 pub(super) const SMALLEST_VOLUME: f64 = 0.02;
 
 /// How the temperature of the gas behaves.
@@ -13,7 +13,7 @@ pub(super) const SMALLEST_VOLUME: f64 = 0.02;
 pub(super) enum Process {
     /// Constant temperature: P V = nRT.
     Isothermal,
-    /// No heat exchanged: P V^γ constant.
+    /// No heat exchange: P V^γ is constant.
     Adiabatic {
         /// The ratio of heat capacities γ > 1.
         gamma: f64,
@@ -28,9 +28,9 @@ pub(super) struct Gas {
     pub(super) amount: f64,
     /// Rest volume V₀ [m³].
     pub(super) rest_volume: f64,
-    /// Pressure outside [Pa].
+    /// Ambient pressure [Pa].
     pub(super) ambient: f64,
-    /// The volume below which the pressure stays as it is there, as a fraction of V₀.
+    /// The volume below which the pressure stays constant, as a fraction of V₀.
     pub(super) smallest_volume: f64,
     /// The largest pressure [Pa].
     pub(super) largest_pressure: Option<f64>,
@@ -44,14 +44,14 @@ pub(super) struct Gas {
     pub(super) temperature: Vec<Vec<f64>>,
 }
 
-/// Pressure inside, energy and slope at a volume.
+/// Pressure, energy and slope at a volume.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct GasState {
     /// P [Pa].
     pub(super) pressure: f64,
-    /// U(V), ambient pressure included [J].
+    /// U(V), including the ambient pressure [J].
     pub(super) energy: f64,
-    /// U″(V) = γP/V [Pa/m³]; zero where the pressure is limited.
+    /// U″(V) = γP/V [Pa/m³]; zero if the pressure is limited.
     pub(super) curvature: f64,
     /// Whether the volume is below the limit.
     pub(super) limited: bool,
@@ -79,10 +79,10 @@ impl Gas {
             temperature,
         }
     }
-    /// nRT₀ that was let in until a time, less what was lost since [J].
+    /// nRT₀ that has entered until a time, minus what has been lost since [J].
     pub(super) fn cold_at(&self, time: f64, lost: f64) -> f64 {
         let ramp = if self.ramp > 0.0 { (time / self.ramp).larger(0.0).smaller(1.0) } else { 1.0 };
-        // A ramp that is made longer while it lasts may have let in less than was lost.
+        // If a ramp is lengthened while it lasts, less may have entered than was lost.
         (self.amount * ramp - lost).larger(0.0)
     }
     /// T/T₀ at a time.
@@ -92,13 +92,13 @@ impl Gas {
         }
         opruga_core::system::along_path::<1>(&self.temperature, time).0[0]
     }
-    /// nRT at the rest volume at a time, when so much nRT₀ was lost [J].
+    /// nRT at the rest volume at a time, after a loss of nRT₀ [J].
     pub(super) fn amount_at(&self, time: f64, lost: f64) -> f64 {
         self.cold_at(time, lost) * self.warmth(time)
     }
-    /// What is left of nRT₀ after a leak of h [s] at a volume that stays the same [J].
+    /// The remaining nRT₀ [J] after leaking for h [s] at constant volume.
     ///
-    /// dP/dt = −λ (P − P_a) there, so P goes to P_a + (P − P_a) e^(−λh), however fast that is, and the gas with it.
+    /// With dP/dt = −λ (P − P_a), P becomes P_a + (P − P_a) e^(−λh) for any λh, and the gas changes in proportion.
     pub(super) fn after_leak(&self, cold: f64, warmth: f64, volume: f64, h: f64) -> f64 {
         if self.leak <= 0.0 || warmth <= 0.0 {
             return cold;
@@ -109,7 +109,7 @@ impl Gas {
         if pressure > 0.0 {
             return cold * (after / pressure);
         }
-        // An empty chamber: how much gas has a pressure of one.
+        // An empty chamber: the amount of gas that has unit pressure.
         let v = volume.larger(self.smallest_volume * self.rest_volume);
         let unit = match self.process {
             Process::Isothermal => v,
@@ -117,7 +117,7 @@ impl Gas {
         };
         after * unit / warmth
     }
-    /// P V of this nRT at the rest volume, at the volume where the gas is [J]: what nRT has become.
+    /// P V [J] of the gas at the present volume, from nRT at the rest volume: the present value of nRT.
     pub(super) fn heat(&self, volume: f64, amount: f64) -> f64 {
         match self.process {
             Process::Isothermal => amount,
@@ -132,9 +132,9 @@ impl Gas {
     }
     /// The state at a volume V for this nRT (at the rest volume).
     ///
-    /// Below the volume V_s (a fraction of the rest volume, or where the largest pressure is reached) the pressure stays
-    /// P(V_s) and the energy goes on as its tangent, also through zero and for a body turned inside out. U stays a
-    /// function of V with a continuous slope, so no energy is made, and the force keeps pushing the body open.
+    /// Below the volume V_s (a fraction of the rest volume, or the volume at which the largest pressure is reached) the pressure
+    /// stays P(V_s), and the energy continues along its tangent, through zero and for inverted bodies too. U is a function of V
+    /// with a continuous slope, so no energy is created, and the force keeps opening the body.
     pub(super) fn at(&self, volume: f64, amount: f64) -> GasState {
         let v0 = self.rest_volume;
         let mut least = self.smallest_volume * v0;
@@ -160,7 +160,8 @@ impl Gas {
             limited,
         }
     }
-    /// The pressure and slope at a volume: what a step needs, without logarithms for a gas of constant temperature.
+    /// The pressure at a volume, and whether it is limited. This is all that a step needs; a gas of constant temperature takes no
+    /// logarithms.
     pub(super) fn pressure_at(&self, volume: f64, amount: f64) -> (f64, bool) {
         if self.process == Process::Isothermal {
             let mut least = self.smallest_volume * self.rest_volume;
@@ -204,7 +205,7 @@ mod tests {
         Gas::new(&values, 1.0)
     }
 
-    /// dP/dt = −λ (P − P_a) at a volume that stays the same, however far the gas is compressed.
+    /// dP/dt = −λ (P − P_a) at constant volume, however compressed the gas is.
     #[test]
     fn a_leak_is_as_fast_in_a_compressed_gas_of_either_process() {
         for process in ["isothermal", "adiabatic"] {

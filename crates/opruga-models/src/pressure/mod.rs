@@ -1,15 +1,15 @@
 //! # Pressure of an ideal gas
 //!
-//! The model that the thesis implements (3.3; Matyka and Ollila 2003), as a potential of the enclosed volume V:
+//! The model of the thesis (3.3; Matyka and Ollila 2003), as a potential of the enclosed volume V:
 //!
 //! isothermal U = −nRT ln(V/V₀) + P_a V,  adiabatic U = P₀ V₀^γ V^{1−γ}/(γ − 1) + P_a V,
 //!
 //! f_i = (P − P_a) ∂V/∂x_i,  ∇²U = (γP/V) ∇V ∇Vᵀ − (P − P_a) ∇²V.
 //!
-//! The first part of the Hessian has rank one and is delivered as such. Net force and net torque of a closed boundary
-//! are zero. What happens at and below zero volume is said at `Gas::at`; the clamped Hessian keeps the first part only.
+//! The first term of the Hessian has rank one and is delivered as such; the clamped Hessian keeps only this term. Net force and
+//! net torque of a closed boundary are zero. `Gas::at` describes the behaviour at and below zero volume.
 //!
-//! How this differs from the published program (errors E1 to E11) is told in the documentation of `as_published`.
+//! The documentation of `as_published` lists the differences from the published program (errors E1 to E11).
 
 mod chamber;
 mod curved;
@@ -39,11 +39,11 @@ use opruga_mesh::{Mesh, MeshError};
 #[derive(Debug)]
 pub struct PressureModel;
 
-/// The gas of one body or of eight alike ones.
+/// The gas of one body, or of eight identical ones.
 #[derive(Debug)]
 pub struct Pressure {
     layout: Layout,
-    /// Depth in the plane, 1 in space [m].
+    /// The depth in the plane [m]; 1 in space.
     depth: f64,
     chambers: Vec<Chamber>,
     scratch_len: usize,
@@ -56,19 +56,19 @@ struct Chamber {
     boundary: Boundary,
     /// One gas per body.
     gases: Vec<Gas>,
-    /// Where its numbers lie in the scratch: volume, force per ∂V/∂x, nRT of each body, then area vectors.
+    /// The offset of its data in the scratch: volume, force per ∂V/∂x, nRT of each body, then area vectors.
     scratch: usize,
     area_len: usize,
 }
 
-/// Numbers of a chamber in the scratch, before its area vectors.
+/// The length of the data of a chamber in the scratch, before its area vectors.
 const NUMBERS: usize = 4 * WIDTH;
 
-/// Memory of a chamber, per body: nRT₀ that was lost [J], how often the pressure was limited, how often the chamber enclosed
-/// nothing, and the full nRT₀ [J] that the loss counts from.
+/// The length of the memory of a chamber. For each body: the lost nRT₀ [J], how often the pressure was limited, how often the
+/// chamber enclosed no volume, and the full nRT₀ [J] to which the loss refers.
 const MEMORY: usize = 4 * WIDTH;
 
-/// What a gas has lost since it was filled, of the memory of its chamber [J]: nothing where a scene has set another amount since.
+/// The loss of a gas since it was filled [J], from the memory of its chamber; zero if the scene has set another amount since.
 fn lost(gas: &Gas, memory: &[f64], body: usize) -> f64 {
     if memory[3 * WIDTH + body] == gas.amount { memory[body] } else { 0.0 }
 }
@@ -113,7 +113,7 @@ impl<const D: usize> Model<D> for PressureModel {
                 Boundary::Plane(PairTable::new(ingredients.layout, nodes, &edges, false))
             } else {
                 let triangles: Vec<[u32; 3]> = facets.iter().map(|f| [f[0], f[1], f[D - 1]]).collect();
-                // The surface of this chamber alone, so that nodes of others have an empty ring.
+                // Only the surface of this chamber, so that nodes of others have an empty ring.
                 let skin = Mesh::<3> {
                     positions: mesh.positions.iter().map(|p| [p[0], p[1], p[D - 1]]).collect(),
                     facets: triangles.clone(),
@@ -132,15 +132,15 @@ impl<const D: usize> Model<D> for PressureModel {
     }
 }
 
-/// The facets around each chamber, facing outwards.
+/// Returns the facets around each chamber, oriented outwards.
 fn chambers<const D: usize>(mesh: &Mesh<D>, values: &[&Values]) -> Result<Vec<Vec<[u32; D]>>, BuildError> {
     let open = |problem: MeshError| Refusal::OpenBoundary { problem };
     let facets = |numbers: &[u32]| -> Vec<[u32; D]> { numbers.iter().map(|&f| mesh.facets[f as usize]).collect() };
-    // Bodies that are stepped together differ in numbers only.
+    // Bodies that are stepped together differ only in parameters.
     if values.first().and_then(|v| v.text("inside")) != Some("cavities") {
         return Ok(mesh.chambers().map_err(open)?.iter().map(|part| facets(part)).collect());
     }
-    // A hole of the boundary faces the other way when it is looked at from within.
+    // A hole of the boundary has the opposite orientation when seen from inside.
     let holes = mesh.components().map_err(open)?.into_iter().filter(|component| component.signed_volume < 0.0);
     let mut parts: Vec<Vec<[u32; D]>> = holes.map(|hole| facets(&hole.facets)).collect();
     if parts.is_empty() {
@@ -156,8 +156,8 @@ impl Chamber {
     fn gas(&self, body: usize) -> &Gas {
         &self.gases[body.min(self.gases.len() - 1)]
     }
-    /// What `prepare` left behind: volume (area), gauge pressure times depth, nRT of each body, one where its
-    /// pressure was limited; and area vectors.
+    /// The results of `prepare`: volume (area), gauge pressure times depth, nRT of each body, one if its pressure was limited;
+    /// and area vectors.
     fn known<'a>(&self, scratch: &'a [f64]) -> Known<'a> {
         let (numbers, area) = scratch[self.scratch..self.scratch + NUMBERS + self.area_len].split_at(NUMBERS);
         let (volume, rest) = numbers.split_at(WIDTH);
@@ -176,11 +176,11 @@ struct Known<'a> {
 }
 
 impl Pressure {
-    /// How many different bodies the numbers of a pack belong to.
+    /// The number of different bodies in a pack.
     fn bodies(&self) -> usize {
         self.layout.stride()
     }
-    /// Volume [m³], pressure [Pa] and nRT [J] of a chamber of one of the bodies.
+    /// Volume [m³], pressure [Pa] and nRT [J] of a chamber of one body.
     fn chamber_state(&self, chamber: &Chamber, scratch: &[f64], body: usize) -> (f64, f64, f64) {
         let known = chamber.known(scratch);
         let (volume, amount, gas) = (known.volume[body] * self.depth, known.amount[body], chamber.gas(body));
@@ -257,7 +257,7 @@ impl<const D: usize> Potential<D> for Pressure {
                 let volume = scratch[chamber.scratch + body] * self.depth;
                 let before = gas.amount_at(view.time - h, memory[body]);
                 if gas.leak > 0.0 {
-                    // Half of what is let in, the leak, the other half.
+                    // Half of the inflow, the leak, the other half.
                     let middle = view.time - 0.5 * h;
                     let cold = gas.cold_at(middle, memory[body]);
                     memory[body] += cold - gas.after_leak(cold, gas.warmth(middle), volume, h);
@@ -305,7 +305,7 @@ impl<const D: usize> Observe<D> for Pressure {
             let (v, p, nrt) = self.chamber_state(chamber, scratch, body);
             volume += v;
             amount += nrt;
-            // Chambers count by their size; the least number makes one of chambers that are empty.
+            // Chambers are weighted by their size; the smallest number gives empty chambers equal weights.
             let size = v.abs().larger(f64::MIN_POSITIVE);
             (pressure, weight) = (pressure + p * size, weight + size);
             let name = |what: &str| format!("chamber{}.{what}", number + 1).into();
@@ -339,7 +339,7 @@ impl<const D: usize> Observe<D> for Pressure {
 }
 
 opruga_math::messages! {
-    /// What deserves attention in a gas.
+    /// Warnings about a gas.
     #[derive(Clone, Debug, PartialEq)]
     pub enum PressureWarning {
         /// A limit acted.

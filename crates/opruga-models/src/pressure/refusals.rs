@@ -1,4 +1,4 @@
-//! Why a body holds no gas.
+//! Why a body cannot hold gas.
 
 use super::SPEC;
 use opruga_core::error::BuildError;
@@ -9,7 +9,7 @@ messages! {
     /// Why `pressure` refuses a body.
     #[derive(Clone, Debug, PartialEq)]
     pub enum Refusal {
-        /// No facets.
+        /// A body without facets.
         "model.open_surface" #[error("the body has no closed boundary to hold a gas")]
         NoBoundary {},
         /// A boundary that is not closed.
@@ -21,7 +21,7 @@ messages! {
         /// A boundary that branches.
         "model.not_manifold" #[error("{problem}")]
         Branches { problem: MeshError },
-        /// No holes.
+        /// A boundary without holes.
         "model.no_cavity" #[error("the boundary has no holes, so there is no cavity to hold a gas")] #[hint("`inside = \"boundary\"` fills the body")]
         NoCavity {},
     }

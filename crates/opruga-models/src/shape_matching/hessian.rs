@@ -1,14 +1,14 @@
-//! Second derivatives of shape matching: a diagonal and parts of rank one.
+//! Second derivatives of shape matching: a diagonal and terms of rank one.
 //!
-//! Of a cluster with the mass M, δ²U = κ (Σ m |δx|² − M |δx̄|² − (1 − β) aᵀ G⁻¹ a − β Σₖ |δcₖ|²), where a = Σ m Rᵀ(R q × δx) is
-//! how much of δx is rotation, and G = (tr S) 1 − S with S = Rᵀ A says how fast R follows.
+//! For a cluster with the mass M, δ²U = κ (Σ m |δx|² − M |δx̄|² − (1 − β) aᵀ G⁻¹ a − β Σₖ |δcₖ|²), where a = Σ m Rᵀ(R q × δx)
+//! measures the rotation in δx, and G = (tr S) 1 − S with S = Rᵀ A determines how fast R follows.
 
 use super::Matching;
 use super::shape::{inertia, turned_trace};
 use opruga_core::potential::{Definiteness, Sink};
 use opruga_math::{matrix, symmetric};
 
-/// Less than this part of what a cluster has at rest, and its rotation is not determined: then it resists nothing.
+/// Below this fraction of the value of the cluster at rest, its rotation is not determined and has no stiffness.
 const UNDETERMINED: f64 = 1e-12;
 
 impl<const D: usize> Matching<D> {
@@ -47,7 +47,7 @@ impl<const D: usize> Matching<D> {
         let first = clusters.range(cluster).start;
         let slots = first..first + clusters.count[cluster] as usize;
         let at = layout.index(cluster, body);
-        // Σ u·δx of a number of every slot along an axis, or of a vector of it.
+        // Delivers the square of Σ u·δx, where u is a vector of every slot.
         let mut deliver = |c: f64, of_slot: &dyn Fn(usize) -> [f64; D]| {
             part.clear();
             part.extend(slots.clone().map(|slot| {
@@ -90,7 +90,7 @@ impl<const D: usize> Matching<D> {
         };
         let stretch = matrix::transposed_product(&rotation, &matrix::product_transposed(&linear, &frame));
         for (axis, weight) in rotations(&frame, &stretch, keep) {
-            // The axis of the rotation in space; in the plane there is one, and its length counts.
+            // The rotation axis in space. In the plane there is one axis, and only its length matters.
             let axis: [f64; 3] = if D == 2 {
                 [0.0, 0.0, axis[0]]
             } else {
@@ -113,8 +113,8 @@ impl<const D: usize> Matching<D> {
     }
 }
 
-/// G⁻¹ as Σ w e eᵀ, in the frame of rest. With the inertia I of the cluster at rest, the part of the Hessian that is made of it has no
-/// negative eigenvalue where G ⪰ I; the eigenvalues of I^(−½) G I^(−½) say where that fails.
+/// G⁻¹ as Σ w e eᵀ, in the frame of the rest shape. With the inertia I of the cluster at rest, the corresponding part of the
+/// Hessian has no negative eigenvalue if G ⪰ I; the eigenvalues of I^(−½) G I^(−½) show where that fails.
 fn rotations<const D: usize>(
     frame: &[[f64; D]; D],
     stretch: &[[f64; D]; D],
@@ -136,7 +136,7 @@ fn rotations<const D: usize>(
     symmetric_stretch = matrix::scaled(&symmetric_stretch, 0.5);
     let (moments, axes) = symmetric::eigen(&inertia(frame));
     let largest = moments.iter().fold(0.0, |most, x| if *x > most { *x } else { most });
-    // I^(−½), without the axis of a cluster that is a line.
+    // I^(−½), without the axis of a collinear cluster.
     let mut root = matrix::zeros::<f64, D>();
     for k in (0..D).filter(|k| moments[*k] > UNDETERMINED * largest) {
         let factor = 1.0 / moments[k].sqrt();
@@ -157,7 +157,7 @@ fn rotations<const D: usize>(
             }
         }
         let ratio = clamped(ratios[k]);
-        // An axis about which nothing turns has no part.
+        // An axis about which nothing rotates contributes nothing.
         if ratio > UNDETERMINED && axis.iter().any(|x| *x != 0.0) {
             out.push((axis, 1.0 / ratio));
         }

@@ -1,4 +1,4 @@
-//! Moments of clusters, the maps that fit them, and the forces that follow, for every set of vector instructions.
+//! Moments of clusters, the fitted maps, and the resulting forces, for every set of vector instructions.
 
 use super::layout::Clusters;
 use super::shape::MOST_COLUMNS;
@@ -8,16 +8,17 @@ use opruga_math::matrix::{self, Matrix};
 use opruga_math::rotation::nearest_rotation;
 use opruga_math::{Pack, WIDTH, Work, lanes};
 
-/// Where the numbers of the clusters lie in the scratch: columns of one number per cluster and body, and then the forces of slots.
+/// The location of the data of the clusters in the scratch: columns with one number per cluster and body, followed by the forces
+/// of slots.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stored {
-    /// Length of a column.
+    /// The length of a column.
     pub(super) stride: usize,
-    /// First columns of the goals Gₖ, of the moments cₖ = Σ m p φₖ and of the rotation R; the centres come first.
+    /// The first columns of the goals Gₖ, of the moments cₖ = Σ m p φₖ and of the rotation R; the centres come first.
     pub(super) goal: usize,
     pub(super) moments: usize,
     pub(super) rotation: usize,
-    /// Where the forces of the slots begin.
+    /// The offset of the forces of the slots.
     pub(super) forces: usize,
 }
 
@@ -28,12 +29,12 @@ impl Stored {
         let (goal, moments, rotation) = (D, D + size, D + 2 * size);
         Stored { stride, goal, moments, rotation, forces: (rotation + D * D) * stride }
     }
-    /// Numbers in all.
+    /// The total length.
     pub(super) fn len<const D: usize>(&self, clusters: &Clusters<D>) -> usize {
         let slots = if clusters.is_whole { 0 } else { clusters.slots() * clusters.layout.stride() };
         self.forces + D * slots + WIDTH
     }
-    /// A number of a cluster, of one body eight times or of eight bodies.
+    /// Loads a number of a cluster: that of one body eight times, or those of eight bodies.
     #[inline(always)]
     fn spread<P: Pack>(&self, layout: Layout, scratch: &[f64], column: usize, cluster: usize) -> P {
         match layout {
@@ -41,12 +42,12 @@ impl Stored {
             Layout::Batch => P::load(&scratch[column * self.stride + cluster * WIDTH..]),
         }
     }
-    /// A number of clusters and bodies from a index of a column on.
+    /// Reads a column of clusters and bodies from an index on.
     #[inline(always)]
     fn read<P: Pack>(&self, scratch: &[f64], column: usize, index: usize) -> P {
         P::load(&scratch[column * self.stride + index..])
     }
-    /// A number of a cluster of a body.
+    /// Returns a number of a cluster of a body.
     pub(super) fn at<const D: usize>(
         &self,
         clusters: &Clusters<D>,
@@ -59,7 +60,7 @@ impl Stored {
     }
 }
 
-/// The numbers of a law: κ and β of every body.
+/// The parameters of a law: κ and β of every body.
 #[derive(Debug)]
 pub(super) struct Law {
     pub(super) stiffness: Parameter,
@@ -68,7 +69,7 @@ pub(super) struct Law {
     pub(super) keeps_volume: bool,
 }
 
-/// The positions of the nodes of eight slots, or of one slot of eight bodies.
+/// Returns the positions of the nodes of eight slots, or of one slot of eight bodies.
 #[inline(always)]
 fn positions<P: Pack, const D: usize>(clusters: &Clusters<D>, view: &View<D>, slot: usize) -> [P; D] {
     match clusters.layout {
@@ -78,7 +79,7 @@ fn positions<P: Pack, const D: usize>(clusters: &Clusters<D>, view: &View<D>, sl
     }
 }
 
-/// Σ m p and cₖ = Σ m p φₖ of the clusters, with p from the position of their first node; and the centre x̄.
+/// Computes Σ m p and cₖ = Σ m p φₖ of the clusters, with p relative to the position of their first node; and the centre x̄.
 pub(super) struct Moments<'a, const D: usize, const K: usize> {
     pub(super) clusters: &'a Clusters<D>,
     pub(super) stored: Stored,
@@ -133,7 +134,7 @@ impl<const D: usize, const K: usize> Work for Moments<'_, D, K> {
                     }
                 }
                 Layout::Batch => {
-                    // The partial sums that one body has in its eight indices, one after the other.
+                    // The partial sums that one body has in its eight lanes, one after the other.
                     let from: [P; D] = load(&view.x, index);
                     let mut firsts = [[P::zero(); WIDTH]; D];
                     let mut all = [[[P::zero(); WIDTH]; K]; D];
@@ -172,7 +173,7 @@ fn in_order<P: Pack>(a: &[P; WIDTH]) -> P {
     ((a[0] + a[4]) + (a[2] + a[6])) + ((a[1] + a[5]) + (a[3] + a[7]))
 }
 
-/// The rotations of all clusters, and the maps Gₖ = β cₖ + (1 − β) R Lₖ of the columns to the goals.
+/// Computes the rotations of all clusters, and the maps Gₖ = β cₖ + (1 − β) R Lₖ from the columns to the goals.
 pub(super) struct Fit<'a, const D: usize> {
     pub(super) clusters: &'a Clusters<D>,
     pub(super) stored: Stored,
@@ -180,7 +181,7 @@ pub(super) struct Fit<'a, const D: usize> {
     pub(super) scratch: &'a mut [f64],
 }
 
-/// The fitted map has a volume of its own above this part of that at rest.
+/// Below this fraction of the rest volume the fitted map counts as having no volume.
 pub(super) const VOLUME: f64 = 1e-9;
 
 impl<const D: usize> Work for Fit<'_, D> {
@@ -206,7 +207,7 @@ impl<const D: usize> Work for Fit<'_, D> {
             let mut factor = P::one();
             let mut there = P::zero().less(P::one());
             if law.keeps_volume {
-                // det T of T = c L⁻¹; where the fitted map has none, the rotation takes its index.
+                // det T of T = c L⁻¹; if the fitted map has no positive volume, the rotation replaces it.
                 let at_rest = matrix::determinant(&frame);
                 let now = matrix::determinant(&linear);
                 there = (P::splat(VOLUME) * at_rest.abs())
@@ -230,7 +231,7 @@ impl<const D: usize> Work for Fit<'_, D> {
     }
 }
 
-/// What the forces of a cluster need.
+/// The data that the forces of a cluster need.
 #[derive(Clone, Copy)]
 struct Goal<P, const D: usize, const K: usize> {
     center: [P; D],
@@ -264,7 +265,7 @@ impl<P: Pack, const D: usize, const K: usize> Goal<P, D, K> {
     }
 }
 
-/// Forces on the slots of all clusters.
+/// Computes the forces on the slots of all clusters.
 pub(super) struct SlotForces<'a, const D: usize, const K: usize> {
     pub(super) clusters: &'a Clusters<D>,
     pub(super) stored: Stored,
@@ -295,7 +296,7 @@ impl<const D: usize, const K: usize> Work for SlotForces<'_, D, K> {
     }
 }
 
-/// Forces on the nodes of a tile where the body is one cluster.
+/// Adds the forces on the nodes of a tile if the body is one cluster.
 pub(super) struct Push<'a, 'b, 'c, const D: usize, const K: usize> {
     pub(super) clusters: &'a Clusters<D>,
     pub(super) stored: Stored,
@@ -303,7 +304,7 @@ pub(super) struct Push<'a, 'b, 'c, const D: usize, const K: usize> {
     pub(super) view: &'a View<'a, D>,
     pub(super) scratch: &'a [f64],
     pub(super) tile: &'b mut Tile<'c, D>,
-    /// Whether the power of the forces is asked for.
+    /// Whether the power of the forces is requested.
     pub(super) works: bool,
 }
 impl<const D: usize, const K: usize> Work for Push<'_, '_, '_, D, K> {

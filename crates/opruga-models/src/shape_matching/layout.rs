@@ -1,27 +1,27 @@
-//! How the clusters of a body, or of eight bodies side by side, lie in memory.
+//! The memory layout of the clusters of a body, or of eight bodies side by side.
 //!
-//! A *slot* is a node in a cluster. The slots of a cluster are neighbours and fill whole packs; those without a node have no mass.
-//! Numbers of slots and clusters lie as the columns of nodes do ([`Layout::index`]), so that one body and eight bodies run the
-//! same code and have the same bits.
+//! A *slot* is a node in a cluster. The slots of a cluster are consecutive and fill whole packs; those without a node have no
+//! mass. The data of slots and clusters have the layout of the columns of nodes ([`Layout::index`]), so that one body and eight
+//! bodies run the same code and have the same bits.
 
 use super::shape::Shape;
 use opruga_core::potential::Ingredients;
 use opruga_core::state::Layout;
 use opruga_math::{Column, WIDTH};
 
-/// Clusters of one body, or of eight alike ones.
+/// The clusters of one body, or of eight identical ones.
 #[derive(Debug)]
 pub(super) struct Clusters<const D: usize> {
     pub(super) layout: Layout,
-    /// Nodes of a body.
+    /// The number of nodes of a body.
     pub(super) nodes: usize,
-    /// Columns of a cluster: D, and the products where the fit is quadratic.
+    /// The number of columns of a cluster: D, plus the products if the fit is quadratic.
     pub(super) columns: usize,
-    /// Where the slots of each cluster begin, and where the last end.
+    /// The first slot of each cluster, and the end of the last one.
     pub(super) start: Vec<u32>,
-    /// How many slots of each cluster hold a node.
+    /// The number of slots of each cluster that hold a node.
     pub(super) count: Vec<u32>,
-    /// The index of the node of every slot, of the first body.
+    /// The index of the node of every slot, for the first body.
     pub(super) indices: Vec<u32>,
     /// Whether there is one cluster, whose slots are the nodes in their order.
     pub(super) is_whole: bool,
@@ -32,7 +32,7 @@ pub(super) struct Clusters<const D: usize> {
     pub(super) mass: Column,
     /// φₖ, one after the other.
     pub(super) phi: Vec<Column>,
-    /// Of every cluster 1/M [1/kg], and L, `[axis · D + k]`.
+    /// 1/M [1/kg] of every cluster, and L, `[axis · D + k]`.
     pub(super) inverse_mass: Column,
     pub(super) frame: Vec<Column>,
 }
@@ -72,7 +72,7 @@ impl<const D: usize> Clusters<D> {
             let first = out.start[cluster] as usize;
             let end = out.start[cluster + 1] as usize;
             for slot in first..end {
-                // Slots without a node read the first one.
+                // Slots without a node read the first node.
                 let node = list.get(slot - first).copied().unwrap_or(list[0]);
                 out.indices[slot] = node * stride as u32;
             }
@@ -109,11 +109,11 @@ impl<const D: usize> Clusters<D> {
         out
     }
 
-    /// How many clusters.
+    /// The number of clusters.
     pub(super) fn len(&self) -> usize {
         self.count.len()
     }
-    /// Slots, with those that fill up packs.
+    /// The number of slots, including those that fill up packs.
     pub(super) fn slots(&self) -> usize {
         self.indices.len()
     }

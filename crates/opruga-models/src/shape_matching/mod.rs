@@ -1,32 +1,32 @@
 //! # Shape matching
 //!
-//! Clusters of nodes are drawn to the nearest copy of their rest shape (Müller, Heidelberger, Teschner, Gross 2005). With the masses m
-//! of the nodes in a cluster, their mean x̄, p = x − x̄ and q = X − X̄,
+//! Clusters of nodes are pulled towards the nearest copy of their rest shape (Müller, Heidelberger, Teschner, Gross 2005). With
+//! the masses m of the nodes in a cluster, their mean x̄, p = x − x̄ and q = X − X̄,
 //!
 //! U = (1 − β) U_R + β U_A,  U_R = min over rotations R of ½ κ Σ m |p − R q|²,  U_A = min over T of ½ κ Σ m |p − T q̃|²,
 //!
-//! where q̃ is q (linear: stretch and shear), or q and the products of its coordinates, centred (quadratic: 5 columns in the plane,
-//! 9 in space). Each energy is least over its own map, so the maps do not enter the gradient:
+//! where q̃ is q (linear: stretch and shear), or q and the products of its coordinates, centred (quadratic: 5 columns in the
+//! plane, 9 in space). Each energy is minimal over its own map, so the derivatives of the maps do not enter the gradient:
 //!
 //! f = −κ m (p − (1 − β) R q − β T q̃),  Σ f = 0,  Σ x × f = 0.
 //!
-//! R is the rotation nearest to A = Σ m p qᵀ, with det R = 1 also where the cluster is inverted. T comes from columns φₖ that are
-//! orthonormal in the masses (Σ m φₖ φₗ = δₖₗ): T q̃ = Σ cₖ φₖ with cₖ = Σ m p φₖ, and no matrix is inverted. Columns that the nodes cannot
-//! tell apart (lines, planes, few nodes) are left out, and those directions stay free.
+//! R is the rotation nearest to A = Σ m p qᵀ, with det R = 1 even if the cluster is inverted. T comes from columns φₖ that are
+//! orthonormal with respect to the masses (Σ m φₖ φₗ = δₖₗ): T q̃ = Σ cₖ φₖ with cₖ = Σ m p φₖ, so no matrix is inverted. Columns
+//! that are linearly dependent on the nodes (lines, planes, few nodes) are left out, and those directions stay free.
 //!
-//! **Hessian** (file `hessian`): κ m on the diagonal, less parts of rank one: translations, rotations with 1/(σᵢ + σⱼ) of A, and
-//! the D columns cₖ with κβ. A compressed cluster has negative eigenvalues along rotations (σᵢ + σⱼ less than at rest); the clamped Hessian
-//! has none.
+//! **Hessian** (file `hessian`): κ m on the diagonal, minus terms of rank one: translations, rotations with 1/(σᵢ + σⱼ) of A, and
+//! the D columns cₖ with κβ. A compressed cluster has negative eigenvalues along rotations (σᵢ + σⱼ less than at rest); the
+//! clamped Hessian has none.
 //!
-//! **Frequencies** at rest, where the masses of U are those of the nodes: 0 for rigid motion, √((1 − β)κ) for strains that T follows,
-//! √κ for all else.
+//! **Frequencies** at rest, if the masses in U are those of the nodes: 0 for rigid motion, √((1 − β)κ) for strains that T
+//! follows, √κ for all else.
 //!
 //! **As published**, T is divided by the D-th root of det T (of the linear fit), and κ may be α/h². That force has no potential:
-//! explicit integrators alone take it, and its power is entered as work from outside. Where det T is not above zero, R takes the index of T.
-//! The paper's quadratic fit keeps its translation; here its columns are centred, so that no momentum arises.
+//! only explicit integrators accept it, and its power counts as external work. If det T is not positive, R replaces T. The
+//! paper's quadratic fit keeps its translation; here its columns are centred, so that no momentum arises.
 //!
-//! Limits: κ is no material's stiffness, and a finer body is as soft as a coarse one. R is not unique where the two smallest
-//! σ are opposite; the choice is that of the singular vectors.
+//! Limits: κ is not the stiffness of a material, and refining a body does not change its stiffness. R is not unique if the two
+//! smallest σ are opposite; the singular vectors then determine the choice.
 
 mod hessian;
 mod kernels;
@@ -61,17 +61,17 @@ use pieces::Pieces;
 #[derive(Debug)]
 pub struct ShapeMatchingModel;
 
-/// Clusters of one body, or of eight alike ones, and their law.
+/// The clusters of one body, or of eight identical ones, and their law.
 #[derive(Debug)]
 pub struct Matching<const D: usize> {
     clusters: Clusters<D>,
-    /// How they share nodes, where that saves work.
+    /// The pieces that they share, if that saves work.
     pieces: Option<Pieces<D>>,
     law: Law,
     stored: Stored,
-    /// Whether the force is the published one, which is no gradient.
+    /// Whether the force is the published one, which is not a gradient.
     is_published: bool,
-    /// The substep [s] for which `goal_step` of each body counts, where it is given.
+    /// The substep [s] to which `goal_step` of each body refers, if it is given.
     step: Option<f64>,
 }
 
@@ -80,7 +80,7 @@ impl<const D: usize> Model<D> for ShapeMatchingModel {
         &SPEC
     }
     fn need(&self, counts: &Counts) -> Need {
-        // Of a body that is one cluster: masses and columns; in boxes a node is in 2ᴰ clusters.
+        // For a body that is one cluster: masses and columns. With boxes, a node is in 2ᴰ clusters.
         Need { bytes: 150.0 * counts.nodes, couplings: 0.0 }
     }
     fn build(&self, ingredients: &Ingredients<D>) -> Result<Box<dyn Potential<D>>, BuildError> {
@@ -154,7 +154,7 @@ impl<const D: usize> Potential<D> for Matching<D> {
             ..Properties::new(SPEC.kind, views)
         }
     }
-    /// The clusters; none where one of them is the whole body.
+    /// Visits the clusters; none if one of them is the whole body.
     fn stencils(&self, visit: &mut dyn FnMut(&[u32])) {
         let stride = self.clusters.layout.stride() as u32;
         for cluster in (0..self.clusters.len()).filter(|_| !self.clusters.is_whole) {
@@ -165,7 +165,7 @@ impl<const D: usize> Potential<D> for Matching<D> {
         }
     }
     fn initial_memory(&self) -> Vec<f64> {
-        // The step with which the stiffness was declared, and how often a cluster was mirrored, of every body.
+        // For every body: the step for which the stiffness was declared, and how often a cluster was mirrored.
         let mut memory = vec![self.step.unwrap_or(0.0); WIDTH];
         memory.resize(2 * WIDTH, 0.0);
         memory
@@ -226,7 +226,7 @@ impl<const D: usize> Potential<D> for Matching<D> {
         simd.run(Gather { clusters, forces: &scratch[stored.forces..], view, tile, works });
     }
     fn remember(&self, _simd: Simd, _view: &View<D>, h: f64, scratch: &mut [f64], memory: &mut [f64]) -> [f64; WIDTH] {
-        // A stiffness that depends on the step is refused where the step is another one.
+        // A stiffness that depends on the step is refused if the step differs.
         let (steps, mirrored) = memory.split_at_mut(WIDTH);
         steps.fill(h);
         for (body, count) in mirrored.iter_mut().enumerate().take(self.clusters.layout.stride()) {
@@ -246,7 +246,7 @@ impl<const D: usize> Potential<D> for Matching<D> {
 }
 
 impl<const D: usize> Matching<D> {
-    /// Numbers of the clusters, and then forces of slots, or rows of pieces and clusters.
+    /// The length of the data of the clusters, followed by forces of slots, or by rows of pieces and clusters.
     fn scratch_len(&self) -> usize {
         match &self.pieces {
             Some(pieces) => {
@@ -255,7 +255,7 @@ impl<const D: usize> Matching<D> {
             None => self.stored.len(&self.clusters),
         }
     }
-    /// Whether the fitted map of a cluster turns its rest shape inside out.
+    /// Whether the fitted map of a cluster inverts its rest shape.
     fn is_mirrored(&self, scratch: &[f64], cluster: usize, body: usize) -> bool {
         let (clusters, stored) = (&self.clusters, self.stored);
         let at = clusters.layout.index(cluster, body);
@@ -268,7 +268,7 @@ impl<const D: usize> Matching<D> {
             }
         }
         let at_rest = determinant(&frame);
-        // Below this part of its volume at rest its sign is rounding.
+        // Below this fraction of the volume at rest, the sign is determined by rounding.
         determinant(&map) * at_rest < -VOLUME * at_rest * at_rest
     }
 }
@@ -285,7 +285,7 @@ impl<const D: usize> Observe<D> for Matching<D> {
     }
 }
 
-/// The forces of the slots of every node of a tile.
+/// Adds up the forces of the slots of every node of a tile.
 struct Gather<'a, 'b, 'c, const D: usize> {
     clusters: &'a Clusters<D>,
     forces: &'a [f64],

@@ -1,7 +1,7 @@
 //! Moments of pieces, their sums in clusters, and sums of the clusters' maps, for every set of vector instructions.
 //!
-//! Of one body the numbers of a piece or a cluster are rows, `[coordinate][1, Q₁, Q₂, Q₃]`, two coordinates in a pack: sums need no
-//! gathering. Of eight bodies every number is a pack. Both add up in the same order.
+//! For one body the data of a piece or a cluster are rows, `[coordinate][1, Q₁, Q₂, Q₃]`, with two coordinates in a pack, so that
+//! sums need no gathering. For eight bodies every number is a pack. Both add in the same order.
 
 use super::kernels::{Law, Stored};
 use super::layout::Clusters;
@@ -10,21 +10,22 @@ use opruga_core::state::{Layout, View, load};
 use opruga_core::tile::Tile;
 use opruga_math::{Lane, Pack, Register, WIDTH, Work, lanes};
 
-/// Registers of a row of one body at most: sixteen numbers in pairs.
+/// The largest number of registers of a row of one body: sixteen numbers in pairs.
 const REGISTERS: usize = 8;
 
-/// Registers that hold the D maps of a row; what is behind them is not read.
+/// The number of registers that hold the D maps of a row; later ones are not read.
 const fn registers<P: Pack, const D: usize>() -> usize {
     (MAP * D).div_ceil(P::Part::NUMBERS)
 }
 
-/// The number (coordinate, column) of row `row` of eight bodies.
+/// The index of the number (coordinate, column) of row `row` for eight bodies.
 #[inline(always)]
 fn at<const D: usize>(row: usize, d: usize, c: usize) -> usize {
     row * WIDTH * MAP * D + (d * MAP + c) * WIDTH
 }
 
-/// Σ over rows of a list: those with even and those with odd numbers, and then both, so that no addition waits for the one before.
+/// Sums the rows of a list: those at even and at odd positions separately, and then both, so that no addition waits for the
+/// previous one.
 #[inline(always)]
 fn sum_rows<P: Pack, const D: usize>(rows: &[f64], list: &[u32]) -> [P::Part; REGISTERS] {
     let length = WIDTH * (D - 1);
@@ -50,7 +51,7 @@ fn sum_rows<P: Pack, const D: usize>(rows: &[f64], list: &[u32]) -> [P::Part; RE
     }
     out
 }
-/// One number of the same sum of eight bodies.
+/// Computes one number of the same sum for eight bodies.
 #[inline(always)]
 fn sum_number<P: Pack, const D: usize>(rows: &[f64], list: &[u32], d: usize, c: usize) -> P {
     let mut sums = [P::zero(); 2];
@@ -60,7 +61,7 @@ fn sum_number<P: Pack, const D: usize>(rows: &[f64], list: &[u32], d: usize, c: 
     sums[0] + sums[1]
 }
 
-/// The moments of all pieces, their sums in all clusters, and of those x̄ − x₀ and cₖ = Σ m p φₖ.
+/// Computes the moments of all pieces, their sums in all clusters, and from those x̄ − x₀ and cₖ = Σ m p φₖ.
 pub(super) struct PieceMoments<'a, const D: usize> {
     pub(super) clusters: &'a Clusters<D>,
     pub(super) pieces: &'a Pieces<D>,
@@ -110,7 +111,7 @@ impl<const D: usize> Work for PieceMoments<'_, D> {
             let inverse_mass = P::load(&clusters.inverse_mass[index..]);
             for d in 0..D {
                 let first = P::load(&numbers[d * stored.stride + index..]);
-                // Σ m u (Q − Q̄), and of that the columns.
+                // Σ m u (Q − Q̄), and the columns from it.
                 let second: [P; D] = lanes!(P, j => {
                     P::load(&numbers[(stored.moments + d * D + j) * stored.stride + index..]) - first * center[j]
                 });
@@ -145,7 +146,7 @@ fn of_pieces<P: Pack, const D: usize>(pieces: &Pieces<D>, view: &View<D>, rows: 
             for r in 0..registers::<P, D>() {
                 let first = r * P::Part::NUMBERS;
                 let weight = P::Part::load(&weights[first % WIDTH..]);
-                // A wide register has the maps of two coordinates; in space the second of them has one.
+                // A wide register holds the maps of two coordinates; in space the second one holds only one.
                 let one = P::Part::splat(u[first / MAP]);
                 let value = if P::Part::NUMBERS > MAP {
                     P::Part::select(low, one, P::Part::splat(u[first / MAP + 1]))
@@ -186,7 +187,8 @@ fn of_pieces_side_by_side<P: Pack, const D: usize>(pieces: &Pieces<D>, view: &Vi
     }
 }
 
-/// The maps of all clusters, t + H Q with H = G C, and their sums over the clusters of every piece times its share; x̄ at last.
+/// Computes the maps of all clusters, t + H Q with H = G C, and for every piece their sum over its clusters times its share;
+/// finally x̄.
 pub(super) struct PieceMaps<'a, const D: usize> {
     pub(super) clusters: &'a Clusters<D>,
     pub(super) pieces: &'a Pieces<D>,
@@ -219,7 +221,7 @@ impl<const D: usize> Work for PieceMaps<'_, D> {
                     map[0] -= slope * center[j];
                     map[1 + j] = slope;
                 }
-                // x̄ itself, which the energy asks for.
+                // x̄ itself, which the energy needs.
                 let from = match layout {
                     Layout::Single => P::splat(view.x[d][pieces.origin]),
                     Layout::Batch => P::load(&view.x[d][pieces.origin * WIDTH..]),
@@ -262,7 +264,7 @@ impl<const D: usize> Work for PieceMaps<'_, D> {
     }
 }
 
-/// κ m (t + H Q − u) on the nodes of a tile, with the map of the piece of each.
+/// Adds κ m (t + H Q − u) to the nodes of a tile, with the map of the piece of each.
 pub(super) struct PieceForces<'a, 'b, 'c, const D: usize> {
     pub(super) pieces: &'a Pieces<D>,
     pub(super) law: &'a Law,
@@ -270,7 +272,7 @@ pub(super) struct PieceForces<'a, 'b, 'c, const D: usize> {
     /// The rows of the pieces.
     pub(super) rows: &'a [f64],
     pub(super) tile: &'b mut Tile<'c, D>,
-    /// Whether the power of the forces is asked for.
+    /// Whether the power of the forces is requested.
     pub(super) works: bool,
 }
 impl<const D: usize> Work for PieceForces<'_, '_, '_, D> {

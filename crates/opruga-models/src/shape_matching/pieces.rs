@@ -1,15 +1,16 @@
-//! Overlapping clusters node by node instead of slot by slot.
+//! Overlapping clusters, evaluated node by node instead of slot by slot.
 //!
-//! Nodes in the same clusters make a *piece* (Rivers, James 2007, sum over regions in the same way). A cluster needs no more of a
-//! piece than the moments Σ m u and Σ m u ⊗ Q, and a node no more of its clusters than the sum of their affine maps:
+//! Nodes that are in the same clusters form a *piece* (Rivers, James 2007, sum over regions in the same way). A cluster needs
+//! only the moments Σ m u and Σ m u ⊗ Q of a piece, and a node needs only the sum of the affine maps of its clusters:
 //!
 //! ```text
 //! nodes ──moments──▶ pieces ──sums──▶ clusters: R, T ──maps t + H Q──▶ pieces, summed ──▶ nodes
 //! ```
 //!
-//! so a node is read and written once, however many clusters it is in. u = x − x₀ and Q = X − X₀ count from one node in the middle of the
-//! body for all clusters: otherwise their sums would be no sums. What that costs is digits, the square of the body's size over that of its
-//! smallest cluster; beyond [`MOST_DIGITS_LOST`] the clusters are taken slot by slot.
+//! So a node is read and written once, however many clusters it is in. u = x − x₀ and Q = X − X₀ are relative to one node in the
+//! middle of the body for all clusters, so that their sums can be shared. This loses digits: the rounding error grows by the
+//! square of the size of the body over that of its smallest cluster. Beyond [`MOST_DIGITS_LOST`] the clusters are evaluated slot
+//! by slot.
 
 use super::layout::Clusters;
 use opruga_core::potential::Ingredients;
@@ -17,44 +18,44 @@ use opruga_core::state::Layout;
 use opruga_math::{Column, WIDTH};
 use std::collections::BTreeMap;
 
-/// Numbers of an affine map of one coordinate: constant, and up to three slopes.
+/// The numbers of an affine map of one coordinate: a constant and up to three slopes.
 pub(super) const MAP: usize = opruga_math::ROW;
 
-/// The greatest (body's size / cluster's size)²: forces keep twelve digits, which is what tests of forces ask for.
+/// The largest (size of the body / size of the cluster)². Forces keep twelve digits, as the tests of forces require.
 const MOST_DIGITS_LOST: f64 = 1e4;
 
-/// The pieces of one body, or of eight alike ones.
+/// The pieces of one body, or of eight identical ones.
 #[derive(Debug)]
 pub(super) struct Pieces<const D: usize> {
-    /// The node that u and Q count from.
+    /// The node to which u and Q are relative.
     pub(super) origin: usize,
-    /// The nodes of each piece, one piece after the other, and where each begins.
+    /// The nodes of each piece, one piece after the other, and the start of each.
     pub(super) nodes: Vec<u32>,
     pub(super) start: Vec<u32>,
     /// One over the number of clusters that a piece is in.
     pub(super) share: Vec<f64>,
-    /// The first row of the piece of each node, in rows of [`MAP`] numbers; filled up to whole packs. Of one body.
+    /// For one body: the first row of the piece of each node, in rows of [`MAP`] numbers; filled up to whole packs.
     pub(super) row_of: Vec<u32>,
     /// The piece of each node.
     pub(super) piece_of: Vec<u32>,
-    /// The clusters of each piece, and where those of each begin.
+    /// The clusters of each piece, and the start of each list.
     pub(super) clusters: Vec<u32>,
     pub(super) clusters_start: Vec<u32>,
-    /// The pieces of each cluster, and where those of each begin.
+    /// The pieces of each cluster, and the start of each list.
     pub(super) pieces: Vec<u32>,
     pub(super) pieces_start: Vec<u32>,
     /// m [kg] of every node.
     pub(super) mass: Column,
     /// Q [m] of every node of a body.
     pub(super) offset: [Column; D],
-    /// Of one body: m (1, Q) of every node times the share, twice, in the order of `nodes`.
+    /// For one body: m (1, Q) of every node times the share, twice, in the order of `nodes`.
     pub(super) weights: Column,
-    /// Of every cluster: C with φₖ = Σ Cₖⱼ (Qⱼ − Q̄ⱼ), `[k · D + j]`, and Q̄ [m].
+    /// For every cluster: C with φₖ = Σ Cₖⱼ (Qⱼ − Q̄ⱼ), `[k · D + j]`, and Q̄ [m].
     pub(super) inverse: Vec<Column>,
     pub(super) center: [Column; D],
 }
 
-/// C with φ = C q, from L of q = L φ, which is lower triangular; a column that is left out is zero.
+/// C with φ = C q, from the lower triangular L of q = L φ; the row of an omitted column is zero.
 fn inverse<const D: usize>(frame: &[[f64; D]; D]) -> [[f64; D]; D] {
     let mut out = [[0.0; D]; D];
     for k in 0..D {
@@ -74,7 +75,7 @@ fn inverse<const D: usize>(frame: &[[f64; D]; D]) -> [[f64; D]; D] {
 }
 
 impl<const D: usize> Pieces<D> {
-    /// Of overlapping clusters with a linear fit; nothing where too many digits would be lost.
+    /// From overlapping clusters with a linear fit; `None` if too many digits would be lost.
     pub(super) fn new(ingredients: &Ingredients<D>, clusters: &Clusters<D>) -> Option<Pieces<D>> {
         let (layout, mesh) = (ingredients.layout, ingredients.mesh);
         if clusters.is_whole || clusters.columns > D {
@@ -97,7 +98,7 @@ impl<const D: usize> Pieces<D> {
             return None;
         }
 
-        // Nodes with the same clusters, pieces by their first node.
+        // Nodes with the same clusters; pieces are ordered by their first node.
         let mut cluster_of = vec![0; clusters.slots()];
         for cluster in 0..clusters.len() {
             cluster_of[clusters.range(cluster)].fill(cluster as u32);
@@ -203,18 +204,18 @@ impl<const D: usize> Pieces<D> {
         }
     }
 
-    /// How many pieces.
+    /// The number of pieces.
     pub(super) fn len(&self) -> usize {
         self.share.len()
     }
-    /// Numbers of a piece or a cluster in the scratch: a map of each coordinate, two of them in a pack.
+    /// The length of a row of a piece or a cluster in the scratch: a map of each coordinate, two of them in a pack.
     pub(super) fn row(layout: Layout) -> usize {
         match layout {
             Layout::Single => WIDTH * (D - 1),
             Layout::Batch => WIDTH * MAP * D,
         }
     }
-    /// The nodes of a piece, by where they stand in `nodes`.
+    /// The nodes of a piece, as a range of `nodes`.
     #[inline(always)]
     pub(super) fn members(&self, piece: usize) -> core::ops::Range<usize> {
         self.start[piece] as usize..self.start[piece + 1] as usize
@@ -245,7 +246,7 @@ fn larger(a: f64, b: f64) -> f64 {
     if b > a { b } else { a }
 }
 
-/// The node that is closest to the middle of the box around all.
+/// The node that is closest to the centre of the bounding box.
 fn middle<const D: usize>(positions: &[[f64; D]]) -> usize {
     let (mut low, mut high) = (positions[0], positions[0]);
     for x in positions {

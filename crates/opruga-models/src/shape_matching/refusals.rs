@@ -1,4 +1,4 @@
-//! Why a body cannot be matched to its shape.
+//! Why shape matching refuses a body.
 
 use super::SPEC;
 use opruga_core::error::BuildError;
@@ -21,7 +21,7 @@ messages! {
         #[allowed("every node in one at least")]
         #[hint("name a group of all others too")]
         Misses { missed: usize, nodes: usize, first: usize },
-        /// Regions far smaller than the distance of nodes.
+        /// Regions much smaller than the distance between nodes.
         "model.region"
         #[error("`region` is {} m, which makes {} boxes of {nodes} nodes", number(*region), number(*boxes))] #[value("{}", number(*region))] #[parameters("region")]
         #[allowed("at most {most} boxes")]
@@ -33,13 +33,13 @@ messages! {
         #[allowed("`stiffness`")]
         #[hint("at this step, `stiffness = {}` means the same, and `scheme = \"as_published\"` takes `goal_step`", number(*stiffness))]
         GoalStep { share: f64, stiffness: f64 },
-        /// A step that has changed.
+        /// A substep that differs from the declared one.
         "model.step_changed"
         #[error("the substep is {} s, and `goal_step` counts for the {} s that the scene declared", number(*now), number(*declared))] #[parameters("goal_step")]
         #[allowed("that step")]
         #[hint("`stiffness = {}` means the same at any step", number(*stiffness))]
         StepChanged { now: f64, declared: f64, stiffness: f64 },
-        /// What the published scheme lacks, as a part of a refusal.
+        /// The reason why the published scheme has no potential, as a part of a refusal.
         "part.no_potential"
         #[error("`scheme` is \"as_published\", whose goal, the fitted map over the root of its determinant, is the gradient of no potential; `scheme = \"potential\"` has both")] #[parameters("scheme")]
         NoPotentialOfGoal {},
@@ -47,7 +47,7 @@ messages! {
 }
 
 messages! {
-    /// What deserves attention in clusters.
+    /// Warnings about clusters.
     #[derive(Clone, Debug, PartialEq)]
     pub enum MatchingWarning {
         /// A mirrored cluster.

@@ -1,16 +1,16 @@
-//! Which nodes are matched together: the whole body, overlapping boxes of it, or groups of its mesh.
+//! The sets of nodes that are matched together: the whole body, overlapping boxes of it, or groups of its mesh.
 
 use super::refusals::Refusal;
 use opruga_core::spec::Values;
 use opruga_mesh::Mesh;
 
-/// Boxes for each node at most.
+/// The largest number of boxes per node.
 const MOST_BOXES_PER_NODE: usize = 8;
 
-/// A node so near to the face of a box lies on it, in half boxes.
+/// A node that is closer to the face of a box than this lies on it, in half boxes.
 const FACE: f64 = 1e-9;
 
-/// The nodes of every cluster, rising.
+/// The nodes of every cluster, ascending.
 pub(super) fn clusters<const D: usize>(mesh: &Mesh<D>, values: &Values) -> Result<Vec<Vec<u32>>, Refusal> {
     let nodes = mesh.positions.len();
     if let Some(names) = values.text("groups") {
@@ -46,7 +46,7 @@ fn groups<const D: usize>(mesh: &Mesh<D>, names: &str) -> Result<Vec<Vec<u32>>, 
     }
 }
 
-/// Boxes that overlap by half along every axis and cover the body evenly; empty ones are left out.
+/// Boxes that overlap by half along every axis and cover the body evenly; empty boxes are left out.
 ///
 /// ```text
 /// |----- box 0 -----|
@@ -61,7 +61,7 @@ fn boxes<const D: usize>(positions: &[[f64; D]], region: f64) -> Result<Vec<Vec<
             high[d] = if x[d] > high[d] { x[d] } else { high[d] };
         }
     }
-    // Half boxes along each axis, one less than that of boxes.
+    // The number of half boxes along each axis; the number of boxes is one less.
     let mut halves = [1.0; D];
     let mut number = 1.0;
     for d in 0..D {
@@ -76,7 +76,7 @@ fn boxes<const D: usize>(positions: &[[f64; D]], region: f64) -> Result<Vec<Vec<
     let counts: [usize; D] = core::array::from_fn(|d| halves[d] as usize - 1);
     let mut out = vec![Vec::new(); counts.iter().product()];
     for (node, x) in positions.iter().enumerate() {
-        // The boxes along each axis that hold the node, their faces included: so a mirrored body has mirrored boxes.
+        // The boxes along each axis that contain the node, including their faces, so that a mirrored body has mirrored boxes.
         let (mut first, mut last) = ([0; D], [0; D]);
         for d in 0..D {
             let length = high[d] - low[d];

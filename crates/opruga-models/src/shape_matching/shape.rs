@@ -1,17 +1,18 @@
-//! A cluster at rest: columns that are orthonormal in its masses, and as many as its nodes can tell apart.
+//! A cluster at rest: columns that are orthonormal with respect to its masses, as many as its nodes can distinguish.
 
 use opruga_math::Lane;
 
-/// Columns at most: 2 and 3 coordinates, 3 and 6 products of them.
+/// The largest number of columns: 2 and 3 coordinates, 3 and 6 products of them.
 pub(super) const MOST_COLUMNS: usize = 9;
 
-/// What a column has of its own, as a part of the size of the cluster, below which it is a sum of those before it.
+/// If the part of a column that is independent of the previous ones is below this fraction of the size of the cluster, the column
+/// counts as dependent.
 const OWN: f64 = 1e-7;
 
 /// A cluster of one body at rest.
 #[derive(Debug)]
 pub(super) struct Shape<const D: usize> {
-    /// φₖ of every node [1/√kg], `[k][node]`: Σ m φₖ = 0 and Σ m φₖ φₗ = δₖₗ; zero where the nodes cannot tell column k from those before.
+    /// φₖ of every node [1/√kg], `[k][node]`: Σ m φₖ = 0 and Σ m φₖ φₗ = δₖₗ; zero if column k depends on the previous ones.
     pub(super) columns: Vec<Vec<f64>>,
     /// L [m √kg] with q = Σₖ Lₖ φₖ over the first D columns, `[axis][k]`.
     pub(super) frame: [[f64; D]; D],
@@ -20,7 +21,7 @@ pub(super) struct Shape<const D: usize> {
 }
 
 impl<const D: usize> Shape<D> {
-    /// Of nodes at rest positions with their masses in the cluster [kg].
+    /// From nodes at rest positions with their masses in the cluster [kg].
     pub(super) fn new(positions: &[[f64; D]], masses: &[f64], quadratic: bool) -> Shape<D> {
         let mass: f64 = masses.iter().sum();
         let centered = |mut column: Vec<f64>| {
@@ -28,7 +29,7 @@ impl<const D: usize> Shape<D> {
             column.iter_mut().for_each(|x| *x -= mean);
             column
         };
-        // q = X − X̄: differences to one of the nodes first, so that a body far from the origin keeps its digits.
+        // q = X − X̄: first as differences from one of the nodes, so that a body far from the origin keeps its digits.
         let from = positions[0];
         let linear: Vec<Vec<f64>> =
             (0..D).map(|d| centered(positions.iter().map(|x| x[d] - from[d]).collect())).collect();
@@ -37,7 +38,7 @@ impl<const D: usize> Shape<D> {
         let mut raw = linear.clone();
         if quadratic {
             let products = (0..D).map(|d| (d, d)).chain((0..D).flat_map(|a| (a + 1..D).map(move |b| (a, b))));
-            // Products in radii of the cluster, so that all columns have one size.
+            // Products in units of the radius of the cluster, so that all columns have the same magnitude.
             for (a, b) in products {
                 let product = linear[a].iter().zip(&linear[b]).map(|(x, y)| x * y / radius).collect();
                 raw.push(if radius > 0.0 { centered(product) } else { vec![0.0; positions.len()] });
@@ -46,7 +47,7 @@ impl<const D: usize> Shape<D> {
         let size = square.sqrt();
         let mut columns: Vec<Vec<f64>> = Vec::new();
         for mut column in raw {
-            // Twice is enough (Kahan, Parlett 1980).
+            // Two passes are enough (Kahan, Parlett 1980).
             for _ in 0..2 {
                 for before in &columns {
                     let along = inner(masses, &column, before);
@@ -77,7 +78,7 @@ fn inner(masses: &[f64], x: &[f64], y: &[f64]) -> f64 {
     opruga_math::sum_in_fixed_order(&sums)
 }
 
-/// The square of the radius of gyration times the mass about each axis, Σ m (|q|² 1 − q qᵀ) in space and Σ m |q|² in the plane.
+/// The tensor of inertia, Σ m (|q|² 1 − q qᵀ) in space and Σ m |q|² in the plane.
 pub(super) fn inertia<const D: usize>(frame: &[[f64; D]; D]) -> [[f64; D]; D] {
     let outer = opruga_math::matrix::product_transposed(frame, frame);
     turned_trace(&outer)
@@ -115,7 +116,7 @@ mod tests {
             }
         }
         assert_eq!(there, rank);
-        // q comes back from the columns.
+        // q follows from the columns.
         for (node, x) in positions.iter().enumerate() {
             for d in 0..D {
                 let mean = positions.iter().zip(&masses).map(|(x, m)| m * x[d]).sum::<f64>() / shape.mass;

@@ -1,4 +1,4 @@
-//! The published ball against a translation of the thesis's step, written down once more without the engine.
+//! The published ball, compared with a translation of the step of the thesis that does not use the engine.
 #![allow(clippy::disallowed_methods)] // the program's sine and cosine
 
 use crate::support;
@@ -166,13 +166,13 @@ fn step(system: &mut System<2>, mass: f64, floor: f64) {
     system.finish_step(DT);
 }
 
-/// The engine's ring runs the other way: its node for a vertex of the program.
+/// The ring of the engine has the opposite direction: returns its node for a vertex of the program.
 fn node(vertex: usize) -> usize {
     (N - vertex) % N
 }
 
 fn ring() -> Mesh<2> {
-    // Vertex 0 stands at angle π/2, below the centre on the screen.
+    // Vertex 0 is at the angle π/2, below the centre on the screen.
     Mesh::ring(100.0, N as u32, [200.0, 200.0], std::f64::consts::FRAC_PI_2).unwrap()
 }
 
@@ -210,7 +210,7 @@ fn deviation(
 const PATH: [[f64; 3]; 4] = [[0.0, 420.0, 150.0], [0.5, 380.0, 90.0], [1.0, 120.0, 400.0], [2.5, 60.0, 300.0]];
 const HELD: [[f64; 2]; 2] = [[0.25, 0.6], [0.9, 1.7]];
 
-/// Where the pointer is while the button is held.
+/// The position of the pointer while the button is held.
 fn mouse(time: f64) -> Option<(f64, f64)> {
     if !HELD.iter().any(|[press, release]| *press <= time && time < *release) {
         return None;
@@ -233,7 +233,7 @@ fn two_thousand_steps() {
     assert!(error < 1e-9, "{error:e}");
 }
 
-/// With another mass the axes differ (E9), with other constants everything does.
+/// With another mass the axes differ (E9); other constants change everything.
 #[test]
 fn other_constants() {
     let program = Program { mass: 2.5, gy: 35.0, ks: 1200.0, kd: 25.0, final_pressure: 60.0 };
@@ -281,7 +281,7 @@ fn mean_radius_in_flight() {
     assert!((sum / count - 131.0).abs() < 1.0, "{}", sum / count);
 }
 
-/// Refusals name what is wrong.
+/// Refusals name the problem.
 #[test]
 fn refusals() {
     let refused = |values| refusal(&ring(), &AsPublished, values);

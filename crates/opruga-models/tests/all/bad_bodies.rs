@@ -1,5 +1,6 @@
-//! Rows 26, 27, 31, 35, 37, 39, 47 and 59 of the list of bad inputs for finite volumes, finite differences and shape matching, and row 47
-//! for boundary elements: bodies and numbers of no meaning are refused, odd ones have forces that are finite and none at rest.
+//! Rows 26, 27, 31, 35, 37, 39, 47 and 59 of the list of bad inputs for finite volumes, finite differences and shape matching,
+//! and row 47 for boundary elements: meaningless bodies and parameters are refused; unusual bodies have finite forces, and none
+//! at rest.
 
 use crate::support::models::{
     BoundaryElement as Boundary, FiniteDifference as Difference, FiniteVolume as Volume, ShapeMatching as Matching,
@@ -29,7 +30,8 @@ fn matching() -> Values {
     values!(shape_matching, stiffness: 1e3, fit_share: 0.5)
 }
 
-/// No force at rest, and a finite one with an energy of its sign where nodes are moved; forces are parts of these numbers [N].
+/// Checks that there is no force at rest, and a finite force with an energy of the expected sign when nodes are moved; forces are
+/// relative to the given scale [N].
 fn sound<const D: usize>(name: &str, mesh: &Mesh<D>, model: &dyn Model<D>, values: &Values, strength: f64) {
     let mut body = system(mesh, &[(model, values.clone())]);
     let found = size(&forces(&mut body));
@@ -42,7 +44,7 @@ fn sound<const D: usize>(name: &str, mesh: &Mesh<D>, model: &dyn Model<D>, value
     assert!(energy.is_finite() && energy >= -1e-12 * strength, "{name}: {energy} J");
 }
 
-/// Row 47: ν = 0.5, −1 and beyond are refused; 0.4999 counts.
+/// Row 47: ν = 0.5, −1 and beyond are refused; 0.4999 is accepted.
 #[test]
 fn ratios_of_no_meaning_are_refused() {
     let specs: [&'static Spec; 3] = [
@@ -77,7 +79,7 @@ fn ratios_of_no_meaning_are_refused() {
     sound("boundary", &surface, &Boundary, &of, strength);
 }
 
-/// Row 26: cells without volume are refused, thin ones have forces.
+/// Row 26: cells without volume are refused; thin ones have forces.
 #[test]
 fn slivers_are_refused_where_they_have_no_volume() {
     let tetrahedron = |height: f64| {
@@ -99,7 +101,7 @@ fn slivers_are_refused_where_they_have_no_volume() {
     sound("thin clusters", &grid([1.0, 1e-7]), &Matching, &regions, 1e3);
 }
 
-/// Row 27: cells inside out are refused by finite volumes; metric tensors and clusters do not tell a shape from its mirror image.
+/// Row 27: finite volumes refuse inverted cells; metric tensors and clusters do not distinguish a shape from its mirror image.
 #[test]
 fn cells_that_are_inside_out() {
     let mut grid = Mesh::<2>::grid([0.0; 2], [1.0, 1.0], [2, 2]).unwrap();
@@ -112,7 +114,7 @@ fn cells_that_are_inside_out() {
     sound("a cluster", &triangles, &Matching, &matching(), 1e3);
 }
 
-/// Rows 31 and 35: grids with a hole are grids; three surfaces at an edge are none.
+/// Rows 31 and 35: grids with a hole are grids; three surfaces at one edge are not.
 #[test]
 fn holes_and_branches_of_grids() {
     let once = Options { states: 1, ..Options::default() };
@@ -133,7 +135,7 @@ fn holes_and_branches_of_grids() {
     let hole = sheet.sheet_quadrilaterals.remove(5);
     sheet.sheets.retain(|triangle| !triangle.iter().all(|node| hole.contains(node)));
     conformance("sheet with a hole", &Difference, &[thin()], &sheet, &once).assert();
-    // A sheet in which a triangle is missing is no grid, and neither is one with a third cell at an edge.
+    // A sheet with a missing triangle is not a grid, and neither is one with a third cell at an edge.
     let mut torn = Mesh::sheet([0.0; 3], [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [4, 4]).unwrap();
     torn.sheets.pop();
     begins(&refusal(&torn, &Difference, thin()), "model.not_a_grid");
@@ -145,7 +147,7 @@ fn holes_and_branches_of_grids() {
     begins(&refusal(&winged, &Difference, thin()), "model.not_a_grid");
 }
 
-/// Rows 37, 39 and 59: bodies of one and two nodes, flat ones, and nodes that all lie in one place.
+/// Rows 37, 39 and 59: bodies of one and two nodes, flat ones, and nodes that all coincide.
 #[test]
 fn bodies_of_few_nodes_and_of_no_extent() {
     let one = Mesh::<3> { positions: vec![[1.0, 2.0, 3.0]], ..Mesh::default() };
@@ -181,7 +183,7 @@ fn bodies_of_few_nodes_and_of_no_extent() {
     }
 }
 
-/// Clusters of a node each: nothing is matched, and nothing pulls.
+/// Clusters of one node each: nothing is matched, and there is no force.
 #[test]
 fn clusters_of_one_node_have_no_force() {
     let line = Mesh::<2>::line([0.0; 2], [1.0, 0.0], 8).unwrap();

@@ -8,14 +8,14 @@ use opruga_mesh::Mesh;
 use std::f64::consts::PI;
 use support::{Part, eigenvalues_below, forces, newton, refusal, system};
 
-/// The outer pressure at which a ring of n nodes, R = 1, EI = 10⁶·0.1³/12 buckles [Pa].
+/// The outer pressure at which a ring of n nodes with R = 1 and EI = 10⁶·0.1³/12 buckles [Pa].
 fn buckling_pressure(n: u32) -> f64 {
     let mesh = Mesh::ring(1.0, n, [0.0, 0.0], 0.0).unwrap();
     let stiffness = 1e8;
     let (mut low, mut high) = (100.0, 500.0);
     for _ in 0..30 {
         let outside = 0.5 * (low + high);
-        // No gas inside: the ambient pressure is all that acts.
+        // No gas inside: only the ambient pressure acts.
         let parts: Vec<Part<2>> = vec![
             (&MassSpring, values!(mass_spring, stiffness: stiffness)),
             (&Pressure, values!(pressure, nRT: 0.0, ambient: outside)),
@@ -50,7 +50,7 @@ fn ring_buckles_at_three_ei_over_r_cubed() {
     assert!((coarse / fine).abs() > 3.0);
 }
 
-/// A strip of `n` edges clamped by its first two nodes; tip deflection under a load P across it.
+/// A strip of `n` edges, clamped by its first two nodes; returns the tip deflection under a transverse load P.
 fn cantilever<const D: usize>(n: u32, bending: opruga_core::spec::Values, load: f64, stages: u32) -> [f64; D] {
     let end = core::array::from_fn(|d| if d == 0 { 1.0 } else { 0.0 });
     let mesh = Mesh::line([0.0; D], end, n).unwrap();
@@ -109,7 +109,7 @@ fn elastica() {
     }
 }
 
-/// Stiffness against the tip deflection of a clamped sheet, per P L³ / (3 EI) with EI = E t³/12 per width.
+/// The tip deflection of a clamped sheet, over P L³ / (3 EI) with EI = E t³/12 per width.
 fn sheet(cells: [u32; 2], alternating: bool) -> f64 {
     let width = f64::from(cells[1]) / f64::from(cells[0]);
     let mut mesh = Mesh::sheet([0.0; 3], [[1.0, 0.0, 0.0], [0.0, width, 0.0]], cells).unwrap();
@@ -134,7 +134,7 @@ fn sheet(cells: [u32; 2], alternating: bool) -> f64 {
     }
     let (load, last) = (1e-4, tips.len() - 1);
     for (k, tip) in tips.iter().enumerate() {
-        // Each cell hands half of its load to each of its corners.
+        // Each cell distributes its load equally to its two corners.
         right[*tip] = load / f64::from(cells[1]) * if k == 0 || k == last { 0.5 } else { 1.0 };
     }
     assert!(newton(&mut sheet, &right, &held, 0.0) < 1e-9);
@@ -143,9 +143,9 @@ fn sheet(cells: [u32; 2], alternating: bool) -> f64 {
     mean / expected
 }
 
-/// On right triangles bending couples to twist: a strip that may warp has 4/5 of E t³/12 (told in the documentation).
+/// On right triangles bending couples to twist: a strip that may warp has 4/5 of E t³/12 (see the documentation).
 ///
-/// Per cell with curvatures κ₁, κ₂ and twist τ: U = ½ B ((κ₁ + τ)² + (κ₂ + τ)² + 4τ²), least at κ₂ = −τ = κ₁/5.
+/// For each cell with curvatures κ₁, κ₂ and twist τ, U = ½ B ((κ₁ + τ)² + (κ₂ + τ)² + 4τ²), which is minimal at κ₂ = −τ = κ₁/5.
 #[test]
 fn clamped_sheet_in_space() {
     let (few, many) = (sheet([12, 2], false), sheet([20, 3], false));
@@ -153,9 +153,9 @@ fn clamped_sheet_in_space() {
     assert!((1.15..1.26).contains(&few) && (1.15..1.26).contains(&many));
 }
 
-/// A tube of regular triangles, `n` around and `rows` along, with edges of one direction around it or along it.
+/// A tube of regular triangles, `n` around and `rows` along, with edges of one direction either around it or along it.
 fn tube(n: u32, rows: u32, around: bool) -> (Mesh<3>, f64) {
-    // A lattice with rows at distance √3/2; rolled up across its rows or along them.
+    // A lattice with rows at the distance √3/2, rolled up across its rows or along them.
     let h = 0.75f64.sqrt();
     let (count, turn) = if around { ([n, rows], f64::from(n)) } else { ([rows, n], f64::from(n) * h) };
     let radius = turn / (2.0 * PI);
@@ -179,7 +179,7 @@ fn tube(n: u32, rows: u32, around: bool) -> (Mesh<3>, f64) {
     (mesh, 0.5 * area / (radius * radius))
 }
 
-/// U = ½ B A/R² of a sheet rolled up to a tube, in both directions of the lattice (Seung and Nelson 1988).
+/// U = ½ B A/R² for a sheet rolled into a tube, in both directions of the lattice (Seung and Nelson 1988).
 #[test]
 fn rolled_up_sheet() {
     for around in [true, false] {
@@ -189,12 +189,12 @@ fn rolled_up_sheet() {
         let mut tube = system(&mesh, &[(&Bending as _, bending)]);
         let ratio = support::energy(&mut tube) / expected;
         println!("tube: energy {ratio:.4}");
-        // Edges at both ends bend nothing.
+        // Edges at the two ends do not bend.
         assert!((ratio - 1.0).abs() < 0.03, "{around} {ratio}");
     }
 }
 
-/// At rest nothing pushes; a bent outline turned about keeps its energy.
+/// There is no force at rest; rotating a bent outline does not change its energy.
 #[test]
 fn rest_shape_is_at_rest() {
     let mesh = Mesh::icosphere(0.7, 2).unwrap();
@@ -203,7 +203,7 @@ fn rest_shape_is_at_rest() {
     assert!(force < 1e-13, "{force}");
 }
 
-/// Refusals name what is wrong.
+/// Refusals name the problem.
 #[test]
 fn refusals() {
     let line = Mesh::<2>::line([0.0; 2], [1.0, 0.0], 1).unwrap();

@@ -1,4 +1,4 @@
-//! Boundary elements: what is refused, the energy of uniform strains, and stresses.
+//! Boundary elements: refusals, the energy of uniform strains, and stresses.
 
 use crate::support::models::BoundaryElement as Boundary;
 use crate::support::{energy, forces, refusal, system};
@@ -53,7 +53,7 @@ fn bodies_without_a_surface_are_refused() {
     let mut crowded = block();
     crowded.facets.push(crowded.facets[0]);
     starts(space(&crowded), "model.not_manifold");
-    // Two boxes beside one another; a sphere of too many vertices.
+    // Two boxes next to each other; a sphere with too many vertices.
     let (mut two, other) = (block(), block());
     let first = two.nodes() as u32;
     two.positions.extend(other.positions.iter().map(|x| [x[0] + 3.0, x[1], x[2]]));
@@ -61,7 +61,7 @@ fn bodies_without_a_surface_are_refused() {
     starts(space(&two), "model.several_solids");
     let large = space(&Mesh::icosphere(1.0, 4).unwrap());
     assert!(large.starts_with("limit.memory") && large.contains("bytes"), "{large}");
-    // Inside out: turned. Nested: a cavity, whatever way it faces.
+    // Inverted: reversed. Nested: a cavity, whatever its orientation.
     let mut inside_out = block();
     inside_out.facets.iter_mut().for_each(|facet| facet.swap(0, 1));
     assert_eq!(space(&inside_out), "built");
@@ -71,7 +71,7 @@ fn bodies_without_a_surface_are_refused() {
     assert_eq!(space(&nested), "built");
 }
 
-/// U of a uniform strain is V σ:ε/2; expansion is resisted, which it would not be in the frame of least energy.
+/// U of a uniform strain is V σ:ε/2. Expansion is resisted, which it would not be in the frame of least energy.
 #[test]
 fn uniform_strains_have_their_energy() {
     let nu = 0.3;
@@ -86,7 +86,7 @@ fn uniform_strains_have_their_energy() {
     }
 }
 
-/// Collapsed, mirrored and scattered states have finite forces that do not push and turn the body as a whole.
+/// Collapsed, mirrored and scattered states have finite forces without a net force or torque.
 #[test]
 fn degenerate_states_have_finite_forces() {
     let mesh = block();
@@ -136,8 +136,8 @@ fn stresses<const D: usize>(
     all.into_iter().filter(|(name, _)| name.starts_with("stress")).map(|(name, x)| (name.into_owned(), x)).collect()
 }
 
-/// Under a uniform small strain the stress is λ tr ε 1 + 2μ ε at every point, in the middle and close to a side; in the frame of the body
-/// where it is turned; and in the plane without stress across with 2λμ/(λ + 2μ) for λ.
+/// Under a uniform small strain the stress is λ tr ε 1 + 2μ ε at every point, in the middle and close to a side; in a rotated
+/// body, this holds in its frame; in plane stress, with 2λμ/(λ + 2μ) for λ.
 #[test]
 fn stresses_of_uniform_strains_are_those_of_hooke() {
     let (young, nu) = (7e4, 0.28);
@@ -152,7 +152,7 @@ fn stresses_of_uniform_strains_are_those_of_hooke() {
             assert!((value - wanted).abs() < 1e-5 * young * 1e-6, "{name}: {value} Pa, and not {wanted} Pa");
         }
     };
-    // So small that the square of a strain, which the frame and Hooke's law leave open, does not count.
+    // So small that the squares of strains, on which the frame and Hooke's law may differ, are negligible.
     let strain = [[1e-6, 4e-7, -2e-7], [4e-7, -6e-7, 3e-7], [-2e-7, 3e-7, 8e-7]];
     let trace = strain[0][0] + strain[1][1] + strain[2][2];
     let stress = |i: usize, j: usize| 2.0 * mu * strain[i][j] + if i == j { lambda * trace } else { 0.0 };
@@ -163,7 +163,7 @@ fn stresses_of_uniform_strains_are_those_of_hooke() {
     let expected = [stress(0, 0), stress(1, 1), stress(0, 1), stress(2, 2), stress(0, 2), stress(1, 2)];
     let names = ["xx", "yy", "xy", "zz", "xz", "yz"];
     check(&stresses(&block(), moduli(), &points, stretched), &expected, &names);
-    // Turned by the angle of a triangle of sides 3, 4 and 5, and moved: what a point feels turns along.
+    // Rotated by an angle of a triangle with sides 3, 4 and 5, and moved: the stress at a point rotates with the body.
     let turn = |x: [f64; 3]| [0.6 * x[0] - 0.8 * x[1] + 5.0, 0.8 * x[0] + 0.6 * x[1], x[2] - 2.0];
     check(&stresses(&block(), moduli(), &points, |x| turn(stretched(x))), &expected, &names);
 
@@ -171,7 +171,8 @@ fn stresses_of_uniform_strains_are_those_of_hooke() {
     let flat = |x: &[f64; 2]| -> [f64; 2] {
         core::array::from_fn(|i| x[i] + (0..2).map(|j| strain[i][j] * x[j]).sum::<f64>())
     };
-    // A square: on a round outline of straight edges tractions are linear, and those of a stress jump from edge to edge.
+    // A square: on a round outline of straight edges tractions are linear, while those of a uniform stress jump from edge to
+    // edge.
     let square = Mesh::ring(0.5, 4, [0.2, 2.0], 0.1).unwrap();
     let points = [[0.2, 2.0], [0.3, 2.15]];
     for (plane, lambda) in [("strain", lambda), ("stress", 2.0 * lambda * mu / (lambda + 2.0 * mu))] {
@@ -186,8 +187,8 @@ fn stresses_of_uniform_strains_are_those_of_hooke() {
     }
 }
 
-/// The stress of each facet with a corner inside a flat side, for small uniform strains e, beside Hooke's; the largest difference over
-/// the largest stress, and how many facets were compared.
+/// Compares the stress of each facet that has a corner inside a flat side with Hooke's law, for small uniform strains e; returns
+/// the largest difference over the largest stress, and the number of compared facets.
 fn off_on_the_boundary<const D: usize>(
     mesh: &Mesh<D>,
     values: Values,
@@ -199,7 +200,7 @@ fn off_on_the_boundary<const D: usize>(
     for (node, x) in mesh.positions.iter().enumerate() {
         body.state.x.set(node, core::array::from_fn(|i| x[i] + (0..D).map(|j| strain(i, j) * x[j]).sum::<f64>()));
     }
-    // Vertices at which all facets have one normal.
+    // Vertices at which all facets have the same normal.
     let normal = |facet: &[u32; D]| -> [f64; 3] {
         let at = |k: usize, d: usize| if d < D { mesh.positions[facet[k] as usize][d] } else { 0.0 };
         let arm = |k: usize| -> [f64; 3] { core::array::from_fn(|d| at(k, d) - at(0, d)) };
@@ -225,7 +226,8 @@ fn off_on_the_boundary<const D: usize>(
     (worst, compared)
 }
 
-/// Within a twentieth: K is the symmetric part of what collocation gives, which on such meshes is that far from the whole.
+/// Within a twentieth: K is the symmetric part of the collocation matrix, which on such meshes deviates from the whole matrix by
+/// that much.
 #[test]
 fn stresses_on_the_boundary_are_those_of_hooke() {
     let (young, nu) = (2e5, 0.3);

@@ -14,7 +14,7 @@ fn edge(ring: &System<2>, a: usize, b: usize) -> f64 {
     ((a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2)).sqrt()
 }
 
-/// A reading of a model, in the present state.
+/// A reading of a model in the present state.
 fn reading<const D: usize>(system: &mut System<D>, model: usize, name: &str) -> f64 {
     system.forces(false).unwrap();
     let member = &system.members[model];
@@ -23,7 +23,7 @@ fn reading<const D: usize>(system: &mut System<D>, model: usize, name: &str) -> 
     readings.iter().find(|r| r.0 == name).unwrap().1
 }
 
-/// A ring of N = 36 in equilibrium, from a start that is pressed flat by a tenth.
+/// A ring of N = 36 in equilibrium, started from a state that is flattened by a tenth.
 fn settled(gas: opruga_core::spec::Values, k: f64) -> System<2> {
     let mesh = Mesh::ring(0.5, 36, [0.0; 2], 0.0).unwrap();
     let mut ring = system(&mesh, &[(&MassSpring, values!(mass_spring, stiffness: k)), (&Pressure, gas)]);
@@ -53,7 +53,7 @@ fn ring_in_equilibrium() {
     assert!((reading(&mut ring, 1, "pressure") * area / amount - 1.0).abs() < 1e-9);
 }
 
-/// k (l − l₀) = (P − P_a) l / (2 tan(π/N)) at every vertex, with ambient pressure and adiabatic.
+/// k (l − l₀) = (P − P_a) l / (2 tan(π/N)) at every vertex, with ambient pressure and adiabatic gas.
 #[test]
 fn balance_at_every_vertex() {
     for gas in [
@@ -147,7 +147,7 @@ fn lattice(n: u32) -> Mesh<2> {
     mesh
 }
 
-/// The lattice of springs k is a sheet with E₂D = 2k/√3, ν = 1/3, boundary springs k/2.
+/// The lattice of springs k is a sheet with E₂D = 2k/√3, ν = 1/3 and boundary springs k/2.
 #[test]
 fn lattice_modulus() {
     let mesh = lattice(9);
@@ -156,7 +156,7 @@ fn lattice_modulus() {
     let mut sheet = system(&mesh, &[(&MassSpring as _, values!(mass_spring, modulus: modulus))]);
     let small = 1e-4;
     for [ex, ey, shear] in [[1.0, 0.0, 0.0], [0.3, -0.7, 0.0], [0.0, 0.0, 1.0], [0.4, 0.9, -0.6]] {
-        // The mean of strain and its opposite has no term of third order.
+        // The mean over a strain and its opposite has no third-order term.
         let mut mean = 0.0;
         for sign in [-small, small] {
             for (node, x) in mesh.positions.iter().enumerate() {
@@ -180,7 +180,7 @@ fn lattice_modulus() {
     assert!((energy(&mut spring) - 0.5 * k * 1e-4).abs() < 1e-12);
 }
 
-/// A mesh shaken by a tenth.
+/// A mesh whose nodes are displaced at random by a tenth.
 fn shaken<const D: usize>(mesh: &Mesh<D>, parts: &[Part<D>], seed: u64) -> System<D> {
     let mut random = opruga_core::check::Random::new(seed);
     let mut body = system(mesh, parts);
@@ -191,7 +191,7 @@ fn shaken<const D: usize>(mesh: &Mesh<D>, parts: &[Part<D>], seed: u64) -> Syste
     body
 }
 
-/// Gauge pressure times ∂V/∂x, without net force and torque, on a torus far from the origin.
+/// The force is the gauge pressure times ∂V/∂x, without net force and torque, on a torus far from the origin.
 #[test]
 fn force_is_pressure_times_the_change_of_volume() {
     let mut mesh = Mesh::torus(1.0, 0.4, [12, 8]).unwrap();
@@ -223,7 +223,7 @@ fn force_is_pressure_times_the_change_of_volume() {
     }
 }
 
-/// P V and P V^γ stay as they are, to 1e-12, down to the smallest volume that the scene allows.
+/// P V and P V^γ stay constant, to 1e-12, down to the smallest volume that the scene allows.
 #[test]
 fn gas_laws() {
     let mesh = Mesh::icosphere(0.5, 2).unwrap();
@@ -247,7 +247,7 @@ fn gas_laws() {
     }
 }
 
-/// Velocity Verlet on springs and gas; returns energy at each step over that at the start, and the least volume.
+/// Velocity Verlet on springs and gas; returns the energy at each step relative to the initial one, and the smallest volume.
 fn thrown<const D: usize>(
     mesh: &Mesh<D>,
     gas: opruga_core::spec::Values,
@@ -259,7 +259,7 @@ fn thrown<const D: usize>(
     let mut body = shaken(mesh, &[(&MassSpring, springs), (&Pressure, gas)], 9);
     let n = body.nodes;
     for node in 0..n {
-        // Left and right change places.
+        // Left and right are exchanged.
         let x = body.state.x.at(node);
         body.state.v.set(node, core::array::from_fn(|d| if d == 0 { -speed * x[0] } else { -0.1 * x[d] }));
     }
@@ -288,7 +288,7 @@ fn thrown<const D: usize>(
     (energies, least)
 }
 
-/// A body thrown through its own middle turns inside out: energy stays, to second order in the step, without NaN.
+/// A body thrown through its own middle inverts: the energy is conserved to second order in the step, without NaN.
 #[test]
 fn collapse_makes_no_energy() {
     let worst =

@@ -34,7 +34,7 @@ fn cloth() -> Mesh<3> {
 fn block() -> Mesh<3> {
     Mesh::grid([0.0; 3], [1.0, 0.8, 0.6], [3, 2, 2]).unwrap()
 }
-/// Three by three cells without the one in the middle.
+/// Three by three cells without the middle one.
 fn frame() -> Mesh<2> {
     let mut mesh = Mesh::<2>::grid([0.0; 2], [1.0, 0.9], [3, 3]).unwrap();
     mesh.cells.quadrilaterals.remove(4);
@@ -47,7 +47,7 @@ fn hollow() -> Mesh<3> {
     mesh.facets = mesh.facets_from_cells().unwrap();
     mesh
 }
-/// One state of a mesh that needs several tiles; small, since there are as many differences as coordinates.
+/// One state of a mesh that needs several tiles. It is small, since there are as many differences as coordinates.
 fn once() -> Options {
     Options { states: 1, ..Options::default() }
 }
@@ -177,7 +177,7 @@ fn shape_matching_in_space() {
     conformance("regions", &ShapeMatching, &regions, &block(), &Options::default()).assert();
 }
 
-/// Collapsed bodies have no frame that follows them: no row is claimed of coincident nodes.
+/// Collapsed bodies have no frame that follows them, so the row for coincident nodes is not claimed.
 #[test]
 fn boundary_element_in_the_plane() {
     let options = Options { coincident: false, ..once() };
@@ -207,7 +207,7 @@ fn boundary_element_in_space() {
     conformance("outside", &BoundaryElement, &exterior, &sphere(), &options).assert();
 }
 
-/// The published force is no gradient: its bits and invariances alone are claimed.
+/// The published force is not a gradient: only its bits and invariances are claimed.
 #[test]
 fn shape_matching_as_published() {
     let published = [
@@ -231,7 +231,7 @@ fn finite_volume_in_the_plane() {
             ];
             let options = Options { rigid: *material != "linear", coincident: false, ..once() };
             conformance(material, &FiniteVolume, &values, &mesh, &options).assert();
-            // F differs between the faces of a quadrilateral: no torque vanishes, and there is no energy.
+            // F differs between the faces of a quadrilateral: the torque does not vanish, and there is no energy.
             let options = Options { rigid: false, ..options };
             conformance(material, &FiniteVolume, &values, &plate(), &options).assert();
         }
@@ -253,7 +253,7 @@ fn finite_volume_in_space() {
     }
 }
 
-/// Drag brakes rigid motion by design: it claims no row on it.
+/// Drag brakes rigid motion by design, so it does not claim that row.
 #[test]
 fn drag() {
     let options = Options { rigid: false, ..Options::default() };
@@ -261,14 +261,14 @@ fn drag() {
     conformance("drag", &Drag, &[values!(drag, rate: 0.7), values!(drag, rate: 0.0)], &sphere(), &options).assert();
 }
 
-/// The published forces are no potential, turn with no body and are not finite for edges without length.
+/// The published forces have no potential, do not rotate with the body and are not finite for edges without length.
 #[test]
 fn as_published_in_the_plane() {
     let options = Options { rigid: false, coincident: false, ..Options::default() };
     conformance("published", &AsPublished, &[values!(as_published)], &ring(36), &options).assert();
 }
 
-/// Meshes of many tiles: bits and invariance, without differences.
+/// Meshes of many tiles: bits and invariance, without finite differences.
 #[test]
 fn many_tiles() {
     let large = Options { states: 1, derivatives: false, ..Options::default() };
@@ -296,7 +296,7 @@ fn many_tiles() {
     conformance("sphere", &Pressure, &gas, &sphere, &large).assert();
 }
 
-/// What a wrong model does to the right one.
+/// The faults that a wrong model adds to the right one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Fault {
     Slope,
@@ -306,9 +306,9 @@ enum Fault {
     Skew,
     Vector,
     Lift,
-    /// A damping matrix that is not the derivative.
+    /// A damping matrix that is not the derivative of the damping force.
     Brake,
-    /// Springs that are not among the stencils.
+    /// Springs that are missing from the stencils.
     Hidden,
 }
 
@@ -344,7 +344,7 @@ impl Potential<2> for FaultySprings {
             Fault::Batch if self.1 == Layout::Batch => tile.force[1][0] *= 1.0 + 1e-15,
             Fault::Push => tile.force[1][0] += 1e-6,
             Fault::Vector if simd == Simd::Baseline => tile.force[1][0] *= 1.0 + 1e-15,
-            // A force against the motion of the whole.
+            // A force against the motion of the whole body.
             Fault::Lift => tile.force[1][0] -= 1e-6 * view.v[1][tile.range.start],
             _ => {}
         }

@@ -1,4 +1,5 @@
-//! Curves whose edges follow the numbers of their nodes are walked along; others are taken stencil by stencil. Both have the same forces.
+//! Curves whose edges follow the numbers of their nodes are evaluated in one walk; others are evaluated stencil by stencil. Both
+//! have the same forces.
 
 use crate::support::models::FiniteDifference;
 use crate::support::{Part, system};
@@ -9,7 +10,7 @@ use opruga_core::tile::{TILE, Tile};
 use opruga_math::{Column, Lane, WIDTH};
 use opruga_mesh::Mesh;
 
-/// Forces of a disturbed curve, and the power of its damping.
+/// The forces of a disturbed curve, and the power of its damping.
 fn forces<const D: usize>(mesh: &Mesh<D>, values: &Values) -> (Vec<f64>, f64) {
     let parts: [Part<D>; 1] = [(&FiniteDifference, values.clone())];
     let mut system = system(mesh, &parts);
@@ -29,7 +30,7 @@ fn forces<const D: usize>(mesh: &Mesh<D>, values: &Values) -> (Vec<f64>, f64) {
     ((0..system.nodes).flat_map(|node| force.at(node)).collect(), power.iter().sum())
 }
 
-/// Compares a curve with the same one whose edges come in another order; says whether rounding tells them apart.
+/// Compares a curve with the same curve whose edges are in another order; returns whether they differ by rounding.
 fn compare<const D: usize>(name: &str, mesh: &Mesh<D>, damping: f64) -> bool {
     let values = values!(finite_difference, youngs_modulus: 5e4, thickness: 0.05, damping: damping);
     let mut other = mesh.clone();

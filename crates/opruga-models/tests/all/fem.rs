@@ -1,4 +1,4 @@
-//! Finite elements: every material on every element obeys what models must obey, one line each.
+//! Finite elements: the conformance of every material on every element, one line each.
 
 use crate::support::models::Fem;
 use opruga_core::check::{Options, conformance};
@@ -6,7 +6,7 @@ use opruga_core::spec::Values;
 use opruga_mesh::Mesh;
 use opruga_models::materials::NAMES;
 
-/// A grid whose inner nodes are moved, by up to a tenth of a cell.
+/// A grid whose inner nodes are moved by up to a tenth of a cell.
 fn irregular<const D: usize>(cells: [u32; D]) -> Mesh<D> {
     let mut mesh = Mesh::grid([0.3; D], core::array::from_fn(|d| 0.4 * f64::from(cells[d])), cells).unwrap();
     let mut random = 3u64;
@@ -36,7 +36,7 @@ fn parameters(material: &str) -> [Values; 2] {
 }
 
 fn options(material: &str) -> Options {
-    // A turned body grows under the law of small rotation. A point where all nodes coincide has no unique rotation.
+    // A rotated body grows under the law of small rotation. A point at which all nodes coincide has no unique rotation.
     Options {
         rigid: material != "linear",
         states: 2,
@@ -83,7 +83,7 @@ fn every_material_on_every_element_in_space() {
     }
 }
 
-/// Linear simplices whose nodes resist their volume, which ties more nodes to one another than those of a cell.
+/// Linear simplices whose nodes resist volume, which couples more nodes than those of a cell.
 #[test]
 fn every_material_with_volumes_of_nodes() {
     for material in NAMES {
@@ -97,12 +97,12 @@ fn every_material_with_volumes_of_nodes() {
     }
 }
 
-/// Inside out: energies are finite and derivatives agree, and a clamped tangent has no negative eigenvalue there.
+/// Inverted bodies: energies are finite and derivatives agree, and a clamped tangent has no negative eigenvalue there.
 #[test]
 fn bodies_turned_inside_out() {
     for material in NAMES {
         let options = Options { mirrored: true, states: 1, ..options(material) };
-        // Where J is far below zero the barrier of the logarithm is steep: differences see its fourth derivative.
+        // Where J is far below zero the barrier of the logarithm is steep: finite differences contain its fourth derivative.
         let options = Options { noise: 0.05, gradient_tolerance: 1e-6, hessian_tolerance: 1e-6, ..options };
         for (cells, mesh) in meshes([2, 1]) {
             conformance(&format!("{material}, {cells}"), &Fem, &parameters(material), &mesh, &options).assert();
@@ -113,7 +113,7 @@ fn bodies_turned_inside_out() {
     }
 }
 
-/// Meshes of many tiles: bits and invariance, without differences.
+/// Meshes of many tiles: bits and invariance, without finite differences.
 #[test]
 fn many_tiles() {
     let large = Options { states: 1, derivatives: false, noise: 0.05, ..Options::default() };

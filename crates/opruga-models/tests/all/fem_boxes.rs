@@ -1,4 +1,4 @@
-//! Quadrilaterals and hexahedra: they bend as bodies do, whatever Poisson's ratio, and nothing in them is without stiffness.
+//! Quadrilaterals and hexahedra: they bend correctly for every Poisson's ratio, and no deformation of them is without stiffness.
 
 use crate::sparse;
 use crate::support;
@@ -12,7 +12,7 @@ use support::{eigenvalues_below, forces, hessian, system};
 
 const RATIOS: [f64; 5] = [0.0, 0.3, 0.45, 0.49, 0.4999];
 
-/// Sides of the bar, and how many cells it has.
+/// The dimensions of the bar, and the number of its cells.
 const LENGTH: f64 = 1.0;
 const HEIGHT: f64 = 0.1;
 
@@ -20,7 +20,7 @@ fn largest(numbers: impl IntoIterator<Item = f64>) -> f64 {
     numbers.into_iter().fold(0.0, |m, x| if x.abs() > m { x.abs() } else { m })
 }
 
-/// Forces on the nodes of a bar of E = 1 that is bent to the curvature κ, and on those between its ends.
+/// Forces on the nodes of a bar with E = 1 that is bent to the curvature κ, and on those between its ends.
 fn bent<const D: usize>(mesh: &Mesh<D>, values: Values, field: impl Fn([f64; D]) -> [f64; D]) -> (f64, f64, f64)
 where
     Fem: Model<D>,
@@ -36,13 +36,13 @@ where
         x > 1e-9 && x < LENGTH - 1e-9
     };
     let inner = largest((0..all.len()).filter(between).map(|k| all[k]));
-    // The moment on the right end about its middle.
+    // The moment on the right end about its centre.
     let right = (0..mesh.positions.len()).filter(|n| mesh.positions[*n][0] > LENGTH - 1e-9);
     let moment = right.map(|n| -all[n * D] * (mesh.positions[n][D - 1] - 0.5 * HEIGHT)).sum();
     (inner, largest(all.iter().copied()), moment)
 }
 
-/// A moment M = E I κ bends a straight bar to the curvature κ; across it curves by −νκ. No node between the ends feels a force.
+/// A moment M = E I κ bends a straight bar to the curvature κ; across, it curves by −νκ. No node between the ends has a force.
 #[test]
 fn a_moment_bends_a_bar_exactly_for_every_poissons_ratio() {
     let curvature = 1e-3;
@@ -58,7 +58,7 @@ fn a_moment_bends_a_bar_exactly_for_every_poissons_ratio() {
                     let y = y - 0.5 * HEIGHT;
                     [curvature * x * y, -0.5 * curvature * (x * x + contraction * y * y)]
                 });
-                // Of 1e-10 m that matter, positions keep six digits under λ = 1666 E.
+                // Of the relevant 1e-10 m, positions keep six digits under λ = 1666 E.
                 assert!(inner < 1e-6 * most, "{plane}, ν = {ratio}, {across} across: {inner:e} of {most:e}");
                 let expected = curvature * modulus * HEIGHT * HEIGHT * HEIGHT / 12.0;
                 assert!((moment / expected - 1.0).abs() < 1e-6, "{plane}, ν = {ratio}: {moment} {expected}");
@@ -77,7 +77,8 @@ fn a_moment_bends_a_bar_exactly_for_every_poissons_ratio() {
     }
 }
 
-/// How far the end of a beam sinks under a force of 1e-7 at it, over P L³/3EI + 6PL/5GA; the root slides freely in its plane.
+/// The deflection of the end of a beam under a force of 1e-7 at the end, over P L³/3EI + 6PL/5GA; the root slides freely in its
+/// plane.
 fn sunk<const D: usize>(cells: [u32; D], ratio: f64, plane: &str) -> f64
 where
     Fem: Model<D>,
@@ -97,7 +98,7 @@ where
     for (node, share) in &shares {
         load[D * *node as usize + up] = force * share / whole;
     }
-    // Of the root, no node moves along the beam, those of the lower edge not up, and one not sideways.
+    // At the root, no node moves along the beam, the nodes of the lower edge do not move up, and one node does not move sideways.
     let held: Vec<bool> = (0..load.len())
         .map(|k| {
             let (x, d) = (&mesh.positions[k / D], k % D);
@@ -113,7 +114,7 @@ where
     tip / right.len() as f64 / (bending + shear)
 }
 
-/// A force at the end: within 2 % with one cell across that is twice as long as it is thick, and nearer with more.
+/// A force at the end: within 2 % with one cell across that is twice as long as thick, and closer with more cells.
 #[test]
 fn beams_with_few_cells_across_sink_as_they_should() {
     for ratio in RATIOS {
@@ -132,7 +133,7 @@ fn beams_with_few_cells_across_sink_as_they_should() {
     }
 }
 
-/// What costs nothing at rest is rigid motion alone, in one cell and in a block of them.
+/// At rest only rigid motion has zero energy, in one cell and in a block of cells.
 #[test]
 fn no_motion_but_rigid_ones_is_free() {
     let values = |ratio: f64| values!(fem, material: "neo_hookean", youngs_modulus: 1.0, poissons_ratio: ratio);
@@ -154,7 +155,7 @@ fn no_motion_but_rigid_ones_is_free() {
     }
 }
 
-/// Damping brakes bending too: under no material does a bending cell keep what a stretched one loses.
+/// Damping brakes bending too: with no material does a bending cell dissipate less than a stretched one.
 #[test]
 fn bending_is_damped_as_stretching_is() {
     let mesh = Mesh::<2>::grid([0.0; 2], [1.0, 0.5], [1, 1]).unwrap();
@@ -162,7 +163,7 @@ fn bending_is_damped_as_stretching_is() {
         let time = 0.01;
         let values = values!(fem, material: *material, youngs_modulus: 50.0, poissons_ratio: 0.3, damping: time);
         let mut system = system(&mesh, &[(&Fem as &dyn Model<2>, values)]);
-        // u = κ x y about the middle: the energy ½ k and the power τ k of the same amplitude.
+        // u = κ x y about the centre: the energy ½ k and the power τ k of the same amplitude.
         let field = |x: [f64; 2]| [1e-4 * (x[0] - 0.5) * (x[1] - 0.25), 0.0];
         for node in 0..4 {
             system.state.v.set(node, field(mesh.positions[node]));

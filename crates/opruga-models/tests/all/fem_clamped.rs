@@ -1,4 +1,4 @@
-//! Clamped Hessians of finite elements: the exact ones where nothing is negative, whatever path computes them.
+//! Clamped Hessians of finite elements: they equal the exact ones if nothing is negative, whichever code path computes them.
 
 use crate::support;
 
@@ -10,7 +10,7 @@ use opruga_mesh::Mesh;
 use opruga_models::materials::NAMES;
 use support::system;
 
-/// Blocks in the order in which they come.
+/// Blocks in the order of delivery.
 struct List<const D: usize>(Vec<[[f64; D]; D]>);
 impl<const D: usize> Sink<D> for List<D> {
     fn block(&mut self, _a: usize, _b: usize, value: [[f64; D]; D]) {
@@ -19,7 +19,7 @@ impl<const D: usize> Sink<D> for List<D> {
     fn low_rank(&mut self, _c: f64, _u: &[(usize, [f64; D])]) {}
 }
 
-/// Both Hessians of a body that is turned and stretched in every direction.
+/// Both Hessians of a body that is rotated and stretched in every direction.
 fn hessians<const D: usize>(mesh: &Mesh<D>, values: Values, turned: bool) -> [Vec<f64>; 2]
 where
     Fem: Model<D>,

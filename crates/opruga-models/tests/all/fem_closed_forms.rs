@@ -1,4 +1,4 @@
-//! Finite elements against what is known exactly: patches, uniaxial stress, linear elasticity.
+//! Finite elements against exact results: patches, uniaxial stress, linear elasticity.
 
 use crate::support;
 
@@ -47,7 +47,7 @@ fn move_all<const D: usize>(system: &mut System<D>, to: impl Fn(&[f64; D]) -> [f
     }
 }
 
-/// Rest is without stress, and what costs nothing there is rigid motion alone.
+/// The rest shape has no stress, and only rigid motion has zero energy there.
 fn rest<const D: usize>(cells: [u32; D])
 where
     Fem: opruga_core::potential::Model<D>,
@@ -75,7 +75,7 @@ fn bodies_at_rest_in_space_have_no_stress_and_six_free_motions() {
     rest([1, 1, 2]);
 }
 
-/// At rest every law is Hooke's law of the same E and ν.
+/// At rest every law is Hooke's law with the same E and ν.
 fn small_strain<const D: usize>(cells: [u32; D], plane: &str)
 where
     Fem: opruga_core::potential::Model<D>,
@@ -88,7 +88,7 @@ where
             };
             let hooke = of("linear");
             let scale = largest(hooke.iter().copied());
-            // Mooney–Rivlin's solid is refused where it would not be convex.
+            // The Mooney–Rivlin solid is refused if it would not be convex.
             for material in NAMES.iter().filter(|m| ratio >= 0.0 || **m != "mooney_rivlin") {
                 let difference = largest(of(material).iter().zip(&hooke).map(|(a, b)| a - b));
                 assert!(difference < 1e-10 * scale, "{material}, {kind}, ν = {ratio}: {difference:e} of {scale:e}");
@@ -112,7 +112,7 @@ fn young_and_poisson_mean_at_small_strain_what_they_say() {
     small_strain([1, 1, 1], "strain");
 }
 
-/// Affine motion of an irregular patch: inner nodes are in balance, and where only the boundary is moved they find it.
+/// Affine motion of an irregular patch: inner nodes are in equilibrium, and they find it if only the boundary is moved.
 fn patch<const D: usize>(cells: [u32; D])
 where
     Fem: opruga_core::potential::Model<D>,
@@ -135,7 +135,7 @@ where
             let inner = (0..all.len()).filter(|k| !boundary[k / D]).map(|k| all[k]);
             assert!(largest(inner) < 1e-12 * largest(all.iter().copied()), "{material}, {kind}");
 
-            // From a start that is off by a part of a cell.
+            // From a start that deviates by a fraction of a cell.
             let mut state = 1u64;
             for node in 0..system.nodes {
                 if !boundary[node] {
@@ -159,7 +159,7 @@ where
     }
 }
 
-/// Where nodes resist their volume an even motion is even too, with the stress of Hooke's law at small strain.
+/// If nodes resist volume, uniform motion stays uniform, with the stress of Hooke's law at small strain.
 #[test]
 fn volumes_of_nodes_leave_even_motion_even() {
     let mesh = irregular([3, 3, 3]).into_simplices().unwrap();
@@ -172,7 +172,7 @@ fn volumes_of_nodes_leave_even_motion_even() {
         move_all(&mut system, |x| [x[0] + 2e-6 * x[0] + 1e-6 * x[1], x[1] - 1e-6 * x[1], x[2]]);
         let all = forces(&mut system);
         let between = (0..all.len()).filter(|k| inner(k / 3)).map(|k| all[k]);
-        // Positions have ten digits of such a strain.
+        // Positions have ten digits for such a strain.
         assert!(largest(between) < 1e-8 * largest(all.iter().copied()), "{material}");
         let view = system.view(Stage::Current, 0.0);
         let potential: &dyn Potential<3> = &*system.members[0].potential;
@@ -195,7 +195,8 @@ fn affine_motion_of_an_irregular_patch_is_exact_in_space() {
     patch([2, 2, 2]);
 }
 
-/// A unit cube, or a thin unit plate, pulled along x between slippery plates: lateral stretch and first Piola–Kirchhoff stress.
+/// A unit cube, or a thin unit plate, pulled along x between frictionless plates: lateral stretch and first Piola–Kirchhoff
+/// stress.
 fn uniaxial<const D: usize>(mesh: &Mesh<D>, values: Values, stretch: f64) -> (f64, f64, CellState)
 where
     Fem: Model<D>,
@@ -223,7 +224,7 @@ where
     (lateral, pull, state)
 }
 
-/// Stretch, lateral stretch and stress for E = 1e5 Pa, ν = 0.45: roots of the laws' own equations.
+/// Stretch, lateral stretch and stress for E = 1e5 Pa, ν = 0.45: roots of the equations of the laws.
 type Row = (f64, f64, f64);
 const NEO_HOOKEAN: &[Row] = &[
     (0.5, 1.350870, -108_610.28),
@@ -249,7 +250,7 @@ fn uniaxial_stress_follows_the_laws() {
     for (kind, mesh) in kinds(boxes) {
         uniaxial_table(kind, &mesh, &|values| values);
     }
-    // A plate that is free to become thin has the stress, the volume and the stretch of a body in space.
+    // A plate with free thickness has the stress, the volume and the stretch of a body in space.
     for (kind, mesh) in kinds(Mesh::<2>::grid([0.0; 2], [1.0; 2], [1, 1]).unwrap()) {
         uniaxial_table(kind, &mesh, &|mut values| {
             values.set(&SPEC, "plane", Value::Text("stress".into()), 2).unwrap();
@@ -272,7 +273,7 @@ where
             let (side, pull, state) = uniaxial(mesh, finish(values), stretch);
             assert!((side - lateral).abs() < 1e-6, "{material}, {kind}, {stretch}: {side} {lateral}");
             assert!((pull - stress).abs() < 6e-3, "{material}, {kind}, {stretch}: {pull} {stress}");
-            // The Cauchy stress is the force over the present area, and along x alone.
+            // The Cauchy stress is the force over the present area, and acts only along x.
             let cauchy = pull / (side * side);
             assert!((state.stress[0][0] / cauchy - 1.0).abs() < 1e-9, "{state:?} {cauchy}");
             assert!((state.von_mises() / cauchy.abs() - 1.0).abs() < 1e-9 && state.stress[1][1].abs() < 1e-4);
@@ -281,7 +282,7 @@ where
     }
 }
 
-/// Corotated boxes stay even where they are drawn to three times their length and their sides to a tenth.
+/// Corotated boxes stay uniform when they are stretched to three times their length and their sides shrink to a tenth.
 #[test]
 fn a_long_drawn_box_stays_even() {
     let mesh = Mesh::<3>::grid([0.0; 3], [1.0; 3], [1, 1, 1]).unwrap();
@@ -293,7 +294,7 @@ fn a_long_drawn_box_stays_even() {
     }
 }
 
-/// At small strain the stress is Eε and the lateral strain −νε, in plane stress too.
+/// At small strain the stress is Eε and the lateral strain is −νε, in plane stress too.
 #[test]
 fn a_bar_in_plane_stress_has_the_modulus_of_youngs() {
     for (kind, mesh) in kinds(Mesh::<2>::grid([0.0; 2], [2.0, 1.0], [2, 1]).unwrap()) {
@@ -311,7 +312,7 @@ fn a_bar_in_plane_stress_has_the_modulus_of_youngs() {
     }
 }
 
-/// Where nothing moves across the plane a stress acts across it, ν (σ₁ + σ₂) at small strain.
+/// If nothing moves across the plane, the stress across it is ν (σ₁ + σ₂) at small strain.
 #[test]
 fn plane_strain_has_a_stress_across_the_plane() {
     let mesh = Mesh::<2>::grid([0.0; 2], [1.0, 1.0], [2, 2]).unwrap();
@@ -332,7 +333,7 @@ fn plane_strain_has_a_stress_across_the_plane() {
     }
 }
 
-/// The law of the plane is that of space with the stretch 1 along z: the force of a slice is that of its depth.
+/// The law in the plane is that in space with the stretch 1 along z: the force of a slice is proportional to its depth.
 #[test]
 fn a_slice_of_a_long_body_is_the_body() {
     let plane = Mesh::<2>::grid([0.0; 2], [1.0, 0.6], [3, 2]).unwrap();
@@ -351,7 +352,7 @@ fn a_slice_of_a_long_body_is_the_body() {
             let (layer, scale) = (plane.positions.len(), largest(flat.iter().copied()));
             for node in 0..layer {
                 for d in 0..2 {
-                    // Both layers of the slice carry half of it.
+                    // Each of the two layers of the slice carries half of it.
                     let sum = of_space[3 * node + d] + of_space[3 * (node + layer) + d];
                     let own = flat[2 * node + d];
                     assert!((own - sum).abs() < 1e-10 * scale, "{material}, {bend}: {own} {sum}");
@@ -361,7 +362,7 @@ fn a_slice_of_a_long_body_is_the_body() {
     }
 }
 
-/// The power of damping at rest under an even rate of strain is τ V (2μ ε̇:ε̇ + λ tr² ε̇).
+/// The power of damping at rest under a uniform strain rate is τ V (2μ ε̇:ε̇ + λ tr² ε̇).
 #[test]
 fn damping_is_that_of_kelvin_and_voigt() {
     for (kind, mesh) in kinds(irregular([2, 2, 1])) {
@@ -382,7 +383,7 @@ fn damping_is_that_of_kelvin_and_voigt() {
     }
 }
 
-/// A bar of two materials, soft and stiff, as groups of cells and as numbers of cells: the forces are in balance.
+/// A bar of a soft and a stiff material, as groups of cells and as values of cells: the forces are in equilibrium.
 #[test]
 fn materials_differ_from_cell_to_cell() {
     let mut mesh = Mesh::<2>::grid([0.0; 2], [2.0, 1.0], [2, 1]).unwrap();
@@ -396,7 +397,7 @@ fn materials_differ_from_cell_to_cell() {
         .collect();
     let numbered = values!(fem, youngs_modulus_of_cells: "E", poissons_ratio: 0.0, material: "linear");
     for mut system in [system(&mesh, &grouped), solid(&mesh, numbered)] {
-        // In series the soft half takes three quarters of the stretch.
+        // In series, the soft half takes three quarters of the stretch.
         move_all(&mut system, |x| [if x[0] == 1.0 { 1.03 } else { 1.02 * x[0] }, x[1]]);
         let all = forces(&mut system);
         for (node, x) in mesh.positions.iter().enumerate() {
@@ -406,7 +407,7 @@ fn materials_differ_from_cell_to_cell() {
     }
 }
 
-/// Two cells side by side whose numbers the mesh gives push as the two do by themselves, moving too.
+/// Two adjacent cells whose parameters the mesh gives have the same forces as the two cells by themselves, in motion too.
 #[test]
 fn every_number_of_the_material_may_differ_from_cell_to_cell() {
     let mut both = Mesh::<2>::grid([0.0; 2], [2.0, 1.0], [2, 1]).unwrap();
@@ -442,7 +443,7 @@ fn every_number_of_the_material_may_differ_from_cell_to_cell() {
     for (found, expected) in all.iter().zip(&sum) {
         assert!((found - expected).abs() < 1e-14, "{all:?} {sum:?}");
     }
-    // What is out of its range is refused with cell and range; what the mesh has not, with what it has.
+    // A value out of range is refused with cell and range; a missing name is refused with the names that exist.
     both.cell_values.insert("nu".into(), vec![0.1, 0.5]);
     let refused = refusal(&both, &Fem, values());
     assert!(
@@ -457,7 +458,7 @@ fn every_number_of_the_material_may_differ_from_cell_to_cell() {
     );
 }
 
-/// St. Venant–Kirchhoff has no thickness without stress across where both sides are stretched much.
+/// St. Venant–Kirchhoff has no thickness without stress across the plane if both sides are stretched strongly.
 #[test]
 fn plane_stress_without_a_thickness_is_a_refused_step() {
     let mesh = Mesh::<2>::grid([0.0; 2], [1.0, 1.0], [1, 1]).unwrap();

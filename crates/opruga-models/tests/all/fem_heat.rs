@@ -1,4 +1,4 @@
-//! Thermal expansion: every law on every cell, warmer than at rest, obeys what models must obey.
+//! Thermal expansion: the conformance of every law on every cell, warmer than at rest.
 
 use crate::support::models::Fem;
 use opruga_core::check::{Options, conformance};
@@ -6,7 +6,7 @@ use opruga_core::spec::Values;
 use opruga_mesh::Mesh;
 use opruga_models::materials::NAMES;
 
-/// A grid whose nodes are moved, by up to a tenth of a cell.
+/// A grid whose nodes are moved by up to a tenth of a cell.
 fn irregular<const D: usize>(cells: [u32; D]) -> Mesh<D> {
     let mut mesh = Mesh::grid([0.3; D], core::array::from_fn(|d| 0.4 * f64::from(cells[d])), cells).unwrap();
     let mut random = 7u64;
@@ -25,7 +25,8 @@ fn meshes<const D: usize>(cells: [u32; D]) -> [(&'static str, Mesh<D>); 3] {
     [("boxes", boxes), ("simplices", simplices), ("quadratic", quadratic)]
 }
 
-/// Warm, cold and as at rest: bodies side by side differ in numbers only, and each is as it would be alone, to the bit.
+/// Warm, cold and at the reference temperature: bodies side by side differ only in parameters, and each is the same as alone, to
+/// the bit.
 fn parameters(material: &str, plane: &str) -> [Values; 3] {
     let of = |temperature: f64, damping: f64| {
         values!(fem, material: material, youngs_modulus: 900.0, poissons_ratio: 0.4, damping: damping, plane: plane,

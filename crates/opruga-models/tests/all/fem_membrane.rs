@@ -1,6 +1,6 @@
-//! Cook's membrane: what bends and what is nearly incompressible, against published numbers.
+//! Cook's membrane: bending and near incompressibility, against published numbers.
 //!
-//! A trapezoid of 48 × (44 → 16), clamped at the left, pulled up along the right side by an even traction.
+//! A trapezoid of 48 × (44 → 16), clamped at the left, pulled up along the right side by a uniform traction.
 
 use crate::sparse;
 use crate::support;
@@ -33,7 +33,7 @@ fn membrane(n: u32, kind: Kind) -> Mesh<2> {
     mesh
 }
 
-/// The upward displacement of the middle and of the upper corner of the right side.
+/// The upward displacements of the middle and of the upper corner of the right side.
 fn pulled(mesh: &Mesh<2>, values: Values, force: f64) -> [f64; 2] {
     let mut system = system(mesh, &[(&Fem as &dyn Model<2>, values)]);
     let mut load = vec![0.0; 2 * mesh.positions.len()];
@@ -50,14 +50,14 @@ fn pulled(mesh: &Mesh<2>, values: Values, force: f64) -> [f64; 2] {
     })
 }
 
-/// Plane stress, E = 1, ν = 1/3, F = 1: 23.9676 in the limit; quadratic triangles come from below.
+/// Plane stress, E = 1, ν = 1/3, F = 1: 23.9676 in the limit; quadratic triangles converge from below.
 #[test]
 fn quadratic_triangles_bend_as_they_should_in_plane_stress() {
     let values = || values!(fem, material: "linear", youngs_modulus: 1.0, poissons_ratio: 1.0 / 3.0, plane: "stress");
     let found: Vec<f64> = [4, 8, 16].iter().map(|n| pulled(&membrane(*n, Kind::Quadratic), values(), 1.0)[0]).collect();
     assert!((found[1] / 23.9676 - 1.0).abs() < 0.006 && (found[2] / 23.9676 - 1.0).abs() < 0.003, "{found:?}");
     assert!(found.windows(2).all(|w| w[0] < w[1] && w[1] < 23.9676), "{found:?}");
-    // Boxes come as near; linear triangles of the same nodes are much stiffer.
+    // Boxes are as close; linear triangles with the same nodes are much stiffer.
     let boxes = pulled(&membrane(16, Kind::Boxes), values(), 1.0)[0];
     let triangles = pulled(&membrane(16, Kind::Triangles), values(), 1.0)[0];
     println!("plane stress, middle: quadratic 4, 8, 16: {found:?}, boxes 16: {boxes}, triangles 16: {triangles}");
@@ -77,7 +77,7 @@ fn a_large_pull_of_a_compressible_membrane_is_that_of_other_codes() {
     }
 }
 
-/// Nearly incompressible, ν = 0.4999: published solutions reach 6.9 at the corner. What is offered there does not lock.
+/// Nearly incompressible, ν = 0.4999: published solutions reach 6.9 at the corner. The accepted elements do not lock.
 #[test]
 fn what_is_offered_near_incompressibility_does_not_lock() {
     let values = |locking: &str| values!(fem, material: "neo_hookean", youngs_modulus: 240.565, poissons_ratio: 0.4999, locking: locking);
@@ -87,10 +87,10 @@ fn what_is_offered_near_incompressibility_does_not_lock() {
     println!("ν = 0.4999 against 6.9: quadratic 8: {quadratic}, boxes 12: {boxes}, triangles 12: {triangles}");
     assert!((-0.03..0.005).contains(&quadratic), "quadratic triangles: {quadratic}");
     assert!((-0.03..0.005).contains(&boxes), "quadrilaterals: {boxes}");
-    // Nor do linear triangles whose nodes resist their volume; they bend no better than others of their size.
+    // Nor do linear triangles whose nodes resist volume; they bend no better than other linear triangles of their size.
     let nodal = pulled(&membrane(16, Kind::Triangles), values("nodal_volume"), 100.0)[1] / 6.9 - 1.0;
     println!("volumes of nodes, triangles 16: {nodal}");
     assert!((-0.07..0.005).contains(&nodal), "volumes of nodes: {nodal}");
-    // Linear triangles do, which is why they are refused.
+    // Linear triangles do lock, which is why they are refused.
     assert!(triangles < -0.1, "linear triangles: {triangles}");
 }

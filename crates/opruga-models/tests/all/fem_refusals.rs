@@ -1,4 +1,4 @@
-//! What finite elements are not made of, and what is said then.
+//! Bodies that finite elements refuse, and the messages.
 
 use crate::support;
 
@@ -32,7 +32,7 @@ fn what_has_no_meaning_is_refused_with_what_is_allowed() {
     assert!(of(&boxes, values!(fem, youngs_modulus: 1.0, cells: "bone")).contains("it has none"));
     let mooney = values!(fem, material: "mooney_rivlin", youngs_modulus: 1.0, poissons_ratio: 0.1, mooney_share: 0.2);
     assert!(of(&boxes, mooney).contains("at most 0.125"));
-    // With λ < 0 no share is allowed: it is the ratio that is wrong, and how large it has to be is said.
+    // With λ < 0 no share is allowed: the message blames the ratio and states how large it has to be.
     let auxetic = values!(fem, material: "mooney_rivlin", youngs_modulus: 1.0, poissons_ratio: -0.5, mooney_share: 0.5);
     let said = of(&boxes, auxetic);
     assert!(said.contains("`poissons_ratio` is -0.5") && said.contains("at least 0.25,"), "{said}");

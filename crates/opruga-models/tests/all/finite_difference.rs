@@ -63,7 +63,7 @@ fn curves_with_torsion_are_the_gradient_of_their_energy() {
     conformance("closed", &FiniteDifference, &with, &closed, &Options::default()).assert();
 }
 
-/// A helix bent to another of the same length and curvature and another torsion holds ½ GJ (τ − τ₀)² L.
+/// A helix deformed into another one with the same length and curvature but another torsion has the energy ½ GJ (τ − τ₀)² L.
 #[test]
 fn the_energy_of_torsion_has_second_order() {
     let whole = |curvature: f64, torsion: f64| {
@@ -85,7 +85,7 @@ fn the_energy_of_torsion_has_second_order() {
         };
         let t2 = 0.05 * 0.05;
         let rigidity = 1e6 * core::f64::consts::PI * t2 * t2 / 64.0 / 1.3;
-        // Edges at the ends have no torsion: the curve is shorter by two of them.
+        // Edges at the ends have no torsion, so the effective curve is shorter by two edges.
         let length = 6.0 * (f64::from(count) - 3.0) / (f64::from(count) - 1.0);
         (of(true) - of(false)) / (0.5 * rigidity * 0.16 * length) - 1.0
     };
@@ -124,7 +124,7 @@ fn solids_are_the_gradient_of_their_energy() {
     conformance("inside out", &FiniteDifference, &damped, &block, &Options { mirrored: true, ..once() }).assert();
 }
 
-/// The energy of a body [J] whose nodes are moved.
+/// The energy of a body [J] with moved nodes.
 fn energy<const D: usize>(mesh: &Mesh<D>, values: Values, moved: impl Fn([f64; D]) -> [f64; D]) -> f64 {
     let parts: [Part<D>; 1] = [(&FiniteDifference, values)];
     let mut system = system(mesh, &parts);
@@ -177,7 +177,7 @@ fn solids_under_affine_motion_have_the_energy_of_st_venant_and_kirchhoff() {
     assert!((found / st_venant_kirchhoff(f, [lambda, mu]) - 1.0).abs() < 1e-13);
 }
 
-/// The power of the spacing with which an error falls from one mesh to one twice as fine.
+/// The order of convergence: the power of the spacing with which an error falls from one mesh to one twice as fine.
 fn order(errors: [f64; 2]) -> f64 {
     Lane::ln((errors[0] / errors[1]).abs()) / Lane::ln(2.0_f64)
 }
@@ -195,14 +195,14 @@ fn sheets_bend_and_twist_as_plates() {
     let twisted = of(8, nu, &|[x, y, _]| [x, y, c * x * y]);
     let expected = rigidity * (1.0 - nu) * c * c;
     assert!((twisted / expected - 1.0).abs() < 1e-3, "{twisted} {expected}");
-    // Rolled up to a cylinder with its chords kept: each cell turns by the same angle. Without lateral coupling every row has
-    // ½ D κ² for its area, the first and last column of nodes none.
+    // Rolled into a cylinder with constant chords: each cell turns by the same angle. Without lateral coupling every row has ½ D
+    // κ² times its area, the first and last columns of nodes none.
     let rolled = |n: u32| {
         let h = 1.0 / f64::from(n);
         let turn = 0.4 * h;
         #[allow(clippy::disallowed_methods, reason = "the reference")]
         let moved = move |[x, y, _]: [f64; 3]| {
-            // The corners of a polygon with sides h whose directions turn by `turn` from one to the next.
+            // The corners of a polygon with sides h whose directions change by `turn` from one to the next.
             let k = (x / h).round();
             let (radius, angle) = (0.5 * h / (0.5 * turn).sin(), k * turn);
             [radius * angle.sin(), y, radius * (1.0 - angle.cos())]
@@ -290,7 +290,7 @@ fn bodies_that_are_no_regular_grid_are_refused() {
     assert_eq!(refused(&sheet([2, 2]), &torsion), code("torsion_of_surface"));
 }
 
-/// Stress and volume ratio under an affine motion are those of finite elements of the same law.
+/// Under an affine motion, stress and volume ratio equal those of finite elements with the same law.
 #[test]
 fn cells_under_affine_motion_have_the_stress_of_finite_elements() {
     fn compare<const D: usize>(mesh: &Mesh<D>, f: [[f64; D]; D], plane: Option<&str>, element: &dyn Model<D>) {
@@ -329,7 +329,8 @@ fn cells_under_affine_motion_have_the_stress_of_finite_elements() {
     compare(&block, f, None, &crate::support::models::Fem);
 }
 
-/// The energy of a body whose neighbours move to and fro along an axis, by 1e-3 of a cell, and of one that a wave as long as the body moves.
+/// The energy of a body whose neighbouring nodes alternate along an axis, by 1e-3 of a cell, and of one deformed by a wave as
+/// long as the body.
 #[allow(clippy::disallowed_methods, reason = "the start of a test")]
 fn energies<const D: usize>(mesh: &Mesh<D>, thin: bool, axis: usize) -> [f64; 2] {
     const CELL: f64 = 0.2;
@@ -349,7 +350,7 @@ fn energies<const D: usize>(mesh: &Mesh<D>, thin: bool, axis: usize) -> [f64; 2]
     })
 }
 
-/// Staggered differences see what differences over two cells are blind to.
+/// Staggered differences detect modes that differences over two cells cannot detect.
 #[test]
 fn a_checkerboard_takes_more_energy_than_a_long_wave() {
     let solid = Mesh::<3>::grid([0.0; 3], [1.0, 0.8, 0.6], [5, 4, 3]).unwrap();

@@ -1,4 +1,5 @@
-//! Finite volumes beside linear finite elements, patches, and what quadrilaterals and hexahedra have no claim on.
+//! Finite volumes compared with linear finite elements, patches, and the properties that quadrilaterals and hexahedra do not
+//! have.
 
 use crate::support::models::{Fem, FiniteVolume};
 use crate::support::{Part, energy, forces, hessian, refusal, system};
@@ -9,7 +10,7 @@ use opruga_core::system::System;
 use opruga_mesh::Mesh;
 use opruga_models::materials::NAMES;
 
-/// Cells of no two alike forms: inner nodes of a grid are moved.
+/// Cells that all have different shapes: the inner nodes of a grid are moved.
 fn irregular<const D: usize>(counts: [u32; D]) -> Mesh<D> {
     let mut mesh = Mesh::<D>::grid([0.2; D], [1.0; D], counts).unwrap();
     let mut random = Random::new(7);
@@ -45,7 +46,7 @@ fn body<const D: usize>(mesh: &Mesh<D>, model: &dyn Model<D>, values: Values, be
     moved(system(mesh, &parts), mesh, |x| bent(x, bend))
 }
 
-/// Two implementations, neither of which calls the other: forces, energy and Hessian agree to 1e-12 of the largest.
+/// Two independent implementations: forces, energy and Hessian agree to 1e-12 of the largest.
 #[test]
 fn triangles_and_tetrahedra_are_linear_finite_elements() {
     let plane = irregular::<2>([4, 3]).into_simplices().unwrap();
@@ -70,7 +71,7 @@ fn same<const D: usize>(mesh: &Mesh<D>, volumes: &dyn Model<D>, ours: Values, el
     assert!(difference(&hessian(&mut one).entries, &hessian(&mut other).entries) < 1e-12);
 }
 
-/// Under one F everywhere the nodes inside are in balance, whatever the form of the cells.
+/// Under a uniform F the inner nodes are in equilibrium, whatever the shape of the cells.
 #[test]
 fn patches_of_irregular_boxes_are_exact() {
     fn check<const D: usize>(mesh: &Mesh<D>, model: &dyn Model<D>) {
@@ -98,7 +99,7 @@ fn asymmetry<const D: usize>(system: &mut System<D>) -> f64 {
     difference(&matrix.entries, &transposed)
 }
 
-/// The tangent of boxes is symmetric for the linear law on parallelograms, and for no law once F differs between faces.
+/// The tangent of boxes is symmetric for the linear law on parallelograms, and for no law if F differs between faces.
 #[test]
 fn the_tangent_of_boxes_is_not_symmetric() {
     let mut sheared = Mesh::<2>::grid([0.0; 2], [1.0, 0.8], [3, 2]).unwrap();
@@ -114,7 +115,7 @@ fn the_tangent_of_boxes_is_not_symmetric() {
     assert!(found > 1e-3 && found < 0.3, "{found}");
 }
 
-/// F(Qx + t) = Q F(x), and no net force, also where F differs between faces.
+/// F(Qx + t) = Q F(x), and there is no net force, even if F differs between faces.
 #[test]
 fn forces_of_boxes_turn_with_the_body() {
     let mesh = irregular::<3>([2, 2, 2]);

@@ -1,4 +1,5 @@
-//! What the forces of a body do not depend on: where it is, how it lies, how its nodes are numbered, and in which units it is given.
+//! What the forces of a body do not depend on: its position, its orientation, the numbering of its nodes, and the units in which
+//! it is given.
 
 use crate::support::models::{BoundaryElement as Boundary, FiniteDifference, FiniteVolume, ShapeMatching};
 use crate::support::{Part, energy, forces, system};
@@ -6,20 +7,20 @@ use opruga_core::potential::Model;
 use opruga_core::spec::Values;
 use opruga_mesh::Mesh;
 
-/// A body of some method.
+/// A body of one method.
 struct Body<'a, const D: usize> {
     name: &'static str,
     model: &'a dyn Model<D>,
-    /// The parameters where lengths are given in so many times smaller units.
+    /// The parameters, if lengths are given in units that are smaller by a factor.
     values: &'a dyn Fn(f64) -> Values,
     mesh: Mesh<D>,
-    /// Forces in units of length so many times smaller, over those in metres.
+    /// Forces in the smaller units of length, over those in metres.
     unit: f64,
-    /// Whether the order of nodes is free.
+    /// Whether the order of nodes is arbitrary.
     any_order: bool,
-    /// Whether the directions of the rest shape are free: regions are boxes along the axes.
+    /// Whether the orientation of the rest shape is arbitrary: regions are boxes along the axes.
     any_direction: bool,
-    /// Whether cells in a mirror are given with their nodes in another order.
+    /// Whether mirrored cells are given with their nodes in another order.
     turns_cells: bool,
 }
 
@@ -34,11 +35,11 @@ fn size(v: &[f64]) -> f64 {
 fn off(a: &[f64], b: &[f64]) -> f64 {
     size(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<f64>>()) / size(b)
 }
-/// A displacement without symmetry, a twentieth of the size.
+/// A displacement without symmetry, of a twentieth of the size.
 fn shaken<const D: usize>(node: usize, x: &[f64; D]) -> [f64; D] {
     core::array::from_fn(|d| x[d] + 0.05 * (((node * 7 + d * 5) % 11) as f64 / 5.0 - 1.0))
 }
-/// A turn in the first two axes.
+/// A rotation in the first two axes.
 fn turn<const D: usize>(x: &[f64; D]) -> [f64; D] {
     let mut out = *x;
     (out[0], out[1]) = (0.6 * x[0] - 0.8 * x[1], 0.8 * x[0] + 0.6 * x[1]);
@@ -72,7 +73,7 @@ impl<const D: usize> Body<'_, D> {
     fn is_invariant(&self) {
         let mesh = &self.mesh;
         let (own, energy) = self.pulled(mesh, 1.0, shaken);
-        // Positions are rounded to 1e-10 m, edges are a tenth of a metre long.
+        // Positions are rounded to 1e-10 m; edges are a tenth of a metre long.
         let shift = |x: &[f64; D]| core::array::from_fn(|d| x[d] + [1e6, -1e6, 1e6][d]);
         let far = moved(mesh, shift);
         let (found, _) = self.pulled(&far, 1.0, |node, _| shift(&shaken(node, &mesh.positions[node])));
@@ -147,7 +148,7 @@ fn forces_of_finite_volumes_do_not_depend_on_place_direction_order_and_units() {
     let (name, model) = ("tetrahedra", &FiniteVolume);
     Body { name, model, values: &values, mesh, unit: 1.0, any_order: true, any_direction: true, turns_cells: true }
         .is_invariant();
-    // In the plane forces are those of a metre of depth, which is a thousand millimetres.
+    // In the plane, forces refer to a depth of one metre, which is a thousand millimetres.
     let (name, mesh, unit) = ("triangles", plate().into_simplices().unwrap(), 1.0 / UNIT);
     Body { name, model, values: &values, mesh, unit, any_order: true, any_direction: true, turns_cells: true }
         .is_invariant();
@@ -180,7 +181,7 @@ fn forces_of_shape_matching_do_not_depend_on_place_direction_order_and_units() {
             Some(region) => values!(shape_matching, stiffness: 800.0, fit_share: 0.5, fit: fit, region: region * unit),
             None => values!(shape_matching, stiffness: 800.0, fit_share: 0.5, fit: fit),
         };
-        // κ m |x − g| in a unit so many times smaller; masses stay.
+        // κ m |x − g| in the smaller unit of length; masses stay the same.
         let model = &ShapeMatching;
         Body {
             name,

@@ -1,4 +1,4 @@
-//! Shape matching against what its energy says in closed form, and on bodies of too few nodes.
+//! Shape matching against closed forms of its energy, and on bodies with too few nodes.
 
 use crate::support::models::ShapeMatching as Matching;
 use crate::support::{energy, forces, hessian, refusal, system, system_with_mass};
@@ -11,7 +11,7 @@ fn block() -> Mesh<3> {
 fn plate() -> Mesh<2> {
     Mesh::grid([0.1, 0.2], [1.0, 0.8], [3, 4]).unwrap()
 }
-/// Moves every node to where a map takes its rest position.
+/// Moves every node to the image of its rest position.
 fn moved<const D: usize>(mut system: System<D>, mesh: &Mesh<D>, map: impl Fn(&[f64; D]) -> [f64; D]) -> System<D> {
     for (node, x) in mesh.positions.iter().enumerate() {
         system.state.x.set(node, map(x));
@@ -32,7 +32,7 @@ fn field<const D: usize>(mesh: &Mesh<D>, of: impl Fn([f64; D]) -> [f64; D]) -> V
     mesh.positions.iter().flat_map(|x| of(core::array::from_fn(|d| x[d] - center[d]))).collect()
 }
 
-/// At rest rigid motions have no stiffness, strains (1 − β)κ, and what no map follows κ.
+/// At rest, rigid motions have no stiffness, strains have (1 − β)κ, and motions that no map follows have κ.
 #[test]
 fn stiffness_of_motions_at_rest() {
     let (stiffness, share) = (250.0, 0.6);
@@ -42,12 +42,12 @@ fn stiffness_of_motions_at_rest() {
     let turn = field(&mesh, |q| [q[1] - 0.3 * q[2], -q[0] + 2.0 * q[2], 0.3 * q[0] - 2.0 * q[1]]);
     assert!(off(&mut body, &turn, 0.0) < 1e-10 * stiffness);
     assert!(off(&mut body, &field(&mesh, |_| [1.0, -2.0, 0.5]), 0.0) < 1e-10 * stiffness);
-    // A strain without rotation in the frame of the inertia: along an axis.
+    // A strain along an axis, without rotation in the frame of the inertia.
     assert!(
         off(&mut body, &field(&mesh, |q| [q[0], -0.4 * q[1], 0.1 * q[2]]), (1.0 - share) * stiffness)
             < 1e-10 * stiffness
     );
-    // A bend that is orthogonal to all linear maps: the square of a coordinate less its mean.
+    // A bend that is orthogonal to all linear maps: the square of a coordinate minus its mean.
     let mean = field(&mesh, |q| [q[0] * q[0], 0.0, 0.0]).iter().sum::<f64>() / mesh.positions.len() as f64;
     let bend = field(&mesh, |q| [0.0, q[0] * q[0] - mean, 0.0]);
     assert!(off(&mut body, &bend, stiffness) < 1e-10 * stiffness);
@@ -63,7 +63,7 @@ fn stiffness_of_motions_at_rest() {
     assert!(off(&mut body, &field(&mesh, |q| [q[0], 0.3 * q[1]]), (1.0 - share) * stiffness) < 1e-10 * stiffness);
 }
 
-/// A stretched body has U = ½ (1 − β) κ Σ m |x − R q|², and no energy in a rotation of it.
+/// A stretched body has U = ½ (1 − β) κ Σ m |x − R q|², and rotating it does not change this.
 #[test]
 fn energy_of_a_stretch() {
     let (stiffness, share, stretch) = (250.0, 0.6, [1.2, 0.7, 1.1]);
@@ -80,7 +80,7 @@ fn energy_of_a_stretch() {
     assert!((found - expected).abs() < 1e-12 * expected, "{found} {expected}");
 }
 
-/// Overlapping clusters: weights add up to one, so that stiffnesses do not grow with the number of clusters a node is in.
+/// Overlapping clusters: weights sum to one, so that stiffnesses do not grow with the number of clusters that contain a node.
 #[test]
 fn clusters_share_the_mass_of_their_nodes() {
     let mesh = Mesh::<3>::grid([0.0; 3], [1.0; 3], [6, 6, 6]).unwrap();
@@ -89,14 +89,14 @@ fn clusters_share_the_mass_of_their_nodes() {
     let matrix = hessian(&mut body);
     let rigid = matrix.times(&field(&mesh, |q| [q[1], -q[0], 0.0]));
     assert!(size(&rigid) < 1e-9, "{}", size(&rigid));
-    // No motion is stiffer than a node by itself.
+    // No motion is stiffer than that of a single node.
     let nodes = mesh.positions.len();
     assert_eq!(matrix.eigenvalues_below(100.0 * (1.0 + 1e-9)), 3 * nodes);
     assert_eq!(matrix.eigenvalues_below(-1e-9), 0);
     assert_eq!(matrix.eigenvalues_below(1e-6), 6);
 }
 
-/// Bodies of one, two and three nodes, lines and planes: finite forces, none at rest, and no resistance where nothing is.
+/// Bodies of one, two and three nodes, lines and planes: finite forces, none at rest, and no resistance in missing directions.
 #[test]
 fn bodies_of_too_few_dimensions() {
     let line: Vec<[f64; 3]> = (0..5).map(|k| [0.1 * f64::from(k), 0.2 * f64::from(k), -0.1 * f64::from(k)]).collect();
@@ -110,8 +110,8 @@ fn bodies_of_too_few_dimensions() {
             assert!(size(&forces(&mut body)) < 1e-12);
             let matrix = hessian(&mut body);
             assert!(matrix.entries.iter().all(|x| x.is_finite()));
-            // Rigid motions have no stiffness; no other motion of these nodes has less than (1 − β)κ, but those across a line or
-            // plane that a fitted map follows.
+            // Rigid motions have no stiffness. All other motions of these nodes have at least (1 − β)κ, except those across a
+            // line or plane that a fitted map follows.
             assert!(matrix.eigenvalues_below(1e-6) >= rigid, "{}", matrix.eigenvalues_below(1e-6));
             assert_eq!(matrix.eigenvalues_below(-1e-6), 0);
         }
@@ -121,10 +121,11 @@ fn bodies_of_too_few_dimensions() {
     assert!(forces(&mut body).iter().all(|f| f.is_finite()));
     let mut body = moved(system(&flat, &[(&Matching, values.clone())]), &flat, |x| [x[0], 0.0, 0.0]);
     assert!(forces(&mut body).iter().all(|f| f.is_finite()));
-    // A mirrored plate in space is a turned one: the best rotation takes it there, and no force is left.
+    // A mirrored plate in space is a rotated plate: the best rotation matches it, and no force remains.
     let mut body = moved(system(&flat, &[(&Matching, values.clone())]), &flat, |x| [-x[0], x[1], x[2]]);
     assert!(size(&forces(&mut body)) < 1e-10, "{}", size(&forces(&mut body)));
-    // A mirrored block is none: the rotation has det R = 1, and the energy is that of the least extent, Σ m (2 q)²/2 κ.
+    // A mirrored block is not a rotated one: the rotation has det R = 1, and the energy is that of the smallest extent, Σ m (2
+    // q)²/2 κ.
     let mesh = block();
     let mut body = moved(system(&mesh, &[(&Matching, values)]), &mesh, |x| [-x[0], x[1], x[2]]);
     let least = field(&mesh, |q| [0.0, 0.0, 2.0 * q[2]]).iter().map(|x| x * x).sum::<f64>();
@@ -133,7 +134,7 @@ fn bodies_of_too_few_dimensions() {
     assert!((energy(&mut body) - expected).abs() < 1e-9 * expected, "{} {expected}", energy(&mut body));
 }
 
-/// The published goal of a stretched square is a rectangle of its first area; with β = 1 the force draws to that.
+/// The published goal of a stretched square is a rectangle with its original area; with β = 1 the force pulls towards it.
 #[test]
 fn the_published_goal_keeps_the_volume() {
     let mesh = plate();
@@ -144,7 +145,7 @@ fn the_published_goal_keeps_the_volume() {
     let expected = field(&mesh, |q| [-100.0 * 2.0 * q[0], -100.0 * 0.5 * q[1]]);
     let wrong = forces(&mut body).iter().zip(&expected).map(|(a, b)| a - b).collect::<Vec<f64>>();
     assert!(size(&wrong) < 1e-10, "{}", size(&wrong));
-    // α of the way in a step of 1 ms.
+    // The fraction α of the distance in a step of 1 ms.
     let goal = values!(shape_matching, goal_step: 0.3, scheme: "as_published");
     let mut body = moved(system(&mesh, &[(&Matching, goal)]), &mesh, |x| [x[0] * 1.5, x[1]]);
     let force = forces(&mut body);
@@ -170,7 +171,7 @@ fn what_has_no_meaning_is_refused_with_what_is_allowed() {
     assert_eq!(refusal(&mesh, &Matching, values!(shape_matching, stiffness: 1.0, groups: "left,rest")), "built");
 }
 
-/// `goal_step` counts for the declared step alone.
+/// `goal_step` is valid only for the declared step.
 #[test]
 fn another_step_is_refused_where_the_stiffness_depends_on_it() {
     let mesh = plate();
@@ -189,7 +190,7 @@ fn another_step_is_refused_where_the_stiffness_depends_on_it() {
     body.forces(false).unwrap();
 }
 
-/// Overlapping groups: slices along x, each of which shares one half with the next.
+/// Overlapping groups: slices along x, each of which shares half of its nodes with the next.
 fn grouped<const D: usize>(mut mesh: Mesh<D>, groups: u32) -> Mesh<D> {
     let [low, high] = mesh.positions.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
         [if x[0] < low { x[0] } else { low }, if x[0] > high { x[0] } else { high }]
@@ -205,8 +206,9 @@ fn grouped<const D: usize>(mut mesh: Mesh<D>, groups: u32) -> Mesh<D> {
     mesh
 }
 
-/// Nodes with the same clusters are summed up together, unless the body is so much larger than its clusters that digits would be lost; then every
-/// cluster is taken by itself. A far part of the same body decides between the two, and changes no force.
+/// Nodes with the same clusters are summed together, unless the body is so much larger than its clusters that digits would be
+/// lost; then every cluster is evaluated by itself. A distant part of the same body selects between the two, and changes no
+/// force.
 #[test]
 fn a_far_part_changes_no_force_of_overlapping_clusters() {
     fn compare<const D: usize>(mesh: &Mesh<D>, groups: u32, fit_share: f64, size_of: Option<f64>) -> bool {
@@ -246,7 +248,8 @@ fn a_far_part_changes_no_force_of_overlapping_clusters() {
             two_ways += u32::from(compare(&grouped(sheet.clone(), groups), groups, fit_share, None));
         }
     }
-    // A chain almost so long that digits would be lost: twelve of what a cluster that is off by its radius would pull with, κ m r.
+    // A chain almost so long that digits would be lost: twelve digits relative to κ m r, the force of a cluster that is displaced
+    // by its radius.
     let chain = Mesh::<2>::line([0.0; 2], [100.0, 0.0], 100).unwrap();
     compare(&grouped(chain, 49), 49, 0.5, Some(300.0 * 2.0 * 1.3));
     assert!(two_ways > 8, "{two_ways} of 12: what is summed up in one way compares nothing");

@@ -1,4 +1,4 @@
-//! Forces of a whole step, tile by tile through its buffers, are those of one tile.
+//! The forces of a whole step, tile by tile through its buffers, equal those of one tile.
 
 use crate::support;
 
@@ -11,7 +11,7 @@ use opruga_mesh::Mesh;
 use std::ops::Range;
 use support::{Part, system};
 
-/// Writes the forces down.
+/// Records the forces.
 struct Record;
 
 impl<const D: usize> Update<D> for Record {
@@ -30,7 +30,7 @@ impl<const D: usize> Update<D> for Record {
     }
 }
 
-/// Shakes a mesh and compares the forces of a step with those of one tile over all places.
+/// Displaces a mesh at random and compares the forces of a step with those of one tile over all indices.
 fn compare<const D: usize>(mesh: &Mesh<D>, parts: &[Part<D>]) {
     let mut system: System<D> = system(mesh, parts);
     let mut random = opruga_core::check::Random::new(5);

@@ -1,4 +1,4 @@
-//! Second derivatives of quadrilaterals and hexahedra by F and β to those by the columns of F and g.
+//! Second derivatives of quadrilaterals and hexahedra: from those by F and β to those by the columns of F and g.
 
 use super::super::elements::Shape;
 use super::hourglass::{MOST_MODES, MOST_STRESSES, modes};
@@ -10,7 +10,7 @@ use opruga_core::potential::Definiteness;
 use opruga_math::matrix::{self, Matrix};
 use opruga_math::{Lane, Register};
 
-/// How many amplitudes there are at most.
+/// The largest number of amplitudes.
 const AMPLITUDES: usize = MOST_MODES * 3;
 
 /// Second derivatives by the columns of F and g: rows i ≤ m of columns c and d at `[i][m][c][d]`.
@@ -28,7 +28,7 @@ impl<R: Lane, const D: usize, const N: usize> ByColumns<R, D, N> {
         }
     }
 
-    /// Those of a cell whose frame does not turn.
+    /// Adds the derivatives of a cell whose frame does not rotate.
     #[inline(always)]
     fn add_unturned(&mut self, sums: &Sums<R, D>, by_q: &ByAmplitudes<R, D>) {
         let (count, size) = (modes::<D, N>(), modes::<D, N>() * D);
@@ -53,7 +53,7 @@ impl<R: Lane, const D: usize, const N: usize> ByColumns<R, D, N> {
         }
     }
 
-    /// Those by F, and by F and g, where q changes with F.
+    /// Adds the derivatives by F, and those by F and g that arise because q changes with F.
     #[inline(always)]
     fn add_by_gradient(
         &mut self,
@@ -63,7 +63,7 @@ impl<R: Lane, const D: usize, const N: usize> ByColumns<R, D, N> {
         change: &[Matrix<R, D>; AMPLITUDES],
     ) {
         let (count, size, cofactors) = (modes::<D, N>(), modes::<D, N>() * D, &frame.cofactors);
-        // By F and q, of everything that F does.
+        // By F and q, including everything that depends on F.
         let mut whole = by_q.fq;
         for k in 0..size {
             for l in 0..size {
@@ -96,7 +96,7 @@ impl<R: Lane, const D: usize, const N: usize> ByColumns<R, D, N> {
         }
     }
 
-    /// Those by g, but for what does not pass through q.
+    /// Adds the derivatives by g, except those that come through q.
     #[inline(always)]
     fn add_by_amplitudes(&mut self, by_q: &ByAmplitudes<R, D>, frame: &Frame<R, D>) {
         let (count, cofactors) = (modes::<D, N>(), &frame.cofactors);
@@ -167,7 +167,7 @@ impl<R: Register, const D: usize> ByAmplitudes<R, D> {
 }
 
 impl<E: Shape<D, N>, const D: usize, const N: usize> Contract<'_, E, D, N> {
-    /// Second derivatives by F and g, of those by F and β.
+    /// Second derivatives by F and g, from those by F and β.
     #[inline(always)]
     pub(super) fn by_columns<R: Register>(
         &self,
@@ -223,7 +223,7 @@ fn change_of_amplitudes<R: Lane, const D: usize, const N: usize>(
                 for c in 0..D {
                     let mut turned = R::zero();
                     for j in 0..D {
-                        // Cofactors of a row do not change with that row.
+                        // The cofactors of a row do not depend on that row.
                         if i != j {
                             turned += slope[j][k][i][c] * g[mode][j];
                         }
@@ -236,8 +236,8 @@ fn change_of_amplitudes<R: Lane, const D: usize, const N: usize>(
     change
 }
 
-/// Adds the second derivatives of q under the forces on it, u: those of φ(J) N : cof F with N = Σ gₐ ⊗ uₐ; and of what is
-/// left in the place of the law where a cell is flat, ½ (1 − s) Σ kₐ gₐ·gₐ, but for that by g alone.
+/// Adds the second derivatives of q under the forces u on it: those of φ(J) N : cof F with N = Σ gₐ ⊗ uₐ. Also adds those of the
+/// guard energy ½ (1 − s) Σ kₐ gₐ·gₐ, which replaces the law in a flat cell, except those by g alone.
 #[inline(always)]
 fn add_bent_frame<R: Lane, const D: usize, const N: usize>(
     kept: &Kept<R, D>,

@@ -1,4 +1,4 @@
-//! From positions to deformation gradients at the points, and their rates.
+//! Deformation gradients at the points, and their rates, from positions.
 
 use super::super::elements::Shape;
 use super::super::group::Group;
@@ -11,7 +11,7 @@ use core::marker::PhantomData;
 use opruga_math::matrix::{self, Matrix};
 use opruga_math::{Lane, Pack, Register, WIDTH, Work};
 
-/// F and g in columns, as they are.
+/// Splits F and g, which are given in columns.
 #[inline(always)]
 fn split<R: Register, const D: usize, const N: usize>(columns: &[[R; D]; N]) -> (Matrix<R, D>, Modes<R, D>) {
     let mut f = matrix::zeros::<R, D>();
@@ -33,7 +33,7 @@ fn put_points<R: Register, const N: usize>(to: &mut [f64], part: usize, entry: u
     }
 }
 
-/// Deformation gradients at the points: Gauss's, and behind them the mean one where the law is asked there.
+/// Deformation gradients at the Gauss points, followed by the mean one if the law is evaluated there.
 pub(in super::super) struct Deform<'a, E, const D: usize, const N: usize> {
     pub(in super::super) shape: PhantomData<E>,
     pub(in super::super) group: Group<'a>,
@@ -79,12 +79,12 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Deform<'_, E, D, N
     }
 }
 
-/// Rates of the same.
+/// Rates of the same quantities.
 pub(in super::super) struct DeformRates<'a, E, const D: usize, const N: usize> {
     pub(in super::super) shape: PhantomData<E>,
     pub(in super::super) group: Group<'a>,
     pub(in super::super) velocities: Nodes<'a, D>,
-    /// Of the positions.
+    /// As kept for the positions.
     pub(in super::super) kept: &'a [f64],
     pub(in super::super) rate: &'a mut [f64],
     /// Rates of F, g and β.

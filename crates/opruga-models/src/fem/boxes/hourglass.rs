@@ -1,45 +1,46 @@
-//! How quadrilaterals and hexahedra resist the motions that their mean deformation does not see.
+//! How quadrilaterals and hexahedra resist the motions that do not change their mean deformation.
 //!
-//! The displacement of a cell of N corners is affine but for N − 1 − D *hourglass* modes. Their amplitudes gₐ = Σ xₐ γₐ are
-//! those of vectors γ orthogonal to all affine fields (Flanagan and Belytschko 1981). The strain that they are taken to make at
-//! small strain is that of an assumed stress: of fields s that bend and twist a box exactly (Pian and Sumihara 1984 in the plane,
-//! Pian and Tong 1986 in space; here without their mean) and the compliance of Hooke's law,
+//! The displacement of a cell with N corners is affine except for N − 1 − D *hourglass* modes. Their amplitudes gₐ = Σ xₐ γₐ
+//! belong to vectors γ orthogonal to all affine fields (Flanagan and Belytschko 1981). At small strain, their strain is that of
+//! an assumed stress. It follows from fields s that bend and twist a box exactly (Pian and Sumihara 1984 in the plane, Pian and
+//! Tong 1986 in space; here without their mean) and from the compliance of Hooke's law,
 //!
 //! ε = C⁻¹ Σ s β,  β = H⁻¹ L g,  L = ∫ s : ∇h,  H = ∫ s : C⁻¹ s,
 //!
-//! whose energy is ½ g·Lᵀ H⁻¹ L g. Among the fields no combination is a pressure alone, so it stays finite as ν → 0.5, and H⁻¹
-//! knows what free sides do: a box bends with E in plane stress and E/(1 − ν²) in plane strain, and ε is the strain of that.
+//! whose energy is ½ g·Lᵀ H⁻¹ L g. No combination of the fields is a pure pressure, so the energy stays finite as ν → 0.5. H⁻¹
+//! contains the effect of free sides: a box bends with E in plane stress and E/(1 − ν²) in plane strain, and ε is the
+//! corresponding strain.
 
 use super::super::elements::{CORNERS, Shape, rest_gradient};
 use super::corners::sums;
 
-/// Hourglass modes of a hexahedron.
+/// The number of hourglass modes of a hexahedron.
 pub(super) const MOST_MODES: usize = 4;
 
-/// Assumed stresses of a hexahedron: as many as amplitudes, modes times axes.
+/// The number of assumed stresses of a hexahedron, which is that of amplitudes: modes times axes.
 pub(super) const MOST_STRESSES: usize = 12;
 
-/// Functions of the assumed stresses of a hexahedron.
+/// The number of functions of the assumed stresses of a hexahedron.
 pub(super) const FIELDS: usize = 6;
 
-/// Pairs of axes of a hexahedron.
+/// The number of pairs of axes of a hexahedron.
 pub(super) const PAIRS: usize = 6;
 
-/// The pairs of axes of a cell, whose symmetric products the assumed stresses are; shear has none in the plane.
+/// The pairs of axes of a cell. The assumed stresses are symmetric products of these; in the plane none of them is a shear.
 pub(super) const PAIR: [(usize, usize); PAIRS] = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)];
 
 /// The axes whose coordinates a function of an assumed stress multiplies.
 const FIELD: [&[usize]; FIELDS] = [&[0], &[1], &[2], &[1, 2], &[2, 0], &[0, 1]];
 
-/// An assumed stress: its pair of axes and its function, those of one function one after the other. A function is that of
-/// stresses along axes whose coordinates it does not have.
+/// The pair of axes and the function of an assumed stress. The stresses of one function are consecutive. A function multiplies
+/// stresses along those axes whose coordinates it does not contain.
 pub(super) const fn term<const D: usize>(stress: usize) -> (usize, usize) {
     let of_space = [(1, 0), (2, 0), (4, 0), (2, 1), (0, 1), (5, 1), (0, 2), (1, 2), (3, 2), (0, 3), (1, 4), (2, 5)];
     if D == 2 { (1 - stress, stress) } else { of_space[stress] }
 }
 
-/// The first stress of a function, and its axes: where they are two, the stresses are those along the first, along the second,
-/// and of both.
+/// The first stress of a function, and its axes. If there are two different axes, the stresses are those along the first, along
+/// the second, and of both.
 pub(super) const fn axes_of_field<const D: usize>(field: usize) -> (usize, [usize; 2]) {
     match (D, field) {
         (2, _) => (field, [1 - field; 2]),
@@ -48,42 +49,43 @@ pub(super) const fn axes_of_field<const D: usize>(field: usize) -> (usize, [usiz
     }
 }
 
-/// Hourglass modes of a cell of N corners.
+/// The number of hourglass modes of a cell with N corners.
 pub(super) const fn modes<const D: usize, const N: usize>() -> usize {
     N - 1 - D
 }
 
-/// Functions of the assumed stresses.
+/// The number of functions of the assumed stresses.
 pub(super) const fn fields<const D: usize>() -> usize {
     if D == 2 { 2 } else { FIELDS }
 }
 
-/// Pairs of axes in the assumed stresses.
+/// The number of pairs of axes in the assumed stresses.
 pub(super) const fn pairs<const D: usize>() -> usize {
     if D == 2 { 2 } else { PAIRS }
 }
 
-/// Numbers of the geometry of a cell: the shares of the functions row by row, the measures of its points, the means of the
+/// The number of geometric data of a cell: the shares of the functions row by row, the measures of its points, the means of the
 /// functions of the stresses, its axes.
 pub(super) const fn stored<const D: usize, const N: usize>() -> usize {
     measures_at::<N>() + N + fields::<D>() + D * D
 }
 
-/// Where the measures of the points are among these.
+/// The offset of the measures of the points in these data.
 pub(super) const fn measures_at<const N: usize>() -> usize {
     (N - 1) * (N - 1)
 }
 
-/// What is so much smaller than the largest of its kind is nothing but rounding: of the corners of equal cells of a grid, say.
+/// Values smaller than the largest of their kind by this factor are rounding errors, for example of the corners of equal cells of
+/// a grid.
 pub(super) const ROUNDING: f64 = 1.0 / (1u64 << 42) as f64;
 
-/// Numbers of the material of a cell: X row by row, c, λ − λ′, and kₐ.
+/// The number of material data of a cell: X row by row, c, λ − λ′, and kₐ.
 pub(super) const fn stiffness_numbers<const D: usize, const N: usize>() -> usize {
     let size = modes::<D, N>() * D;
     size * size + 2 + modes::<D, N>()
 }
 
-/// The functions of the assumed stresses at Gauss's points of the corners, but for their means.
+/// The functions of the assumed stresses at the Gauss points of the corners, without subtraction of their means.
 pub(super) const SIGNS: [[f64; FIELDS]; 8] = {
     let mut out = [[1.0; FIELDS]; 8];
     let mut corner = 0;
@@ -122,16 +124,16 @@ fn product(corner: usize, axes: &[usize]) -> f64 {
 /// A cell at rest.
 #[derive(Debug)]
 pub(super) struct Rest<const D: usize, const N: usize> {
-    /// For every function but 1, whose sum over the corners is Σ ±x, its share in the mean of ∂x/∂X (D columns [1/m]) and in
-    /// the hourglass amplitudes.
+    /// The share of every function but 1 (whose sum over the corners is Σ ±x) in the mean of ∂x/∂X (D columns [1/m]) and in the
+    /// hourglass amplitudes.
     pub(super) shares: [[f64; N]; N],
-    /// The measures of Gauss's points [m³].
+    /// The measures of the Gauss points [m³].
     pub(super) measures: [f64; N],
     /// The means of the functions of the assumed stresses.
     pub(super) means: [f64; FIELDS],
-    /// Columns: the axes ∂X/∂ξ in the middle [m].
+    /// The axes ∂X/∂ξ at the centre, in columns [m].
     pub(super) axes: [[f64; D]; D],
-    /// What kₐ is of μ [m]: the measure over the squares of the axes that the hourglass function multiplies.
+    /// The ratio kₐ/μ [m]: the measure over the squares of the axes that the hourglass function multiplies.
     pub(super) guards: [f64; MOST_MODES],
     /// L.
     work: [[f64; MOST_STRESSES]; MOST_STRESSES],
@@ -141,10 +143,10 @@ pub(super) struct Rest<const D: usize, const N: usize> {
 }
 
 impl<const D: usize, const N: usize> Rest<D, N> {
-    /// Of the corners of a cell whose determinants at Gauss's points and in the middle are positive.
+    /// From the corners of a cell whose determinants at the Gauss points and at the centre are positive.
     pub(super) fn new<E: Shape<D, N>>(corners: &[[f64; D]; N], thickness: f64) -> Self {
         let modes = modes::<D, N>();
-        // ∂Nₐ/∂X and the measures at Gauss's points.
+        // ∂Nₐ/∂X and the measures at the Gauss points.
         let mut slopes = [[[0.0; D]; N]; N];
         let mut measures = [0.0; N];
         for q in 0..N {
@@ -192,7 +194,7 @@ impl<const D: usize, const N: usize> Rest<D, N> {
         let mut rest = Rest { shares, measures, means, axes: jacobian, guards, work, inner, trace };
         for s in 0..size {
             for mode in 0..modes {
-                // ∫ f ∂h/∂X of the field f of the stress.
+                // ∫ f ∂h/∂X for the function f of the stress.
                 let mut mean = [0.0; D];
                 for q in 0..N {
                     for a in 0..N {
@@ -218,7 +220,7 @@ impl<const D: usize, const N: usize> Rest<D, N> {
         rest
     }
 
-    /// X = H⁻¹ L of a law whose strain is (s − c tr s 1)/2μ, where β is over 2μ, row by row.
+    /// X = H⁻¹ L, row by row, for a law whose strain is (s − c tr s 1)/2μ; β is divided by 2μ.
     pub(super) fn response(&self, c: f64) -> Vec<f64> {
         let size = modes::<D, N>() * D;
         // H = A Aᵀ.
@@ -264,7 +266,7 @@ fn shares<const D: usize, const N: usize>(
             weights[a][j] = (0..N).map(|q| measures[q] * slopes[q][a][j]).sum::<f64>() / measure;
         }
     }
-    // What is left of the hourglass functions without their affine parts, and such that mode α has the amplitude 1.
+    // The hourglass functions without their affine parts, scaled so that mode α has the amplitude 1.
     let mut rows = vec![vec![0.0; modes + N]; modes];
     for (mode, row) in rows.iter_mut().enumerate() {
         let h: [f64; N] = core::array::from_fn(|a| product(a, axes::<D>(mode)));
@@ -282,7 +284,7 @@ fn shares<const D: usize, const N: usize>(
             weights[a][D + mode] = row[modes + a];
         }
     }
-    // No column sees a translation, so each is a sum of functions.
+    // All columns are invariant under translations, so each is a sum of functions.
     let mut shares = [[0.0; N]; N];
     for c in 0..N - 1 {
         let column = sums(&core::array::from_fn::<f64, N, _>(|a| weights[a][c] / N as f64));
@@ -294,7 +296,7 @@ fn shares<const D: usize, const N: usize>(
     shares
 }
 
-/// Makes the first columns of as many rows the unit matrix (Gauss and Jordan, with the largest pivot).
+/// Reduces the first columns to the unit matrix (Gauss–Jordan with the largest pivot).
 fn eliminate(rows: &mut [Vec<f64>]) {
     for k in 0..rows.len() {
         let mut best = k;
@@ -346,7 +348,7 @@ mod tests {
         }
     }
 
-    /// In space a box that bends along x alone has E/(1 − ν²); if it may curve across too, E.
+    /// In space, a box that bends along x alone has E/(1 − ν²); if it may also curve across, E.
     #[test]
     fn a_block_bends_as_a_plate_and_as_a_beam() {
         let (sides, mu, ratio) = ([0.7, 0.4, 0.2], 3.0, 0.4999);
@@ -365,8 +367,8 @@ mod tests {
         assert!((beam / (young * inertia) - 1.0).abs() < 1e-10, "{beam}");
     }
 
-    /// Hourglass vectors see no affine field, amplitudes are those of the functions, and no mode is without stiffness, in
-    /// skewed and tapered cells too.
+    /// Hourglass vectors vanish on affine fields, amplitudes are those of the functions, and every mode has stiffness, in skewed
+    /// and tapered cells too.
     #[test]
     fn no_cell_is_without_stiffness() {
         let mut random = 5u64;
@@ -390,7 +392,7 @@ mod tests {
                     assert!((own - f64::from(u8::from(d == mode))).abs() < 1e-13);
                 }
             }
-            // The sum of the inverses of the eigenvalues, each of which is so small at most.
+            // The sum of the inverses of the eigenvalues, which bounds each of them.
             let mut rows = stiffness(&rest, 1.0, 0.4999 / 1.4999);
             for (r, row) in rows.iter_mut().enumerate() {
                 row.extend((0..12).map(|k| f64::from(u8::from(k == r))));

@@ -1,7 +1,7 @@
-//! What does not change of the boxes of a section, laid out in packs.
+//! The constant data of the boxes of a section, laid out in packs.
 //!
-//! The cells of a grid are equal but for rounding. They are taken for equal then, and what one pack has holds for all: 1.8
-//! kilobytes less to read for every hexahedron in every pass.
+//! If the cells of a section are equal except for rounding, as in a grid, they are treated as equal, and the data of one pack
+//! hold for all. This saves reading 1.8 kilobytes for every hexahedron in every pass.
 
 use super::super::elements::{Cell, Shape};
 use super::super::numbers::{NUMBERS, beyond};
@@ -13,34 +13,34 @@ use opruga_math::{Column, WIDTH};
 /// The boxes of a section.
 #[derive(Debug, Default)]
 pub(in super::super) struct Boxes {
-    /// What [`stored`] counts, for every pack, or for one that is whole and the last one.
+    /// The data that [`stored`] counts, for every pack, or for a full pack and the last one.
     pub(super) geometry: Column,
-    /// What [`stiffness_numbers`] counts, likewise.
+    /// The data that [`stiffness_numbers`] counts, likewise.
     pub(super) stiffness: Column,
-    /// Whether one pack holds for all.
+    /// Whether one pack holds for all packs.
     pub(in super::super) one_geometry: bool,
     pub(super) one_stiffness: bool,
-    /// Which shares of the functions in F and g are anything but zero: rows are functions.
+    /// Which shares of the functions in F and g are not zero; rows are functions.
     pub(super) shares: Pattern,
-    /// Which entries of X are.
+    /// Which entries of X are not zero.
     pub(super) response: Pattern,
-    /// Whether the functions of the stresses have means that are not zero.
+    /// Whether any function of the stresses has a nonzero mean.
     pub(super) uneven: bool,
 }
 
-/// What the boxes of a section are laid out from.
+/// The data from which the boxes of a section are laid out.
 pub(in super::super) struct Plan<'a, const D: usize, const N: usize> {
     pub(in super::super) layout: Layout,
     pub(in super::super) positions: &'a [[f64; D]],
     pub(in super::super) thickness: f64,
     pub(in super::super) plane_stress: bool,
     pub(in super::super) cells: &'a [Cell<N>],
-    /// Whether the law is asked at the mean too.
+    /// Whether the law is also evaluated at the mean.
     pub(in super::super) mean: bool,
 }
 
 impl Boxes {
-    /// Lays boxes out; `numbers` gives those of the material of a cell of a body.
+    /// Lays out the boxes; `numbers` gives the material data of a cell of a body.
     pub(in super::super) fn new<E: Shape<D, N>, const D: usize, const N: usize>(
         plan: &Plan<'_, D, N>,
         numbers: &dyn Fn(u32, usize) -> [f64; NUMBERS],
@@ -61,7 +61,7 @@ impl Boxes {
         let mut known: Option<(f64, Vec<f64>)> = None;
         for pack in 0..packs {
             for lane in 0..lanes {
-                // What fills a pack up has no measure and no stiffness.
+                // Lanes that fill up the last pack have no measure and no stiffness.
                 let there = pack * lanes + lane < cells.len();
                 let cell = &cells[(pack * lanes + lane).min(cells.len() - 1)];
                 let own = (!alike).then(|| Rest::new::<E>(&corners(cell), plan.thickness));
@@ -90,7 +90,7 @@ impl Boxes {
             }
         }
 
-        // Whether some number of a cell is anything but zero in any of them.
+        // Whether a number is nonzero in any cell.
         let is = |column: &Column, count: usize, width: usize, k: usize| {
             column.chunks(count * width).any(|pack| pack[k * width..(k + 1) * width].iter().any(|x| *x != 0.0))
         };
@@ -108,7 +108,7 @@ impl Boxes {
         self.geometry.heap_bytes() + self.stiffness.heap_bytes() + self.shares.heap_bytes() + self.response.heap_bytes()
     }
 
-    /// The measure of a point of a cell, in a pack that has a cell in every lane or one for all lanes.
+    /// The measure of a point of a cell, in a pack with a cell in every lane or with one cell for all lanes.
     pub(in super::super) fn measure<const D: usize, const N: usize>(
         &self,
         pack: usize,
@@ -133,7 +133,7 @@ fn alike<const D: usize, const N: usize>(first: &[[f64; D]; N], other: &[[f64; D
     most <= ROUNDING * size
 }
 
-/// Where all packs are equal as far as there are cells in them: a whole one and the last one.
+/// If all packs are equal in their used lanes, reduces the column to a full pack and the last one.
 fn one(column: Column, size: usize, lanes: usize, present: usize) -> (Column, bool) {
     let packs = column.len() / size;
     let (whole, last) = (&column[..size], &column[(packs - 1) * size..]);
@@ -164,7 +164,7 @@ mod tests {
         let plan = Plan { layout, positions, thickness, plane_stress: false, cells: &cells, mean: false };
         Boxes::new::<E, D, N>(&plan, &|cell, _| [moduli(cell), moduli(cell), 0.0, 1.0, 0.0])
     }
-    /// How many entries of the shares and of X may be something.
+    /// The numbers of entries of the shares and of X that may be nonzero.
     fn entries(boxes: &Boxes, shares: usize, response: usize) -> [usize; 2] {
         let count = |pattern: &Pattern, size: usize| (0..size).map(|k| pattern.rows.of(k).count()).sum();
         [count(&boxes.shares, shares), count(&boxes.response, response)]
@@ -172,7 +172,7 @@ mod tests {
 
     #[test]
     fn equal_cells_share_their_numbers_and_have_few() {
-        // Far from the origin, where corners are rounded by more.
+        // Far from the origin, where the rounding of corners is larger.
         let mesh = Mesh::<3>::grid([3.0, -7.0, 0.1], [1.0, 2.0, 3.0], [5, 3, 7]).unwrap();
         let own = boxes::<Hexahedron, 3, 8>(&mesh.positions, &mesh.cells.hexahedra, |_| 2.0);
         assert!(own.one_geometry && own.one_stiffness && !own.uneven);

@@ -1,10 +1,10 @@
 //! Matrices of quadrilaterals and hexahedra, compiled for every set of vector instructions.
 //!
-//! The energy of [`super`] is differentiated by F and β first, where every point adds
+//! The energy of [`super`] is first differentiated by F and β, where every point contributes
 //!
 //! ∂F_q/∂βₛ = f_s(q) F D_s,  ∂F_q/∂F = · (1 + ε_q),
 //!
-//! and then, since β depends on F and g, by these (in `columns`); the corners come last.
+//! and then, since β depends on F and g, by F and g (in `columns`). The derivatives by the corners come last.
 
 use super::super::elements::Shape;
 use super::super::group::Group;
@@ -18,25 +18,25 @@ use opruga_core::potential::Definiteness;
 use opruga_math::matrix::{self, Matrix};
 use opruga_math::{Lane, Pack, Register, WIDTH, Work};
 
-/// What a matrix of cells is made of.
+/// The quantity whose matrix is computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in super::super) enum Of {
-    /// Energy; clamped: without what could be negative.
+    /// Elastic energy; if clamped, without terms that could be negative.
     Energy(Definiteness),
     /// Damping.
     Damping,
 }
 
-/// Tangents at the points of one pack of cells to blocks K_ab, a ≤ b, `[(a N + b)][i][k]` packs.
+/// Contracts tangents at the points of one pack of cells to blocks K_ab, a ≤ b, `[(a N + b)][i][k]` packs.
 pub(in super::super) struct Contract<'a, E, const D: usize, const N: usize> {
     pub(in super::super) shape: PhantomData<E>,
     pub(in super::super) group: Group<'a>,
-    /// Which pack of the group.
+    /// The index of the pack in the group.
     pub(in super::super) pack: usize,
     pub(in super::super) of: Of,
     /// As [`super::Deform`] leaves it.
     pub(in super::super) kept: &'a [f64],
-    /// At the points; looked at where the energy is differentiated exactly.
+    /// At the points; read only if the energy is differentiated exactly.
     pub(in super::super) stress: &'a [f64],
     /// D⁴ packs for every pack of points.
     pub(in super::super) tangent: &'a [f64],
@@ -44,13 +44,13 @@ pub(in super::super) struct Contract<'a, E, const D: usize, const N: usize> {
     pub(in super::super) blocks: &'a mut [f64],
 }
 
-/// Second derivatives by F and β, and what the first derivatives by β are made of.
+/// Second derivatives by F and β, and the first derivatives by β from which others follow.
 pub(super) struct Sums<R, const D: usize> {
-    /// By F and F, of rows that do not fall.
+    /// By F and F, for non-decreasing rows.
     pub(super) ff: Tangent<R, D>,
     /// By F and β.
     pub(super) fb: [Matrix<R, D>; MOST_STRESSES],
-    /// By β and β, of numbers that do not fall.
+    /// By β and β, for non-decreasing indices.
     pub(super) bb: [[R; MOST_STRESSES]; MOST_STRESSES],
     /// By β.
     pub(super) on_beta: [R; MOST_STRESSES],
@@ -75,7 +75,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Contract<'_, E, D, N> {
         let one = matrix::identity::<R, D>();
         let strained = rest.strained(&if turns { kept.f } else { one });
         let plain = rest.strained(&one);
-        // ∂F_q/∂β but for the functions.
+        // ∂F_q/∂β without the functions.
         let (along, traces) = strained.pairs();
         // ∂F_q/∂F: · (1 + ε_q).
         let mut grown = [one; N];
@@ -97,7 +97,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Contract<'_, E, D, N> {
             let weighted = matrix::scaled(grown, weight);
             for m in 0..D {
                 for n in 0..D {
-                    // What the stress does as F changes along m by that row.
+                    // The change of the stress as F changes along m in that row.
                     let mut by = [[R::zero(); D]; D];
                     for i in 0..=m {
                         for l in 0..D {
@@ -159,7 +159,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Contract<'_, E, D, N> {
         sums
     }
 
-    /// Adds the law of the whole cell, whose point lies behind the others.
+    /// Adds the law at the mean of the cell, whose point follows the others.
     #[inline(always)]
     fn add_middle<R: Register>(&self, part: usize, rest: &Rest<'_, R, D, N>, sums: &mut Sums<R, D>) {
         let tangent = self.tangent_at::<R>(self.pack * self.group.points + N, part);
@@ -175,7 +175,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Contract<'_, E, D, N> {
         }
     }
 
-    /// Adds what the stresses do as their strains turn with F.
+    /// Adds the contribution of the stresses because their strains rotate with F.
     #[inline(always)]
     fn add_turned_stresses<R: Register>(
         &self,

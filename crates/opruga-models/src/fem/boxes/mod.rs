@@ -1,18 +1,19 @@
 //! The work on quadrilaterals and hexahedra, compiled for every set of vector instructions.
 //!
-//! A cell has the mean F of its deformation gradient and hourglass amplitudes gₐ. It is asked at Gauss's points, with
+//! A cell has the mean deformation gradient F and hourglass amplitudes gₐ. The law is evaluated at the Gauss points, with
 //!
 //! F_q = F (1 + ε_q),  ε_q = Σ_s βₛ f_s(q) D_s,  β = X q,  qₐ = F⁻¹ gₐ,
 //!
-//! where ε_q is the strain of the assumed stresses ([`super::hourglass`]), carried along by F. Its energy is
+//! where ε_q is the strain of the assumed stresses ([`super::hourglass`]), rotated and stretched with F. The energy of the cell
+//! is
 //!
 //! U = Σ_q V_q ψ(F_q; μ, λ′) + V ψ(F; 0, λ − λ′) + ½ (λ − λ′) Σ_q V_q tr² ε_q + ½ (1 − s) Σ kₐ gₐ·gₐ,  λ′ = min(λ, 2μ):
 //!
-//! what resists volume beyond λ′ sees the mean F, since no cell of so few corners could bend much and keep the volume of every
-//! point (all laws are linear in μ and λ). F⁻¹ is cof Fᵀ φ(J) with φ = J/(J² + δ² (1 − J)²): it is F⁻¹ at rest and nearly so while
-//! the cell has a volume, and goes to zero with it; there s = Jφ does too, and stiffness of no direction is left in its place. Beyond
-//! one and a half times the volume (J − 3/2)³ of that comes on top in space.
-//! Under `linear`, which does not know of rotations, F_q is F + ε_q and q is g. In plane stress λ′ is λ.
+//! The volumetric stiffness beyond λ′ acts on the mean F, since no cell with so few corners could bend much and keep the volume
+//! of every point (all laws are linear in μ and λ). F⁻¹ is replaced by cof Fᵀ φ(J) with φ = J/(J² + δ² (1 − J)²). This is F⁻¹ at
+//! rest, close to it while the cell has a volume, and goes to zero with the volume. There s = Jφ goes to zero too, and an
+//! isotropic stiffness takes over. Beyond one and a half times the rest volume, (J − 3/2)³ of that stiffness is added in space.
+//! Under `linear`, which does not account for rotations, F_q is F + ε_q and q is g. In plane stress λ′ is λ.
 
 mod columns;
 mod corners;
@@ -34,24 +35,24 @@ use hourglass::{MOST_MODES, MOST_STRESSES, modes};
 use opruga_math::matrix::{self, Matrix};
 use opruga_math::{Lane, Register, WIDTH};
 
-/// δ²: cells that have lost most of their volume lose the stiffness of the law against bending.
+/// δ². Cells that have lost most of their volume lose the stiffness of the law against bending.
 const FLAT: f64 = 0.01;
 
-/// Hexahedra of more than this part of their volume are guarded against modes of their own. The strain ε of the assumed stresses is
-/// symmetric, and det (1 + ε) falls with a shear in it, which a true shear leaves as it is: under a pull from all sides p that is
-/// worth −½ p J tr ε², from J = 2.3 on in confined bars more than the law holds against it.
+/// Hexahedra above this volume ratio are guarded against spurious modes. The strain ε of the assumed stresses is symmetric, so a
+/// shear in it reduces det (1 + ε), while a true shear does not. Under a pull p from all sides this adds −½ p J tr ε² to the
+/// energy, which exceeds the resistance of the law from J = 2.3 on in confined bars.
 const SWOLLEN: f64 = 1.5;
 
-/// What is kept of a cell between the steps of a pass: F, g and β.
+/// The numbers of a cell that are kept between the steps of a pass: F, g and β.
 pub(super) const KEPT: usize = 9 + MOST_MODES * 3 + MOST_STRESSES;
 
-/// Amplitudes, or what belongs to them: mode by mode.
+/// Amplitudes, or quantities that belong to them, mode by mode.
 pub(super) type Modes<R, const D: usize> = [[R; D]; MOST_MODES];
 
-/// Factors of the assumed stresses, or what belongs to them.
+/// Factors of the assumed stresses, or quantities that belong to them.
 pub(super) type Stresses<R> = [R; MOST_STRESSES];
 
-/// The change of cof F with F along Z; the same with F and Z exchanged.
+/// The derivative of cof F in the direction Z; symmetric in F and Z.
 #[inline(always)]
 pub(super) fn cofactor_along<R: Lane, const D: usize>(f: &Matrix<R, D>, z: &Matrix<R, D>) -> Matrix<R, D> {
     if D == 2 {
@@ -94,13 +95,13 @@ impl<R: Lane, const D: usize> Frame<R, D> {
         let swollen = R::zero().less(beyond);
         let square = beyond * beyond;
         let more = [square * beyond, R::splat(3.0) * square, R::splat(6.0) * beyond];
-        // The strains of the plane have hardly any shear.
+        // In the plane the assumed strains contain hardly any shear.
         for (lost, more) in lost.iter_mut().zip(more).take(if D == 3 { 3 } else { 0 }) {
             *lost = R::select(swollen, *lost + more, *lost);
         }
         Frame { cofactors, phi: [phi, first, second], lost }
     }
-    /// Cᵀ of amplitudes.
+    /// Cᵀ times the amplitudes.
     #[inline(always)]
     fn pulled(cofactors: &Matrix<R, D>, modes: usize, g: &Modes<R, D>) -> Modes<R, D> {
         let mut out = [[R::zero(); D]; MOST_MODES];
@@ -115,7 +116,7 @@ impl<R: Lane, const D: usize> Frame<R, D> {
     }
 }
 
-/// F, g and β of a part of a pack.
+/// F, g and β of one part of a pack.
 pub(super) struct Kept<R, const D: usize> {
     f: Matrix<R, D>,
     g: Modes<R, D>,

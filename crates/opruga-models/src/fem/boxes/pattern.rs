@@ -1,9 +1,9 @@
-//! Which entries of the small matrices of boxes are anything but zero.
+//! The nonzero entries of the small matrices of boxes.
 //!
-//! Of the 49 and 144 entries of a hexahedron whose sides are at right angles 7 and 21 are; all of them are of other cells. The
-//! sums are the same with and without the others, and so is the order of their parts.
+//! In a hexahedron with right angles 7 of 49 and 21 of 144 entries are nonzero; in other cells all are. Leaving out the zeros
+//! changes neither the sums nor the order of their terms.
 
-/// The entries of a matrix that may be something, by rows and by columns.
+/// The entries of a matrix that may be nonzero, by rows and by columns.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Pattern {
     pub(super) rows: Lists,
@@ -26,7 +26,7 @@ impl Lists {
         }
         out
     }
-    /// The numbers of a list, rising.
+    /// The numbers of a list, ascending.
     #[inline(always)]
     pub(super) fn of(&self, list: usize) -> impl Iterator<Item = usize> + '_ {
         let from = if list == 0 { 0 } else { self.ends[list - 1] };
@@ -35,7 +35,7 @@ impl Lists {
 }
 
 impl Pattern {
-    /// Of a square matrix of so many rows.
+    /// Of a square matrix with `size` rows.
     pub(super) fn new(size: usize, is: impl Fn(usize, usize) -> bool) -> Self {
         Pattern { rows: Lists::new(size, &is), columns: Lists::new(size, |column, row| is(row, column)) }
     }

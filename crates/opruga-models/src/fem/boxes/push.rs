@@ -1,4 +1,4 @@
-//! Forces of boxes onto their corners.
+//! Forces of boxes on their corners.
 
 use super::super::elements::Shape;
 use super::super::group::Group;
@@ -17,11 +17,11 @@ pub(in super::super) struct Rates<'a> {
     pub(in super::super) kept: &'a [f64],
     /// Retardation times of the points.
     pub(in super::super) times: &'a [f64],
-    /// Densities of power, which become powers of cells.
+    /// Power densities, which become powers of cells.
     pub(in super::super) power: &'a mut [f64],
 }
 
-/// Forces of cells onto nodes; densities of energy and power become energies and powers of cells.
+/// Forces of cells on nodes; densities of energy and power become energies and powers of cells.
 pub(in super::super) struct Push<'a, E, const D: usize, const N: usize> {
     pub(in super::super) shape: PhantomData<E>,
     pub(in super::super) group: Group<'a>,
@@ -33,7 +33,7 @@ pub(in super::super) struct Push<'a, E, const D: usize, const N: usize> {
 }
 
 impl<E: Shape<D, N>, const D: usize, const N: usize> Push<'_, E, D, N> {
-    /// Σ V P, and Σ V f P of the functions f of the stresses.
+    /// Σ V P, and Σ V f P for the functions f of the stresses.
     #[inline(always)]
     fn stresses<R: Register>(
         &self,
@@ -61,8 +61,8 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Push<'_, E, D, N> {
     }
 }
 
-/// Brings forces on amplitudes from the turned cell onto F and g, and adds those of what is left in the place of the law where
-/// the cell is flat; returns the energy of that.
+/// Transforms forces on the amplitudes q to forces on F and g, and adds those of the guard energy of flat cells; returns the
+/// guard energy.
 #[inline(always)]
 fn turn<R: Register, const D: usize, const N: usize>(
     rest: &Rest<'_, R, D, N>,
@@ -117,7 +117,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Push<'_, E, D, N> 
                         lost += rest.measures[q] * P::Part::load(&rates.power[from..]);
                     }
                 }
-                // Σ V f p of the pressure that the law at the points has not, and the mean that has it.
+                // Σ V f p of the pressure that is excluded from the law at the points, and included at the mean.
                 let mut pressures = [P::Part::zero(); FIELDS];
                 if points > N {
                     let swells = rest.at_points(P::Part::zero(), &strained.traces(&beta));
@@ -170,7 +170,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Push<'_, E, D, N> 
                         slots[node][i].set_part(part, forces[node][i]);
                     }
                 }
-                // Packs are summed in order, so no density that is still needed lies here.
+                // Packs are summed in order, so no density that is still needed is overwritten.
                 energy.store(&mut self.density[k * WIDTH + offset..]);
                 if let Some(rates) = &mut self.rates {
                     lost.store(&mut rates.power[k * WIDTH + offset..]);

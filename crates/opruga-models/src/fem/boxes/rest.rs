@@ -11,24 +11,24 @@ use opruga_core::state::Layout;
 use opruga_math::matrix::{self, Matrix};
 use opruga_math::{Lane, Register, WIDTH};
 
-/// What does not change of a part of a pack of cells.
+/// The constant data of one part of a pack of cells.
 pub(super) struct Rest<'a, R, const D: usize, const N: usize> {
     boxes: &'a Boxes,
-    /// The shares of the functions, of eight cells side by side or of one that holds for eight bodies.
+    /// The shares of the functions: of eight cells side by side, or of one cell for eight bodies.
     shares: &'a [f64],
     batch: bool,
-    /// X, and where the part begins.
+    /// X, and the offset of the part.
     response: &'a [f64],
     offset: usize,
     /// The measures of the points.
     pub(super) measures: [R; N],
     /// The means of the functions of the assumed stresses.
     means: [R; FIELDS],
-    /// Columns: the axes of the cell.
+    /// The axes of the cell, in columns.
     axes: Matrix<R, D>,
-    /// Their products, as [`PAIR`] counts them.
+    /// Their products, in the order of [`PAIR`].
     products: [R; PAIRS],
-    /// Of the trace in the strain of a stress.
+    /// The factor of the trace in the strain of a stress.
     c: R,
     /// λ − λ′ [Pa].
     pub(super) beyond: R,
@@ -94,10 +94,10 @@ impl<'a, R: Register, const D: usize, const N: usize> Rest<'a, R, D, N> {
         if self.batch { R::splat(self.shares[k]) } else { R::load(&self.shares[k * WIDTH + self.offset..]) }
     }
 
-    /// The mean gradient and the amplitudes of positions or velocities, column by column.
+    /// Computes the mean gradient and the amplitudes of positions or velocities, column by column.
     #[inline(always)]
     pub(super) fn mean(&self, x: &[[R; D]; N]) -> [[R; D]; N] {
-        // Differences to the first corner: what is far away has all digits of its shape.
+        // Differences from the first corner, so that distant bodies keep all digits of their shape.
         let mut of_functions = [[R::zero(); D]; N];
         for i in 0..D {
             let mut from_first = [R::zero(); N];
@@ -157,13 +157,13 @@ impl<'a, R: Register, const D: usize, const N: usize> Rest<'a, R, D, N> {
         R::load(&self.response[(stress * modes::<D, N>() * D + amplitude) * WIDTH + self.offset..])
     }
 
-    /// The amplitudes that a stress answers to.
+    /// The amplitudes on which a stress depends.
     #[inline(always)]
     fn amplitudes(&self, stress: usize) -> impl Iterator<Item = usize> {
         self.boxes.response.rows.of(stress)
     }
 
-    /// The stresses that an amplitude makes.
+    /// The stresses that depend on an amplitude.
     #[inline(always)]
     pub(super) fn stresses(&self, amplitude: usize) -> impl Iterator<Item = usize> {
         self.boxes.response.columns.of(amplitude)
@@ -183,7 +183,7 @@ impl<'a, R: Register, const D: usize, const N: usize> Rest<'a, R, D, N> {
         out
     }
 
-    /// Xᵀ of forces on β.
+    /// Xᵀ times forces on β.
     #[inline(always)]
     pub(super) fn on_amplitudes(&self, on: &Stresses<R>) -> Modes<R, D> {
         let mut out = [[R::zero(); D]; MOST_MODES];
@@ -197,7 +197,7 @@ impl<'a, R: Register, const D: usize, const N: usize> Rest<'a, R, D, N> {
         out
     }
 
-    /// Values at the points of sums over the functions of the stresses, beside a value of the whole cell.
+    /// Values at the points of sums over the functions of the stresses, plus a value of the whole cell.
     #[inline(always)]
     pub(super) fn at_points(&self, whole: R, of_fields: &[R; FIELDS]) -> [R; N] {
         let mut c = [R::zero(); N];
@@ -211,7 +211,7 @@ impl<'a, R: Register, const D: usize, const N: usize> Rest<'a, R, D, N> {
         corners::values(&c)
     }
 
-    /// The same of matrices, written entry by entry.
+    /// The same for matrices, written entry by entry.
     #[inline(always)]
     pub(super) fn matrices_at_points(
         &self,
@@ -240,7 +240,7 @@ impl<'a, R: Register, const D: usize, const N: usize> Rest<'a, R, D, N> {
         out
     }
 
-    /// The sum over the points, and the sums with the functions of the stresses.
+    /// The sum over the points, and the sums weighted by the functions of the stresses.
     #[inline(always)]
     pub(super) fn over_points(&self, at: &[R; N]) -> (R, [R; FIELDS]) {
         let sums = corners::sums(at);
@@ -254,10 +254,10 @@ impl<'a, R: Register, const D: usize, const N: usize> Rest<'a, R, D, N> {
         (sums[0], of_fields)
     }
 
-    /// Σ f g of two functions of the stresses, of the [`corners::sums`] of numbers at the points.
+    /// Σ f g of two functions of the stresses, from the [`corners::sums`] of numbers at the points.
     #[inline(always)]
     pub(super) fn square(&self, sums: &[R; N], f: usize, g: usize) -> R {
-        // The product of two functions is one of them again.
+        // The product of two functions is again one of them.
         let mut out = sums[Products::<N>::OF[1 + f][1 + g]];
         if self.boxes.uneven {
             let (first, second) = (self.means[f], self.means[g]);
@@ -266,7 +266,7 @@ impl<'a, R: Register, const D: usize, const N: usize> Rest<'a, R, D, N> {
         out
     }
 
-    /// What the strains of the stresses make of a matrix.
+    /// A matrix multiplied by the strains of the stresses.
     #[inline(always)]
     pub(super) fn strained(&self, by: &Matrix<R, D>) -> Strained<R, D> {
         let rows = matrix::product(by, &self.axes);
@@ -274,11 +274,11 @@ impl<'a, R: Register, const D: usize, const N: usize> Rest<'a, R, D, N> {
     }
 }
 
-/// Which of the functions is the product of two, as [`corners`] counts them.
+/// Which function is the product of two functions, in the order of [`corners`].
 struct Products<const N: usize>;
 impl<const N: usize> Products<N> {
     const OF: [[usize; 8]; 8] = {
-        // The axes of each as bits.
+        // The axes of each function as bits.
         let axes = if N == 4 { [0, 1, 2, 3, 8, 16, 32, 64] } else { [0, 1, 2, 4, 6, 5, 3, 7] };
         let (mut out, mut k) = ([[0; 8]; 8], 0);
         while k < 8 * 8 * 8 {
@@ -302,7 +302,7 @@ pub(super) struct Strained<R, const D: usize> {
     c: R,
 }
 
-/// What forces on the strains of all stresses add up to.
+/// The accumulated forces on the strains of all stresses.
 pub(super) struct Pulls<R, const D: usize> {
     /// On β.
     pub(super) on_beta: Stresses<R>,
@@ -312,13 +312,13 @@ pub(super) struct Pulls<R, const D: usize> {
 }
 
 impl<R: Lane, const D: usize> Strained<R, D> {
-    /// tr D over aₖ·aₗ.
+    /// tr D, as a factor of aₖ·aₗ.
     #[inline(always)]
     fn swells(&self) -> R {
         R::one() - R::splat(D as f64) * self.c
     }
 
-    /// tr Σ β D of every function.
+    /// tr Σ β D for every function.
     #[inline(always)]
     pub(super) fn traces(&self, beta: &Stresses<R>) -> [R; FIELDS] {
         let mut out = [R::zero(); FIELDS];
@@ -328,7 +328,7 @@ impl<R: Lane, const D: usize> Strained<R, D> {
         out
     }
 
-    /// Σ β aₖ·aₗ of a function.
+    /// Σ β aₖ·aₗ for one function.
     #[inline(always)]
     fn product_of(&self, field: usize, beta: &Stresses<R>) -> R {
         let (s, [a, b]) = axes_of_field::<D>(field);
@@ -339,7 +339,7 @@ impl<R: Lane, const D: usize> Strained<R, D> {
         sum
     }
 
-    /// B Σ β D of every function.
+    /// B Σ β D for every function.
     #[inline(always)]
     pub(super) fn fields(&self, beta: &Stresses<R>) -> [Matrix<R, D>; FIELDS] {
         let mut out = [matrix::zeros::<R, D>(); FIELDS];
@@ -377,7 +377,7 @@ impl<R: Lane, const D: usize> Strained<R, D> {
         out
     }
 
-    /// Forces on β and B of forces P on B Σ β D, and p on tr Σ β D, of every function.
+    /// Forces on β and B, from forces P on B Σ β D and p on tr Σ β D for every function.
     #[inline(always)]
     pub(super) fn pulls(
         &self,
@@ -444,7 +444,7 @@ impl<R: Lane, const D: usize> Strained<R, D> {
         matrix::plus(&pulls.on_whole, R::one(), &matrix::product_transposed(&pulls.on_rows, &self.axes))
     }
 
-    /// B D of every pair of axes, and tr D.
+    /// B D for every pair of axes, and tr D.
     #[inline(always)]
     pub(super) fn pairs(&self) -> ([Matrix<R, D>; PAIRS], [R; PAIRS]) {
         let (mut out, mut traces) = ([matrix::zeros::<R, D>(); PAIRS], [R::zero(); PAIRS]);

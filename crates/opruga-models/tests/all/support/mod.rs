@@ -1,4 +1,4 @@
-//! What the tests of the models share: parameters, meshes, energies and dense matrices, Newton's method.
+//! Common code of the tests of the models: parameters, meshes, energies and dense matrices, Newton's method.
 #![allow(dead_code)] // each test uses some of it
 
 pub(crate) mod models;
@@ -10,9 +10,9 @@ use opruga_core::system::{Stage, System};
 use opruga_math::{Simd, sum_in_fixed_order};
 use opruga_mesh::Mesh;
 
-/// Anything that a parameter may be given as.
+/// Types from which a parameter can be made.
 pub(crate) trait IntoValue {
-    /// As a value.
+    /// Converts it to a value.
     fn value(self) -> Value;
 }
 impl IntoValue for f64 {
@@ -56,7 +56,7 @@ macro_rules! values {
 /// A model and its parameters.
 pub(crate) type Part<'a, const D: usize> = (&'a dyn Model<D>, Values);
 
-/// A system of one body with some models, in its rest shape, without motion; mass 1 kg at every node.
+/// A system of one body with some models, at rest in its rest shape, with a mass of 1 kg at every node.
 pub(crate) fn system<const D: usize>(mesh: &Mesh<D>, parts: &[Part<D>]) -> System<D> {
     system_with_mass(mesh, parts, 1.0)
 }
@@ -134,7 +134,7 @@ impl Dense {
     pub(crate) fn times(&self, v: &[f64]) -> Vec<f64> {
         self.entries.chunks(self.size).map(|row| row.iter().zip(v).map(|(a, b)| a * b).sum()).collect()
     }
-    /// Solves by Gauss's elimination with row exchanges.
+    /// Solves by Gaussian elimination with row exchanges.
     pub(crate) fn solve(&self, right: &[f64]) -> Vec<f64> {
         let n = self.size;
         let mut rows: Vec<Vec<f64>> = self.entries.chunks(n).map(|row| row.to_vec()).collect();
@@ -162,7 +162,8 @@ impl Dense {
         }
         x
     }
-    /// How many eigenvalues lie below a number: negative pivots of the shifted matrix (Sylvester), in the order of the rows.
+    /// The number of eigenvalues below a value, as the number of negative pivots of the shifted matrix (Sylvester), in the order
+    /// of the rows.
     pub(crate) fn eigenvalues_below(&self, shift: f64) -> usize {
         let n = self.size;
         let mut rows: Vec<Vec<f64>> = self.entries.chunks(n).map(|row| row.to_vec()).collect();
@@ -216,14 +217,14 @@ pub(crate) fn hessian<const D: usize>(system: &mut System<D>) -> Dense {
     sink.0
 }
 
-/// How many eigenvalues of the Hessian lie below a number [N/m].
+/// The number of eigenvalues of the Hessian below a value [N/m].
 pub(crate) fn eigenvalues_below<const D: usize>(system: &mut System<D>, shift: f64) -> usize {
     hessian(system).eigenvalues_below(shift)
 }
 
-/// Newton's method for forces + load = 0 with some coordinates (node · D + axis) held; returns the last residual [N].
+/// Newton's method for forces + load = 0 with some coordinates (node · D + axis) pinned; returns the last residual [N].
 ///
-/// `shift` [N/m] is added to the diagonal where rigid motion is free; it does not move the solution.
+/// `shift` [N/m] is added to the diagonal if rigid motion is free; it does not change the solution.
 pub(crate) fn newton<const D: usize>(system: &mut System<D>, load: &[f64], held: &[usize], shift: f64) -> f64 {
     let mut residual = f64::INFINITY;
     for _ in 0..60 {

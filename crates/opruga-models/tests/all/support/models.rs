@@ -1,4 +1,4 @@
-//! The models as the library has compiled them: where a test names a model's own type, it compiles all its kernels once more.
+//! The models as the library compiles them. A test that names the type of a model would compile all its kernels again.
 
 use opruga_core::error::BuildError;
 use opruga_core::memory::{Counts, Need};

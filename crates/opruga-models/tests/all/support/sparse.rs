@@ -1,9 +1,9 @@
-//! Equilibria of bodies of some thousand nodes: sparse rows, conjugate gradients, Newton's method with halved steps.
+//! Equilibria of bodies of some thousand nodes: sparse rows, conjugate gradients, Newton's method with step halving.
 
 use opruga_core::potential::{Definiteness, Potential, Sink};
 use opruga_core::system::{Stage, System};
 
-/// A symmetric matrix by rows of (column, entry).
+/// A symmetric matrix as rows of (column, entry).
 struct Rows(Vec<Vec<(u32, f64)>>);
 
 impl<const D: usize> Sink<D> for Rows {
@@ -34,7 +34,8 @@ impl Rows {
             *out = row.iter().map(|(column, entry)| entry * v[*column as usize]).sum();
         }
     }
-    /// Conjugate gradients preconditioned by the diagonal, with held entries zero; stops early where the matrix is not positive.
+    /// Conjugate gradients with a diagonal preconditioner; entries of pinned coordinates are zero. Stops early if the matrix is
+    /// not positive.
     fn solve(&self, right: &[f64], held: &[bool]) -> Vec<f64> {
         let n = right.len();
         let inverse: Vec<f64> = (0..n)
@@ -73,7 +74,7 @@ impl Rows {
     }
 }
 
-/// Finds the equilibrium under a dead load (node · D + axis) with some coordinates held; gives the last residual [N].
+/// Finds the equilibrium under a dead load (node · D + axis) with some coordinates pinned; returns the last residual [N].
 pub(crate) fn equilibrium<const D: usize>(system: &mut System<D>, load: &[f64], held: &[bool]) -> f64 {
     let free_force = |system: &mut System<D>| -> Vec<f64> {
         let mut all = crate::support::forces(system);
