@@ -1,4 +1,4 @@
-//! The first stage of the Runge–Kutta rules.
+//! The first stage of the Runge–Kutta methods.
 
 use opruga_core::state::Parameter;
 use opruga_core::system::{Stage, State, Update};
@@ -7,7 +7,7 @@ use std::ops::Range;
 
 /// y₁ = y₀ + s k₀ with k₀ = (v₀, a₀): from the current state into the first work columns.
 pub(crate) struct FirstStage {
-    /// How far to go along the slope [s].
+    /// The time step along the slope [s].
     pub(crate) span: f64,
 }
 
@@ -30,7 +30,7 @@ impl<const D: usize> Update<D> for FirstStage {
         let (mut x1, mut v1) = (x1.strip_mut(start, length), v1.strip_mut(start, length));
         for k in (0..length).step_by(WIDTH) {
             let kick = span * inverse_mass.load::<P>(k);
-            // All reads come before the first write: a read behind a write has to wait for it.
+            // All reads come before the first write, because a read after a write has to wait for it.
             let velocity = lanes!(P, d => v0.load::<P>(d, k));
             let position = lanes!(P, d => x0.load::<P>(d, k) + velocity[d] * span);
             let next = lanes!(P, d => velocity[d] + force.load::<P>(d, k) * kick);

@@ -1,4 +1,4 @@
-//! Integrators of Opruga: one folder per rule.
+//! Integrators of Opruga: one folder per integrator.
 
 pub mod backward_euler;
 pub mod bdf2;
@@ -33,7 +33,7 @@ pub fn all<const D: usize>() -> Vec<Box<dyn IntegratorKind<D>>> {
     every.downcast().map_or_else(|_| Vec::new(), |integrators| *integrators)
 }
 
-// Not generic: the integrators are compiled once, with this crate, and not again with every crate that asks for them.
+// Not generic, so that the integrators are compiled once, with this crate, and not again with every crate that uses them.
 fn of_the_plane() -> Vec<Box<dyn IntegratorKind<2>>> {
     list()
 }

@@ -1,21 +1,21 @@
-//! Why integrators refuse a body or a state, and what helps where a step is not found, as messages.
+//! Why integrators refuse a body or a state, and hints if a step fails, as messages.
 
 use opruga_math::message::AnyMessage;
 use opruga_math::messages;
 use opruga_math::words::{counted, number};
 
-/// How many rigid modes there are.
+/// The number of rigid modes, in words.
 fn modes(count: usize) -> String {
     counted(count as u64, "rigid mode", "rigid modes")
 }
 
-/// How many nodes there are.
+/// The number of nodes, in words.
 fn of_nodes(count: usize) -> String {
     counted(count as u64, "node", "nodes")
 }
 
 messages! {
-    /// A motion of a body as a whole.
+    /// A rigid motion of a body.
     #[derive(Clone, Debug, PartialEq)]
     pub enum MotionName {
         "part.motion" #[error("translation along {axis}")]
@@ -31,25 +31,25 @@ messages! {
     /// Why an integrator refuses a body, its parameters or a state.
     #[derive(Clone, Debug, PartialEq)]
     pub enum Refusal {
-        /// A rule that damps slow motions little, in real time.
+        /// Real time with an integrator that damps slow motions little.
         "integrator.real_time"
         #[error("`accuracy` is \"real_time\", whose steps leave a part out of balance; `{integrator}` with `spectral_radius` = {} damps slow motions hardly, and hands that part on with the acceleration that it remembers", number(*radius))] #[value("\"real_time\"")] #[parameters("accuracy", "spectral_radius")]
         #[allowed("\"exact\"")] #[hint("`backward_euler` and `bdf2` have a real-time setting")]
         DampsLittle { integrator: &'static str, radius: f64 },
-        /// A rule that damps nothing, in real time.
+        /// Real time with an integrator that damps nothing.
         "integrator.real_time"
         #[error("`accuracy` is \"real_time\", whose steps leave a part out of balance; `{integrator}` damps nothing, and would add it up without end")] #[value("\"real_time\"")] #[parameters("accuracy")]
         #[allowed("\"exact\"")] #[hint("`backward_euler` and `bdf2` have a real-time setting")]
         DampsNothing { integrator: &'static str },
-        /// No matrix to keep.
+        /// Real time without a matrix to keep.
         "integrator.no_matrix" #[error("`linear_solver` is \"matrix_free\", and `accuracy` is \"real_time\", which keeps a matrix")] #[value("\"matrix_free\"")] #[parameters("linear_solver", "accuracy")]
         #[allowed("\"auto\", \"conjugate_gradients\", \"cholesky\"")]
         MatrixFreeInRealTime {},
-        /// No matrix to factor.
+        /// `arc_length` without a matrix to factor.
         "integrator.no_matrix" #[error("`linear_solver` is \"matrix_free\", and `arc_length` factors a matrix")] #[value("\"matrix_free\"")] #[parameters("linear_solver", "arc_length")]
         #[allowed("\"auto\", \"conjugate_gradients\", \"cholesky\"")]
         MatrixFreeByArc {},
-        /// A matrix that conjugate gradients cannot take.
+        /// A matrix that is not symmetric, as conjugate gradients require.
         "integrator.no_matrix"
         #[error("`linear_solver` is \"matrix_free\", whose conjugate gradients need a symmetric matrix, and that of the body is not symmetric")] #[value("\"matrix_free\"")] #[parameters("linear_solver")]
         #[allowed("\"auto\"")]
@@ -58,7 +58,7 @@ messages! {
         "static.rigid_modes" #[error("nothing holds the body against {motions}: {}; an equilibrium needs a body that is held", modes(*count))]
         #[hint("pin as many axes of nodes as there are rigid modes, or give it something to rest on")]
         Free { motions: AnyMessage, count: usize },
-        /// A body whose linear forces let it turn without end.
+        /// A body whose linear forces let it rotate without end.
         "static.rigid_modes"
         #[error("nothing holds the body against {motions}: {}, since its forces are linear: what turns it turns it without end, and no weight brings it back as it does a pendulum; an equilibrium needs a body that is held", modes(*count))]
         #[hint("pin as many axes of nodes as there are rigid modes, or take a material for large rotations, such as `neo_hookean`")]
@@ -73,12 +73,12 @@ messages! {
         #[error("`arc_length` is given, and pins do not hold the body, which nothing presses onto obstacles where the curve begins, without any load")] #[parameters("arc_length")]
         #[allowed("pins that hold it, or the whole load at once, in as many `load_steps` as it takes")]
         LooseByArc {},
-        /// A body that an obstacle lets slide.
+        /// A body that can slide on an obstacle.
         "run.model"
         #[error("the body lies on an obstacle, and neither that nor pins hold it against {motions}; an equilibrium needs a body that is held")]
         #[hint("pin an axis of a node for each, or let the obstacle rub (`friction`)")]
         Slides { motions: AnyMessage },
-        /// A piece that an obstacle lets slide.
+        /// A piece that can slide on an obstacle.
         "run.model"
         #[error("the body is in {pieces} pieces, and that of {} about {center} lies on an obstacle, and neither that nor pins hold it against {motions}; an equilibrium needs every piece held", of_nodes(*nodes))]
         #[hint("pin an axis of a node for each, or let the obstacle rub (`friction`)")]
@@ -95,7 +95,7 @@ messages! {
         TurnsBack { load: f64 },
     }
 
-    /// What helps where the end of a step is not found.
+    /// Hints for a step whose end is not found.
     #[derive(Clone, Debug, PartialEq)]
     pub enum StepHint {
         "part.step_hint" #[error("more substeps, or `accuracy = \"exact\"`; the step was already halved down to 1/256")]

@@ -42,7 +42,7 @@ fn the_amplitude_falls_as_in_its_closed_form() {
     }
 }
 
-/// Springs pull along their axis at the end of the step: linear momentum is kept, angular momentum falls as it does for the
+/// Springs pull along their axis at the end of the step: linear momentum is conserved; angular momentum falls as for the
 /// oscillation, by O(h).
 #[test]
 fn linear_momentum_is_kept() {

@@ -4,14 +4,14 @@
 //!
 //! x₁ = (4 x₀ − x₋₁)/3 + ⅔ h v₁,  M v₁ = M (4 v₀ − v₋₁)/3 + ⅔ h F(x₁, v₁, t₁);
 //!
-//! where the step changes, the coefficients follow it. Second order, stable for every step; what is much faster than the
-//! step is damped within a few steps (L-stable), what is slow hardly at all: the amplitude falls by (hω)⁴/4 per step where
-//! backward Euler takes (hω)²/2.
+//! If the step changes, the coefficients change with it. Second order, stable for every step. Motion much faster than the step is
+//! damped within a few steps (L-stable), slow motion hardly at all: the amplitude falls by (hω)⁴/4 per step, compared with
+//! (hω)²/2 for backward Euler.
 //!
-//! **What it remembers** is the displacement and the velocity before the last step. They are part of the state: of
-//! checkpoints, hashes and replays. The first step, and the first after a program has placed a node, is one of backward
-//! Euler. Nodes that have met an obstacle go on as if they had always moved as they do then: a difference across an
-//! impact says nothing of the motion behind it.
+//! **Memory.** The integrator remembers the displacement of the last step and the velocity before it. They are part of the state,
+//! and so of checkpoints, hashes and replays. The first step, and the first one after a program has placed a node, is one of
+//! backward Euler. After an impact, the memory of a node is reset as if it had always moved with its velocity after the impact,
+//! because a difference across an impact does not describe the motion after it.
 //!
 //! Source: Curtiss and Hirschfelder 1952; Hairer, Nørsett, Wanner, *Solving Ordinary Differential Equations I*, III.5 (5.9).
 
@@ -43,7 +43,7 @@ Euler. One body an island.",
     roles: &[],
 };
 
-/// The displacement of the last step [m], the velocity at its start [m/s], and its length [s]; zero: there was none.
+/// The displacement of the last step [m], the velocity at its start [m/s], and its length [s]; zero if there was no last step.
 const DISPLACEMENT: PerNode = PerNode::new("bdf2.displacement");
 const VELOCITY: PerNode = PerNode::new("bdf2.velocity");
 const STEP: PerBody<f64> = PerBody::new("bdf2.step");
@@ -52,7 +52,7 @@ const STEP: PerBody<f64> = PerBody::new("bdf2.step");
 #[derive(Debug)]
 pub struct Bdf2Kind;
 
-/// The backward differentiation formula of second order; or a step of its formula of first order, with which it begins anew.
+/// The second-order backward differentiation formula, or a step of the first-order formula, with which it restarts.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Bdf2 {
     begins: bool,
@@ -80,7 +80,8 @@ impl<const D: usize> Rule<D> for Bdf2 {
         vec![DISPLACEMENT.declared(), VELOCITY.declared(), STEP.declared()]
     }
     fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification {
-        // Carried are x, v, the last displacement, the last v but one; z = x + ⅓ way, w = 4/3 v − ⅓ before.
+        // The state consists of x, v, the last displacement, and the last velocity but one; z = x + ⅓ displacement, w = 4/3 v − ⅓
+        // before.
         let (square, g) = (omega * omega, 2.0 * h / 3.0);
         let factor = 1.0 / (1.0 + g * c + g * g * square);
         let third = 1.0 / 3.0;
@@ -104,14 +105,14 @@ impl<const D: usize> Rule<D> for Bdf2 {
                 for d in 0..D {
                     let k = node * D + d;
                     let velocity = workspace.v0[k];
-                    // A jump of velocity by pins is one of all that is remembered too: the difference across it is no force.
+                    // A jump of velocity by pins applies to the remembered velocity too: the difference across it is not a force.
                     let jump = workspace.kick.get(k).copied().unwrap_or(0.0);
                     workspace.z[k] = share * (displacement.0[d][node] + last * jump);
                     workspace.y[k] = workspace.z[k] + span * (velocity + share * (velocity - before.0[d][node] - jump));
                 }
             }
             if system.inertia.is_some() {
-                // What pins hold goes on as if it had always moved as it does in this step; its neighbours would feel more.
+                // Pinned nodes continue as if they had always moved as in this step; otherwise it would affect their neighbours.
                 system.pinned_axes(&mut |node, d| {
                     let k = node * D + d;
                     workspace.z[k] = share * last * workspace.v0[k];
@@ -147,7 +148,7 @@ impl<const D: usize> Rule<D> for Bdf2 {
         0.5 * (workspace.v1[k] - workspace.v0[k])
     }
     fn remember(&self, system: &mut System<D>, workspace: &Workspace<D>, h: f64) {
-        // Where a node met an obstacle, the differences that are left say how the motion along the surface goes on.
+        // If a node met an obstacle, the remaining differences describe how the motion along the surface continues.
         let velocity = |node: usize, d: usize| workspace.v1[node * D + d];
         if let Some(displacement) = system.history.vectors_mut(DISPLACEMENT) {
             for (node, u) in nodes::<D>(&workspace.u1).iter().enumerate() {

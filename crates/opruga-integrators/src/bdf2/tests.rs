@@ -1,4 +1,4 @@
-//! Order 2, no limit, a step that changes its length, free fall.
+//! Order 2, no limit, a step of varying length, free fall.
 
 use super::{Bdf2, SPEC};
 use crate::implicit::step::Implicit;
@@ -24,8 +24,8 @@ fn there_is_no_limit() {
     testing::check_no_limit(&rule());
 }
 
-/// The first step is one of backward Euler, −g h²; the velocity is exact from the first step on. The error of the first
-/// step dies out as (1/3)ⁿ, so that −½ g t² is missed by a constant: −g h² (n²/2 + 3/4 (1 − 3⁻ⁿ)).
+/// The first step is one of backward Euler, −g h²; the velocity is exact from the first step on. The error of the first step
+/// decays as (1/3)ⁿ, so −½ g t² is missed by a constant: −g h² (n²/2 + 3/4 (1 − 3⁻ⁿ)).
 #[test]
 fn free_fall_is_that_of_its_recurrence() {
     testing::check_free_fall(&rule(), |n| {
@@ -38,7 +38,7 @@ fn free_fall_is_that_of_its_recurrence() {
     });
 }
 
-/// Errors of second order also where every third step is twice as long.
+/// Errors are of second order, even if every third step is twice as long.
 #[test]
 fn the_order_stays_where_steps_change() {
     let run = |steps: usize| {
@@ -56,7 +56,7 @@ fn the_order_stays_where_steps_change() {
     assert!((order - 2.0).abs() < 0.25, "{order}");
 }
 
-/// (hω)⁴/4 of the amplitude in a step, where backward Euler takes (hω)²/2.
+/// The amplitude falls by (hω)⁴/4 in a step, compared with (hω)²/2 for backward Euler.
 #[test]
 fn slow_motion_is_hardly_damped() {
     for z in [0.05, 0.1] {

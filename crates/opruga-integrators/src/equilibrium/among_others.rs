@@ -1,4 +1,4 @@
-//! A step of statics whose end is searched for together with the ends of other bodies.
+//! A step of statics whose end is found together with the ends of other bodies.
 
 use super::{COMPLETE, LOAD, SPEC, to_rest};
 use crate::implicit::balance::Balance;
@@ -7,7 +7,7 @@ use crate::implicit::workspace::Workspace;
 use opruga_core::integrator::Amplification;
 use opruga_core::system::System;
 
-/// The rule of such a step, under the whole load. The search holds nodes where they are, if it must.
+/// The rule of such a step, under the whole load. If necessary, the search holds nodes where they are.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct AmongOthers;
 

@@ -1,11 +1,11 @@
 //! A step along the curve of equilibria.
 //!
-//! Obstacles hold nodes as in every other step of statics: who is held is decided anew in every iteration, so the curve has a
-//! kink where a node comes to a surface or leaves it, and the way of a step leads around it.
+//! Obstacles hold nodes as in every other step of statics. The set of held nodes is determined anew in every iteration, so the
+//! curve has a kink where a node reaches or leaves a surface, and a step can pass the kink.
 //!
-//! Two points of the curve lie a way apart from where a step begins: one on, one back. Where the curve turns sharply the iteration
-//! may find the one that it came from, and which way is on is told by the last step alone. So a step in which the curve
-//! turns by more than 60° is gone again in halves, but for the kinks that obstacles make.
+//! Two points of the curve are at the given distance from the start of a step: one forward, one back. If the curve turns sharply,
+//! the iteration may find the wrong one, and only the last step defines the forward direction. So a step in which the curve turns
+//! by more than 60° is repeated with half the length, except at kinks due to obstacles.
 
 use super::{COMPLETE, DISPLACEMENT, Equilibrium, Reached, SPEC};
 use crate::implicit::balance::{Balance, Solved};
@@ -21,17 +21,17 @@ use opruga_core::potential::Definiteness;
 use opruga_core::system::System;
 use opruga_solve::{Indefinite, dot};
 
-/// Halvings of the way of a step at most.
+/// The largest number of halvings of the length of a step.
 const MOST_HALVINGS: u32 = 10;
 
-/// The cosine of the angle by which the curve may turn from step to step and within one.
+/// The cosine of the largest angle by which the curve may turn from step to step and within a step.
 const LEAST_COSINE: f64 = 0.5;
 
-/// Iterations of a step at most: more mean that the way is too long.
+/// The largest number of iterations of a step; if more are needed, the step is too long.
 const ITERATIONS: u32 = 25;
 
-/// Goes a way along the curve from the state at the start of the step and `load`; `workspace.u` is then the displacement. Gives
-/// the load, which is 1 where the end was reached.
+/// Moves by the given length along the curve, from the state at the start of the step and `load`; `workspace.u` is then the
+/// displacement. Returns the load, which is 1 if the end was reached.
 pub(super) fn follow<const D: usize>(
     rule: &Equilibrium,
     system: &mut System<D>,
@@ -41,7 +41,7 @@ pub(super) fn follow<const D: usize>(
     h: f64,
 ) -> Result<f64, StepError> {
     if load == 0.0 && system.contacts.is_some() {
-        // A body that begins in an obstacle comes to its surface before there is any load.
+        // A body that begins in an obstacle is first brought to its surface, before there is any load.
         rule.balance(system, workspace, Reached { load, pin_motion: 1.0, time: h }, h)?;
     }
     let start = workspace.u.clone();
@@ -56,7 +56,7 @@ pub(super) fn follow<const D: usize>(
             if reached < 1.0 {
                 return Ok(reached);
             }
-            // Past the end: the equilibrium under the whole load is near.
+            // Past the end, the equilibrium under the whole load is near.
             rule.balance(system, workspace, Reached { load: 1.0, pin_motion: 1.0, time: h }, h)?;
             system.history.set(COMPLETE, true);
             return Ok(1.0);
@@ -73,23 +73,23 @@ pub(super) fn follow<const D: usize>(
     Ok(load)
 }
 
-/// How a step went.
+/// The outcome of a step.
 #[derive(Clone, Copy, Debug, Default)]
 struct Tried {
     solved: Solved,
-    /// Whether it found a point of the curve, but one that lies back or far aside.
+    /// Whether it found a point of the curve that is back or far to the side.
     turned: bool,
-    /// Whether there was no load that could move anything.
+    /// Whether there was no load that could move the body.
     unloaded: bool,
 }
 
-/// Whether two vectors point the same way within the angle by which the curve may turn; a vector of no length has any way.
+/// Whether the angle between two vectors is within that by which the curve may turn; a zero vector agrees with every vector.
 fn agree(a: &[f64], b: &[f64]) -> bool {
-    // Written so that what is no number does not.
+    // Written so that the result is false for NaN.
     dot(a, b) >= LEAST_COSINE * (dot(a, a) * dot(b, b)).sqrt()
 }
 
-/// Newton's method for displacement and load on |Δu| = way; none where it does not converge.
+/// Newton's method for displacement and load under the constraint |Δu| = `displacement`; none if it does not converge.
 fn one_step<const D: usize>(
     rule: &Equilibrium,
     system: &mut System<D>,
@@ -102,7 +102,7 @@ fn one_step<const D: usize>(
     let Tried { solved, turned, unloaded } = tried;
     (*turned, *unloaded) = (false, false);
     let start = workspace.u.clone();
-    // Of what is free: what pins move does not tell how the curve goes on.
+    // Only free coordinates: the motion of pins does not show how the curve continues.
     let free = |k: usize| if workspace.pin_displacement[k].is_nan() { 1.0 } else { 0.0 };
     let before = system.history.vectors(DISPLACEMENT);
     let last: Vec<f64> = (0..start.len()).map(|k| before.map_or(0.0, |u| free(k) * u.0[k % D][k / D])).collect();
@@ -110,7 +110,7 @@ fn one_step<const D: usize>(
     let mut gone = vec![0.0; start.len()];
     let goal = rule.settings.tolerance * workspace.extent;
     workspace.contacting.clear(system.nodes);
-    // Whether the step ends at the whole load, and not after its way.
+    // Whether the step ends at the whole load, and not after its length.
     let mut ends = false;
     for iteration in 0..ITERATIONS {
         solved.iterations += 1;
@@ -124,7 +124,7 @@ fn one_step<const D: usize>(
         let leans = workspace.contacting.any();
         let mut step;
         if iteration == 0 {
-            // On from where the last step has led; the first step puts load on.
+            // Continues in the direction of the last step; the first step adds load.
             let size = dot(&tangent, &tangent).sqrt();
             if size.is_nan() || size == 0.0 && !leans {
                 *unloaded = size == 0.0;
@@ -132,14 +132,15 @@ fn one_step<const D: usize>(
             }
             step = if dot(&last, &tangent) < 0.0 { -displacement / size } else { displacement / size };
         } else {
-            // 2 Δu·(δu + δλ u_t) = way² − |Δu|²
+            // 2 Δu·(δu + δλ u_t) = length² − |Δu|²
             let across = dot(&gone, &tangent);
             if across == 0.0 && !leans {
                 return Ok(None);
             }
             step = (0.5 * (displacement * displacement - dot(&gone, &gone)) - dot(&gone, &correction)) / across;
         }
-        // What leans on obstacles may not get so far, whatever the load: then the step puts on what is left of it.
+        // A body that leans on obstacles may not be able to move that far under any load. Then the step applies the remaining
+        // load.
         ends |= leans && (now + step > 1.0 || step.is_nan());
         if ends {
             step = 1.0 - now;
@@ -165,7 +166,7 @@ fn one_step<const D: usize>(
             workspace.u[k] = start[k] + gone[k];
         }
         if system.contacts.is_some() {
-            // What the constraints take after the step: r + K Δu − Δλ F_outer.
+            // The forces of the constraints after the step: r + K Δu − Δλ F_outer.
             let mixture = mixture(system, &workspace.mass, &balance, Definiteness::Exact, &rule.settings);
             workspace.linear.multiply(&mixture, &workspace.step, &mut workspace.reaction);
             for k in 0..gone.len() {
@@ -176,7 +177,7 @@ fn one_step<const D: usize>(
         }
         if iteration > 0 && !changed && solved.correction <= goal {
             if system.contacts.is_none() {
-                // Where the load falls on the way on, the tangent points back.
+                // If the load falls in the forward direction, the tangent points back.
                 let back: Vec<f64> = tangent.iter().map(|t| -t).collect();
                 *turned = !agree(&gone, &last) || !(agree(&gone, &tangent) || agree(&gone, &back));
                 if *turned {
@@ -190,8 +191,8 @@ fn one_step<const D: usize>(
     Ok(None)
 }
 
-/// What leads to the balance under the load that is on, ways to surfaces included, and the displacement by the whole load,
-/// K⁻¹ F_outer, whatever the signs of the eigenvalues of K.
+/// Returns the correction towards equilibrium under the present load, including the displacements to surfaces, and the
+/// displacement by the whole load, K⁻¹ F_outer, whatever the signs of the eigenvalues of K.
 fn directions<const D: usize>(
     rule: &Equilibrium,
     system: &System<D>,

@@ -1,17 +1,16 @@
 //! # Equilibrium
 //!
-//! Every step ends where all forces balance, F(x, 0, t) = 0, and nothing moves: statics. Over time it follows loads, pins
-//! and pointers that change (quasi-static motion); one step is enough where nothing does.
+//! Statics: every step ends in an equilibrium, where all forces balance, F(x, 0, t) = 0, and nothing moves. Over time it follows
+//! changing loads, pins and pointers (quasi-static motion); if nothing changes, one step is enough.
 //!
-//! Newton's method looks for the balance downhill: on the potential U, where there is one, every iteration lowers it. From
-//! far away it helps to put the weight and the loads on in parts (`load_steps`), or to let that be tried where the whole is too
-//! much (`when_not_converged = "halve"`). In statics every change of energy is work from outside: what a weight that is let
-//! down slowly would give, and the springs do not take, is held back by the hand that lets it down, and is entered with the
-//! work of the loads as `work_user`.
+//! Newton's method searches downhill: if there is a potential U, every iteration lowers it. If the equilibrium is far away, it
+//! helps to apply the weight and the loads in parts (`load_steps`), or to do so only if the whole load fails (`when_not_converged
+//! = "halve"`). In statics every change of energy is external work. When a weight is lowered slowly, the energy that it releases
+//! and the springs do not store goes into the hand that lowers it; it is entered with the work of the loads as `work_user`.
 //!
-//! **Through a snap** (`arc_length`): where a shallow arch gives way, no equilibrium is near the old one. Then the load is an
-//! unknown as well: each step goes a given way along the curve of equilibria, through its limits where the load falls, until
-//! all of the load is on. The part that is on is the reading `load_factor`.
+//! **Through a snap** (`arc_length`): when a shallow arch snaps, no equilibrium is near the old one. With this option the load is
+//! an unknown as well: each step moves by a given length along the curve of equilibria, past the limit points where the load
+//! falls, until the whole load is applied. The reading `load_factor` is the applied fraction of the load.
 //!
 //! ```text
 //!  load │   ╱╲          ╱        the curve of equilibria of a shallow arch: without `arc_length` the body jumps
@@ -20,18 +19,18 @@
 //!       └────────────────▶ way
 //! ```
 //!
-//! Obstacles stop the curve where the body meets them, and it goes on along their surface; a body that is held by obstacles
-//! alone has no curve, which begins without any load.
+//! Where the body meets obstacles, the curve continues along their surface. A body that only obstacles hold has no curve, because
+//! the curve begins without any load.
 //!
-//! A body that nothing holds has no equilibrium, or many: it is refused with the names of the motions that are free, and so is
-//! one of several pieces, such as a map with islands, of which one is free.
-//! Without `arc_length` obstacles hold it too; a direction without any stiffness is then held by a billionth of the stiffness of the others,
-//! within the iteration only. Where that leads nowhere, the motions are named that contact leaves free.
+//! A body that nothing holds has no equilibrium, or many: it is refused, with the names of its free motions. The same applies to
+//! a body of several pieces, such as a map with islands, if one piece is free. Without `arc_length` obstacles may hold the body
+//! too; a direction without stiffness then gets a billionth of the stiffness of the others, within the iteration only. If that
+//! fails, the error names the motions that contact leaves free.
 //!
-//! Other bodies may hold a body too. Nobody knows before how: so the common balance of bodies that touch is searched for from outside, with the
-//! forces and the matrix of each ([`OpenStep`]).
+//! Other bodies may hold a body too, in a way that is not known in advance. So the common equilibrium of touching bodies is found
+//! by the caller, with the forces and the matrix of each body ([`OpenStep`]).
 //!
-//! Source: Riks 1979; Crisfield 1981; for the direction on the curve Feng, Perić, Owen 1996.
+//! Source: Riks 1979; Crisfield 1981; for the direction along the curve, Feng, Perić, Owen 1996.
 
 mod among_others;
 mod arc;
@@ -101,7 +100,7 @@ Absent: the whole load at once.",
 #[derive(Debug)]
 pub struct EquilibriumKind;
 
-/// The balance of all forces.
+/// The equilibrium of all forces.
 #[derive(Clone, Copy, Debug)]
 pub struct Equilibrium {
     load_steps: u32,
@@ -109,7 +108,8 @@ pub struct Equilibrium {
     settings: Settings,
 }
 
-/// The part of the load that is on, whether it has reached the whole, and the last displacement along the curve of equilibria [m].
+/// The applied fraction of the load, whether it has reached the whole load, and the last displacement along the curve of
+/// equilibria [m].
 const LOAD: PerBody<f64> = PerBody::new("equilibrium.load");
 const COMPLETE: PerBody<bool> = PerBody::new("equilibrium.complete");
 const DISPLACEMENT: PerNode = PerNode::new("equilibrium.displacement");
@@ -130,8 +130,8 @@ impl<const D: usize> IntegratorKind<D> for EquilibriumKind {
     }
 }
 
-/// Up to where a step has come: the part of the load that is on, that of the way of what is held, and the time after its
-/// start [s].
+/// How far a step has come: the applied fraction of the load, the fraction of the motion of pins, and the time since the start of
+/// the step [s].
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Reached {
     load: f64,
@@ -140,7 +140,7 @@ struct Reached {
 }
 
 impl Reached {
-    /// Half the way to another point.
+    /// The point half-way to another one.
     fn midway(self, to: Reached) -> Reached {
         let mean = |a: f64, b: f64| 0.5 * (a + b);
         Reached {
@@ -160,7 +160,7 @@ impl Equilibrium {
         }
     }
 
-    /// Goes to a balance, by halves where it is not found at once.
+    /// Finds an equilibrium; divides the step into halves if it is not found at once.
     fn go<const D: usize>(
         &self,
         system: &mut System<D>,
@@ -173,7 +173,7 @@ impl Equilibrium {
         let outcome = self.balance(system, workspace, to, h);
         let too_far = match &outcome {
             Err(StepError::NotConverged { .. }) => true,
-            // Nearer a model may have a meaning; what nothing holds stays so.
+            // In a smaller step a model may have a value; a body that nothing holds stays free.
             Err(StepError::Model { model, .. }) => *model != SPEC.kind,
             _ => false,
         };
@@ -199,7 +199,7 @@ impl Equilibrium {
         outcome.map_err(|error| self.with_hint(error, system, (from.load > 0.0 && from.load < 1.0).then_some(from)))
     }
 
-    /// An error with how far the load was on, and what helps in statics.
+    /// Adds to an error how much of the load was applied, and what helps in statics.
     fn with_hint<const D: usize>(&self, mut error: StepError, system: &System<D>, from: Option<Reached>) -> StepError {
         let helps = self.settings.hint_of_statics(self.arc_length.is_some(), system.contacts.is_none());
         match &mut error {
@@ -217,7 +217,7 @@ impl Equilibrium {
         error
     }
 
-    /// Looks for the displacement at which the forces balance under a part of the load, from that in `workspace.u` on.
+    /// Finds the displacement at which the forces balance under a part of the load, starting from `workspace.u`.
     fn balance<const D: usize>(
         &self,
         system: &mut System<D>,
@@ -229,7 +229,7 @@ impl Equilibrium {
         let balance =
             Balance { sigma: 0.0, beta: 0.0, theta: 1.0, time: at.time, h, load: at.load, impulse: 1.0, echo: 0.0 };
         let mut solved = Newton(self.settings).minimise(system, workspace, &balance)?;
-        // A body that lies on obstacles may still be free to slide or to roll, which no iteration ends, or at any place.
+        // A body that lies on obstacles may still be free to slide or to roll. The iteration then never ends, or ends anywhere.
         if system.contacts.is_some() && rigid::is_loose(system) {
             self.refuse_what_is_free(system, workspace)?;
         }
@@ -237,7 +237,8 @@ impl Equilibrium {
         report(SPEC.kind, &self.settings, system, workspace, &solved)
     }
 
-    /// Names the motions of the whole that neither pins nor the contacts of the last iteration hold.
+    /// Refuses a body that can move as a whole because neither pins nor the contacts of the last iteration hold it, and names the
+    /// motions.
     fn refuse_what_is_free<const D: usize>(
         &self,
         system: &System<D>,
@@ -298,7 +299,7 @@ impl Equilibrium {
     }
 }
 
-/// To rest at once; where nothing pulls back, it stays where it is.
+/// Motion ends at once; without a restoring force the position stays the same.
 fn to_rest(omega: f64) -> Amplification {
     let kept = if omega > 0.0 { 0.0 } else { 1.0 };
     Amplification::new([[kept, 0.0], [0.0, 0.0]])
@@ -349,7 +350,7 @@ impl<const D: usize> Integrator<D> for Equilibrium {
         true
     }
     fn takes_pushes(&self) -> bool {
-        // Along a curve of equilibria, and by parts of a load, nobody knows how others push.
+        // Along a curve of equilibria, or with a load in parts, the forces of other bodies are unknown.
         self.arc_length.is_none() && self.load_steps == 1
     }
     fn open(&self, system: &mut System<D>, h: f64) -> Option<Result<Box<dyn OpenStep<D>>, StepError>> {

@@ -1,4 +1,4 @@
-//! The motions of a body or a piece as a whole: translations and rotations, and which of them pins hold.
+//! The rigid motions of a body or a piece: translations and rotations, and which of them pins prevent.
 
 use crate::refusals::MotionName;
 use opruga_core::potential::{DensePart, Sink};
@@ -7,7 +7,7 @@ use opruga_core::system::System;
 use opruga_solve::blocks::Block;
 use opruga_solve::dense::symmetric_eigen;
 
-/// A motion of the whole: a translation and a rotation about the centre.
+/// A rigid motion: a translation and a rotation about the centre.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion<const D: usize> {
     pub(super) translation: [f64; D],
@@ -37,11 +37,11 @@ impl<const D: usize> Motion<D> {
     }
 }
 
-/// Adds up φᵀ K ψ for all pairs of motions.
+/// Sums φᵀ K ψ for all pairs of motions.
 pub(super) struct Projection<'a> {
     motions: &'a [Vec<f64>],
     pub(super) out: Vec<f64>,
-    /// The largest entry of K that was met.
+    /// The largest entry of K so far.
     pub(super) largest: f64,
 }
 
@@ -90,7 +90,7 @@ impl<const D: usize> Sink<D> for Projection<'_> {
                 }
             }
         }
-        // Of a matrix without negative eigenvalues the largest entry stands on the diagonal.
+        // In a matrix without negative eigenvalues the largest entry is on the diagonal.
         for number in 0..part.indices.len() {
             let sizes = part.block(number, number).into_iter().flatten().map(|x: f64| x.abs());
             self.largest = sizes.fold(self.largest, |most, x| if x > most { x } else { most });
@@ -110,8 +110,8 @@ pub(super) fn center<const D: usize>(x: &Columns<D>, piece: &[usize]) -> [f64; D
     center
 }
 
-/// The motions of a piece that neither pins hold nor what holds nodes along the given directions, with the nodes at the given
-/// positions; translations first.
+/// The rigid motions of a piece that are prevented neither by pins nor by constraints of nodes along the given directions, with
+/// the nodes at the given positions; translations first.
 pub(super) fn unpinned_motions<const D: usize>(
     system: &System<D>,
     x: &Columns<D>,
@@ -121,7 +121,7 @@ pub(super) fn unpinned_motions<const D: usize>(
     loose_motions(system, x, piece, touched, None)
 }
 
-/// All motions of a piece: translations, then rotations about its centre, each scaled to a mean displacement of one.
+/// All rigid motions of a piece: translations, then rotations about its centre, each scaled to a mean displacement of one.
 pub(super) fn all_motions<const D: usize>(x: &Columns<D>, piece: &[usize]) -> Vec<Motion<D>> {
     let center = center(x, piece);
     let turns = if D == 2 { 1 } else { 3 };
@@ -147,8 +147,8 @@ pub(super) fn all_motions<const D: usize>(x: &Columns<D>, piece: &[usize]) -> Ve
     motions
 }
 
-/// The motions that neither pins hold, nor obstacles along the given directions, nor the stiffness that `deliver` adds; translations
-/// first.
+/// The motions that are prevented neither by pins, nor by obstacles along the given directions, nor by the stiffness that
+/// `deliver` adds; translations first.
 pub(super) fn loose_motions<const D: usize>(
     system: &System<D>,
     x: &Columns<D>,
@@ -162,7 +162,7 @@ pub(super) fn loose_motions<const D: usize>(
         motions.iter().map(|motion| shape_at(x, system.nodes, piece, motion, &center)).collect();
     let n = motions.len();
 
-    // How much each combination moves pinned axes, or strains what acts from outside.
+    // How much each combination moves pinned axes, or strains external ties.
     let mut resistance = vec![0.0; n * n];
     system.pinned_axes(&mut |node, d| {
         for p in 0..n {
@@ -188,7 +188,7 @@ pub(super) fn loose_motions<const D: usize>(
             }
         }
     }
-    // A rotation about the line on which all nodes lie moves nothing.
+    // A rotation about the line through all nodes moves nothing.
     let moved: Vec<f64> =
         (0..n * n).map(|k| shapes[k / n].iter().zip(&shapes[k % n]).map(|(a, b)| a * b).sum::<f64>()).collect();
     let (extents, axes) = symmetric_eigen(&moved, n);
@@ -216,9 +216,9 @@ pub(super) fn loose_motions<const D: usize>(
     of_weights(&motions, loose)
 }
 
-/// The motions of sums of others, as simple as may be.
+/// The motions that are given combinations of others, in as simple a form as possible.
 pub(super) fn of_weights<const D: usize>(motions: &[Motion<D>], weights: Vec<Vec<f64>>) -> Vec<Motion<D>> {
-    // In parts of translations and of rotations, which are the same for all lists of motions.
+    // The components of translations and rotations are treated separately, so the result is the same for all lists of motions.
     let turns = if D == 2 { 1 } else { 3 };
     let longest = |motion: &Motion<D>| motion.rotation.iter().map(|r| r * r).sum::<f64>().sqrt();
     let most = motions.iter().map(longest).fold(0.0, |most: f64, r| if r > most { r } else { most });
@@ -240,7 +240,8 @@ pub(super) fn of_weights<const D: usize>(motions: &[Motion<D>], weights: Vec<Vec
         .collect()
 }
 
-/// The displacements of all nodes, at the given positions, in a motion of a piece about the given centre: the others stay.
+/// The displacements of all nodes, at the given positions, in a motion of a piece about the given centre. Other nodes do not
+/// move.
 pub(super) fn shape_at<const D: usize>(
     x: &Columns<D>,
     nodes: usize,
@@ -255,7 +256,7 @@ pub(super) fn shape_at<const D: usize>(
     shape
 }
 
-/// Row echelon form from the rotations backward: as many motions as possible are plain translations along axes.
+/// Row echelon form, starting from the rotations: as many motions as possible are pure translations along axes.
 fn simplest(mut rows: Vec<Vec<f64>>, n: usize) -> Vec<Vec<f64>> {
     let mut done = 0;
     for column in (0..n).rev() {

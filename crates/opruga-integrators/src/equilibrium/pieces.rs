@@ -1,4 +1,4 @@
-//! The pieces of a body: nodes that its models tie to one another. A map with islands is one body of many pieces.
+//! The pieces of a body: sets of nodes that its models couple. A map with islands is one body of many pieces.
 
 use opruga_core::potential::{Definiteness, DensePart, Sink};
 use opruga_core::state::Columns;
@@ -11,8 +11,8 @@ pub(super) fn whole<const D: usize>(system: &System<D>) -> Vec<usize> {
     (0..system.nodes).collect()
 }
 
-/// The pieces of a body, each by its nodes in their order, by their first nodes. A body of which a model has no meaning where
-/// it is counts as one.
+/// The pieces of a body, each as a list of nodes in order; pieces are ordered by their first nodes. If a model has no value in
+/// the present state, the body counts as one piece.
 pub(crate) fn pieces<const D: usize>(system: &System<D>) -> Vec<Vec<usize>> {
     let mut ties = Ties { tied_to: whole(system) };
     let rest = Columns::zeros(system.index_count());
@@ -38,8 +38,8 @@ pub(crate) fn pieces<const D: usize>(system: &System<D>) -> Vec<Vec<usize>> {
     pieces
 }
 
-/// Which nodes have second derivatives with one another, whatever these are: every node leads to another of its piece, the
-/// first of all to itself.
+/// Which nodes have common second derivatives, whatever their values: every node points to another one of its piece, and the
+/// first node to itself.
 struct Ties {
     tied_to: Vec<usize>,
 }

@@ -1,14 +1,14 @@
-//! Which motions of a body as a whole the loads leave free: those under which loads and weight do no work of any order.
+//! Which rigid motions of a body the loads leave free: those under which loads and weight do no work of any order.
 //!
-//! In a motion q of the whole (displacements φ_q, turning by ω_q) the force on a node changes by −K φ_q, where K = −∂F/∂x. Were
-//! the forces carried along, it would change by ω_q × F. Only the difference can bring a body to a position of its own:
+//! In a rigid motion q (displacements φ_q, rotation ω_q) the force on a node changes by −K φ_q, where K = −∂F/∂x. If the forces
+//! rotated with the body, it would change by ω_q × F. Only the difference can hold the body in a position:
 //!
 //! P_pq = Σ φ_p·(ω_q × F + K φ_q)
 //!
-//! is zero for pressure, which follows the body whatever its strength; it is φ_p·K φ_q for a spring to a pointer; and for a dead
-//! load or the weight it is zero for the turn about the axis along which they act, and where their resultant passes through what
-//! holds the body. In some poses a dead load has no second-order work though it has some in others (a pendulum that stands
-//! out sideways), so the body is looked at in several.
+//! This is zero for pressure, which follows the body whatever its strength. It is φ_p·K φ_q for a spring to a pointer. For a dead
+//! load or the weight it is zero for the rotation about the axis along which they act, and if their resultant passes through the
+//! support of the body. In some poses a dead load has no second-order work although it has some in others (a horizontal
+//! pendulum), so several poses of the body are examined.
 
 use super::motion::{Motion, Projection, all_motions, center, displacement, of_weights, shape_at, unpinned_motions};
 use super::pieces::whole;
@@ -19,17 +19,17 @@ use opruga_core::tile::Tile;
 use opruga_math::{Column, WIDTH};
 use opruga_solve::dense::symmetric_eigen;
 
-/// Times after the present one at which loads are looked at [s]: some begin at zero.
+/// Times after the present one at which loads are evaluated [s]: some loads begin at zero.
 const TIMES: [f64; 7] = [0.0, 1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0];
 
-/// Restraints below this part of the loads are none; squared, since P is squared.
+/// Restraints below this fraction of the loads count as zero; squared, since P is squared.
 const NOTHING: f64 = 1e-14;
 
-/// How far the body is turned to look at it in another pose [rad].
+/// The angle of rotation of the other poses of the body [rad].
 pub(super) const TURN: f64 = 0.9;
 
-/// The motions of the whole, or of a piece, that neither pins nor loads nor the weight of a pendulum hold, nor obstacles that
-/// hold nodes along the given directions, with the nodes at the given positions; translations first.
+/// The motions of the whole, or of a piece, that are prevented neither by pins, nor by loads, nor by the weight of a pendulum,
+/// nor by obstacles that hold nodes along the given directions, with the nodes at the given positions; translations first.
 pub(super) fn free_motions<const D: usize>(
     system: &System<D>,
     x: &Columns<D>,
@@ -41,7 +41,7 @@ pub(super) fn free_motions<const D: usize>(
         return free;
     }
     let center = center(x, piece);
-    // The others and the weight, which may hold what only turns.
+    // The other loads and the weight, which may prevent rotations.
     let mut restraint = Restraint::new(&free, piece, center);
     let outer = outer(system);
     let times = if outer.is_empty() { &TIMES[..1] } else { &TIMES[..] };
@@ -53,7 +53,7 @@ pub(super) fn free_motions<const D: usize>(
     restraint.left()
 }
 
-/// The motions that neither pins nor loads with a stiffness hold, nor obstacles along the given directions.
+/// The motions that are prevented neither by pins, nor by loads with a stiffness, nor by obstacles along the given directions.
 pub(super) fn unstiffened_motions<const D: usize>(
     system: &System<D>,
     x: &Columns<D>,
@@ -62,7 +62,7 @@ pub(super) fn unstiffened_motions<const D: usize>(
 ) -> Vec<Motion<D>> {
     let mut free = unpinned_motions(system, x, piece, touched);
     let center = center(x, piece);
-    // Loads with a stiffness, where the body is.
+    // Loads with a stiffness, in the present state.
     for member in outer(system) {
         let mut restraint = Restraint::new(&free, piece, center);
         for time in TIMES {
@@ -73,18 +73,18 @@ pub(super) fn unstiffened_motions<const D: usize>(
     free
 }
 
-/// What acts from outside, by what it does and not by the account on which it is entered: loads, and every model that ties nodes to
-/// space.
+/// The external members, according to what they do and not to the account on which their energy is entered: loads, and every
+/// model that ties nodes to space.
 pub(super) fn outer<const D: usize>(system: &System<D>) -> Vec<&Member<D>> {
     let acts =
         |member: &&Member<D>| member.potential.properties().account == Account::User || ties_to_space(system, member);
     system.members.iter().filter(acts).collect()
 }
 
-/// The stiffness of a model against motions of the whole below which it has none, as a part of its largest.
+/// The stiffness of a model against rigid motions, as a fraction of its largest stiffness, below which it counts as zero.
 const NO_TIE: f64 = 1e-9;
 
-/// Whether a model resists motions of a body as a whole: forces between nodes do not, since they move and turn with these.
+/// Whether a model resists rigid motions of a body. Forces between nodes do not, since they move and rotate with the nodes.
 fn ties_to_space<const D: usize>(system: &System<D>, member: &Member<D>) -> bool {
     let properties = member.potential.properties();
     if let Some(between) = properties.acts_between_nodes {
@@ -116,8 +116,8 @@ fn ties_to_space<const D: usize>(system: &System<D>, member: &Member<D>) -> bool
     })
 }
 
-/// Whether a model only pushes nodes against one another, at rest and in motion: then its forces and their moments sum to zero over a
-/// body, since its energy does not change where that moves or turns as a whole.
+/// Whether a model exerts forces only between nodes, at rest and in motion. Then its forces and their moments sum to zero over a
+/// body, since its energy does not change under rigid motion.
 pub(crate) fn acts_between_nodes<const D: usize>(system: &System<D>, member: &Member<D>) -> bool {
     let properties = member.potential.properties();
     if let Some(between) = properties.acts_between_nodes {
@@ -146,18 +146,18 @@ pub(crate) fn acts_between_nodes<const D: usize>(system: &System<D>, member: &Me
         let (sum, sizes) = force.iter().fold((0.0, 0.0), |(sum, sizes), f| (sum + f[d], sizes + f[d].abs()));
         f64::abs(sum) > NO_TIE * sizes
     };
-    // What does not change with positions knows no positions of nodes.
+    // A model whose results do not change with positions does not depend on them.
     stiffness.largest > 0.0 && !(0..shapes.len()).any(brakes) && !(0..D).any(pushes)
 }
 
-/// What a model works out in a state before it is asked; none where it has no meaning there.
+/// The scratch of a model, prepared in a state; none if the model has no value there.
 fn prepared<const D: usize>(system: &System<D>, member: &Member<D>, view: &View<'_, D>) -> Option<Column> {
     let mut scratch = Column::zeros(member.potential.properties().scratch_len);
     member.potential.prepare(system.simd, view, &member.memory, &mut scratch).ok()?;
     Some(scratch)
 }
 
-/// Delivers the second derivatives of what acts from outside, at rest.
+/// Delivers the second derivatives of the external members, at rest.
 pub(super) fn deliver_outer<const D: usize>(system: &System<D>, x: &Columns<D>, sink: &mut dyn Sink<D>) {
     let rest = Columns::zeros(system.index_count());
     let view = View { x: x.slices(), v: rest.slices(), ..system.view(Stage::Current, system.time) };
@@ -168,19 +168,19 @@ pub(super) fn deliver_outer<const D: usize>(system: &System<D>, x: &Columns<D>, 
     }
 }
 
-/// The forces that are looked at: those of a load if it has a stiffness, or the weight with those of all loads that have none.
+/// The forces under examination: those of a load with a stiffness, or the weight together with all loads that have none.
 #[derive(Clone, Copy, Debug)]
 enum Source<'a, const D: usize> {
     Stiff(&'a Member<D>),
     Dead(&'a [&'a Member<D>]),
 }
 
-/// The sum of PᵀP over poses, times and loads, each P relative to the size of its parts.
+/// The sum of PᵀP over poses, times and loads, with each P relative to the size of its terms.
 struct Restraint<'a, const D: usize> {
     motions: &'a [Motion<D>],
     /// The nodes that move.
     piece: &'a [usize],
-    /// What they turn about.
+    /// The centre of rotation.
     center: [f64; D],
     sum: Vec<f64>,
 }
@@ -190,7 +190,7 @@ impl<'a, const D: usize> Restraint<'a, D> {
         Restraint { motions, piece, center, sum: vec![0.0; motions.len() * motions.len()] }
     }
 
-    /// Adds what loads do in a pose, at a time.
+    /// Adds the contribution of loads in a pose at a time.
     fn add(&mut self, system: &System<D>, x: &Columns<D>, source: Source<'_, D>, time: f64) {
         let n = self.motions.len();
         let shape = |motion| shape_at(x, system.nodes, self.piece, motion, &self.center);
@@ -230,7 +230,7 @@ impl<'a, const D: usize> Restraint<'a, D> {
             for (q, motion) in self.motions.iter().enumerate() {
                 for node in self.piece {
                     let turned = turned(motion, &force[*node]);
-                    // Motions are scaled to ways of about one.
+                    // Motions are scaled to displacements of about one.
                     for d in 0..D {
                         part[p * n + q] += shape[node * D + d] * turned[d];
                         size += turned[d].abs();
@@ -242,7 +242,7 @@ impl<'a, const D: usize> Restraint<'a, D> {
             return;
         }
         if matches!(source, Source::Stiff(_)) {
-            // What a load with a stiffness delivers is the symmetric part.
+            // A load with a stiffness delivers the symmetric part.
             for p in 0..n {
                 for q in 0..p {
                     let mean = 0.5 * (part[p * n + q] + part[q * n + p]);
@@ -267,7 +267,7 @@ impl<'a, const D: usize> Restraint<'a, D> {
     }
 }
 
-/// Adds the forces of a member in a state for which it has worked out the given numbers.
+/// Adds the forces of a member in a state for which `scratch` was prepared.
 pub(crate) fn add_forces_of<const D: usize>(
     system: &System<D>,
     member: &Member<D>,
@@ -299,7 +299,7 @@ fn turned<const D: usize>(motion: &Motion<D>, force: &[f64; D]) -> [f64; D] {
     displacement(&turn, force, &[0.0; D])
 }
 
-/// The body as it is, and with a piece turned by each of the motions, and by all of them.
+/// The present pose of the body, and poses with a piece rotated by each of the motions, and by all of them.
 fn poses<const D: usize>(x: &Columns<D>, piece: &[usize], motions: &[Motion<D>], center: &[f64; D]) -> Vec<Columns<D>> {
     let turns = if D == 2 { 1 } else { 3 };
     let mut all = Motion { translation: [0.0; D], rotation: vec![0.0; turns] };
@@ -313,7 +313,7 @@ fn poses<const D: usize>(x: &Columns<D>, piece: &[usize], motions: &[Motion<D>],
     core::iter::once(x.clone()).chain(others.map(|motion| pose(x, piece, motion, center))).collect()
 }
 
-/// The body after a motion of a piece was gone on with until it had turned by [`TURN`].
+/// The body after a motion of a piece was continued until its rotation reached [`TURN`].
 pub(super) fn pose<const D: usize>(
     x: &Columns<D>,
     piece: &[usize],
@@ -325,7 +325,7 @@ pub(super) fn pose<const D: usize>(
     if speed == 0.0 {
         return out;
     }
-    // Positions move by φ = t + ω × (x − c). The axis passes through c + ω × t/|ω|²; along it the translation goes on.
+    // Positions move by φ = t + ω × (x − c). The axis passes through c + ω × t/|ω|²; the translation continues along it.
     let axis: Vec<f64> = motion.rotation.iter().map(|r| r / speed).collect();
     let unit = Motion { translation: [0.0; D], rotation: axis.clone() };
     let across = turned(&unit, &motion.translation);

@@ -1,4 +1,4 @@
-//! The motions of a body as a whole, or of each of its pieces, that nothing holds.
+//! The rigid motions of a body, or of each of its pieces, that nothing prevents.
 
 use super::motion::{Motion, center, loose_motions, shape_at};
 use super::pieces::{pieces, whole};
@@ -11,7 +11,7 @@ use opruga_core::system::System;
 use opruga_math::message::AnyMessage;
 use opruga_math::words::number;
 
-/// Refuses a body that can move as a whole, or of which a piece can.
+/// Refuses a body if it, or one of its pieces, can move rigidly.
 pub(super) fn refuse_free_motions<const D: usize>(system: &System<D>) -> Result<(), BuildError> {
     let x = &system.state.x;
     let refused = |refusal: Refusal| Err(BuildError::of("equilibrium", refusal));
@@ -53,7 +53,7 @@ fn coordinates<const D: usize>(x: &[f64; D]) -> String {
     format!("({}) m", numbers.join(", "))
 }
 
-/// Refuses a body that can move as a whole though it lies on obstacles, which hold nodes along the given directions, with its
+/// Refuses a body that can move rigidly although it lies on obstacles, which hold nodes along the given directions, with its
 /// nodes at the given positions.
 pub(super) fn refuse_what_contact_leaves_free<const D: usize>(
     system: &System<D>,
@@ -83,19 +83,19 @@ pub(super) fn refuse_what_contact_leaves_free<const D: usize>(
     Ok(())
 }
 
-/// Whether neither pins nor loads with a stiffness hold a body or one of its pieces.
+/// Whether a body or one of its pieces has a motion that neither pins nor loads with a stiffness prevent.
 pub(super) fn is_loose<const D: usize>(system: &System<D>) -> bool {
     let x = &system.state.x;
     !unheld_motions(system).is_empty()
         || pieces(system).iter().any(|piece| !untied_motions(system, x, piece).is_empty())
 }
 
-/// The motions of the whole that neither pins nor loads with a stiffness hold, translations first.
+/// The rigid motions that neither pins nor loads with a stiffness prevent, translations first.
 pub fn unheld_motions<const D: usize>(system: &System<D>) -> Vec<Motion<D>> {
     untied_motions(system, &system.state.x, &whole(system))
 }
 
-/// The same of a piece with the nodes at the given positions.
+/// The same for a piece, with the nodes at the given positions.
 fn untied_motions<const D: usize>(system: &System<D>, x: &Columns<D>, piece: &[usize]) -> Vec<Motion<D>> {
     loose_motions(system, x, piece, &[], Some(&|projection| deliver_outer(system, x, projection)))
 }

@@ -1,7 +1,7 @@
-//! Turns that meet no resistance however far they go: those of linear laws.
+//! Rotations that meet no resistance however far they go: those of linear laws.
 //!
-//! A law that knows large rotations turns with the body, and a weight brings the body back as it does a pendulum. To a linear law a
-//! turn is the motion ω × r, straight on: its forces do not change along that way, and what turns the body at its start turns it
+//! A law that accounts for large rotations rotates with the body, and a weight returns the body as it does a pendulum. For a
+//! linear law a rotation is the straight motion ω × r: its forces do not change along that motion, so a torque at the start acts
 //! without end.
 
 use super::motion::{Motion, center, shape_at};
@@ -10,11 +10,11 @@ use opruga_core::state::{Columns, View};
 use opruga_core::system::{Member, Stage, System};
 use opruga_math::Column;
 
-/// Forces below this part of those of a stretch of the same length are rounding.
+/// Forces below this fraction of those of a stretch of the same length are rounding.
 const NOTHING: f64 = 1e-6;
 
-/// The turns of a piece that neither pins nor loads with a stiffness hold, if its own forces do not resist them however far they go
-/// straight on; else none.
+/// The rotations of a piece that neither pins nor loads with a stiffness prevent, if the forces of the body itself do not resist
+/// the straight motion however far it goes; otherwise none.
 pub(super) fn endless_turns<const D: usize>(system: &System<D>, piece: &[usize]) -> Vec<Motion<D>> {
     let x = &system.state.x;
     let free = unstiffened_motions(system, x, piece, &[]);
@@ -22,7 +22,8 @@ pub(super) fn endless_turns<const D: usize>(system: &System<D>, piece: &[usize])
     if free.iter().all(endless) { free } else { Vec::new() }
 }
 
-/// Whether a body that moves straight on in a turn feels nothing of it, though it does where its nodes go on circles.
+/// Whether the forces of the body do not change under the straight motion of a rotation, although they do if its nodes move on
+/// circles.
 fn goes_on<const D: usize>(system: &System<D>, piece: &[usize], motion: &Motion<D>) -> bool {
     let x = &system.state.x;
     let center = center(x, piece);
@@ -45,7 +46,7 @@ fn goes_on<const D: usize>(system: &System<D>, piece: &[usize], motion: &Motion<
     round > 0.0 && round.is_finite() && straight <= NOTHING * round
 }
 
-/// The forces of the body's own models with its nodes at the given positions, at rest; none where a model refuses them.
+/// The forces of the models of the body itself, at rest, with its nodes at the given positions; none if a model refuses them.
 fn own_forces<const D: usize>(system: &System<D>, x: &Columns<D>) -> Option<Vec<[f64; D]>> {
     let rest = Columns::zeros(system.index_count());
     let view = View { x: x.slices(), v: rest.slices(), ..system.view(Stage::Current, system.time) };

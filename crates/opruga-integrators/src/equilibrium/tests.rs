@@ -64,7 +64,7 @@ fn a_hanging_bar_has_the_length_of_its_closed_form() {
         let sunk = -1.0 - system.state.x.at(springs)[1];
         assert!((sunk - 0.039_24).abs() < 1e-12, "{nodes} nodes: {sunk}");
         assert!(system.state.v.0.iter().flatten().all(|v| *v == 0.0));
-        // What the weight gives and the springs do not take is held back: half of it. Nothing damps.
+        // The energy that the weight releases and the springs do not store is external work: half of it. Nothing damps.
         let (damped, work): (f64, f64) = (system.work.damping.iter().sum(), system.work.user.iter().sum());
         let stored = system.stored_energy(opruga_core::system::Stage::Current, 0.0);
         assert!(damped == 0.0 && work < 0.0, "{damped} {work}");
@@ -73,8 +73,8 @@ fn a_hanging_bar_has_the_length_of_its_closed_form() {
     }
 }
 
-/// Two springs of length 1 with their apex at a height of 0.2 m: pressed down by λ m g, the load falls after its limit and
-/// rises again behind. Every point of the curve obeys the closed form 2 k (1 − l)(y/l) = −λ m g.
+/// Two springs of length 1 with their apex at a height of 0.2 m, pressed down by λ m g: the load falls after its limit and rises
+/// again later. Every point of the curve satisfies the closed form 2 k (1 − l)(y/l) = −λ m g.
 #[test]
 fn a_truss_is_followed_through_its_snap() {
     let (height, k, weight) = (0.2, 1000.0, 30.0);
@@ -104,7 +104,7 @@ fn a_truss_is_followed_through_its_snap() {
         steps += 1;
         assert!(steps < 100);
     }
-    // The limits at y = ±0.2/√3 or thereabouts: ±0.1048 of the load.
+    // The limits at about y = ±0.2/√3: ±0.1048 of the load.
     assert!((highest - 0.1048).abs() < 1e-3 && (lowest + 0.1048).abs() < 1e-3, "{highest} {lowest}");
     let behind = system.state.x.at(1)[1];
     assert!(behind < -height && (needed(behind) - 1.0).abs() < 1e-9, "{behind}");
@@ -112,7 +112,7 @@ fn a_truss_is_followed_through_its_snap() {
     arc.step(&mut system, 0.1).unwrap();
     assert!((system.state.x.at(1)[1] - behind).abs() < 1e-9);
 
-    // All at once it jumps to the same position.
+    // With the whole load at once it jumps to the same position.
     let mut jumped = truss();
     let plain = rule(&[]);
     jumped.equip(&plain);
@@ -139,7 +139,7 @@ fn a_body_that_nothing_holds_is_refused_with_the_names_of_its_rigid_modes() {
     assert_eq!(message(&[(0, [true, true])]), refusal("rotation: 1 rigid mode"));
     assert_eq!(message(&[(0, [true, true]), (1, [true, false])]), refusal("rotation: 1 rigid mode"));
     assert_eq!(message(&[(0, [true, true]), (1, [false, true])]), Ok(()));
-    // A pendulum is held by its weight, unless it hangs at its centre of mass.
+    // The weight holds a pendulum, unless it hangs at its centre of mass.
     let pendulum = |shift: f64| {
         let positions = [[0.0, 0.0], [1.0, 0.0], [shift - 1.0, 0.0]];
         let mut system = body(&positions, vec![[0, 1], [0, 2]], 10.0, vec![1.0; 3]);
@@ -195,11 +195,11 @@ fn what_is_out_of_balance_is_reported_for_nodes_pinned_along_some_axes_too() {
     let StepError::NotConverged { residual, .. } = rule.step(&mut system, 0.5).unwrap_err() else {
         panic!("another error")
     };
-    // The spring takes as much as its part of the way: along the free axis alone something is left.
+    // The spring takes its share of the displacement, which leaves a residual along the free axis only.
     assert!(residual > 1.0 && residual < 5.0 * 9.81, "{residual}");
 }
 
-/// A model of a user's that ties nodes to space holds a body whatever account its energy is entered on; forces between nodes do not.
+/// A custom model that ties nodes to space holds a body, whatever account its energy is entered on; forces between nodes do not.
 #[test]
 fn models_that_tie_nodes_to_space_hold_a_body_by_what_they_do() {
     let rule = rule(&[]);
@@ -216,7 +216,7 @@ fn models_that_tie_nodes_to_space_hold_a_body_by_what_they_do() {
     tied.equip(&rule);
     Integrator::<2>::check(&rule, &tied, false).unwrap();
     rule.step(&mut tied, 1.0).unwrap();
-    // Three springs to the origin carry the weight of three nodes, about their mean.
+    // Three springs to the origin carry the weight of three nodes, which determines their mean position.
     let mean = (0..3).map(|node| tied.state.x.at(node)[1]).sum::<f64>() / 3.0;
     assert!((mean + 9.81 / 100.0).abs() < 1e-9, "{mean}");
 }

@@ -9,11 +9,11 @@
 //! | −h ω²  1 − h c |
 //! ```
 //!
-//! whose eigenvalues are 1 + h μ with μ² + c μ + ω² = 0. Without damping their size is √(1 + h²ω²): **no step is
-//! stable**, energy grows by ω²h per second. A mode with damping is stable for h ≤ c/ω² (if it still oscillates) or
-//! h ≤ 2/|μ| (if it does not). Free fall is too slow: y = −g h² n(n − 1)/2 after n steps.
+//! whose eigenvalues are 1 + h μ with μ² + c μ + ω² = 0. Without damping their modulus is √(1 + h²ω²): **no step is stable**,
+//! energy grows by ω²h per second. A mode with damping is stable for h ≤ c/ω² (if it still oscillates) or h ≤ 2/|μ| (if it does
+//! not). Free fall is too slow: y = −g h² n(n − 1)/2 after n steps.
 //!
-//! Here to be compared with; [`crate::symplectic_euler`] costs the same and keeps the energy.
+//! It is here for comparison; [`crate::symplectic_euler`] costs the same and conserves the energy.
 
 #[cfg(test)]
 mod tests;
@@ -88,7 +88,7 @@ impl<const D: usize> Update<D> for Rule {
         let mut v = state.v.strip_mut(range.start, length);
         for k in (0..length).step_by(WIDTH) {
             let kick = h * inverse_mass.load::<P>(k);
-            // All reads come before the first write: a read behind a write has to wait for it.
+            // All reads come before the first write, because a read after a write has to wait for it.
             let velocity = lanes!(P, d => v.load::<P>(d, k));
             let position = lanes!(P, d => x.load::<P>(d, k) + velocity[d] * h);
             let next = lanes!(P, d => velocity[d] + force.load::<P>(d, k) * kick);

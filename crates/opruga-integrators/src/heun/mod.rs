@@ -7,9 +7,9 @@
 //! Second order (also with damping), two forces per step; Butcher table `0 | ; 1 | 1 ; ½ ½`. Written so that no slope
 //! is stored: x = x₀ + ½h (v₀ + v₁), v = v₀ + ½ ((v₁ − v₀) + h a₁).
 //!
-//! The stability function is R(z) = 1 + z + ½z². On the imaginary axis |R|² = 1 + ¼(hω)⁴: **no step is stable without
-//! damping**, energy grows by ¼ω⁴h³ per second (slowly: at hω = 0.1 by 2.5e-5 per radian). A mode that is damped so
-//! strongly that it does not oscillate is stable for h |μ| ≤ 2. Free fall is exact.
+//! The stability function is R(z) = 1 + z + ½z². On the imaginary axis |R|² = 1 + ¼(hω)⁴: **no step is stable without damping**,
+//! energy grows by ¼ω⁴h³ per second (slowly: at hω = 0.1 by 2.5e-5 per radian). An overdamped mode is stable for h |μ| ≤ 2. Free
+//! fall is exact.
 //!
 //! Source: Heun 1900; Hairer, Nørsett, Wanner, *Solving Ordinary Differential Equations I*, II.1.
 
@@ -73,7 +73,7 @@ impl<const D: usize> Integrator<D> for Heun {
     }
 }
 
-/// y = y₀ + ½h (k₀ + k₁), where h k₀ is found again in y₁ − y₀.
+/// y = y₀ + ½h (k₀ + k₁), where h k₀ is recovered from y₁ − y₀.
 struct Trapezoid {
     h: f64,
 }

@@ -1,4 +1,4 @@
-//! How the end of a step answers to forces of other bodies: ∂x₁/∂f = (σM + βC + K)⁻¹/θ, in the directions that are free.
+//! How the end of a step responds to forces of other bodies: ∂x₁/∂f = (σM + βC + K)⁻¹/θ, in the free directions.
 
 use super::balance::Balance;
 use super::linear::{Filter, Mixture};
@@ -9,11 +9,11 @@ use opruga_core::integrator::next_matrix_number;
 use opruga_core::potential::Definiteness;
 use opruga_core::system::System;
 
-/// Factors the matrix of the step that was made last, or the one that the minimiser keeps for later steps. Gives its number; none where there is no
-/// matrix.
+/// Factors the matrix of the last step, or the one that the minimiser keeps for later steps. Returns its number; none if there is
+/// no matrix.
 ///
 /// # Errors
-/// [`StepError`] where a model refuses.
+/// [`StepError`] if a model refuses.
 pub(crate) fn prepare<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
@@ -30,7 +30,7 @@ pub(crate) fn prepare<const D: usize>(
     Ok(outcome?.then_some(workspace.answer.number))
 }
 
-/// Takes the directions that are free and a number for the matrix that is made now.
+/// Records the free directions, and assigns a number to the matrix that is made now.
 fn begin<const D: usize>(workspace: &mut Workspace<D>, balance: &Balance) {
     let Workspace { answer, free, projectors, .. } = workspace;
     answer.free.clone_from(free);
@@ -41,7 +41,7 @@ fn begin<const D: usize>(workspace: &mut Workspace<D>, balance: &Balance) {
     answer.number = next_matrix_number();
 }
 
-/// Takes the matrix that later steps share, if it is not at hand already; says whether it has a factor.
+/// Takes the matrix that later steps share, unless it is already there; returns whether it has a factor.
 fn take_kept<const D: usize>(workspace: &mut Workspace<D>, balance: &Balance) -> bool {
     let Workspace { answer, reused, free, projectors, .. } = &*workspace;
     let is_same = |node: usize| free[node] || answer.projectors[node] == projectors[node];
@@ -73,7 +73,7 @@ fn factor<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, bala
         matrix_free: false,
     };
     let filter = Filter { free, projectors };
-    // At the end of a step the exact derivatives are those of a minimum, but for what the tolerance leaves.
+    // At the end of a step the exact derivatives are those of a minimum, up to the tolerance.
     for keep in [Definiteness::Exact, Definiteness::Clamped] {
         answer.linear.assemble(&Mixture { keep, ..mixture });
         if answer.linear.factor_positive(&filter).is_ok() {
@@ -84,7 +84,7 @@ fn factor<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, bala
     answer.linear.factor(&filter).is_ok()
 }
 
-/// Replaces forces by displacements of the end, in so many vectors, one after the other; says whether that could be done.
+/// Replaces forces by displacements of the end, in `count` consecutive vectors; returns whether that was possible.
 pub(crate) fn displace<const D: usize>(workspace: &Workspace<D>, vectors: &mut [f64], count: usize) -> bool {
     let answer = &workspace.answer;
     let filter = Filter::<D> { free: &answer.free, projectors: &answer.projectors };

@@ -1,4 +1,4 @@
-//! The matrix by which the end of a step answers to forces of other bodies.
+//! The matrix with which the end of a step responds to forces of other bodies.
 
 use super::balance::Balance;
 use super::linear::Linear;
@@ -8,16 +8,16 @@ use opruga_solve::blocks::Block;
 /// The matrix of the last step, made for other right-hand sides.
 #[derive(Debug, Default)]
 pub(crate) struct AnswerMatrix<const D: usize> {
-    /// The balance of the last step and the time at its start [s]; none where it was made in parts.
+    /// The balance of the last step and the time at its start [s]; none if the step was made in parts.
     pub(crate) last: Option<(Balance, f64)>,
     pub(crate) linear: Linear<D>,
-    /// Which directions are free in it, and by what part of the way its stage is before the end.
+    /// Which directions are free in it, and the position of its stage as a fraction of the step.
     pub(crate) free: Vec<bool>,
     pub(crate) projectors: Vec<Block<D>>,
     pub(crate) theta: f64,
-    /// Its number, which no other matrix has; and what it was made of, if it is a matrix that later steps share.
+    /// Its unique number; and its origin, if it is a matrix that later steps share.
     pub(crate) number: u64,
     pub(crate) origin: Option<Origin<D>>,
-    /// Whether the matrix is solved by factors that ask for no positive eigenvalues.
+    /// Whether the matrix is solved by factors that do not require positive eigenvalues.
     pub(crate) by_factors: bool,
 }

@@ -1,4 +1,4 @@
-//! The balance of a stage, and what an iteration that looks for it reports.
+//! The balance of a stage, and the result of an iteration for it.
 
 /// The balance of a stage: σ M (u − y) = F(x₀ + u, β (u − z)) at a time after the start of the step.
 #[derive(Clone, Copy, Debug)]
@@ -7,21 +7,21 @@ pub(crate) struct Balance {
     pub(crate) sigma: f64,
     /// The factor of displacements in velocities [1/s].
     pub(crate) beta: f64,
-    /// Which part of the way to the end of the step the stage is.
+    /// The position of the stage, as a fraction of the step.
     pub(crate) theta: f64,
     /// The time of the stage after the start of the step [s].
     pub(crate) time: f64,
     /// The length of the step [s].
     pub(crate) h: f64,
-    /// The part of the weight and of the loads that acts.
+    /// The fraction of the weight and of the loads that acts.
     pub(crate) load: f64,
-    /// The change of momentum in the step by a force that acts in this stage alone, in units of force times h, and what the rule
-    /// will still add to it out of what it remembers.
+    /// The change of momentum in the step by a force that acts only in this stage, in units of force times h, and the change that
+    /// the rule will add later from its memory.
     pub(crate) impulse: f64,
     pub(crate) echo: f64,
 }
 
-/// How the iteration ended.
+/// The outcome of the iteration.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Solved {
     pub(crate) iterations: u32,
@@ -29,12 +29,13 @@ pub(crate) struct Solved {
     /// The largest displacement of a node in the last iteration [m].
     pub(crate) correction: f64,
     pub(crate) converged: bool,
-    /// What is left of the forces would still move a node by [m], where it is rounding and that is much.
+    /// How far the residual would still move a node [m], if it is rounding and large.
     pub(crate) error_estimate: f64,
-    /// The forces that rounding of positions makes, over the loads, where they matter.
+    /// The forces due to rounding of positions, over the loads, if they matter.
     pub(crate) conditioning: f64,
-    /// The rounding of positions [m], the largest of a force [N] and what that would move a node by [m], where it did not converge.
+    /// If it did not converge: the rounding of positions [m], the largest rounding of a force [N], and how far that would move a
+    /// node [m].
     pub(crate) floor: [f64; 3],
-    /// Whether what is left may have made energy.
+    /// Whether the residual may have created energy.
     pub(crate) doubtful: bool,
 }

@@ -6,9 +6,9 @@
 //!     ──────●──────             slip:     t = µ λ s, s against its motion along the surface
 //! ```
 //!
-//! Whether a node is held is decided again in every iteration of Newton, from the gap that the last correction left and the
-//! force that the constraint would take. A contact that changes sides too often slips, or is released, for the rest of the
-//! step: no force leaves Coulomb's cone, and the last word is that no node may be inside.
+//! Whether a node is held is decided in every Newton iteration, from the gap after the last correction and the force of the
+//! constraint. A contact that changes too often slips, or is released, for the rest of the step: no force leaves Coulomb's cone,
+//! and in the end no node may be inside.
 
 use super::contact_query::ContactQuery;
 use super::friction::{Followed, SlipRule, against_slide, projected};
@@ -21,11 +21,11 @@ use opruga_solve::blocks::{Block, isotropic, nodes};
 #[derive(Debug, Default)]
 pub(crate) struct Contacting<const D: usize> {
     pub(crate) contacts: Vec<Contact<D>>,
-    /// Those before the last look.
+    /// The contacts before the last search.
     known: Vec<Contact<D>>,
-    /// Room for what one node touches.
+    /// Buffer for the surfaces that one node touches.
     found: Vec<Touch<D>>,
-    /// Room for the forces that friction goes by, and for what they change by.
+    /// Buffers for the normal forces that determine friction, and for their changes.
     forces: [Vec<f64>; 3],
 }
 
@@ -37,37 +37,37 @@ pub(crate) struct Contact<const D: usize> {
     pub(super) hold: Hold,
     /// The force along the normal in the last iteration [N].
     pub(super) normal_force: f64,
-    /// The direction of the force of friction, and by how much it turned in the last iteration.
+    /// The direction of the friction force, and how much it turned in the last iteration.
     pub(super) push: [f64; D],
     pub(super) turn: f64,
-    /// How often it changed between hold and release, or between stick and slip.
+    /// How often it changed between held and released, or between stick and slip.
     changes: u8,
 }
 
-/// What a look at the forces of the constraints changed.
+/// The changes that follow from the forces of the constraints.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Verdict {
-    /// Who is held, or how.
+    /// Which nodes are held, or how.
     pub(crate) anew: bool,
-    /// The force of friction, or its direction.
+    /// The friction force, or its direction.
     pub(crate) unsettled: bool,
 }
 
 /// How a node is held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Hold {
-    /// Not at all: the surface would have to pull.
+    /// Not held: the surface would have to pull.
     Released,
-    /// It may go along the surface, against friction.
+    /// It may move along the surface, against friction.
     Slip,
-    /// It goes with the surface.
+    /// It moves with the surface.
     Stick,
 }
 
-/// After so many changes a contact slips or is released for good.
+/// After this many changes a contact slips or is released for good.
 const MOST_CHANGES: u8 = 4;
 
-/// Depths and slides below this part of the extent of a body do not count.
+/// Depths and slides below this fraction of the extent of a body count as zero.
 pub(crate) const SMALL: f64 = 1e-9;
 
 pub(super) fn dot<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
@@ -86,12 +86,12 @@ impl<const D: usize> Contact<D> {
     pub(super) fn rubs(&self) -> bool {
         self.hold == Hold::Slip && self.touch.friction > 0.0
     }
-    /// The way along the surface in the stage, less that of the surface.
+    /// The displacement along the surface in the stage, relative to that of the surface.
     pub(super) fn slide(&self, u: &[f64], theta: f64, x0: &[f64]) -> [f64; D] {
         let (at, carried) = (self.node * D, &self.touch.carried);
         self.along(&core::array::from_fn(|d| u[at + d] - theta * (carried[d] - x0[at + d])))
     }
-    /// What is left of a vector along the surface.
+    /// The component of a vector along the surface.
     pub(super) fn along(&self, vector: &[f64; D]) -> [f64; D] {
         let normal = dot(vector, &self.touch.normal);
         core::array::from_fn(|d| vector[d] - normal * self.touch.normal[d])
@@ -99,7 +99,7 @@ impl<const D: usize> Contact<D> {
 }
 
 impl<const D: usize> Contacting<D> {
-    /// Forgets the contacts of an earlier step; so that there is room for one a node.
+    /// Discards the contacts of an earlier step, and reserves memory for one per node.
     pub(crate) fn clear(&mut self, nodes: usize) {
         for contacts in [&mut self.contacts, &mut self.known] {
             contacts.clear();
@@ -111,7 +111,7 @@ impl<const D: usize> Contacting<D> {
             forces.reserve(nodes);
         }
     }
-    /// Whether friction may turn aside what slides.
+    /// Whether friction may change the direction of sliding nodes.
     pub(crate) fn any_turns(&self) -> bool {
         D > 2 && self.contacts.iter().any(Contact::rubs)
     }
@@ -120,7 +120,7 @@ impl<const D: usize> Contacting<D> {
         self.contacts.iter().any(Contact::is_active)
     }
 
-    /// The directions in which nodes are held, or would be by friction.
+    /// The directions in which nodes are held, or would be held by friction.
     pub(crate) fn directions(&self) -> Vec<(usize, [f64; D])> {
         let mut out = Vec::new();
         for contact in self.contacts.iter().filter(|contact| contact.is_active()) {
@@ -133,14 +133,14 @@ impl<const D: usize> Contacting<D> {
         }
         out
     }
-    /// Whether nodes are held, and all by surfaces that do not move.
+    /// Whether nodes are held, and all of them by surfaces that do not move.
     pub(crate) fn any_at_rest(&self) -> bool {
         let rests = |contact: &Contact<D>| contact.touch.velocity.iter().all(|speed| *speed == 0.0);
         self.any() && self.contacts.iter().filter(|contact| contact.is_active()).all(rests)
     }
 
-    /// Looks where nodes are that start at x₀ and end displaced by u/θ; nodes that are inside are held from now
-    /// on. Depths below a billionth of the extent do not count. Nodes that impact are first thought to stick, or to slide.
+    /// Finds the contacts of nodes that start at x₀ and end displaced by u/θ; nodes that are inside are held from now on. Depths
+    /// below a billionth of the extent do not count. Nodes that impact are first assumed to stick, or to slide.
     pub(crate) fn look(&mut self, contact_query: &ContactQuery<'_, D>, impacts_slide: bool) -> bool {
         let ContactQuery { system, x0, u, theta, h, extent } = *contact_query;
         let Some(obstacles) = &system.contacts else {
@@ -163,12 +163,13 @@ impl<const D: usize> Contacting<D> {
                 next += 1;
             }
             let old = &known[first..next];
-            // A node that is held may lie off a curved surface by more than rounding while the iteration goes on.
+            // During the iteration a held node may be off a curved surface by more than rounding.
             let reach = if old.is_empty() { small } else { 0.1 * extent };
             self.found.clear();
             let found = &mut self.found;
             obstacles.touch(from, &to, time, h, reach, &mut |touch| found.push(touch));
-            // Where a fast node crossed a surface says how it was met first. From then on it is held where it is near it.
+            // If a fast node crossed a surface, its first contact comes from the crossing. From then on it is held where it is
+            // near the surface.
             for contact in old {
                 let beside: [f64; D] = core::array::from_fn(|d| to[d] + reach * contact.touch.normal[d]);
                 obstacles.touch(&beside, &to, time, h, reach, &mut |touch| {
@@ -206,7 +207,7 @@ impl<const D: usize> Contacting<D> {
                             turn: 1.0,
                             changes: 0,
                         };
-                        // What slides on the surface is first thought to slide on.
+                        // A node that slides on the surface is first assumed to keep sliding.
                         let slide = contact.along(&core::array::from_fn(|d| to[d] - touch.carried[d]));
                         let size = dot(&slide, &slide).sqrt();
                         let rests = touch.gap_before <= touch.rounding;
@@ -219,7 +220,8 @@ impl<const D: usize> Contacting<D> {
                     None => {}
                 }
             }
-            // What is out of sight is released, and known: a node whose way just grazes a surface may come back to it.
+            // A contact that is not found again is released but remembered: a node whose path just grazes a surface may come back
+            // to it.
             for contact in old.iter().filter(|old| !self.found.iter().any(|t| t.surface == old.touch.surface)) {
                 let lost = u8::from(contact.is_active());
                 changed |= contact.is_active();
@@ -230,7 +232,7 @@ impl<const D: usize> Contacting<D> {
         changed
     }
 
-    /// Takes what is held out of the free directions, and writes how far pinned nodes have to go in the stage.
+    /// Removes the held directions from the free ones, and writes how far pinned nodes have to move in the stage.
     #[allow(clippy::too_many_arguments)]
     pub(crate) fn hold(
         &self,
@@ -256,7 +258,7 @@ impl<const D: usize> Contacting<D> {
             if first == next && !pinned {
                 continue;
             }
-            // Orthonormal directions that are held, and how far to go along each.
+            // The held directions, orthonormal, and the displacement along each.
             let mut basis = [[0.0; D]; D];
             let mut rank = 0;
             let mut displacement = [0.0; D];
@@ -269,7 +271,7 @@ impl<const D: usize> Contacting<D> {
                     }
                 }
                 let size = dot(&rest, &rest).sqrt();
-                // What is held already, or nearly so, is not held twice.
+                // A direction that is (nearly) held already is not held twice.
                 if rank == D || size < 1e-6 {
                     return;
                 }
@@ -293,7 +295,7 @@ impl<const D: usize> Contacting<D> {
                 require(&contact.touch.normal, -theta * contact.touch.gap, &mut displacement);
             }
             for contact in contacts.iter().filter(|contact| contact.hold == Hold::Stick) {
-                // Where the surface would take the node.
+                // The position to which the surface would carry the node.
                 let carried = &contact.touch.carried;
                 let slide: [f64; D] = core::array::from_fn(|d| theta * (carried[d] - x0[at + d]) - u[at + d]);
                 for d in 0..D {
@@ -324,7 +326,7 @@ impl<const D: usize> Contacting<D> {
         farthest
     }
 
-    /// Subtracts the force of friction of slipping nodes from what is out of balance.
+    /// Subtracts the friction forces of slipping nodes from the residual.
     pub(crate) fn subtract_friction(&self, residual: &mut [f64]) {
         for contact in self.contacts.iter().filter(|contact| contact.hold == Hold::Slip) {
             let strength = contact.touch.friction * contact.normal_force;
@@ -334,8 +336,8 @@ impl<const D: usize> Contacting<D> {
         }
     }
 
-    /// Decides anew from the forces that the constraints take (`reaction`, per node) and from the displacements after the
-    /// correction; says what changed. `stiffness` of a node [N/m] says how far friction would move it by itself.
+    /// Decides the state of contacts from the forces of the constraints (`reaction`, per node) and from the displacements after
+    /// the correction; returns the changes. `stiffness` of a node [N/m] determines how far friction alone would move it.
     pub(crate) fn judge(
         &mut self,
         reaction: &[f64],
@@ -412,8 +414,8 @@ impl<const D: usize> Contacting<D> {
         verdict
     }
 
-    /// Lets friction follow the forces that the constraints take now; `right` is then by what it has changed. Says whether it has
-    /// by more than `tolerance` of itself.
+    /// Adapts friction to the present forces of the constraints; `right` is then its change. Returns whether it has changed by
+    /// more than the fraction `tolerance`.
     pub(crate) fn follow(&mut self, reaction: &[f64], mixing: &mut Mixing, tolerance: f64, right: &mut [f64]) -> bool {
         let Contacting { contacts: all, forces: [state, change, plain], .. } = self;
         state.clear();
@@ -438,7 +440,7 @@ impl<const D: usize> Contacting<D> {
         plain.clear();
         plain.extend_from_slice(change);
         mixing.mix(change);
-        // Where friction and the force along the normal nearly feed each other, mixing leads anywhere.
+        // If friction and the normal force nearly amplify each other, mixing may give any value.
         if !state.iter().zip(&*change).all(|(force, change)| (force + change).abs() <= 4.0 * most) {
             change.copy_from_slice(plain);
         }
@@ -455,7 +457,7 @@ impl<const D: usize> Contacting<D> {
     }
 }
 
-/// The forces along the normals of the held contacts of one node that together make up what is normal in a force.
+/// The forces along the normals of the held contacts of one node whose sum is the normal part of a force.
 pub(super) fn split<const D: usize>(contacts: &[Contact<D>], force: &[f64; D]) -> [f64; D] {
     let mut out = [0.0; D];
     let is_active = |k: &usize| contacts[*k].is_active();

@@ -1,16 +1,16 @@
-//! What the forces of contacts change by with the positions of their nodes.
+//! The derivatives of contact forces by the positions of their nodes.
 
 use super::contact::{Contact, Contacting, SMALL, dot};
 use super::contact_query::ContactQuery;
 use opruga_solve::blocks::{Block, isotropic};
 
-/// A direction of friction that turns by less than this in an iteration is followed by the next.
+/// If a direction of friction turns by less than this in an iteration, the next iteration uses its derivative.
 const FOLLOWED: f64 = 0.1;
 
-/// A slide of more than this part of the extent has a direction anyhow.
+/// A slide of more than this fraction of the extent always has a direction.
 const SLIDING: f64 = 1e-4;
 
-/// How far from a node its surface is looked at, in extents of the body.
+/// The distance from a node at which its surface is evaluated for differences, in extents of the body.
 const BESIDE: f64 = 1e-5;
 
 impl<const D: usize> ContactQuery<'_, D> {
@@ -33,7 +33,7 @@ impl<const D: usize> ContactQuery<'_, D> {
             });
             let beside = beside?;
             let difference: [f64; D] = core::array::from_fn(|d| beside[d] - contact.touch.normal[d]);
-            // Row by row: the derivative along the axis, of what lies along the surface.
+            // Row by row: the derivative along the axis, of the part along the surface.
             turn[axis] = contact.along(&difference.map(|x| x / step));
         }
         let half = |i: usize, j: usize| 0.5 * (turn[i][j] + turn[j][i]);
@@ -42,8 +42,8 @@ impl<const D: usize> ContactQuery<'_, D> {
 }
 
 impl<const D: usize> Contacting<D> {
-    /// Calls back with blocks −∂f/∂u of the forces of held contacts: of friction, whose direction follows the slide w, µλ/|w|
-    /// across it, and of the constraint, whose direction follows the surface, −λ ∂n/∂x. Where `clamped`, only blocks without
+    /// Calls `visit` with blocks −∂f/∂u of the forces of held contacts: of friction, whose direction follows the slide w, µλ/|w|
+    /// across it; and of the constraint, whose direction follows the surface, −λ ∂n/∂x. If `clamped`, only blocks without
     /// negative eigenvalues.
     pub(crate) fn derivatives(
         &self,
@@ -55,7 +55,7 @@ impl<const D: usize> Contacting<D> {
             let normal = &contact.touch.normal;
             if contact.rubs() && D > 2 {
                 let slide = contact.slide(contact_query.u, contact_query.theta, contact_query.x0);
-                // A slide that turns far has no direction yet that could be followed.
+                // The direction of a slide that turns far is not settled yet, so its derivative is not used.
                 let size = dot(&slide, &slide).sqrt();
                 let strength = contact.touch.friction * contact.normal_force / size;
                 if dot(&slide, &contact.push) < 0.0

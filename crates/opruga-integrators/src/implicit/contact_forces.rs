@@ -1,10 +1,10 @@
-//! The forces of contact that a step in real time begins with: those of the last one.
+//! The initial contact forces of a step in real time: those of the last step.
 
 use super::contact::{Contacting, Hold, dot, split};
 use opruga_math::Lane;
 
 impl<const D: usize> Contacting<D> {
-    /// Calls back with the force on every node that is held [N]: along the normal, and of friction where the node slips.
+    /// Calls `visit` with the force on every held node [N]: along the normal, plus friction if the node slips.
     pub(super) fn visit_forces(&self, mut visit: impl FnMut(usize, [f64; D])) {
         for contact in self.contacts.iter().filter(|contact| contact.is_active()) {
             let friction = if contact.rubs() { contact.touch.friction } else { 0.0 };
@@ -13,8 +13,8 @@ impl<const D: usize> Contacting<D> {
         }
     }
 
-    /// Lets contacts that a first look has found go on with the forces of the last step, as [`Contacting::visit_forces`] gave them:
-    /// what slipped slips on, and what stuck sticks.
+    /// Starts contacts that the first search has found with the forces of the last step, as [`Contacting::visit_forces`] gave
+    /// them: slipping contacts keep slipping, and sticking ones keep sticking.
     pub(super) fn start_from(&mut self, force: impl Fn(usize) -> [f64; D]) {
         for contacts in self.contacts.chunk_by_mut(|a, b| a.node == b.node) {
             let force = force(contacts[0].node);
@@ -29,7 +29,7 @@ impl<const D: usize> Contacting<D> {
                 }
                 let friction = contact.along(&force);
                 let size = dot(&friction, &friction).sqrt();
-                // The force of a node that slipped is µ λ along its surface, and that of one that stuck nothing.
+                // The tangential force of a node that slipped is µ λ, and that of one that stuck is zero.
                 if size > 0.5 * contact.touch.friction * contact.normal_force {
                     (contact.hold, contact.push) = (Hold::Slip, friction.map(|f| f / size));
                 } else {

@@ -1,9 +1,9 @@
-//! Where nodes are within a step, as obstacles see it.
+//! The positions of nodes within a step, as obstacles see them.
 
 use super::balance::Balance;
 use opruga_core::system::System;
 
-/// Where nodes are within a step, and what they may meet.
+/// The positions of nodes within a step, and the obstacles that they may meet.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ContactQuery<'a, const D: usize> {
     pub(crate) system: &'a System<D>,

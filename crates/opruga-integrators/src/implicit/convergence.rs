@@ -1,4 +1,4 @@
-//! The guard of convergence: counts how searches went, and refuses steps that did not converge.
+//! The convergence guard: counts the outcomes of searches, and refuses steps that did not converge.
 
 use super::balance::Solved;
 use super::settings::{Otherwise, Settings};
@@ -8,7 +8,7 @@ use opruga_core::error::StepError;
 use opruga_core::system::{Stage, System};
 use opruga_math::Lane;
 
-/// Enters how the search for a balance of statics went, and refuses what has not converged.
+/// Records the outcome of a search for an equilibrium, and refuses it if it has not converged.
 pub(crate) fn report<const D: usize>(
     integrator: &'static str,
     settings: &Settings,
@@ -21,7 +21,7 @@ pub(crate) fn report<const D: usize>(
     if solved.converged { Ok(()) } else { accept_or_refuse(integrator, settings, system, workspace, solved) }
 }
 
-/// Enters how a search went.
+/// Records the outcome of a search.
 pub(super) fn count<const D: usize>(system: &mut System<D>, solved: &Solved) {
     let work = &mut system.work.solver;
     work.iterations += u64::from(solved.iterations);
@@ -32,7 +32,7 @@ pub(super) fn count<const D: usize>(system: &mut System<D>, solved: &Solved) {
     work.conditioning = solved.conditioning.larger(work.conditioning);
 }
 
-/// Enters what a step that counts leaves out of balance.
+/// Records the residual of an accepted step.
 pub(super) fn finish<const D: usize>(system: &mut System<D>, workspace: &Workspace<D>) {
     let work = &mut system.work.solver;
     work.steps += 1;
@@ -54,7 +54,7 @@ pub(super) fn accept_or_refuse<const D: usize>(
     Err(refusal(integrator, settings, workspace, solved, (system.time, degenerate_cells(system)), settings.hint()))
 }
 
-/// How many cells of the state are degenerate or inverted, and how many there are.
+/// The number of degenerate or inverted cells in the state, and the number of cells.
 fn degenerate_cells<const D: usize>(system: &System<D>) -> [u32; 2] {
     let view = system.view(Stage::Current, system.time);
     let cells = system.members.iter().flat_map(|member| member.potential.cell_states(&view, 0));
@@ -66,7 +66,7 @@ fn degenerate_cells<const D: usize>(system: &System<D>) -> [u32; 2] {
     [degenerate, all]
 }
 
-/// The error of a step that did not converge, with its time [s] and the cells that it found flat or inside out.
+/// The error of a step that did not converge, with its time [s] and the degenerate or inverted cells that it found.
 pub(super) fn refusal<const D: usize>(
     integrator: &'static str,
     settings: &Settings,
@@ -77,9 +77,9 @@ pub(super) fn refusal<const D: usize>(
 ) -> StepError {
     let (residual, tolerance) = (workspace.largest_residual(), settings.tolerance * workspace.extent);
     let [of_positions, of_forces, displacement] = solved.floor;
-    // Iterations that were too few say nothing of rounding.
+    // If the iterations were used up, rounding is not to blame.
     let is_stuck = solved.iterations < settings.iterations;
-    // Forces and corrections below their rounding are lost in it, as is a body that rounding would throw farther than its extent.
+    // Forces and corrections below their rounding are lost in it; so is a body that rounding would move farther than its extent.
     let is_lost = solved.correction <= of_positions || residual <= of_forces || displacement > workspace.extent;
     let is_rounding = is_stuck && is_lost;
     StepError::NotConverged {

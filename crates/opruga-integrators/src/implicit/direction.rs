@@ -14,14 +14,14 @@ use opruga_core::threads::each_block;
 use opruga_math::Lane;
 use opruga_solve::dot;
 
-/// Which derivatives a direction is made of.
+/// Which derivatives are used for a direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Keep {
     /// The exact ones.
     Exact,
-    /// Each element's without its negative eigenvalues.
+    /// Those of each element without their negative eigenvalues.
     Clamped,
-    /// The same with the diagonal raised by a part of itself: for directions without any stiffness.
+    /// The same with the diagonal raised by a fraction of itself, for directions without any stiffness.
     Raised(f64),
 }
 
@@ -38,13 +38,13 @@ impl Keep {
     }
 }
 
-/// How often a direction is corrected for the friction that it changes, at most.
+/// The largest number of corrections of a direction for the change of friction.
 const MOST_ROUNDS: u32 = 12;
 
-/// The part of the force of friction that may be left, in the first iteration.
+/// The relative error of the friction force that may remain in the first iteration.
 const FRICTION_TOLERANCE: f64 = 1e-3;
 
-/// b = −(r − friction) − A d for what is out of balance and for nodes that have `prescribed` ways d to go; `trial` is room.
+/// b = −(r − friction) − A d for the residual and for nodes with prescribed displacements d; `trial` is a buffer.
 pub(crate) fn wanted_forces<const D: usize>(
     threads: usize,
     mixture: &Mixture<D>,
@@ -69,9 +69,9 @@ pub(crate) fn wanted_forces<const D: usize>(
     });
 }
 
-/// Solves for `workspace.step`, what is prescribed included; `workspace.reaction` is then what the constraints take, and friction goes by
-/// it. Gives the number of products, and the slope along the step of the incremental potential less the work of friction and
-/// of the constraints.
+/// Solves for `workspace.step`, including prescribed displacements; `workspace.reaction` is then the force of the constraints,
+/// from which friction follows. Returns the number of products, and the slope along the step of the incremental potential minus
+/// the work of friction and of the constraints.
 pub(super) fn find_direction<const D: usize>(
     system: &System<D>,
     workspace: &mut Workspace<D>,
@@ -115,7 +115,7 @@ pub(super) fn find_direction<const D: usize>(
     filter.apply(right);
     let norm = dot(right, right).sqrt();
     *first_norm = norm.larger(*first_norm);
-    // Far from the solution a rough direction does (Eisenstat and Walker 1996).
+    // Far from the solution a rough direction is enough (Eisenstat and Walker 1996).
     let share = if *first_norm > 0.0 { (norm / *first_norm).larger(1e-9) } else { 1.0 };
     let tolerance = LINEAR_TOLERANCE * share;
     let mut products = linear.solve(&mixture, &filter, settings, tolerance, right, step).map_err(|_| 0u32)?;
@@ -133,8 +133,8 @@ pub(super) fn find_direction<const D: usize>(
         reaction.fill(0.0);
         return Ok((products, slope));
     }
-    // What is out of balance after the step in the directions that are held: r + A Δ. Friction follows it, and the step
-    // follows friction: its force depends on that along the normal.
+    // The residual in the held directions after the step: r + A Δ. Friction follows it, and the step follows friction, because
+    // the friction force depends on the normal force.
     friction.forget();
     let mut rounds = 0;
     loop {
@@ -147,7 +147,7 @@ pub(super) fn find_direction<const D: usize>(
             return Ok((products, slope));
         }
         rounds += 1;
-        // `right` is what the force of friction has changed by, and `trial` the change of the step.
+        // `right` is the change of the friction force, and `trial` the change of the step.
         filter.apply(right);
         products +=
             linear.solve_again(&mixture, &filter, settings, LINEAR_TOLERANCE, right, trial).map_err(|_| 0u32)?;

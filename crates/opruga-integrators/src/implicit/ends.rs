@@ -1,4 +1,4 @@
-//! The beginning and the end of a step: its ledger, and the state that it leaves.
+//! The start and the end of a step: its ledger, and the state that it leaves.
 
 use super::balance::{Balance, Solved};
 use super::holding;
@@ -10,7 +10,7 @@ use opruga_core::error::StepError;
 use opruga_core::system::{Stage, System, Work8};
 use opruga_math::WIDTH;
 
-/// A stage that has passed the guards, and the rule by which it was found.
+/// A stage that the guards have accepted, and the rule that found it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Found<R> {
     pub(super) rule: R,
@@ -18,7 +18,7 @@ pub(super) struct Found<R> {
     pub(super) solved: Solved,
 }
 
-/// The ledger before a step, and after what is entered at its start.
+/// The ledger before a step, and after the entries at its start.
 #[derive(Clone, Copy)]
 pub(super) struct Ledger {
     pub(super) before: Work8,
@@ -33,10 +33,10 @@ pub(crate) struct Statics {
 }
 
 impl Statics {
-    /// Takes the state at the start of a step of statics, which knows no velocities.
+    /// Takes the state at the start of a step of statics, which has no velocities.
     ///
     /// # Errors
-    /// [`StepError`] where a model refuses it.
+    /// [`StepError`] if a model refuses the state.
     pub(crate) fn begin<const D: usize>(
         system: &mut System<D>,
         workspace: &mut Workspace<D>,
@@ -52,11 +52,11 @@ impl Statics {
 
     /// Ends a step of statics of h [s] at the displacement in `workspace.u1`.
     ///
-    /// The hand that leads the body from balance to balance does what its energy changes by, but for what a gas is given: loads, pins and whatever
-    /// slows the way down are all in it. Nothing moves, so pins give and take no motion.
+    /// The change of energy of the body, minus the energy given to a gas, is entered as external work. It includes loads, pins
+    /// and whatever slows the motion down. Nothing moves, so pins do not change any motion.
     ///
     /// # Errors
-    /// [`StepError`] where a model refuses the end.
+    /// [`StepError`] if a model refuses the end.
     pub(crate) fn end<const D: usize>(
         self,
         system: &mut System<D>,
@@ -80,7 +80,7 @@ fn stop<const D: usize>(system: &mut System<D>) {
     system.state.v.0.iter_mut().for_each(|column| column.fill(0.0));
 }
 
-/// Takes the state at the start of a step, and enters the works of rules that go by the mean of start and end.
+/// Takes the state at the start of a step, and enters the works of rules that use the mean of start and end.
 pub(super) fn open_ledger<R: Rule<D>, const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
@@ -96,7 +96,7 @@ pub(super) fn open_ledger<R: Rule<D>, const D: usize>(
     Ok(Ledger { before, begun: system.work })
 }
 
-/// Enters the works of rules that go by the stage, which was evaluated last, and those of coupled masses.
+/// Enters the works of rules that use the stage, which was evaluated last, and those of coupled masses.
 pub(super) fn enter_stage<R: Rule<D>, const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
@@ -109,20 +109,20 @@ pub(super) fn enter_stage<R: Rule<D>, const D: usize>(
     }
     let entered = given(&system.work);
     if by_stage {
-        // Damping, loads and pins by the forces of the stage.
+        // Damping, loads and pins, from the forces of the stage.
         system.evaluate_again(Workspace::<D>::STAGE, found.balance.time, found.balance.h, &mut workspace.force);
     }
     own_loss::add_given(&mut system.work, &entered);
     own_loss::add_pushes(system, &workspace.u1);
     if system.inertia.is_some() {
-        // Where pinned nodes are coupled, they have the velocity of the step to its end.
+        // Pinned nodes whose mass is coupled keep the velocity of the step to its end.
         let Workspace { v0, v1, .. } = &mut *workspace;
         system.pinned_axes(&mut |node, d| v1[node * D + d] = v0[node * D + d]);
         holding::enter_work(system, v0, v1);
     }
 }
 
-/// Enters the works at the end of a step of rules that go by the mean of start and end.
+/// Enters the works at the end of a step, for rules that use the mean of start and end.
 pub(super) fn enter_end<R: Rule<D>, const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
@@ -138,7 +138,7 @@ pub(super) fn enter_end<R: Rule<D>, const D: usize>(
     Ok(())
 }
 
-/// Takes out of a ledger what was entered between two moments.
+/// Removes from a ledger the entries made between two moments.
 fn take_back(work: &mut Work8, after: &Work8, before: &Work8) {
     for lane in 0..WIDTH {
         work.user[lane] -= after.user[lane] - before.user[lane];
@@ -148,7 +148,7 @@ fn take_back(work: &mut Work8, after: &Work8, before: &Work8) {
     }
 }
 
-/// Works out the end of a step: displacement and velocity, with what obstacles do to them.
+/// Computes the end of a step: displacement and velocity, including the effect of obstacles.
 pub(super) fn end<R: Rule<D>, const D: usize>(
     rule: R,
     system: &mut System<D>,

@@ -1,4 +1,4 @@
-//! The guard of energy: a step makes none where nothing gives any.
+//! The energy guard: a step creates no energy without a source.
 
 use super::balance::Balance;
 use super::contact::dot;
@@ -9,30 +9,30 @@ use opruga_core::potential::Account;
 use opruga_core::system::{Pin, Stage, System};
 use opruga_solve::blocks::nodes;
 
-/// What a step did to the energy of a body.
+/// The change of the energy of a body in a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Change {
-    /// The energy before the step, that of its end where that is known, and the rounding of both [J].
+    /// The energy before the step, that at its end if known, and the rounding of both [J].
     before: f64,
     after: Option<f64>,
     rounding: f64,
 }
 
 impl Change {
-    /// Whether the body has more energy than before; none where that cannot be told.
+    /// Whether the body has gained energy; none if that is unknown.
     fn is_gain(&self) -> Option<bool> {
         let after = self.after?;
-        // Written so that what is no number is a gain.
+        // Written so that NaN counts as a gain.
         let within = after - self.before <= self.rounding;
         Some(!within)
     }
 
-    /// Whether a step whose end is doubtful may have made energy; one of which nobody knows what it may have gained has.
+    /// Whether a step whose end is doubtful may have created energy; if the gain is unknown, it may have.
     pub(super) fn may_be_gain(change: Option<Change>) -> bool {
         change.and_then(|change| change.is_gain()).unwrap_or(true)
     }
 
-    /// Whether a step has made energy; one of which nobody knows that has not.
+    /// Whether a step has certainly created energy; if the gain is unknown, it has not.
     pub(super) fn is_known_gain(change: Option<Change>) -> bool {
         change.and_then(|change| change.is_gain()).unwrap_or(false)
     }
@@ -45,7 +45,7 @@ fn may_gain<const D: usize>(system: &System<D>, h: f64) -> bool {
     given || system.pins.iter().any(moves)
 }
 
-/// The energy of a body before a step [J]; none where models do not say.
+/// The energy of a body before a step [J]; none if its models do not give it.
 fn energy_before<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
@@ -54,8 +54,8 @@ fn energy_before<const D: usize>(
     Ok(system.potential_energy(Stage::Current, 0.0).map(|stored| stored + system.kinetic_energy()))
 }
 
-/// What the step whose end was found does to the energy of a body; none where it may gain some, and where its models do not say. Forces are
-/// those of the stage afterwards. `energy` is that before the step, once it was asked for.
+/// The change of the energy of a body in the step whose end was found; none if the body may gain energy, or if its models do not
+/// give it. Afterwards the forces are those of the stage. `energy` is the energy before the step, if it was already computed.
 pub(super) fn change<const D: usize>(
     energy: &mut Option<Option<f64>>,
     system: &mut System<D>,

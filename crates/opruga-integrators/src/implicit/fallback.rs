@@ -1,4 +1,4 @@
-//! The guard of a search with a budget: what few iterations lead to counts only where it makes no energy.
+//! The guard of a search with a budget: the result of few iterations is accepted only if it creates no energy.
 
 use super::balance::{Balance, Solved};
 use super::minimiser::Minimiser;
@@ -11,16 +11,16 @@ use opruga_core::error::StepError;
 use opruga_core::history::Channel;
 use opruga_core::system::System;
 
-/// How many iterations steps get that few led astray.
+/// The number of iterations for steps that few iterations led astray.
 const MOST_ITERATIONS: u32 = 50;
 
 /// The real-time setting as a minimiser.
 ///
-/// What few iterations lead to counts only where it makes no energy: else the step is solved by Newton's method with its line search,
-/// and made in two halves where that does not converge. Its incremental potential must not be above that of a body that stays where it
-/// is; looked at are bodies in the air, and others whose matrix was made anew on the way, or that went far or are left farther out of
-/// balance than promised. What is left of a body on an obstacle is taken for an impulse of that, which the potential
-/// does not know: the end of such a step is doubtful ([`Solved::doubtful`]), and its energy decides.
+/// The result of few iterations is accepted only if it creates no energy. Otherwise the step is solved by Newton's method with
+/// its line search, and in two halves if that does not converge. The incremental potential must not be above that of a body that
+/// does not move. This is checked for bodies in the air, and for others whose matrix was rebuilt during the step, that moved far,
+/// or whose residual is larger than promised. The residual of a body on an obstacle counts as an impulse of the obstacle, which
+/// the potential does not contain: the end of such a step is doubtful ([`Solved::doubtful`]), and its energy decides.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RealTime(pub(crate) Settings);
 
@@ -41,7 +41,7 @@ impl<const D: usize> Minimiser<D> for RealTime {
             }
             Ok((solved, Trust::IfDownhill)) if !has_risen(system, workspace, balance)? => return Ok(*solved),
             Ok((solved, _)) => *solved,
-            // A law that has no meaning where the iteration led to.
+            // A law without a value in the state that the iteration reached.
             Err(StepError::Model { .. }) => Solved::default(),
             Err(_) => return outcome.map(|(solved, _)| solved),
         };
@@ -68,7 +68,7 @@ impl<const D: usize> Minimiser<D> for RealTime {
     fn keeps_matrix(&self, system: &System<D>) -> bool {
         real_time::keeps_matrix(system)
     }
-    /// In real time nobody waits for another setting.
+    /// In real time nobody can change a setting in between.
     fn always_halves(&self) -> bool {
         true
     }
@@ -80,7 +80,7 @@ impl<const D: usize> Minimiser<D> for RealTime {
     }
 }
 
-/// Puts the body to where the motion of the last step leads, without obstacles.
+/// Moves the body to where the motion of the last step leads, without obstacles.
 fn begin_anew<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, balance: &Balance) {
     workspace.contacting.clear(system.nodes);
     for k in 0..workspace.u.len() {
@@ -89,13 +89,13 @@ fn begin_anew<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, 
     }
 }
 
-/// The settings of steps that few iterations led astray.
+/// The settings for steps that few iterations led astray.
 pub(crate) fn exactly(settings: &Settings) -> Settings {
     Settings { real_time: false, iterations: MOST_ITERATIONS, ..*settings }
 }
 
-/// Whether the incremental potential of what was found is above that of the body where it was, but for what is held; not a number
-/// counts as above, and so does what forces without a potential may have done.
+/// Whether the incremental potential of the result is above that of the body where it was, except for held nodes. NaN counts as
+/// above, and so does a possible effect of forces without a potential.
 fn has_risen<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
@@ -108,7 +108,7 @@ fn has_risen<const D: usize>(
     for k in 0..workspace.u.len() {
         workspace.trial[k] = if workspace.pin_displacement[k].is_nan() { 0.0 } else { workspace.pin_displacement[k] };
     }
-    // Where a body stood where its law has no meaning there is nothing to compare with.
+    // If the law had no value in the initial state, there is nothing to compare with.
     let before = match evaluate(system, workspace, balance, true) {
         Ok(()) => potential(system, workspace, balance, true),
         Err(_) => None,

@@ -1,7 +1,8 @@
-//! The force of friction on nodes that slip.
+//! The friction force on nodes that slip.
 //!
-//! The exact minimiser lets friction push against the slide w, t = −µ λ w/|w|, with the derivatives of that in its matrix. The
-//! real-time one keeps a matrix that knows nothing of friction, and t would flip from iteration to iteration where w is small. It projects instead:
+//! In the exact minimiser friction acts against the slide w, t = −µ λ w/|w|, and its matrix contains the derivatives. The
+//! real-time minimiser keeps a matrix without friction, so t would flip from iteration to iteration if w is small. It uses a
+//! projection instead:
 //!
 //! ```text
 //! t' = t − k w     sticks where |t'| ≤ µ λ, else t = µ λ t'/|t'|
@@ -15,44 +16,46 @@
 
 use opruga_solve::dot;
 
-/// How friction on a node that slips follows from its slide.
+/// How friction on a slipping node follows from its slide.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum SlipRule {
-    /// It pushes against the slide. What would move a node by less than `tolerance` of the extent is nothing.
+    /// It acts against the slide. A slide that moves a node by less than `tolerance` of the extent counts as zero.
     AgainstSlide { tolerance: f64 },
-    /// The force before, less the slide times a stiffness, is projected onto Coulomb's cone.
+    /// The previous force, minus the slide times a stiffness, is projected onto Coulomb's cone.
     Projected,
 }
 
-/// k as a part of the diagonal of a node's block. Neighbours give way, so a node moves against less than its block, and k has to stay below
-/// twice that. With 2 instead of 0.5, 20 of 720 steps in the test `real_time_contact` leave more than they promise, instead of 1.
+/// k as a fraction of the diagonal of the block of a node. Since neighbours move too, the stiffness of a node is less than its
+/// block, and k has to stay below twice that. With 2 instead of 0.5, 20 of 720 steps in the test `real_time_contact` leave a
+/// larger residual than promised, instead of 1.
 const PART_OF_DIAGONAL: f64 = 0.5;
 
-/// What friction does on a node that slips.
+/// The effect of friction on a slipping node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Followed<const D: usize> {
     /// It holds the node.
     Sticks,
-    /// It pushes in this direction.
+    /// It acts in this direction.
     Pushes([f64; D]),
-    /// The node does not slide: what was known of the direction holds.
+    /// The node does not slide; the known direction remains valid.
     Rests,
 }
 
-/// Friction against a slide [m], where it has pushed in a direction before; a slide below `small` is none.
+/// Friction against a slide [m], given its previous direction; a slide below `small` counts as zero.
 pub(super) fn against_slide<const D: usize>(slide: &[f64; D], push: &[f64; D], small: f64) -> Followed<D> {
     let size = dot(slide, slide).sqrt();
     if size <= small {
         Followed::Rests
     } else if dot(slide, push) > 0.0 {
-        // Friction would push it along.
+        // Friction would act along the slide.
         Followed::Sticks
     } else {
         Followed::Pushes(slide.map(|s| -s / size))
     }
 }
 
-/// Friction by projection: of the force before [N], by a slide [m] and the diagonal of a node's block [N/m]. It is `most` [N] at most.
+/// Friction by projection, from the previous force [N], a slide [m] and the diagonal of the block of a node [N/m]. It is at most
+/// `most` [N].
 pub(super) fn projected<const D: usize>(slide: &[f64; D], before: &[f64; D], diagonal: f64, most: f64) -> Followed<D> {
     let force: [f64; D] = core::array::from_fn(|d| before[d] - PART_OF_DIAGONAL * diagonal * slide[d]);
     let size = dot(&force, &force).sqrt();
@@ -69,7 +72,7 @@ pub(super) fn projected<const D: usize>(slide: &[f64; D], before: &[f64; D], dia
 mod tests {
     use super::*;
 
-    /// A node on a spring of 1 N/m, which 0.5 N along x move against friction of 0.3 N.
+    /// A node on a spring of 1 N/m, moved by 0.5 N along x against friction of 0.3 N.
     #[test]
     fn friction_by_projection_settles_against_the_slide_below_twice_the_stiffness() {
         for stiffness in [0.1, 1.0, 1.9] {

@@ -1,4 +1,4 @@
-//! What steps that count though they did not converge may do: a body that such steps have blown up is refused.
+//! The guard of growth: refuses a body that accepted but unconverged steps have blown up.
 
 use super::balance::Solved;
 use super::workspace::Workspace;
@@ -12,10 +12,10 @@ use opruga_solve::blocks::nodes;
 /// The size of the body when it was first stepped [m].
 pub(crate) const SIZE: PerBody<f64> = PerBody::new("growth.size");
 
-/// How large a body may become by steps that did not converge, in its sizes when it was first stepped.
+/// The largest size that a body may reach through unconverged steps, relative to its size when it was first stepped.
 const LARGEST: f64 = 100.0;
 
-/// Refuses the end of a step, in `workspace.u1`, that did not converge and is beyond every measure.
+/// Refuses the end of an unconverged step, in `workspace.u1`, if the body has become too large.
 pub(crate) fn check<const D: usize>(
     system: &mut System<D>,
     workspace: &Workspace<D>,
@@ -38,7 +38,7 @@ pub(crate) fn check<const D: usize>(
         }
     }
     let largest = LARGEST * size;
-    // Written so that what is no number is too large.
+    // Written so that NaN counts as too large.
     if (0..D).all(|d| high[d] - low[d] <= largest) {
         return Ok(());
     }

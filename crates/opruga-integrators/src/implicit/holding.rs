@@ -1,17 +1,17 @@
-//! What pins do to the motion of nodes that a consistent mass matrix couples to theirs.
+//! The effect of pins on nodes that a consistent mass matrix couples to pinned nodes.
 //!
-//! A pinned node has the velocity of its pin from the moment on at which it is held, in a step the mean velocity w over the step.
-//! Where that is another than it had (a body is caught in flight, a table of motion has a corner, or accelerates in many small
-//! ones), the pin gives an impulse at the start of the step. It acts on the pinned node alone; but consistent masses couple nodes,
-//! so that those beside it are thrown back, as a bat is where one does not hold it:
+//! A pinned node has the velocity of its pin from the moment at which it is pinned; in a step this is the mean velocity w over
+//! the step. If the node had another velocity (a body is caught in flight, or a table of motion has a corner or many small ones),
+//! the pin gives an impulse at the start of the step. It acts only on the pinned node, but consistent masses couple nodes, so its
+//! neighbours recoil, as a bat does away from the grip:
 //!
 //! M_ff Δv_f + M_fp (w − v_p) = 0,
 //!
-//! the motion that is nearest to the one before in the norm of M, and never one of more energy where the pins stand still. Within
-//! the step pinned nodes do not accelerate, whatever the rule, and at its end they still have the velocity w: what a rule makes of
-//! a jump of velocity within a step is its own, and would be another motion with every rule.
+//! This is the motion nearest to the previous one in the norm of M, and it never has more energy if the pins are at rest. Within
+//! the step pinned nodes do not accelerate, whatever the rule, and at its end they still have the velocity w. Otherwise each rule
+//! would treat a jump of velocity within a step differently, and the motion would depend on the rule.
 //!
-//! With lumped masses no impulse reaches a neighbour, and nothing of this is needed.
+//! With lumped masses no impulse reaches a neighbour, so none of this is needed.
 
 use opruga_core::state::Columns;
 use opruga_core::system::System;
@@ -19,9 +19,9 @@ use opruga_math::WIDTH;
 use opruga_solve::blocks::{Block, isotropic};
 use opruga_solve::{BlockJacobi, Directions, conjugate_gradients};
 
-/// Gives the nodes that pins hold the velocities of the step of `h` to come, and those beside them what the masses make of it;
-/// the change of kinetic energy is work of the pins. `kick` is then the change of every velocity, and empty where there is
-/// none. Gives the velocities as they were, where they have changed.
+/// Gives pinned nodes the velocities for the coming step of `h`, and their neighbours the velocities that follow from the masses;
+/// the change of kinetic energy is work of the pins. `kick` is then the change of every velocity, and empty if there is none.
+/// Returns the previous velocities if they have changed.
 pub(super) fn take_hold<const D: usize>(system: &mut System<D>, kick: &mut Vec<f64>, h: f64) -> Option<Columns<D>> {
     kick.clear();
     if system.inertia.is_none() || system.pins.is_empty() {
@@ -53,7 +53,7 @@ pub(super) fn take_hold<const D: usize>(system: &mut System<D>, kick: &mut Vec<f
     Some(before.0)
 }
 
-/// Enters the work that pins do within a step against the inertia of the nodes beside theirs, w · M_pf Δv_f.
+/// Enters the work that pins do within a step against the inertia of the neighbours of their nodes, w · M_pf Δv_f.
 pub(super) fn enter_work<const D: usize>(system: &mut System<D>, v0: &[f64], v1: &[f64]) {
     let Some(inertia) = system.inertia.as_ref().filter(|_| !system.pins.is_empty()) else { return };
     let change: Vec<f64> = v0.iter().zip(v1).map(|(before, after)| after - before).collect();
@@ -69,15 +69,15 @@ pub(super) fn enter_work<const D: usize>(system: &mut System<D>, v0: &[f64], v1:
     }
 }
 
-/// Which coordinates pins hold.
+/// Which coordinates are pinned.
 pub(crate) fn pinned_coordinates<const D: usize>(system: &System<D>) -> Vec<bool> {
     let mut pinned = vec![false; system.nodes * D];
     system.pinned_axes(&mut |node, d| pinned[node * D + d] = true);
     pinned
 }
 
-/// The accelerations of the coordinates that are not held, in `a`, from the forces on them and the accelerations of those that
-/// are, which `a` holds: M_ff a_f = F_f − M_fp a_p. Changes of velocity by impulses are the same.
+/// Computes the accelerations of the free coordinates, in `a`, from the forces on them and the accelerations of the pinned ones,
+/// which `a` holds: M_ff a_f = F_f − M_fp a_p. Changes of velocity by impulses follow from the same equation.
 pub fn accelerations<const D: usize>(system: &System<D>, pinned: &[bool], force: &[f64], a: &mut [f64]) {
     let Some(inertia) = &system.inertia else {
         for (k, a) in a.iter_mut().enumerate().filter(|(k, _)| !pinned[*k]) {
@@ -94,7 +94,7 @@ pub fn accelerations<const D: usize>(system: &System<D>, pinned: &[bool], force:
             right[node * D + d] = force[node * D + d] - coupled[d];
         }
     }
-    // What is held stays zero: its rows are those of the unit matrix.
+    // Pinned coordinates stay zero: their rows are those of the unit matrix.
     let multiply = |x: &[f64], y: &mut [f64]| {
         for node in 0..system.nodes {
             let (mass, coupled) = (system.mass.at(node), inertia.product::<D>(node, x));
@@ -107,7 +107,7 @@ pub fn accelerations<const D: usize>(system: &System<D>, pinned: &[bool], force:
     let blocks: Vec<Block<D>> = (0..system.nodes).map(|node| isotropic(system.mass.at(node))).collect();
     let mut lumped = BlockJacobi::default();
     let mut out = vec![0.0; pinned.len()];
-    // The matrix of masses is as well conditioned as a cell: some tens of products are enough for all digits.
+    // The mass matrix is as well conditioned as that of a cell: some tens of products give all digits.
     let solved = lumped.update(blocks.iter()).and_then(|()| {
         let mut workspace = Directions::default();
         conjugate_gradients(multiply, &lumped, &right, &mut out, 1e-14, 1000, &mut workspace)
@@ -117,7 +117,7 @@ pub fn accelerations<const D: usize>(system: &System<D>, pinned: &[bool], force:
             a[k] = out[k];
         }
     } else {
-        // A matrix that is none of masses: each node by its own.
+        // If the matrix is not a valid mass matrix, each node is accelerated by its own force alone.
         for k in (0..out.len()).filter(|k| !pinned[*k]) {
             a[k] = force[k] * system.inverse_mass.at(k / D);
         }

@@ -1,4 +1,4 @@
-//! What obstacles do at the end of a step: nodes that are inside nevertheless, velocities, and the ledger.
+//! The effect of obstacles at the end of a step: on nodes that are still inside, on velocities, and on the ledger.
 
 use super::balance::Balance;
 use super::contact::{Contact, Contacting, Hold, SMALL, dot, split};
@@ -7,11 +7,12 @@ use opruga_core::system::{System, Work8};
 use opruga_math::{Lane, WIDTH};
 use opruga_solve::blocks::{Block, isotropic, nodes};
 
-/// A node goes along with a surface when its velocity differs by no more than this part of what that changed its own by.
+/// A node moves along with a surface if their velocities differ by no more than this fraction of the change of the velocity of
+/// the surface.
 const MOVES_ALONG: f64 = 0.1;
 
 impl<const D: usize> Contacting<D> {
-    /// Puts nodes that are nevertheless inside onto the surface; `reaction` is what was out of balance without them.
+    /// Moves nodes that are still inside onto the surface; `reaction` is the residual without them.
     pub(crate) fn expel(
         &self,
         system: &mut System<D>,
@@ -42,8 +43,8 @@ impl<const D: usize> Contacting<D> {
         }
     }
 
-    /// Ends a step: enters the work of the forces that held nodes (`ending.reaction`), and deals with velocities. What rules
-    /// remember of the directions that a surface has stopped ends with it; `struck` then names those nodes.
+    /// Ends a step: enters the work of the forces that held nodes (`ending.reaction`), and corrects velocities. In the directions
+    /// in which a surface has stopped nodes, rules discard their memory; `struck` then names those nodes.
     pub(crate) fn end(
         &self,
         system: &mut System<D>,
@@ -80,17 +81,17 @@ impl<const D: usize> Contacting<D> {
     }
 }
 
-/// A node whose motion a surface has changed at once.
+/// A node whose motion a surface has changed abruptly.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Struck<const D: usize> {
     pub(crate) node: usize,
-    /// The projector on the directions in which what a rule remembers still holds.
+    /// The projector on the directions in which the memory of the rule stays valid.
     pub(crate) kept: Block<D>,
-    /// What the rule will still add to the velocity out of what it remembers [m/s].
+    /// What the rule will still add to the velocity from its memory [m/s].
     pub(crate) memory: [f64; D],
 }
 
-/// What the end of a step goes by: a step from x₀, v₀ and the forces that held nodes.
+/// The data for the end of a step: x₀, v₀ and the forces that held nodes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ending<'a, const D: usize> {
     pub(crate) mass: &'a [f64],
@@ -106,8 +107,8 @@ impl<const D: usize> Ending<'_, D> {
         nodes::<D>(vector)[node]
     }
 
-    /// Enters the work of the forces of one node through the step, by its mean velocity: what they change of the motion. What
-    /// a rule would add to the velocity later of a force that ends with its memory is in the change of that velocity.
+    /// Enters the work of the forces of one node in the step, from its mean velocity and the change of its motion by these
+    /// forces. If the memory of the rule is discarded, the velocity that the rule would have added later is part of that change.
     fn enter_forces(
         &self,
         work: &mut Work8,
@@ -120,7 +121,8 @@ impl<const D: usize> Ending<'_, D> {
         let (node, lane) = (contacts[0].node, contacts[0].node % WIDTH);
         let (x0, v0) = (self.part(node, self.x0), self.part(node, self.v0));
         let share = if motion.fresh { self.balance.impulse } else { 1.0 };
-        // What is entered of a force beyond its part of this step stands for what the rule remembers of it, and is none of its own.
+        // The work entered beyond the share of this step stands for the memory of the rule, and does not count as a loss of the
+        // rule itself.
         let beyond = |share: f64, work: f64| (share - self.balance.impulse) * work;
         let mut rest = *force;
         let mut carrier = None;
@@ -146,7 +148,7 @@ impl<const D: usize> Ending<'_, D> {
     }
 }
 
-/// The force of a contact: along its normal, and all that the node takes [N].
+/// The force of a contact: along its normal, and the total force on the node [N].
 struct Force<const D: usize> {
     normal: f64,
     total: [f64; D],
@@ -162,9 +164,9 @@ struct Motion<const D: usize> {
 }
 
 impl<const D: usize> Motion<D> {
-    /// What a surface makes of the motion: along the normal it ends or returns; friction takes µ times that change, too.
+    /// Applies a surface to the motion: the normal velocity is stopped or reversed, and friction takes µ times that change too.
     ///
-    /// Impulses of a whole step obey the law, J_t = µ J_n against the slide, with what is remembered counted in.
+    /// The impulses of a whole step, including the memory of the rule, obey J_t = µ J_n against the slide.
     fn meet(&mut self, work: &mut Work8, ending: &Ending<'_, D>, contact: &Contact<D>, force: &Force<D>, alone: bool) {
         let (touch, node, mass) = (&contact.touch, contact.node, self.mass);
         let lane = node % WIDTH;
@@ -174,7 +176,7 @@ impl<const D: usize> Motion<D> {
         let coming: [f64; D] = core::array::from_fn(|d| v0[d] - touch.velocity[d]);
         let (speed, came) = (dot(&relative, &touch.normal), -dot(&coming, &touch.normal));
         let slide = contact.along(&relative);
-        // How the node moved beside the surface at the start, and by how much the surface changed its own motion since.
+        // The initial motion of the node relative to the surface, and the change of the motion of the surface since then.
         let surface: [f64; D] = core::array::from_fn(|d| 2.0 / h * (touch.carried[d] - x0[d]) - touch.velocity[d]);
         let beside: [f64; D] = core::array::from_fn(|d| v0[d] - surface[d]);
         let turned: [f64; D] = core::array::from_fn(|d| touch.velocity[d] - surface[d]);
@@ -182,8 +184,8 @@ impl<const D: usize> Motion<D> {
             |displacement: f64, own: f64| displacement.abs() <= MOVES_ALONG * own.abs() + SMALL * ending.extent / h;
         let size = |vector: &[f64; D]| dot(vector, vector).sqrt();
 
-        // Along the normal: what the node brings is lost, or a part of it returns; no surface pulls.
-        // A node that has come to the surface exactly, where nothing had to hold it, meets it now.
+        // Along the normal: the incoming velocity is lost, or a part of it is returned; no surface pulls. A node that has just
+        // reached the surface without being held meets it now.
         let nears = dot(&beside, &touch.normal);
         let own = dot(&turned, &touch.normal);
         let impact = touch.gap_before > touch.rounding || nears < 0.0 && !still(nears, own);
@@ -223,7 +225,7 @@ impl<const D: usize> Motion<D> {
         } else {
             let pace = -dot(&slide, &contact.push);
             let most = touch.friction * change / mass;
-            // Friction stops a slide at most.
+            // Friction can at most stop a slide.
             let taken = if most > 0.0 { most.smaller(pace.larger(0.0)) } else { most };
             core::array::from_fn(|d| slide[d] + taken * contact.push[d])
         };
@@ -236,7 +238,7 @@ impl<const D: usize> Motion<D> {
         }
     }
 
-    /// Ends what is remembered along a direction.
+    /// Discards the memory along a direction.
     fn forget(&mut self, direction: &[f64; D]) {
         let size = dot(direction, direction);
         if size <= 1e-12 {

@@ -1,4 +1,4 @@
-//! Where an iteration begins.
+//! The start of an iteration.
 
 use super::balance::Balance;
 use super::stage::{evaluate, potential};
@@ -6,11 +6,12 @@ use super::workspace::Workspace;
 use opruga_core::error::StepError;
 use opruga_core::system::System;
 
-/// Evaluates where the iteration begins: where the motion leads or, where a body would be torn there, where it is.
+/// Evaluates the initial guess of the iteration: the state to which the motion leads, or the present state if the body would be
+/// torn there.
 ///
-/// Pins go to where they have to be at once, and leave the cells beside them the whole way, many times what is their share of it. Where
-/// that alone tears these cells, it begins with nothing moved at all, and pins go their way with the rest of the body, in the
-/// iterations. What the model has said is given, for the case that these lead nowhere.
+/// Pins move to their final positions at once, so the cells next to them take the whole displacement, many times their share. If
+/// that alone tears these cells, the iteration begins with no displacement, and pins move together with the rest of the body
+/// during the iterations. The error of the model is returned in case these fail.
 pub(super) fn begin<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
@@ -27,12 +28,12 @@ pub(super) fn begin<const D: usize>(
     workspace.u.fill(0.0);
     match evaluate(system, workspace, balance, false) {
         Ok(()) => Ok(Some(error)),
-        // It was not torn by the pins.
+        // The body was not torn by the pins.
         Err(_) => Err(error),
     }
 }
 
-/// The same with pins where they have to be.
+/// The same with pins at their final positions.
 fn begin_with_pins<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,

@@ -1,4 +1,4 @@
-//! How far a step is gone.
+//! The length of a step along its direction.
 
 use super::balance::Balance;
 use super::linear::Filter;
@@ -9,31 +9,32 @@ use opruga_core::system::System;
 use opruga_math::Lane;
 use opruga_solve::dot;
 
-/// The part of the slope that may be left after a step of the line search.
+/// The fraction of the slope that may remain after a step of the line search.
 const SLOPE_LEFT: f64 = 0.8;
 
-/// A step whose end is steeper than this part of its beginning is gone on with, up to so many times its length.
+/// A step whose slope at the end is steeper than this fraction of the initial slope is extended, up to this many times its
+/// length.
 const STEEP: f64 = 0.3;
 pub(super) const LONGEST_STRETCH: f64 = 16.0;
 
-/// Energies that differ by less than this part of their terms are the same.
+/// Energies that differ by less than this fraction of their terms count as equal.
 const ROUNDING: f64 = 1e-12;
 
-/// Whether a step from whose end it is still steep downhill is gone on with.
+/// Whether a step is extended if the slope at its end is still steep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Stretches {
     No,
     /// Up to [`LONGEST_STRETCH`] times its length, as long as the energy falls.
     WhereEnergyFalls,
-    /// Up to so many times its length, also where differences of energies are lost in rounding: off a balance that does not hold.
+    /// Up to this many times its length, even if differences of energies are lost in rounding: away from an unstable equilibrium.
     UpTo(f64),
 }
 
-/// The most halvings, or thereabouts, of a step.
+/// The approximate largest number of halvings of a step.
 const MOST_TRIALS: usize = 14;
 
-/// Goes along the step so far that the slope of the incremental potential has fallen and, where that potential is known, it
-/// has not risen; gives the part of the step that was gone.
+/// Moves along the step until the slope of the incremental potential has fallen and, if that potential is known, it has not
+/// risen; returns the fraction of the step.
 pub(super) fn line_search<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
@@ -41,7 +42,7 @@ pub(super) fn line_search<const D: usize>(
     slope: f64,
     stretches: Stretches,
 ) -> Result<f64, StepError> {
-    // Damping has no potential; friction and constraints are taken as the forces that they are expected to be.
+    // Damping has no potential; friction and constraints count with the forces that they are expected to have.
     let before = if system.is_damped() { None } else { potential(system, workspace, balance, false) };
     let given = given_along(workspace);
     let cancelled = rounding_of_models(system);
@@ -52,7 +53,7 @@ pub(super) fn line_search<const D: usize>(
         }
         let allowed = evaluate(system, workspace, balance, true).is_ok();
         let now = if allowed { slope_along(workspace) } else { f64::NAN };
-        // Differences of energies are lost in rounding where the step is small.
+        // If the step is small, differences of energies are lost in rounding.
         let risen = match before {
             Some((energy, magnitude)) if allowed => {
                 potential(system, workspace, balance, true).is_none_or(|(after, size)| {
@@ -74,13 +75,13 @@ pub(super) fn line_search<const D: usize>(
         let secant = slope.abs() / (slope.abs() + now);
         length *= if secant.is_finite() && !risen { secant.larger(0.1).smaller(0.6) } else { 0.4 };
     }
-    // No progress: the state stays where it was, and with it the forces.
+    // No progress: the state and the forces stay as they were.
     evaluate(system, workspace, balance, false)?;
     Ok(0.0)
 }
 
-/// Goes on along a step from whose end it is still steep downhill, as long as it is: a matrix without negative eigenvalues is
-/// too stiff where a body buckles or turns right side out. Gives how far it went, in steps.
+/// Extends a step as long as it leads steeply downhill: a matrix without negative eigenvalues is too stiff where a body buckles
+/// or an inverted cell recovers. Returns the length in steps.
 fn stretch<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
@@ -96,7 +97,7 @@ fn stretch<const D: usize>(
     };
     let mut last = before.and_then(|(_, given)| Some(potential(system, workspace, balance, false)?.0 - given));
     loop {
-        // The secant of the slopes, but no more than twice as far.
+        // The secant of the slopes, but at most twice as far.
         let left = slope.abs() + now;
         let longer = length * if left > 0.0 { (slope.abs() / left).smaller(2.0) } else { 2.0 };
         for k in 0..workspace.u.len() {
@@ -124,22 +125,22 @@ fn stretch<const D: usize>(
     }
 }
 
-/// The slope along the step of the incremental potential less the work of friction and of the constraints.
+/// The slope along the step of the incremental potential minus the work of friction and of the constraints.
 pub(super) fn slope_along<const D: usize>(workspace: &mut Workspace<D>) -> f64 {
     let given = given_along(workspace);
     dot(&workspace.residual, &workspace.step) - given
 }
 
-/// The work along the step of friction, and of the constraints by the forces that they are expected to take.
+/// The work along the step of friction, and of the constraints with the forces that they are expected to have.
 pub(super) fn given_along<const D: usize>(workspace: &mut Workspace<D>) -> f64 {
-    // r − friction in the directions that are held.
+    // r − friction in the held directions.
     let Workspace { right, reaction, contacting, free, projectors, step, .. } = workspace;
     right.copy_from_slice(reaction);
     contacting.subtract_friction(right);
     let mut work = dot(right, step);
     Filter { free, projectors }.apply(right);
     work -= dot(right, step);
-    // Friction: what is subtracted from nothing.
+    // Friction: what is subtracted from zero.
     right.fill(0.0);
     contacting.subtract_friction(right);
     work - dot(right, step)

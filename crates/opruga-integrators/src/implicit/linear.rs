@@ -1,4 +1,4 @@
-//! The direction of an iteration: (σM + βC + K) Δ = b in the directions that are free.
+//! The direction of an iteration: (σM + βC + K) Δ = b in the free directions.
 
 use super::settings::{Settings, Solver};
 use opruga_core::potential::{Definiteness, DensePart, Sink};
@@ -10,66 +10,66 @@ use opruga_solve::{
     Preconditioner, conjugate_gradients,
 };
 
-/// The matrix of an iteration, and what solves with it.
+/// The matrix of an iteration, and its solvers.
 #[derive(Debug, Default)]
 pub(crate) struct Linear<const D: usize> {
-    /// The matrix with nothing taken out.
+    /// The whole matrix.
     full: BlockMatrix<D>,
-    /// The same without the directions that are held.
+    /// The matrix without the held directions.
     constrained: BlockMatrix<D>,
-    /// The diagonal blocks alone, where there is no matrix, and what was added to them.
+    /// Only the diagonal blocks, if there is no matrix, and the blocks that were added to them.
     diagonal: Vec<Block<D>>,
     added: Vec<(usize, Block<D>)>,
     jacobi: BlockJacobi<D>,
     incomplete: IncompleteCholesky<D>,
-    /// The complete factor, and whether it is there for the matrix at hand; whether products were so many that it is asked for.
+    /// The complete factor, and whether it is valid for the present matrix; whether so many products were needed that it is used.
     filled: FilledCholesky<D>,
     is_filled: bool,
     is_slow: bool,
-    /// Whether the matrix differs from its transpose, as that of forces without an energy does.
+    /// Whether the matrix differs from its transpose, as for forces without an energy.
     is_unsymmetric: bool,
     cholesky: Cholesky,
     factors: Factors,
     directions: Directions,
 }
 
-/// Iterations of conjugate gradients at most.
+/// The largest number of iterations of conjugate gradients.
 const MOST_PRODUCTS: u32 = 20_000;
 
-/// Parts of rank one with which a sparse factor is worth its while: each takes a solution with it, and every pair a number.
+/// The largest number of rank-one terms with which a sparse factor pays: each needs one solution, and every pair a number.
 const MOST_PARTS: usize = 64;
 
-/// After so many the complete factor is asked for: a nearly incompressible solid takes an incomplete one thousands.
+/// After this many products the complete factor is used: a nearly incompressible solid needs thousands with an incomplete one.
 const MANY_PRODUCTS: u32 = 1000;
 
-/// The part of the residual that the linear solver may leave, in the first iteration.
+/// The fraction of the residual that the linear solver may leave in the first iteration.
 pub(super) const LINEAR_TOLERANCE: f64 = 1e-2;
 
-/// The rounding of a number as a part of itself.
+/// The relative rounding of a number.
 pub(super) const EPSILON: f64 = 0.5 * f64::EPSILON;
 
-/// A solution with a matrix whose stiffness is q times its mass knows the motions of the whole to about q ε of themselves. Above this they
-/// are solved for apart. Larger, and a fall by a rule's closed form is off by as much in every step that the iteration ends with
+/// If the stiffness of a matrix is q times its mass, its solution contains rigid motions with a relative error of about q ε.
+/// Above this limit they are solved for separately. With a larger limit, every step would add such an error to a free fall
 /// (`tests/all/stiff_bodies.rs`); steel in cells of a centimetre is at 1e-9.
 pub(super) const HIDDEN: f64 = 1e-6;
 
-/// What a matrix is made of.
+/// The terms of a matrix.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Mixture<'a, const D: usize> {
     pub(crate) system: &'a System<D>,
     pub(crate) sigma: f64,
     pub(crate) beta: f64,
-    /// The part of the loads that acts.
+    /// The fraction of the loads that acts.
     pub(crate) load: f64,
     pub(crate) mass: &'a [f64],
     pub(crate) stage: Stage,
     pub(crate) time: f64,
     pub(crate) keep: Definiteness,
-    /// Whether products are made without a matrix.
+    /// Whether products are computed without a matrix.
     pub(crate) matrix_free: bool,
 }
 
-/// Which directions are free: all of a node, or those of its projector.
+/// The free directions: all of a node, or those of its projector.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Filter<'a, const D: usize> {
     pub(crate) free: &'a [bool],
@@ -77,11 +77,11 @@ pub(crate) struct Filter<'a, const D: usize> {
 }
 
 impl<const D: usize> Filter<'_, D> {
-    /// What is free of a vector.
+    /// Projects a vector onto the free directions.
     pub(crate) fn apply(&self, vector: &mut [f64]) {
         self.apply_from(0, vector);
     }
-    /// What is free of the part of a vector that begins with this node.
+    /// Does the same for the part of a vector that begins with this node.
     pub(crate) fn apply_from(&self, first: usize, vector: &mut [f64]) {
         for (node, x) in (first..).zip(nodes_mut::<D>(vector)) {
             if !self.free[node] {
@@ -91,7 +91,7 @@ impl<const D: usize> Filter<'_, D> {
     }
 }
 
-/// Multiplies blocks with a vector as they arrive.
+/// Multiplies delivered blocks with a vector.
 struct ProductSink<'a, const D: usize> {
     factor: f64,
     x: &'a [[f64; D]],
@@ -129,7 +129,7 @@ impl<const D: usize> Sink<D> for ProductSink<'_, D> {
     }
 }
 
-/// Keeps the diagonal blocks of what arrives.
+/// Stores the diagonal blocks of the delivered matrix.
 struct DiagonalSink<'a, const D: usize> {
     factor: f64,
     blocks: &'a mut [Block<D>],
@@ -165,7 +165,8 @@ impl<const D: usize> Sink<D> for DiagonalSink<'_, D> {
 }
 
 impl<const D: usize> Mixture<'_, D> {
-    /// Delivers K, C after `scale` was told its factor, and what a consistent mass matrix adds to the masses of the nodes.
+    /// Delivers K, then C after a call of `scale` with its factor, and the terms that a consistent mass matrix adds to the masses
+    /// of the nodes.
     fn deliver<S: Sink<D>>(&self, sink: &mut S, scale: impl Fn(&mut S, f64)) {
         self.system.hessian(self.stage, self.time, self.keep, sink);
         if self.load != 1.0 {
@@ -197,12 +198,12 @@ impl<const D: usize> Mixture<'_, D> {
 }
 
 impl<const D: usize> Linear<D> {
-    /// Forgets how many products earlier iterations took: what a step does goes by nothing that the state does not hold.
+    /// Discards how many products earlier iterations needed: a step must depend only on the state.
     pub(crate) fn begin(&mut self) {
         (self.is_filled, self.is_slow) = (false, false);
     }
 
-    /// Takes the derivatives of a state, after its forces were evaluated.
+    /// Assembles the derivatives in a state, after its forces have been evaluated.
     pub(crate) fn assemble(&mut self, mixture: &Mixture<D>) {
         self.added.clear();
         self.is_unsymmetric = !has_symmetric_matrix(mixture.system);
@@ -223,7 +224,7 @@ impl<const D: usize> Linear<D> {
         });
     }
 
-    /// Takes the matrix of another one, with nothing taken out.
+    /// Copies the whole matrix of another one.
     pub(crate) fn take(&mut self, other: &Linear<D>) {
         self.full.copy_from(&other.full);
         self.is_unsymmetric = other.is_unsymmetric;
@@ -242,13 +243,13 @@ impl<const D: usize> Linear<D> {
         }
     }
 
-    /// Raises the diagonal by a part of itself.
+    /// Raises the diagonal by a fraction of itself.
     pub(crate) fn raise(&mut self, part: f64) {
         for node in 0..self.full.rows() {
             let size = self.full.diagonal_size(node);
             self.full.add_diagonal(node, part * if size > 0.0 { size } else { 1.0 });
         }
-        // Without a matrix the products have to learn of it as well.
+        // Without a matrix, the products have to include it too.
         for (node, block) in self.diagonal.iter_mut().enumerate() {
             let size = (0..D).map(|d| block[d][d].abs()).sum::<f64>() / D as f64;
             let more = part * if size > 0.0 { size } else { 1.0 };
@@ -259,7 +260,7 @@ impl<const D: usize> Linear<D> {
         }
     }
 
-    /// y = A x with nothing taken out.
+    /// y = A x with the whole matrix.
     pub(crate) fn multiply(&self, mixture: &Mixture<D>, x: &[f64], y: &mut [f64]) {
         if !mixture.matrix_free {
             return self.full.multiply(x, y);
@@ -293,7 +294,7 @@ impl<const D: usize> Linear<D> {
         (self.size_at(mixture, node) - D as f64 * mixture.sigma * mixture.mass_at(node)).larger(0.0)
     }
 
-    /// Solves for the correction; b and what comes out lie in the free directions. Returns the products that it took.
+    /// Solves for the correction; b and the result are in the free directions. Returns the number of products.
     pub(crate) fn solve(
         &mut self,
         mixture: &Mixture<D>,
@@ -363,19 +364,19 @@ impl<const D: usize> Linear<D> {
         if out.iter().all(|x| x.is_finite()) { Ok(products) } else { Err(Indefinite) }
     }
 
-    /// Whether the sparse factor is taken.
+    /// Whether the sparse factor is used.
     fn is_direct(&self, solver: Solver) -> bool {
-        // A dense part has a factor that stays while the body turns.
+        // The factor of a dense part stays valid while the body rotates.
         let dense = solver == Solver::Auto && self.full.has_dense();
         solver == Solver::Cholesky
             || dense
             || (solver.is_direct::<D>(self.full.rows()) && self.full.parts() <= MOST_PARTS)
     }
 
-    /// Solves by conjugate gradients, with the complete factor where the incomplete one leads nowhere soon.
+    /// Solves by conjugate gradients, with the complete factor if the incomplete one converges too slowly.
     fn by_gradients(&mut self, tolerance: f64, b: &[f64], out: &mut [f64]) -> Result<u32, Indefinite> {
         let mut products = 0;
-        // The complete factor is tried once; where it is none, there is no end to the products but the last.
+        // The complete factor is tried once; if it does not exist, only the largest number of products ends the iteration.
         for most in [if self.is_slow { MOST_PRODUCTS } else { MANY_PRODUCTS }, MOST_PRODUCTS] {
             let Linear { constrained, incomplete, filled, is_filled, directions, jacobi, .. } = self;
             let by: &dyn Preconditioner = match (constrained.has_dense(), *is_filled) {
@@ -395,16 +396,16 @@ impl<const D: usize> Linear<D> {
         Ok(products)
     }
 
-    /// The matrix with nothing taken out.
+    /// The whole matrix.
     pub(crate) fn full(&self) -> &BlockMatrix<D> {
         &self.full
     }
-    /// The matrix without what the last filter held.
+    /// The matrix without the directions that the last filter held.
     pub(crate) fn constrained(&self) -> &BlockMatrix<D> {
         &self.constrained
     }
 
-    /// Takes the directions that are held out of the matrix.
+    /// Removes the held directions from the matrix.
     pub(crate) fn constrain(&mut self, filter: &Filter<D>) {
         self.constrained.copy_from(&self.full);
         self.constrained.constrain(filter.free, filter.projectors);
@@ -418,11 +419,11 @@ impl<const D: usize> Linear<D> {
         self.constrain(filter);
         self.cholesky.update(&self.constrained)
     }
-    /// Solves with that factor in place, for so many right-hand sides, one after the other.
+    /// Solves with that factor in place, for `count` consecutive right-hand sides.
     pub(crate) fn solve_positive(&self, x: &mut [f64], count: usize) {
         self.cholesky.solve_all(x, count);
     }
-    /// Factors the constrained matrix whatever the signs of its eigenvalues.
+    /// Factors the constrained matrix, whatever the signs of its eigenvalues.
     pub(crate) fn factor(&mut self, filter: &Filter<D>) -> Result<(), Indefinite> {
         self.constrain(filter);
         self.factors.update_any(&self.constrained, !self.is_unsymmetric)
@@ -433,7 +434,7 @@ impl<const D: usize> Linear<D> {
     }
 }
 
-/// Whether the second derivatives of all models are a symmetric matrix.
+/// Whether the second derivatives of all models form a symmetric matrix.
 pub(crate) fn has_symmetric_matrix<const D: usize>(system: &System<D>) -> bool {
     let views = system.members.iter().map(|member| member.potential.properties().views);
     views.into_iter().all(|views| views.symmetric || !views.hessian)
@@ -444,7 +445,7 @@ pub(crate) fn is_matrix_free(solver: Solver) -> bool {
     solver == Solver::MatrixFree
 }
 
-/// By how much a matrix is stiffer than its masses at most.
+/// The largest ratio of the stiffness of a matrix to its masses.
 pub(super) fn contrast<const D: usize>(linear: &Linear<D>, mixture: &Mixture<D>) -> f64 {
     let mut most: f64 = 0.0;
     for (node, mass) in mixture.mass.iter().enumerate() {
@@ -453,7 +454,7 @@ pub(super) fn contrast<const D: usize>(linear: &Linear<D>, mixture: &Mixture<D>)
     most
 }
 
-/// Whether a solution with a matrix says too little of the motions of the whole.
+/// Whether a solution with a matrix is too inaccurate in the rigid motions.
 pub(super) fn hides_rigid_motions<const D: usize>(linear: &Linear<D>, mixture: &Mixture<D>) -> bool {
     mixture.sigma != 0.0 && EPSILON * contrast(linear, mixture) > HIDDEN
 }

@@ -1,20 +1,21 @@
-//! What an implicit rule needs for one body, estimated before anything is built.
+//! The memory that an implicit integrator needs for one body, estimated before anything is built.
 //!
-//! The figures are those of measured runs (docs/performance.md, "Memory").
+//! The numbers come from measured runs (docs/performance.md, "Memory").
 
 use super::settings::{Settings, Solver};
 use opruga_core::memory::Counts;
 use opruga_math::Lane;
 
-/// Vectors of a step: with a matrix, and without one.
+/// The number of vectors of a step: with a matrix, and without one.
 const VECTORS: f64 = 38.0;
 const VECTORS_WITHOUT_MATRIX: f64 = 30.0;
 
-/// Copies of the matrix, its packed form and preconditioners, in units of its blocks: exact, and in real time.
+/// The number of copies of the matrix, including its packed form and preconditioners, in units of its blocks: exact, and in real
+/// time.
 const COPIES: f64 = 1.9;
 const COPIES_IN_REAL_TIME: f64 = 1.6;
 
-/// The memory of a body whose models couple so many pairs of nodes [bytes].
+/// The memory of a body whose models couple this many pairs of nodes [bytes].
 pub(crate) fn of_body<const D: usize>(settings: &Settings, counts: &Counts, couplings: f64) -> f64 {
     let Counts { nodes, is_bulk, .. } = *counts;
     let dimension = D as f64;
@@ -23,7 +24,7 @@ pub(crate) fn of_body<const D: usize>(settings: &Settings, counts: &Counts, coup
         return VECTORS_WITHOUT_MATRIX * vector;
     }
     let block = 8.0 * dimension * dimension;
-    // Those below the diagonal too, each with its index.
+    // Including those below the diagonal, each with its index.
     let matrix = (nodes + 2.0 * couplings) * (block + 16.0);
     let whole = |number: f64| number.smaller(f64::from(u32::MAX)) as usize;
     let direct = match settings.solver {
@@ -33,7 +34,7 @@ pub(crate) fn of_body<const D: usize>(settings: &Settings, counts: &Counts, coup
     let copies = if settings.real_time && !direct { COPIES_IN_REAL_TIME } else { COPIES };
     let kept = if settings.real_time && direct { 16.0 * vector / dimension } else { 0.0 };
     let of_each = couplings / nodes.larger(1.0);
-    // Fill of a factor by least degree: of surfaces as N log N, of bodies that fill space as N to the power 4/3.
+    // Fill of a minimum-degree factor: as N log N for surfaces, as N to the power 4/3 for bodies that fill space.
     let blocks = match (direct, is_bulk) {
         (false, _) => 0.0,
         (true, false) => 1.2 * of_each * nodes * libm::log2(nodes.larger(2.0)),

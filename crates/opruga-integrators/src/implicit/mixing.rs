@@ -1,41 +1,41 @@
-//! What the matrix of an iteration leaves out, seen from the iterations before: Anderson's mixing.
+//! Anderson mixing: estimates what the matrix of an iteration leaves out from the previous iterations.
 //!
-//! The derivatives of damping by position, of friction by the normal force and of curved obstacles are not symmetric, or of
-//! no model; without them corrections fall by a steady factor. An iteration is a map z → z + f(z) of the displacements and
-//! the forces of the constraints. Of the last few pairs (z, f), the combination with the least |f| leads on:
+//! The derivatives of damping by position, of friction by the normal force and of curved obstacles are not symmetric, or belong
+//! to no model; without them corrections fall by a constant factor. An iteration is a map z → z + f(z) of the displacements and
+//! the forces of the constraints. The next state follows from the combination of the last few pairs (z, f) with the smallest |f|:
 //!
 //! z' = z + f − Σ γⱼ (Δzⱼ + Δfⱼ),  γ = argmin |f − Σ γⱼ Δfⱼ|.
 //!
-//! On a linear problem that is the method of generalised minimal residuals.
+//! On a linear problem this is the generalised minimal residual method (GMRES).
 //!
 //! Source: Anderson 1965; Walker and Ni, *Anderson acceleration for fixed-point iterations*, SIAM J. Numer. Anal. 49 (2011).
 
 use opruga_solve::dot;
 
-/// Pairs that are remembered at most.
+/// The largest number of pairs that are remembered.
 const MOST: usize = 8;
 
-/// Differences whose part across the others is below this part of them say nothing new.
+/// A difference whose component orthogonal to the others is below this fraction of it adds no information.
 const NOTHING_NEW: f64 = 1e-6;
 
-/// The iterations that have been made since anything else changed.
+/// The iterations since the last change of anything else.
 #[derive(Debug, Default)]
 pub(crate) struct Mixing {
-    /// The last state and its change; empty where there is none.
+    /// The last state and its change; empty if there is none.
     state: Vec<f64>,
     change: Vec<f64>,
-    /// Differences of changes and of states + changes, the oldest first.
+    /// Differences of changes and of states + changes, oldest first.
     changes: Vec<Vec<f64>>,
     displacements: Vec<Vec<f64>>,
     known: usize,
-    /// The same, made orthogonal; and what is left of a change.
+    /// The same, orthogonalised; and the remainder of a change.
     across: Vec<Vec<f64>>,
     combined: Vec<Vec<f64>>,
     rest: Vec<f64>,
 }
 
 impl Mixing {
-    /// Begins anew, with room for states of so many numbers at most.
+    /// Restarts, with memory for states of up to `most` numbers.
     pub(crate) fn begin(&mut self, most: usize) {
         self.forget();
         for list in [&mut self.changes, &mut self.displacements, &mut self.across, &mut self.combined] {
@@ -47,18 +47,18 @@ impl Mixing {
         }
     }
 
-    /// Forgets what has been noted.
+    /// Discards what has been recorded.
     pub(crate) fn forget(&mut self) {
         self.known = 0;
         self.state.clear();
     }
 
-    /// Whether there is anything to mix with.
+    /// Whether there is nothing to mix with.
     pub(crate) fn is_empty(&self) -> bool {
         self.known == 0
     }
 
-    /// Notes a state and the change that an iteration makes of it.
+    /// Records a state and its change in an iteration.
     pub(crate) fn note(&mut self, state: &[f64], change: &[f64]) {
         if self.state.len() == state.len() {
             if self.known == MOST {
@@ -80,11 +80,11 @@ impl Mixing {
         refill(&mut self.change, change);
     }
 
-    /// Takes what the iterations before make superfluous out of a change that has been noted.
+    /// Removes from a recorded change the part that the previous iterations make unnecessary.
     pub(crate) fn mix(&mut self, change: &mut [f64]) {
         let Mixing { changes, displacements, known, across, combined, rest, .. } = self;
         refill(rest, change);
-        // Orthogonal differences of changes, the newest first, and the same combinations of ways.
+        // Orthogonal differences of changes, newest first, and the same combinations of displacements.
         let mut found = 0;
         for k in (0..*known).rev() {
             let (before, others) = across.split_at_mut(found);

@@ -1,56 +1,58 @@
-//! What the implicit rules share: one stage, solved by Newton's method.
+//! The common part of the implicit integrators: one stage, solved by Newton's method.
 //!
-//! Every rule here looks for a stage x_s at which the forces balance the change of motion:
+//! Every rule here defines a stage x_s at which the forces balance the change of motion:
 //!
 //! r(x_s) = σ M (x_s − y) − F(x_s, v_s, t_s) = f_contact,  v_s = β (x_s − z),
 //!
-//! with numbers σ, β and vectors y, z that the rule works out of the state and of what it remembers. Where F has a
-//! potential U, the stage is the minimum of the incremental potential Φ = ½ σ |x_s − y|²_M + U(x_s).
+//! with numbers σ, β and vectors y, z that the rule computes from the state and its memory. If F has a potential U, the stage is
+//! the minimum of the incremental potential Φ = ½ σ |x_s − y|²_M + U(x_s).
 //!
-//! | file | what it does |
+//! | file | content |
 //! |---|---|
 //! | `settings` | the parameters that all rules have: accuracy, solver, what to do when it does not converge |
 //! | `step` | a step of a rule from start to ledger, and the guards around its minimiser |
-//! | `balance` | the balance of a stage, and what an iteration reports |
-//! | `stage` | a stage as it is evaluated: forces, matrix, incremental potential, contacts |
-//! | `rule` | what a rule says of a step |
-//! | `minimiser` | what finds the stage of a rule: `newton`, or `real_time` |
-//! | `convergence`, `energy` | guards that refuse what a minimiser found |
-//! | `theta` | the θ-method, which rules that damp nothing turn to in contact |
+//! | `balance` | the balance of a stage, and the result of an iteration |
+//! | `stage` | evaluation of a stage: forces, matrix, incremental potential, contacts |
+//! | `rule` | the interface of a rule |
+//! | `minimiser` | the interface of methods that find the stage: `newton`, or `real_time` |
+//! | `convergence`, `energy` | guards that may refuse the stage of a minimiser |
+//! | `theta` | the θ-method, which undamped rules use in contact |
 //! | `newton` | the exact iteration: derivatives, direction, line search |
-//! | `direction` | one direction of it |
-//! | `initial_guess` | where that begins |
-//! | `line_search` | how far a step is gone |
-//! | `rounding` | balances whose forces are as small as their rounding |
-//! | `rigid` | the motions of a body as a whole, whose balance rounding does not hide |
+//! | `direction` | one direction of this iteration |
+//! | `initial_guess` | its initial guess |
+//! | `line_search` | the length of a step along its direction |
+//! | `rounding` | equilibria whose forces are as small as their rounding |
+//! | `rigid` | the balance of a body in its rigid motions, which rounding does not hide |
 //! | `rigid_motion` | these motions themselves |
-//! | `rigid_balance` | whether that holds where an iteration ends |
-//! | `mixing` | what the matrix leaves out, from the iterations before |
+//! | `rigid_balance` | whether that balance holds at the end of an iteration |
+//! | `mixing` | an estimate of what the matrix leaves out, from previous iterations |
 //! | `real_time` | the iteration with a fixed budget |
-//! | `fallback` | the guard around it: steps that it leads astray are made by `newton` |
+//! | `fallback` | its guard: steps that it leads astray are made by `newton` |
 //! | `reused_matrix` | the matrix that it keeps from step to step |
-//! | `linear` | the direction: conjugate gradients or sparse Cholesky |
-//! | `step_limit` | what keeps statics, without inertia, out of obstacles |
+//! | `linear` | the linear solver of a direction: conjugate gradients or sparse Cholesky |
+//! | `step_limit` | limits of corrections in statics, which keep bodies without inertia out of obstacles |
 //! | `contact` | which nodes obstacles hold, and whether they stick or slip |
-//! | `contact_query` | where nodes are within a step, as obstacles see it |
-//! | `contact_derivatives` | what the forces of contacts change by with positions |
-//! | `growth` | refuses what accepted steps blow up |
+//! | `contact_query` | the positions of nodes within a step, as obstacles see them |
+//! | `contact_derivatives` | derivatives of contact forces by positions |
+//! | `growth` | refuses bodies that accepted steps have blown up |
 //! | `slenderness` | for which bodies the real-time setting factors its matrix |
-//! | `impact` | what obstacles do at the end of a step: velocities and the ledger |
+//! | `impact` | effects of obstacles at the end of a step: velocities and the ledger |
 //!
-//! **Newton.** The matrix is σM + βC + K with C = −∂F/∂v and K = ∂²U/∂x∂x: the exact one while it is positive definite, else
-//! each element's block without its negative eigenvalues, for which every direction leads downhill. What the damping force
-//! changes with position is left out of the matrix, and made up for by mixing iterations. The line search accepts a step when the
-//! slope of Φ along it, less the work of friction and of the constraints, has fallen (Hager and Zhang 2005, approximate Wolfe
-//! condition) and, where Φ is known, when Φ less that work has not risen. The iteration ends when the last correction is below `tolerance` times the extent of the body.
+//! **Newton.** The matrix is σM + βC + K with C = −∂F/∂v and K = ∂²U/∂x∂x: the exact one while it is positive definite, otherwise
+//! the block of each element without its negative eigenvalues, for which every direction leads downhill. The derivative of the
+//! damping force by position is left out of the matrix; mixing of iterations compensates for it. The line search accepts a step
+//! if the slope of Φ along it, minus the work of friction and of the constraints, has fallen (Hager and Zhang 2005, approximate
+//! Wolfe condition) and, if Φ is known, Φ minus that work has not risen. The iteration ends when the last correction is below
+//! `tolerance` times the extent of the body.
 //!
-//! **Contact.** Obstacles hold nodes by constraints, not by penalties: a node that would end inside is put onto the surface
-//! within the iteration, all others follow as the elasticity wants, and the force of the constraint comes out of the
-//! balance. In statics, where nothing else keeps a body that falls from falling through, a correction ends where it meets one. A node is released when that force pulls; it sticks while the tangential part obeys Coulomb's law |f_t| ≤ µ f_n
-//! and slips against a friction of µ f_n beyond. This is the primal–dual active set, a semi-smooth Newton method
-//! (Hintermüller, Ito, Kunisch 2003; Hüeber and Wohlmuth 2005), so contact costs few more iterations. Friction goes by the
-//! force along the normal that the direction itself brings about. Velocities are dealt with at the end of the step: what a node
-//! brings along the normal is lost or returned by the restitution, and friction takes µ times that change as well.
+//! **Contact.** Obstacles hold nodes by constraints, not by penalties: a node that would end inside is moved to the surface
+//! within the iteration, all others follow by elasticity, and the force of the constraint follows from the balance. In statics,
+//! where nothing else keeps a falling body from passing through an obstacle, a correction ends where it meets one. A node is
+//! released when that force pulls. It sticks while the tangential part obeys Coulomb's law |f_t| ≤ µ f_n, and otherwise slips
+//! against a friction of µ f_n. This is the primal–dual active set method, a semi-smooth Newton method (Hintermüller, Ito,
+//! Kunisch 2003; Hüeber and Wohlmuth 2005), so contact costs few additional iterations. Friction uses the normal force that the
+//! direction itself causes. Velocities are corrected at the end of the step: the incoming normal velocity is lost or returned
+//! according to the restitution, and friction takes µ times that change as well.
 
 mod answer;
 mod answer_matrix;

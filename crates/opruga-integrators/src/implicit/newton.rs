@@ -1,4 +1,4 @@
-//! Newton's method on the balance of forces of a stage.
+//! Newton's method for the balance of forces in a stage.
 
 use super::balance::{Balance, Solved};
 use super::direction::{Keep, find_direction};
@@ -17,10 +17,10 @@ use opruga_core::error::StepError;
 use opruga_core::system::System;
 use opruga_math::Lane;
 
-/// Corrections that fall by less than this in an iteration fall slowly.
+/// If a correction is above this fraction of the previous one, corrections fall slowly.
 const SLOW: f64 = 0.03;
 
-/// From this iteration on contacts stay as they are: those that still change differ by little.
+/// From this iteration on contacts do not change: those that still would differ by little.
 const MOST_DECISIONS: u32 = 30;
 
 /// Newton's method: exact, to the tolerance of its settings.
@@ -63,7 +63,7 @@ impl<const D: usize> Minimiser<D> for Newton {
     }
 }
 
-/// Begins anew what an iteration remembers.
+/// Resets the memory of an iteration.
 fn prepare<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>) {
     workspace.linear.begin();
     workspace.rigid.begin();
@@ -71,7 +71,7 @@ fn prepare<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>) {
     workspace.friction.begin(if system.contacts.is_some() { system.nodes } else { 0 });
 }
 
-/// What the iteration knows beside the vectors.
+/// The data of the iteration besides the vectors.
 #[derive(Debug)]
 struct Iteration<'a> {
     balance: &'a Balance,
@@ -82,36 +82,36 @@ struct Iteration<'a> {
     /// The largest coordinate [m].
     size: f64,
     first_norm: f64,
-    /// What the next direction is made of first.
+    /// Which derivatives the next direction uses first.
     first: Keep,
-    /// The correction of the last iteration that went all of its length [m].
+    /// The last correction that was taken in full [m].
     before: f64,
     instability: Instability,
 }
 
-/// What obstacles do in an iteration.
+/// The effect of obstacles in an iteration.
 #[derive(Clone, Copy, Debug)]
 struct Contacts {
-    /// Whether who is held has changed.
+    /// Whether the set of held nodes has changed.
     changed: bool,
-    /// How far held nodes have to go at most [m].
+    /// The largest distance that held nodes have to move [m].
     farthest: f64,
 }
 
 /// One correction of the iteration.
 #[derive(Clone, Copy, Debug)]
 struct Correction {
-    /// What its direction is made of.
+    /// Which derivatives its direction uses.
     keep: Keep,
     slope: f64,
-    /// The longest displacement of a node by the direction alone [m], and what was gone of it.
+    /// The largest displacement of a node by the direction alone [m], and the part of it that was taken.
     plain: f64,
     gone: f64,
-    /// Whether iterations before are mixed in.
+    /// Whether previous iterations are mixed in.
     mixed: bool,
-    /// Whether it halves the one before.
+    /// Whether it is at most half the previous one.
     nears: bool,
-    /// The part of it that was gone.
+    /// The fraction of it that was taken.
     length: f64,
 }
 
@@ -134,7 +134,7 @@ impl<'a> Iteration<'a> {
         }
     }
 
-    /// Looks which nodes are held, and how far they have to go.
+    /// Determines which nodes are held, and how far they have to move.
     fn hold<const D: usize>(&self, system: &System<D>, workspace: &mut Workspace<D>) -> Contacts {
         let changed = look(system, workspace, self.balance, true);
         let Workspace { contacting, u, pin_displacement, x0, free, projectors, prescribed, .. } = workspace;
@@ -142,8 +142,8 @@ impl<'a> Iteration<'a> {
         Contacts { changed, farthest }
     }
 
-    /// The direction in `workspace.step`, and the slope along it: of the exact derivatives as long as they are positive definite. None
-    /// where no derivatives lead downhill.
+    /// Computes the direction in `workspace.step` and returns the slope along it. It uses the exact derivatives as long as they
+    /// are positive definite. None if no derivatives lead downhill.
     fn choose_direction<const D: usize>(
         &mut self,
         system: &System<D>,
@@ -169,7 +169,7 @@ impl<'a> Iteration<'a> {
         Some((keep, slope))
     }
 
-    /// Measures the correction in `workspace.step`, shortens it in statics, and mixes in those before where they fall slowly.
+    /// Measures the correction in `workspace.step`, shortens it in statics, and mixes in previous ones if they fall slowly.
     fn measure<const D: usize>(
         &mut self,
         system: &System<D>,
@@ -188,12 +188,12 @@ impl<'a> Iteration<'a> {
             gone *= part;
             slope *= part;
         }
-        // What the matrix leaves out shows where corrections fall slowly.
+        // If corrections fall slowly, the effect of what the matrix leaves out becomes visible.
         if changed {
             workspace.mixing.forget();
         }
         let mixed = mix(workspace, plain > SLOW * self.before, &mut slope);
-        // With inertia rounding is reached where a correction does not halve the one before any more.
+        // With inertia, rounding is reached when a correction no longer halves the previous one.
         let halves = self.solved.iterations == 1 || self.before.is_finite() && plain <= 0.5 * self.before;
         let nears = self.balance.sigma != 0.0 && halves;
         self.before = plain;
@@ -201,7 +201,7 @@ impl<'a> Iteration<'a> {
         Correction { keep, slope, plain, gone, mixed, nears, length: 1.0 }
     }
 
-    /// Goes the correction in `workspace.step`, as far as the line search allows where it is no short one.
+    /// Takes the correction in `workspace.step`; the line search limits it unless it is short.
     fn go<const D: usize>(
         &mut self,
         system: &mut System<D>,
@@ -213,7 +213,8 @@ impl<'a> Iteration<'a> {
         if plain <= self.goal {
             return full_step(system, workspace, self.balance);
         }
-        // What is too stiff and has not far to go to obstacles may go on, unless it falls towards them without inertia.
+        // A correction that is too stiff, with obstacles near, may be extended, unless the body falls towards them without
+        // inertia.
         let falls = self.balance.sigma == 0.0 && system.contacts.is_some();
         let stiff = keep != Keep::Exact && !falls;
         let stretches = if stiff && farthest <= 1e-3 * workspace.extent && !workspace.contacting.any_turns() {
@@ -234,7 +235,7 @@ impl<'a> Iteration<'a> {
         Ok(())
     }
 
-    /// Whether an iteration without progress ends where it is, at the rounding of its forces.
+    /// Whether an iteration without progress ends because its residual is rounding.
     fn ends_at_rounding<const D: usize>(
         &mut self,
         system: &mut System<D>,
@@ -250,7 +251,7 @@ impl<'a> Iteration<'a> {
         Ok(self.solved.converged)
     }
 
-    /// Chooses what the next direction is made of; gives whether there is one.
+    /// Chooses the derivatives of the next direction; returns whether there are any.
     fn choose_derivatives<const D: usize>(
         &mut self,
         workspace: &Workspace<D>,
@@ -260,12 +261,12 @@ impl<'a> Iteration<'a> {
         let Correction { keep, mixed, gone, .. } = *correction;
         if !stuck {
             if keep != Keep::Exact && gone <= 1e-2 * workspace.extent {
-                // Derivatives that were not positive may be so near the solution.
+                // Derivatives that were not positive may be positive this close to the solution.
                 self.first = Keep::Exact;
             }
             return true;
         }
-        // A stiffer matrix leads less far, and more surely downhill.
+        // A stiffer matrix gives shorter directions, which lead downhill more reliably.
         match keep.next() {
             _ if mixed => {}
             Some(next) => self.first = next,
@@ -274,7 +275,7 @@ impl<'a> Iteration<'a> {
         true
     }
 
-    /// Decides by what the constraints would take who stays held; gives whether that has changed.
+    /// Decides from the forces of the constraints which nodes stay held; returns whether that has changed.
     fn judge<const D: usize>(&self, system: &System<D>, workspace: &mut Workspace<D>) -> bool {
         if system.contacts.is_none() || self.solved.iterations >= MOST_DECISIONS {
             return false;
@@ -286,7 +287,7 @@ impl<'a> Iteration<'a> {
         verdict.anew || verdict.unsettled
     }
 
-    /// Whether the iteration is at its end: by its correction, or by what is out of balance, which is rounding.
+    /// Whether the iteration ends: because its correction is small, or because its residual is rounding.
     fn ends<const D: usize>(
         &mut self,
         system: &mut System<D>,
@@ -310,7 +311,7 @@ impl<'a> Iteration<'a> {
         Ok(self.solved.converged)
     }
 
-    /// Estimates how far rounding may have led from the stage, or what it hides where the iteration did not converge.
+    /// Estimates how far rounding may have moved the result, or what it hides if the iteration did not converge.
     fn estimate_error<const D: usize>(&mut self, system: &mut System<D>, workspace: &mut Workspace<D>) {
         let Iteration { balance, settings, size, .. } = *self;
         if !self.solved.converged {
@@ -329,8 +330,8 @@ impl<'a> Iteration<'a> {
     }
 }
 
-/// How far what is left out of balance would move a node by the matrix of what was found [m]: what was suspected on the way there went by
-/// an earlier one. Nothing without a positive one, or on obstacles.
+/// How far the residual would move a node with the matrix of the result [m]; the earlier estimate used an earlier matrix. None
+/// without a positive matrix, or on obstacles.
 fn left_over<const D: usize>(
     system: &System<D>,
     workspace: &mut Workspace<D>,
@@ -344,8 +345,8 @@ fn left_over<const D: usize>(
     Some(longest(&workspace.step, D))
 }
 
-/// Notes an iteration and, where that is asked for, makes of its step the one that it and those before lead to; says whether
-/// it did.
+/// Records an iteration and, if `wanted`, replaces its step by the one to which it and the previous ones lead; returns whether it
+/// did.
 fn mix<const D: usize>(workspace: &mut Workspace<D>, wanted: bool, slope: &mut f64) -> bool {
     workspace.mixing.note(&workspace.u, &workspace.step);
     if !wanted || workspace.mixing.is_empty() {

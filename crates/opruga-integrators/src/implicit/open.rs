@@ -1,4 +1,4 @@
-//! A step of a rule whose end is searched for together with the ends of other bodies.
+//! A step of a rule whose end is found together with the ends of other bodies.
 
 use super::balance::{Balance, Solved};
 use super::contact_query::ContactQuery;
@@ -21,27 +21,27 @@ use opruga_core::system::System;
 use opruga_math::Lane;
 use opruga_solve::blocks::isotropic;
 
-/// A step that has begun.
+/// A step that has been started.
 struct Open<R, const D: usize> {
     rule: R,
     settings: Settings,
     workspace: Box<Workspace<D>>,
     balance: Balance,
     account: Account,
-    /// Whether forces were evaluated at the trial last.
+    /// Whether forces were last evaluated at the trial.
     tried: bool,
 }
 
-/// What the ledger needs from the start of the step.
+/// The data that the ledger needs from the start of the step.
 enum Account {
     Motion(Box<Ledger>),
     Rest(Box<Statics>),
 }
 
-/// Begins a step of h [s] with nothing moved.
+/// Begins a step of h [s] with zero displacement.
 ///
 /// # Errors
-/// [`StepError`] where a model refuses the start.
+/// [`StepError`] if a model refuses the start.
 pub(super) fn open<R: Rule<D>, const D: usize>(
     rule: R,
     settings: Settings,
@@ -51,7 +51,7 @@ pub(super) fn open<R: Rule<D>, const D: usize>(
     let mut workspace = system.cache.take::<Workspace<D>>();
     let rule = rule.pushed();
     let rule = rule.in_contact().unwrap_or(rule);
-    // What is reused from step to step belongs to searches of the body alone.
+    // Data reused from step to step belong to searches of the body alone.
     workspace.answer.last = None;
     holding::take_hold(system, &mut workspace.kick, h);
     let account = Account::Motion(Box::new(open_ledger::<R, D>(system, &mut workspace, h)?));
@@ -61,7 +61,7 @@ pub(super) fn open<R: Rule<D>, const D: usize>(
 /// Begins a step of statics of h [s].
 ///
 /// # Errors
-/// [`StepError`] where a model refuses the start.
+/// [`StepError`] if a model refuses the start.
 pub(crate) fn open_at_rest<R: Rule<D>, const D: usize>(
     rule: R,
     settings: Settings,
@@ -73,7 +73,7 @@ pub(crate) fn open_at_rest<R: Rule<D>, const D: usize>(
     begin((rule, settings), system, workspace, account, h)
 }
 
-/// Begins a step whose state at the start has been taken.
+/// Begins a step whose initial state has been taken.
 fn begin<R: Rule<D>, const D: usize>(
     (rule, settings): (R, Settings),
     system: &mut System<D>,
@@ -95,7 +95,7 @@ fn begin<R: Rule<D>, const D: usize>(
 }
 
 impl<R: Rule<D>, const D: usize> Open<R, D> {
-    /// The matrix is always there: what acts between bodies is solved for with its factor.
+    /// The matrix is always assembled, because interactions between bodies are solved with its factor.
     fn mixture<'a>(&'a self, system: &'a System<D>, keep: Definiteness) -> Mixture<'a, D> {
         let mixture = mixture(system, &self.workspace.mass, &self.balance, keep, &self.settings);
         Mixture { matrix_free: false, ..mixture }

@@ -1,14 +1,14 @@
-//! The real-time setting: few iterations with a matrix that is kept, as long as it leads to the end of a step.
+//! The real-time setting: few iterations with a matrix that is kept as long as it leads to the end of a step.
 //!
-//! Every iteration balances the exact forces; the matrix only says how far to go. Where it is of another shape of the body,
-//! or its equations are solved roughly, what is left out of balance is a part of what there was; the next step begins with
-//! it. At rest nothing is left. The iteration begins where the body would come to under the acceleration of the last step, and with the forces
-//! of contact of that (`contact_forces`).
+//! Every iteration balances the exact forces; the matrix only determines the correction. If it belongs to another shape of the
+//! body, or its equations are solved roughly, a part of the residual remains, and the next step begins with it. At rest nothing
+//! remains. The iteration begins where the acceleration of the last step would lead the body, with the contact forces of that
+//! step (`contact_forces`).
 //!
-//! Whether the matrix still leads there shows in what a step leaves out of balance. Near obstacles, that is mostly what changes of contacts
-//! leave; there it shows in the forces after an iteration less those that the matrix has foreseen.
+//! The residual of a step shows whether the matrix is still good enough. Near obstacles the residual comes mostly from changes of
+//! contacts; there, the measure is the difference between the forces after an iteration and those that the matrix predicted.
 //!
-//! Sizes of what is out of balance are taken in the norm of the inverse diagonal blocks of the matrix, √(r·B r).
+//! Residuals are measured in the norm of the inverse diagonal blocks of the matrix, √(r·B r).
 
 use super::balance::{Balance, Solved};
 use super::direction::wanted_forces;
@@ -27,54 +27,56 @@ use opruga_core::threads::each_block;
 use opruga_math::Lane;
 use opruga_solve::Indefinite;
 
-/// The part of what is out of balance that the linear solver leaves at most.
+/// The largest fraction of the residual that the linear solver may leave.
 const LINEAR: f64 = 0.05;
 
-/// The part with which the matrix is made anew in the next step.
+/// The fraction above which the next step rebuilds the matrix.
 const MOST_MISMATCH: f64 = 0.2;
 
-/// The same of bodies that are free or near obstacles: three iterations with it leave a thousandth.
+/// The same for bodies that are free or near obstacles: three iterations with it leave a thousandth.
 const MOST_MISMATCH_LOOSE: f64 = 0.1;
 
-/// The part that the linear solver leaves of bodies that are free or near obstacles; an iteration is enough with its square.
+/// The fraction that the linear solver may leave for bodies that are free or near obstacles; an iteration is good enough with its
+/// square.
 const LOOSE: f64 = 1e-3;
 
-/// What is out of balance counts as nothing where it moves nodes by less than this part of the extent.
+/// A residual counts as zero if it moves nodes by less than this fraction of the extent.
 const NOTHING: f64 = 1e-9;
 
-/// Products with the matrix in an iteration at most.
+/// The largest number of products with the matrix in an iteration.
 const PRODUCTS: u32 = 1000;
 
-/// Iterations that take more products than this are counted as cut off: a body on which news travels so slowly is ill-conditioned,
-/// and the residual, in which stiff motions count most, says little of the slow ones, such as the bending of a slender body.
+/// Iterations with more products than this count as cut off. If information travels so slowly through a body, it is
+/// ill-conditioned, and the residual, in which stiff motions dominate, says little about the slow ones, such as the bending of a
+/// slender body.
 const MANY_PRODUCTS: u32 = 120;
 
-/// The shape in which the matrix was made [m], the velocity at the start of the last step [m/s] and its length [s]; zero: its
-/// acceleration leads nowhere.
+/// The shape in which the matrix was made [m], the velocity at the start of the last step [m/s] and its length [s]; zero if its
+/// acceleration cannot be continued.
 const REFERENCE: PerNode = PerNode::new("real_time.reference");
 
-/// The forces of obstacles at the end of the last step, with friction where nodes slip [N].
+/// The contact forces at the end of the last step, with friction if nodes slip [N].
 const CONTACT_FORCE: PerNode = PerNode::new("real_time.contact_force");
 const VELOCITY: PerNode = PerNode::new("real_time.velocity");
 const STEP: PerBody<f64> = PerBody::new("real_time.step");
 
-/// Whether there is a matrix, and whether the next step makes it anew.
+/// Whether there is a matrix, and whether the next step rebuilds it.
 const MATRIX: PerBody<bool> = PerBody::new("real_time.matrix");
 const STALE: PerBody<bool> = PerBody::new("real_time.stale");
 
-/// Whether nothing holds a body, or obstacles may be near. What is left out of balance would push and turn it, and the acceleration of an
-/// impact leads nowhere.
+/// Whether nothing holds a body, or obstacles may be near. The residual would then push and rotate it, and the acceleration of an
+/// impact cannot be continued.
 fn is_loose<const D: usize>(system: &System<D>) -> bool {
     system.contacts.is_some() || system.pins.is_empty()
 }
 
-/// What the setting keeps from step to step.
+/// The data that the setting keeps from step to step.
 pub(super) fn channels() -> Vec<Channel> {
     let vectors = [REFERENCE, VELOCITY, CONTACT_FORCE].map(|channel| channel.declared());
     vectors.into_iter().chain([STEP.declared(), MATRIX.declared(), STALE.declared()]).collect()
 }
 
-/// Where the body would come to under the acceleration of the last step, less x₀: in `workspace.u`.
+/// The displacement from x₀ under the acceleration of the last step, in `workspace.u`.
 pub(super) fn predict<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, theta: f64, h: f64) {
     let last = system.history.get(STEP);
     if last <= 0.0 || is_loose(system) {
@@ -95,9 +97,9 @@ pub(super) fn predict<const D: usize>(system: &System<D>, workspace: &mut Worksp
     });
 }
 
-/// Keeps the velocities at the start of a step; nodes that met an obstacle go on as they do then.
+/// Keeps the velocities at the start of a step; for nodes that met an obstacle, those at its end.
 pub(super) fn remember<const D: usize>(system: &mut System<D>, workspace: &Workspace<D>, h: f64) {
-    // The acceleration of an impact leads nowhere.
+    // The acceleration of an impact cannot be continued.
     system.history.set(STEP, if workspace.struck.is_empty() { h } else { 0.0 });
     let System { history, nodes, threads, .. } = system;
     let Some(before) = history.vectors_mut(VELOCITY) else { return };
@@ -119,7 +121,7 @@ pub(super) fn remember<const D: usize>(system: &mut System<D>, workspace: &Works
     workspace.contacting.visit_forces(|node, force| (0..D).for_each(|d| forces.0[d][node] += force[d]));
 }
 
-/// What an iteration needs to know beside the room.
+/// The data of an iteration besides the workspace.
 #[derive(Clone, Copy, Debug)]
 struct Task<'a> {
     balance: &'a Balance,
@@ -141,7 +143,7 @@ impl Task<'_> {
         }
     }
 
-    /// Makes the matrix of the reference shape, which was evaluated last.
+    /// Makes the matrix in the reference shape, which was evaluated last.
     fn make<const D: usize>(&self, system: &System<D>, workspace: &mut Workspace<D>, is_new: bool) {
         let Some(reference) = system.history.vectors(REFERENCE) else { return };
         let Workspace { reused, linear, mass, .. } = workspace;
@@ -149,7 +151,7 @@ impl Task<'_> {
         reused.make(linear, &mixture, reference, is_new);
     }
 
-    /// Makes the matrix of the present shape, which becomes the reference.
+    /// Makes the matrix in the present shape, which becomes the reference.
     fn make_here<const D: usize>(&self, system: &mut System<D>, workspace: &mut Workspace<D>) {
         let System { history, state, nodes, .. } = system;
         history.set(MATRIX, true);
@@ -161,7 +163,7 @@ impl Task<'_> {
         self.make(system, workspace, true);
     }
 
-    /// Makes the matrix of the reference shape that the state remembers, if it is not at hand; none where there is none.
+    /// Makes the matrix of the reference shape in the state, unless it is already there; none if there is no reference.
     fn recall<const D: usize>(&self, system: &mut System<D>, workspace: &mut Workspace<D>) -> Result<bool, StepError> {
         if !keeps_matrix(system) || !system.hessian_is_of_positions() {
             return Ok(false);
@@ -183,7 +185,7 @@ impl Task<'_> {
         Ok(true)
     }
 
-    /// Begins with the matrix that the state remembers, or with one of the shape at the start.
+    /// Begins with the matrix of the reference in the state, or with one of the initial shape.
     fn begin<const D: usize>(&self, system: &mut System<D>, workspace: &mut Workspace<D>) -> Result<(), StepError> {
         let recalled = self.recall(system, workspace)?;
         evaluate(system, workspace, self.balance, false)?;
@@ -193,8 +195,8 @@ impl Task<'_> {
         Ok(())
     }
 
-    /// What is out of balance in the free directions, friction and what is prescribed included, as the right-hand side; gives
-    /// its size.
+    /// Computes the residual in the free directions, including friction and prescribed displacements, as the right-hand side;
+    /// returns its size.
     fn out_of_balance<const D: usize>(
         &self,
         system: &System<D>,
@@ -213,7 +215,7 @@ impl Task<'_> {
         Ok(reused.begin(system, right))
     }
 
-    /// Solves for the step of an iteration; gives the products, and whether that worked.
+    /// Solves for the step of an iteration; returns the number of products, or an error if that failed.
     fn direction<const D: usize>(
         &self,
         system: &mut System<D>,
@@ -223,39 +225,39 @@ impl Task<'_> {
         let Workspace { reused, right, step, .. } = &mut *workspace;
         let (products, indefinite) = reused.solve(system, right, self.direct, goal, PRODUCTS, step)?;
         if indefinite {
-            // What was found leads downhill; the next matrix is another one.
+            // The solution so far leads downhill; the next matrix will be another one.
             mark_stale(system);
         }
         Ok(products)
     }
 }
 
-/// Lets the next step make its matrix anew.
+/// Makes the next step rebuild its matrix.
 pub(super) fn mark_stale<const D: usize>(system: &mut System<D>) {
     if system.history.get(MATRIX) {
         system.history.set(STALE, true);
     }
 }
 
-/// Whether the matrix of the reference shape is at hand, and the next step begins with it.
+/// Whether the matrix of the reference shape is there and the next step begins with it.
 pub(super) fn keeps_matrix<const D: usize>(system: &System<D>) -> bool {
     system.history.get(MATRIX) && !system.history.get(STALE)
 }
 
-/// Whether what few iterations lead to may count.
+/// Whether the result of few iterations is accepted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Trust {
-    /// It does.
+    /// It is.
     Always,
-    /// It does unless the incremental potential has risen.
+    /// It is, unless the incremental potential has risen.
     IfDownhill,
-    /// It does unless the body has more energy at the end of the step than before.
+    /// It is, unless the body has more energy at the end of the step than before.
     IfNoGain,
-    /// It does not.
+    /// It is not.
     None,
 }
 
-/// Whether the matrix is factored: found out once, and again where the scene asks for another solver.
+/// Whether the matrix is factored; determined once, and again if the scene chooses another solver.
 fn is_direct<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, settings: &Settings) -> bool {
     let direct = match workspace.direct {
         Some((solver, direct)) if solver == settings.solver => direct,
@@ -265,13 +267,13 @@ fn is_direct<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, s
     direct
 }
 
-/// The parts of what is out of balance that an iteration is good enough with, and that the linear solver may leave.
+/// The fraction of the residual at which an iteration is good enough, and the fraction that the linear solver may leave.
 fn aims<const D: usize>(system: &System<D>, settings: &Settings) -> (f64, f64) {
     let aim = settings.leaves[0];
     if is_loose(system) { (LOOSE * LOOSE, LOOSE) } else { (aim, LINEAR.smaller(0.5 * aim)) }
 }
 
-/// Three iterations, or as many as the scene says, and whether what they leave may count.
+/// Makes three iterations, or as many as the scene specifies, and returns whether their residual is acceptable.
 pub(super) fn iterate<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
@@ -283,12 +285,12 @@ pub(super) fn iterate<const D: usize>(
     let mut solved = Solved { converged: true, ..Solved::default() };
     task.begin(system, workspace)?;
     let (mut first, mut undecided, mut slow, mut remade) = (0.0, false, false, false);
-    // What the matrix of another shape has left of what was out of balance, in the last iteration.
+    // The fraction of the residual that the matrix of another shape left in the last iteration.
     let mut mismatch = 0.0;
     loop {
         system.go_on()?;
         let last = solved.iterations == settings.iterations;
-        // Which nodes are held, and how far they have to go.
+        // Which nodes are held, and how far they have to move.
         let mut moves = false;
         if !last {
             undecided |= look(system, workspace, balance, false);
@@ -319,7 +321,7 @@ pub(super) fn iterate<const D: usize>(
             return conclude(system, workspace, balance, settings, solved, &end);
         }
         if mismatch > MOST_MISMATCH {
-            // The matrix of another shape does not lead there.
+            // The matrix of another shape is not good enough.
             remade = true;
             task.make_here(system, workspace);
             size = task.out_of_balance(system, workspace, moves).unwrap_or(f64::NAN);
@@ -329,7 +331,7 @@ pub(super) fn iterate<const D: usize>(
         }
         solved.iterations += 1;
         let goal = if is_loose(system) { (linear * size).larger(enough) } else { (linear * first).larger(floor) };
-        // A gas that pushes: the step is solved exactly.
+        // A pushing gas, for example: the step is solved exactly.
         let Ok(products) = task.direction(system, workspace, goal) else {
             solved.converged = false;
             return Ok((solved, Trust::None));
@@ -337,7 +339,7 @@ pub(super) fn iterate<const D: usize>(
         solved.products += products;
         slow |= products > MANY_PRODUCTS;
         let missed = go(system, workspace, &task, moves, &mut solved)?;
-        // What the matrix misses by rounding says nothing of it.
+        // Errors of the matrix by rounding do not count.
         mismatch = if missed > floor { missed / size } else { 0.0 };
         undecided = false;
         if system.contacts.is_some() {
@@ -347,21 +349,21 @@ pub(super) fn iterate<const D: usize>(
     }
 }
 
-/// How the iterations of a step ended.
+/// The outcome of the iterations of a step.
 #[derive(Clone, Copy, Debug)]
 struct End {
-    /// What is out of balance, what was at first, and what counts as nothing.
+    /// The residual, its initial value, and the value that counts as zero.
     size: f64,
     first: f64,
     floor: f64,
-    /// The part of it that may be left.
+    /// The fraction of it that may remain.
     most: f64,
-    /// Whether an iteration took many products, and whether the matrix was made anew.
+    /// Whether an iteration took many products, and whether the matrix was rebuilt.
     slow: bool,
     remade: bool,
 }
 
-/// Ends the iterations of a step: counts what they leave, and says whether it may count.
+/// Ends the iterations of a step: records their residual, and returns whether it is acceptable.
 fn conclude<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
@@ -383,16 +385,16 @@ fn conclude<const D: usize>(
         (false, true) if !remade => Trust::Always,
         _ => Trust::IfDownhill,
     };
-    // What moves no node against the stiffness of the others may move them all together.
+    // A residual that moves no node against the stiffness of the others may move all of them together.
     let trust =
         if settles(system, workspace, balance, settings, [NOTHING, LOOSE * LOOSE])? { trust } else { Trust::None };
     solved.conditioning = workspace.rigid.conditioning;
     Ok((solved, trust))
 }
 
-/// Goes the step that was found, and what is prescribed; `workspace.reaction` is then what the constraints take. Gives by how much the matrix
-/// has missed the forces that are there now, of bodies that are free or near obstacles: r − (r₀ + A Δ), in which r₀ + A Δ is what the linear
-/// solver has left, and taken for nothing, where no node is held.
+/// Takes the step, including prescribed displacements; `workspace.reaction` is then the force of the constraints. For bodies that
+/// are free or near obstacles, returns by how much the matrix has missed the present forces: r − (r₀ + A Δ). Here r₀ + A Δ is the
+/// residual of the linear solver; if no node is held, it counts as zero.
 fn go<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
@@ -410,7 +412,7 @@ fn go<const D: usize>(
             *s += p;
         }
     }
-    // What is out of balance after the step in the directions that are held: r + A Δ.
+    // The residual in the held directions after the step: r + A Δ.
     if any {
         linear.multiply(&task.mixture(system, mass), step, reaction);
         for (r, residual) in reaction.iter_mut().zip(&*residual) {

@@ -1,7 +1,7 @@
 //! The matrix that the real-time setting keeps from step to step.
 //!
-//! It is made in one shape of the body, the *reference*, and used until it no longer leads to the end of a step. The
-//! reference is part of the state: a run that is taken up again makes the same matrix from it.
+//! It is made in one shape of the body, the *reference*, and used until it no longer leads to the end of a step. The reference is
+//! part of the state, so a resumed run makes the same matrix from it.
 
 use super::linear::{Filter, Linear, Mixture};
 use opruga_core::state::Columns;
@@ -9,7 +9,7 @@ use opruga_core::system::System;
 use opruga_solve::blocks::Block;
 use opruga_solve::{Cholesky, Indefinite, Packed};
 
-/// What a matrix was made of.
+/// The data from which a matrix was made.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Origin<const D: usize> {
     sigma: f64,
@@ -17,21 +17,22 @@ pub(crate) struct Origin<const D: usize> {
     reference: Columns<D>,
 }
 
-/// The matrix at hand, and what solves with it.
+/// The present matrix, and its solvers.
 #[derive(Debug)]
 pub(crate) struct ReusedMatrix<const D: usize> {
-    /// None where there is no matrix.
+    /// None if there is no matrix.
     pub(crate) origin: Option<Origin<D>>,
-    /// The directions that were free when it was made ready to be solved with.
+    /// The free directions for which it was prepared.
     ready: bool,
     free: Vec<bool>,
     projectors: Vec<Block<D>>,
     packed: Packed<D>,
     cholesky: Cholesky,
-    /// Whether it was made in the shape of the iteration and not solved with yet: then one pass through a dense factor serves the right-hand
-    /// side as well. A matrix that is made again, where a run is taken up, was solved with before: its solutions must have the same bits.
+    /// Whether it was made in the shape of the iteration and has not been used yet; then one pass through a dense factor also
+    /// solves for the right-hand side. A matrix that is made again when a run is resumed counts as used, because its solutions
+    /// must have the same bits.
     is_new: bool,
-    /// The solution for the right-hand side at hand, and whether it is known.
+    /// The solution for the present right-hand side, and whether it is known.
     solution: Vec<f64>,
     is_solved: bool,
 }
@@ -53,7 +54,7 @@ impl<const D: usize> Default for ReusedMatrix<D> {
 }
 
 impl<const D: usize> ReusedMatrix<D> {
-    /// Whether the matrix at hand is the one of a shape and of factors.
+    /// Whether the matrix was made in this shape and with these factors.
     pub(crate) fn is_of(&self, reference: &Columns<D>, mixture: &Mixture<D>) -> bool {
         let nodes = mixture.mass.len();
         self.origin.as_ref().is_some_and(|own| {
@@ -62,7 +63,8 @@ impl<const D: usize> ReusedMatrix<D> {
         })
     }
 
-    /// Makes the matrix in the shape that was evaluated last, which is `reference`; `is_new` says whether that is the shape of the iteration.
+    /// Makes the matrix in the shape that was evaluated last, which is `reference`; `is_new` tells whether that is the shape of
+    /// the iteration.
     pub(crate) fn make(&mut self, linear: &mut Linear<D>, mixture: &Mixture<D>, reference: &Columns<D>, is_new: bool) {
         linear.assemble(mixture);
         self.packed.take(linear.full(), mixture.system.threads);
@@ -76,7 +78,7 @@ impl<const D: usize> ReusedMatrix<D> {
         }
     }
 
-    /// Makes it ready to be solved with in the free directions, for this right-hand side first.
+    /// Prepares it for solving in the free directions, with this right-hand side first.
     pub(crate) fn hold(
         &mut self,
         threads: usize,
@@ -113,17 +115,17 @@ impl<const D: usize> ReusedMatrix<D> {
     pub(crate) fn stiffness(&self) -> f64 {
         self.packed.stiffness()
     }
-    /// Notes that there is no right-hand side that could be solved for.
+    /// Records that there is no right-hand side to solve for.
     pub(crate) fn forget_right_hand_side(&mut self) {
         self.ready = false;
     }
 
-    /// Takes a right-hand side; gives its size in the norm of the inverse diagonal blocks.
+    /// Takes a right-hand side; returns its size in the norm of the inverse diagonal blocks.
     pub(crate) fn begin(&mut self, system: &System<D>, right: &[f64]) -> f64 {
         self.packed.begin(system.simd, system.threads, right)
     }
 
-    /// Solves for the right-hand side that was taken; gives the products and whether the matrix turned out indefinite.
+    /// Solves for that right-hand side; returns the number of products and whether the matrix was indefinite.
     pub(crate) fn solve(
         &mut self,
         system: &System<D>,
@@ -152,7 +154,7 @@ impl<const D: usize> ReusedMatrix<D> {
     }
 }
 
-/// A vector becomes a copy of a slice, in memory that is there already.
+/// Copies a slice into a vector, reusing its memory.
 fn refill<T: Copy>(own: &mut Vec<T>, from: &[T]) {
     own.clear();
     own.extend_from_slice(from);

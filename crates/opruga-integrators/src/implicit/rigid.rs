@@ -1,18 +1,20 @@
-//! The balance of a stage in the motions of a body as a whole that nothing holds.
+//! The balance of a stage in the rigid motions of a body that nothing prevents.
 //!
-//! Positions have sixteen digits. Rounding them makes forces of about ε |x| times the stiffness of a node, which may be a multiple of
-//! its weight: E ε |x|/(ρ g ℓ²) of it in a body of cells of size ℓ. What is out of balance on a node then says nothing. But whatever the
-//! positions are, the forces between nodes and their moments sum to zero over a piece of a body, to the rounding of that sum, which is
-//! smaller by another ε. So the sum of what is out of balance is known where its parts are not: it is what weight, loads and inertia
-//! leave. A matrix says as little of these motions where its stiffness is 1/ε of its mass, since the sums of its rows are rounding too.
+//! Positions have sixteen digits. Rounding them causes forces of about ε |x| times the stiffness of a node, which may be a
+//! multiple of its weight: E ε |x|/(ρ g ℓ²) times the weight in a body with cells of size ℓ. The residual of a single node is
+//! then meaningless. But whatever the positions are, the forces between nodes and their moments sum to zero over a piece of a
+//! body, up to the rounding of that sum, which is smaller by another ε. So the sum of the residuals is known even if its terms
+//! are not: it consists of weight, loads and inertia. A matrix whose stiffness is 1/ε of its mass is equally useless for these
+//! motions, since the sums of its rows are rounding too.
 //!
-//! For each piece (`pieces`) let φ be its motions t + ω × (x − c) that neither pins nor obstacles hold, orthonormal in the masses. Then
+//! For each piece (`pieces`) let φ be its motions t + ω × (x − c) that neither pins nor obstacles prevent, orthonormal with
+//! respect to the masses. Then
 //!
 //! (σ + φᵀ(K + βC)φ) a = −φᵀ r
 //!
-//! is the motion that balances the piece. Models that only push nodes against one another are left out of r and of K: their sums are zero,
-//! but a law rounds its moments as it does its forces. Whatever ties nodes to space, whoever made it, resists, as far as that is more
-//! than rounding. A piece goes on a circle in a finite turn (Cayley's rotation), which leaves its shape alone.
+//! is the motion that balances the piece. Models that exert forces only between nodes are left out of r and of K: their sums are
+//! zero, but a law rounds its moments as it does its forces. Any model that ties nodes to space resists, if that is more than
+//! rounding. A piece moves by a finite rotation (Cayley's), which does not change its shape.
 
 use super::contact::Contacting;
 use super::linear::{Filter, Mixture};
@@ -25,10 +27,10 @@ use opruga_core::system::{Member, System};
 use opruga_solve::blocks::{Block, times};
 use opruga_solve::dense::inverse;
 
-/// Motions of the whole in space.
+/// The number of rigid motions in space.
 const MOST: usize = 6;
 
-/// A part of a body that its models hold together.
+/// A part of a body that its models connect.
 #[derive(Debug)]
 struct Piece<const D: usize> {
     center: [f64; D],
@@ -37,19 +39,19 @@ struct Piece<const D: usize> {
     inverse: Vec<f64>,
 }
 
-/// The motions of the whole that are free in an iteration.
+/// The rigid motions that are free in an iteration.
 #[derive(Debug, Default)]
 pub(crate) struct Rigid<const D: usize> {
-    /// The nodes of each piece, which stay the same while the models do; none: not asked for yet.
+    /// The nodes of each piece, which stay the same as long as the models do; empty if not determined yet.
     nodes: Vec<Vec<usize>>,
-    /// The models that only push nodes against one another; none: not asked for in this step.
+    /// The models that exert forces only between nodes; none if not determined in this step.
     inner: Option<Vec<usize>>,
     pieces: Vec<Piece<D>>,
-    /// The forces that rounding of positions makes, over the loads; zero where that is not of interest.
+    /// The forces due to rounding of positions, over the loads; zero if that is not needed.
     pub(super) conditioning: f64,
 }
 
-/// What a stage needs to know to find the motions of the whole.
+/// The data of a stage for finding the rigid motions.
 pub(super) struct Stage<'a, const D: usize> {
     pub(super) mixture: Mixture<'a, D>,
     pub(super) x0: &'a [f64],
@@ -60,13 +62,13 @@ pub(super) struct Stage<'a, const D: usize> {
 }
 
 impl<const D: usize> Rigid<D> {
-    /// Forgets what an earlier step has found.
+    /// Discards the results of an earlier step.
     pub(super) fn begin(&mut self) {
         self.inner = None;
         self.conditioning = 0.0;
     }
 
-    /// Finds the motions of every piece that nothing holds, and their matrix; after the forces were evaluated.
+    /// Finds the motions of every piece that nothing prevents, and their matrix, after the forces have been evaluated.
     pub(super) fn find(&mut self, stage: &Stage<'_, D>) {
         let Stage { mixture, x0, u, filter, .. } = stage;
         if self.nodes.iter().map(Vec::len).sum::<usize>() != mixture.mass.len() {
@@ -87,7 +89,7 @@ impl<const D: usize> Rigid<D> {
             }
             self.pieces.push(piece);
         }
-        // Whoever asks the models pays for their matrices: not for bodies that are held.
+        // The matrices of the models cost time, so they are not computed for bodies that are held.
         if !self.any_is_free() {
             return;
         }
@@ -127,13 +129,13 @@ impl<const D: usize> Rigid<D> {
         }
     }
 
-    /// Whether any piece has a motion that nothing holds.
+    /// Whether any piece has a motion that nothing prevents.
     fn any_is_free(&self) -> bool {
         self.pieces.iter().any(|piece| !piece.motions.is_empty())
     }
 
-    /// What is out of balance in the free directions but for the forces between nodes: inertia, the weight, friction and all models that
-    /// act from outside. It is added up without those forces, in whose rounding it may be lost.
+    /// The residual in the free directions without the forces between nodes: inertia, the weight, friction and all external
+    /// models. It is summed without those forces, because it may be lost in their rounding.
     pub(super) fn residual(&self, stage: &Stage<'_, D>) -> Vec<f64> {
         let Stage { mixture, u, y, filter, contacting, .. } = stage;
         if !self.any_is_free() {
@@ -158,7 +160,7 @@ impl<const D: usize> Rigid<D> {
         out
     }
 
-    /// The models that act from outside.
+    /// The external models.
     pub(super) fn outer<'a>(&'a self, system: &'a System<D>) -> impl Iterator<Item = (usize, &'a Member<D>)> {
         system
             .members
@@ -183,7 +185,7 @@ impl<const D: usize> Rigid<D> {
         out
     }
 
-    /// The shares of the motions that forces lead to.
+    /// The coefficients of the motions that forces cause.
     pub(super) fn shares(&self, sums: &[f64]) -> Vec<f64> {
         let (mut out, mut first) = (Vec::new(), 0);
         for piece in &self.pieces {
@@ -196,7 +198,7 @@ impl<const D: usize> Rigid<D> {
         out
     }
 
-    /// The motion of every piece by the shares of its motions.
+    /// The motion of every piece, from the coefficients of its motions.
     fn motions(&self, shares: &[f64]) -> Vec<Motion<D>> {
         let mut first = 0;
         let motion = |piece: &Piece<D>| {
@@ -207,7 +209,7 @@ impl<const D: usize> Rigid<D> {
         self.pieces.iter().map(motion).collect()
     }
 
-    /// The finite ways of all nodes by shares of the motions.
+    /// The finite displacements of all nodes, from coefficients of the motions.
     pub(super) fn finite_displacements(&self, x0: &[f64], u: &[f64], shares: &[f64], out: &mut [f64]) {
         out.fill(0.0);
         for ((motion, piece), nodes) in self.motions(shares).iter().zip(&self.pieces).zip(&self.nodes) {
@@ -218,7 +220,7 @@ impl<const D: usize> Rigid<D> {
         }
     }
 
-    /// Puts motions of the whole that balance the body in place of those that a direction was found with.
+    /// Replaces the rigid motions in a direction by those that balance the body.
     pub(super) fn correct(&mut self, stage: &Stage<'_, D>, step: &mut [f64]) {
         self.find(stage);
         let Stage { mixture, x0, u, filter, .. } = stage;
@@ -226,7 +228,8 @@ impl<const D: usize> Rigid<D> {
         let there = self.sums(x0, u, &moved);
         let wanted: Vec<f64> =
             self.shares(&self.sums(x0, u, &self.residual(stage))).iter().map(|share| -share).collect();
-        // What there is of them goes, and what is wanted comes as a finite turn: along a straight way a stiff body resists its stretch.
+        // The present ones are removed, and the wanted ones are added as finite rotations: in a straight motion a stiff body
+        // resists its stretch.
         let motions = self.motions(&there).into_iter().zip(self.motions(&wanted));
         for (((found, wanted), piece), nodes) in motions.zip(&self.pieces).zip(&self.nodes) {
             for node in nodes {
@@ -254,11 +257,11 @@ fn momenta<const D: usize>(mass: &[f64], inertia: Option<&Inertia>, s: &[f64]) -
 }
 
 impl<const D: usize> Piece<D> {
-    /// The motions of some nodes that nothing holds, orthonormal in the masses.
+    /// The rigid motions of some nodes that nothing prevents, orthonormal with respect to the masses.
     fn free(nodes: &[usize], mixture: &Mixture<D>, x0: &[f64], u: &[f64], filter: &Filter<D>) -> Piece<D> {
         let mass = mixture.mass;
         let total: f64 = nodes.iter().map(|node| mass[*node]).sum();
-        // From a node on, so that nothing is lost far from the origin.
+        // Relative to a node, so that nothing is lost far from the origin.
         let first: [f64; D] = arm(x0, u, nodes[0], &[0.0; D]);
         let mut center = first;
         let mut spread = 0.0;
@@ -287,7 +290,7 @@ impl<const D: usize> Piece<D> {
         }
         let arms = |node: usize| arm(x0, u, node, &center);
         let kept = unheld(&all, nodes, filter, arms);
-        // Gram and Schmidt in the masses; a turn about the line on which all nodes lie moves nothing.
+        // Gram–Schmidt with respect to the masses; a rotation about the line through all nodes moves nothing.
         let mut motions: Vec<Motion<D>> = Vec::new();
         let inertia = mixture.system.inertia.as_ref();
         let product = |a: &Motion<D>, b: &Motion<D>| {
@@ -323,7 +326,7 @@ impl<const D: usize> Piece<D> {
     }
 }
 
-/// Adds up φᵀ K φ of every piece.
+/// Sums φᵀ K φ for every piece.
 struct Resistance<'a, const D: usize> {
     factor: f64,
     owner: &'a [usize],

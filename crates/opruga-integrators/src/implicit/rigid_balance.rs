@@ -1,4 +1,4 @@
-//! Whether what an iteration ended with balances a body as a whole, and how it is made to (`rigid`).
+//! Checks whether the end of an iteration balances a body in its rigid motions, and balances it if not (`rigid`).
 
 use super::balance::Balance;
 use super::linear::{EPSILON, Filter, HIDDEN, contrast};
@@ -12,11 +12,12 @@ use opruga_core::potential::Definiteness;
 use opruga_core::system::System;
 use opruga_math::Lane;
 
-/// How often the whole is moved at most; two are enough but where turns are large.
+/// The largest number of rigid moves; two are enough unless rotations are large.
 const MOST_MOVES: usize = 8;
 
-/// Whether what Newton's method ended with may count, as far as the motions of the whole go: where these may be lost, by a matrix that
-/// knows them too little or in what was taken for rounding, they are balanced first. With the size of coordinates [m].
+/// Whether the result of Newton's method is acceptable in the rigid motions. If these may be lost, because the matrix is
+/// inaccurate in them or because the residual was taken for rounding, they are balanced first. `size` is the size of coordinates
+/// [m].
 pub(super) fn accepts<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
@@ -33,7 +34,7 @@ pub(super) fn accepts<const D: usize>(
         let mixture = mixture(system, &workspace.mass, balance, Definiteness::Exact, settings);
         contrast(&workspace.linear, &mixture)
     };
-    // How far what counts as rounding on every node would move the whole.
+    // How far a residual that counts as rounding on every node would move the whole body.
     let hidden = by_rounding && roundings_of(stiff, size) > goal;
     if !hidden && EPSILON * stiff <= HIDDEN {
         return Ok(true);
@@ -42,8 +43,8 @@ pub(super) fn accepts<const D: usize>(
     Ok(moved <= goal || at_rounding(system, workspace, balance, settings, size))
 }
 
-/// Moves the pieces of a body until what is out of balance as a whole does not halve any more, which is its rounding; those that would
-/// not move by more than `least` [m] stay. Gives how far they went [m]; none where nothing brought them nearer to a balance.
+/// Moves the pieces of a body until their total residual no longer halves, which is its rounding; pieces that would move by no
+/// more than `least` [m] stay. Returns how far they moved [m]; none if they could not be brought closer to balance.
 pub(super) fn balance_rigid_motions<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
@@ -76,7 +77,7 @@ fn balance_with<const D: usize>(
         rigid.finite_displacements(&workspace.x0, &workspace.u, &shares, &mut workspace.step);
         Filter { free: &workspace.free, projectors: &workspace.projectors }.apply(&mut workspace.step);
         let displacement = longest(&workspace.step, D);
-        // A part of the last digit of positions is no way.
+        // A fraction of the last digit of positions is not a displacement.
         let moves = displacement > (1e-3 * EPSILON * size).larger(least);
         if !moves {
             break;
@@ -85,7 +86,7 @@ fn balance_with<const D: usize>(
         for (u, step) in workspace.u.iter_mut().zip(&workspace.step) {
             *u += step;
         }
-        // Sums need nothing of the models that only push nodes against one another, which may take long.
+        // The sums do not need the models that exert forces only between nodes, which may take long.
         tried = true;
         Workspace::show(system, &workspace.x0, &workspace.u, &workspace.z, balance.beta);
         system.prepare_some(&outer, Workspace::<D>::STAGE, balance.time)?;
@@ -94,7 +95,7 @@ fn balance_with<const D: usize>(
         let falls = now < before;
         if !falls {
             workspace.u.copy_from_slice(&workspace.trial);
-            // What is no more than the tolerance may stay, if nothing makes it less.
+            // A displacement within the tolerance may remain if nothing reduces it.
             let allowed = (EPSILON * size).larger(least).larger(settings.tolerance * workspace.extent);
             balanced = moved != 0.0 || displacement <= allowed;
             break;
@@ -127,7 +128,7 @@ fn stage<'a, const D: usize>(
     Stage { mixture, x0, u, y, filter: Filter { free, projectors }, contacting }
 }
 
-/// What is out of balance as a whole in it.
+/// The total residual in that stage.
 fn sums<const D: usize>(
     rigid: &Rigid<D>,
     system: &System<D>,
@@ -138,7 +139,7 @@ fn sums<const D: usize>(
     rigid.sums(&workspace.x0, &workspace.u, &rigid.residual(&stage(system, workspace, balance, settings)))
 }
 
-/// Notes the forces that rounding of positions makes over the loads, or over what holds a body together that turns.
+/// Records the forces due to rounding of positions, over the loads, or over the forces that hold a rotating body together.
 fn note<const D: usize>(
     rigid: &mut Rigid<D>,
     system: &mut System<D>,
@@ -168,8 +169,8 @@ fn note<const D: usize>(
     }
 }
 
-/// The same for the real-time setting: a body whose forces were as small as nothing, or whose matrix says too little. Gives whether the
-/// whole is in balance.
+/// The same for the real-time setting: for a body whose forces were so small that they counted as zero, or whose matrix is too
+/// inaccurate. Returns whether the whole body is balanced.
 pub(super) fn settles<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,

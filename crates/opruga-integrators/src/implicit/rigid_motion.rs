@@ -1,9 +1,9 @@
-//! Motions of a body as a whole: translations and rotations about a centre, their finite turns, and those that nothing holds.
+//! Rigid motions of a body: translations and rotations about a centre, finite rotations, and the motions that nothing prevents.
 
 use super::linear::Filter;
 use opruga_solve::blocks::times;
 
-/// Held directions that are this near to others that are held are the same.
+/// Held directions this close to other held directions count as the same.
 const SAME: f64 = 1e-8;
 
 /// x moves by t + ω × (x − c); in the plane ω is along the third axis.
@@ -31,13 +31,13 @@ fn cross<const D: usize>(rotation: &[f64; 3], arm: &[f64; D]) -> [f64; D] {
 impl<const D: usize> Motion<D> {
     pub(super) const NONE: Motion<D> = Motion { translation: [0.0; D], rotation: [0.0; 3] };
 
-    /// What it moves a node by that is so far from the centre.
+    /// The displacement of a node at this position relative to the centre.
     pub(super) fn displacement(&self, arm: &[f64; D]) -> [f64; D] {
         let turned = cross(&self.rotation, arm);
         core::array::from_fn(|d| self.translation[d] + turned[d])
     }
-    /// The same of a finite turn: R − 1 = α (ω× + ½ ω×ω×), α = 1/(1 + ¼ω²), about the axis that the motion leaves in place, and
-    /// straight on along that.
+    /// The displacement in a finite rotation: R − 1 = α (ω× + ½ ω×ω×), α = 1/(1 + ¼ω²), about the axis that the motion leaves in
+    /// place, plus the translation along that axis.
     pub(super) fn finite_displacement(&self, arm: &[f64; D]) -> [f64; D] {
         let (displacement, turn) = (self.displacement(arm), &self.rotation);
         let again = cross(turn, &displacement);
@@ -66,7 +66,7 @@ impl<const D: usize> Motion<D> {
     }
 }
 
-/// A sum that loses nothing but its last digit (Neumaier 1974).
+/// A sum that loses only its last digit (Neumaier 1974).
 #[derive(Clone, Copy, Default)]
 pub(super) struct Sum {
     sum: f64,
@@ -84,7 +84,7 @@ impl Sum {
     }
 }
 
-/// Where a node is, from the centre of its piece.
+/// The position of a node relative to the centre of its piece.
 pub(super) fn arm<const D: usize>(x0: &[f64], u: &[f64], node: usize, center: &[f64; D]) -> [f64; D] {
     core::array::from_fn(|d| x0[node * D + d] + u[node * D + d] - center[d])
 }
@@ -93,7 +93,7 @@ pub(super) fn along<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
     (0..D).map(|d| a[d] * b[d]).sum()
 }
 
-/// The sums of motions that move no node along what holds it.
+/// The combinations of motions that move no node along its held directions.
 pub(super) fn unheld<const D: usize>(
     all: &[Motion<D>],
     nodes: &[usize],
@@ -101,7 +101,7 @@ pub(super) fn unheld<const D: usize>(
     arm: impl Fn(usize) -> [f64; D],
 ) -> Vec<Motion<D>> {
     let n = all.len();
-    // What each held direction makes of the motions, orthonormal: at most as many rows as motions.
+    // The components of the motions along each held direction, orthonormalised: at most as many rows as motions.
     let mut rows: Vec<Vec<f64>> = Vec::new();
     let reduced = |row: &[f64], rows: &[Vec<f64>]| {
         let mut rest = row.to_vec();
@@ -135,7 +135,7 @@ pub(super) fn unheld<const D: usize>(
     if rows.is_empty() {
         return all.to_vec();
     }
-    // What is left beside the rows, the longest first.
+    // The remainders orthogonal to the rows, longest first.
     let mut out = Vec::new();
     while rows.len() < n {
         let mut best: (Vec<f64>, f64) = (Vec::new(), 0.0);
@@ -162,8 +162,8 @@ mod tests {
     use super::*;
     use opruga_solve::blocks::isotropic;
 
-    /// Nodes of a plane body that all slide along one straight guide: the body may slide and nothing else, however many they are. What
-    /// rounding makes of their directions is no direction of its own.
+    /// Nodes of a plane body that all slide along one straight guide: the body can only slide, however many they are. Differences
+    /// of their directions by rounding are not separate directions.
     #[test]
     fn nodes_that_a_guide_holds_leave_one_motion() {
         let normal = [0.6, 0.8];
@@ -182,7 +182,7 @@ mod tests {
         let left = unheld(&all, &nodes, &Filter { free: &free, projectors: &projectors }, along_the_guide);
         assert_eq!(left.len(), 1, "{left:?}");
         assert!(along(&left[0].translation, &normal).abs() < 1e-14 && left[0].rotation[2].abs() < 1e-14, "{left:?}");
-        // One node of them is held along one direction: two motions are left.
+        // If one of these nodes is held along one direction, two motions remain.
         let one = unheld(&all, &nodes[3..4], &Filter { free: &free, projectors: &projectors }, along_the_guide);
         assert_eq!(one.len(), 2, "{one:?}");
     }

@@ -1,4 +1,4 @@
-//! Balances whose forces are as small as their rounding.
+//! Equilibria whose forces are as small as their rounding.
 
 use super::balance::Balance;
 use super::linear::{Filter, LINEAR_TOLERANCE, Linear, Mixture};
@@ -11,26 +11,26 @@ use opruga_core::system::System;
 use opruga_math::Lane;
 use opruga_solve::dot;
 
-/// Rounding of a force, in units of stiffness times size.
+/// The rounding of a force, in units of stiffness times size.
 const ROUNDING: f64 = 4e-15;
 
-/// What another iteration would move nodes by is made smaller, and told, from these parts of the extent on.
+/// From these fractions of the extent on, the displacement by another iteration is reduced, and reported.
 const LEFT: f64 = 1e-8;
 const VISIBLE: f64 = 1e-7;
 
-/// The part of the loads that statics may leave out of balance.
+/// The fraction of the loads that statics may leave as a residual.
 const UNCARRIED: f64 = 1e-2;
 
-/// Loads below this part of the largest rounding of forces may be lost in it.
+/// Loads below this fraction of the largest rounding of forces may be lost in it.
 const LOST: f64 = 1e-2;
 
-/// The usual rounding of a force as a part of the largest.
+/// The typical rounding of a force, as a fraction of the largest.
 const TYPICAL: f64 = 0.02;
 
-/// How often what is left is made smaller at most.
+/// The largest number of iterations that reduce the remaining displacement.
 const MOST_ROUNDS: usize = 8;
 
-/// Whether what is out of balance is no more than the rounding of the forces.
+/// Whether the residual is no more than the rounding of the forces.
 pub(super) fn at_rounding<const D: usize>(
     system: &System<D>,
     workspace: &mut Workspace<D>,
@@ -46,9 +46,10 @@ pub(super) fn at_rounding<const D: usize>(
     })
 }
 
-/// Goes on in statics as long as what is out of balance, though it is as small as rounding, would still visibly move a node, and every
-/// further correction halves that: little of a stout body, and much of one that is stiff along and soft across. Gives how far it would
-/// move one in the end [m]; zero where that is not seen. After [`at_rounding`], which leaves what is out of balance in `workspace.right`.
+/// Continues in statics as long as the residual, though as small as rounding, would still visibly move a node, and every further
+/// correction halves that displacement. This is little for a stout body, and much for a body that is stiff along and soft across.
+/// Returns the remaining displacement of a node [m]; zero if it is not visible. To be called after [`at_rounding`], which leaves
+/// the residual in `workspace.right`.
 pub(super) fn settle<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
@@ -84,13 +85,13 @@ pub(super) fn settle<const D: usize>(
     Ok(visible(left, workspace.extent))
 }
 
-/// A way that is seen in a body of an extent, or zero.
+/// The displacement if it is visible in a body of this extent, otherwise zero.
 pub(super) fn visible(displacement: f64, extent: f64) -> f64 {
     if displacement > VISIBLE * extent { displacement } else { 0.0 }
 }
 
-/// Whether what statics leaves out of balance is a small part of the loads. Where it is not it may be rounding, which far from the
-/// origin is as large as they are: further iterations average it out, or [`settle`] what is left.
+/// Whether the residual of statics is a small fraction of the loads. If not, it may be rounding, which far from the origin is as
+/// large as the loads: further iterations average it out, or [`settle`] reduces it.
 pub(super) fn carries<const D: usize>(system: &mut System<D>, workspace: &mut Workspace<D>, balance: &Balance) -> bool {
     if balance.sigma != 0.0 {
         return true;
@@ -100,7 +101,7 @@ pub(super) fn carries<const D: usize>(system: &mut System<D>, workspace: &mut Wo
     loads == 0.0 || dot(&workspace.right, &workspace.right).sqrt() <= UNCARRIED * loads
 }
 
-/// Whether statics leaves the loads themselves out of balance: rounding goes this way and that, and not along them.
+/// Whether statics leaves the loads themselves as a residual: rounding has random directions, not those of the loads.
 fn leaves<const D: usize>(workspace: &mut Workspace<D>, loads: f64) -> bool {
     take_residual(workspace);
     let nodes = workspace.right.as_chunks::<D>().0.iter().enumerate();
@@ -108,17 +109,17 @@ fn leaves<const D: usize>(workspace: &mut Workspace<D>, loads: f64) -> bool {
     along.abs() > UNCARRIED * loads * loads
 }
 
-/// A balance of statics that may be wrong.
+/// An equilibrium of statics that may be wrong.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Doubt {
-    /// The longest way of a node, of which nothing may be sure [m]; zero without a doubt.
+    /// The largest displacement of a node, which is all uncertain [m]; zero without doubt.
     pub(super) displacement: f64,
     /// Whether the loads are so small that they are lost in the rounding of forces.
     pub(super) lost: bool,
 }
 
-/// Whether loads are lost in the rounding of forces or left out of balance, in statics: positions do not tell what balances them, or a
-/// matrix that was made stiffer by hand led nowhere.
+/// Whether, in statics, loads are lost in the rounding of forces or remain as a residual: positions then do not show what
+/// balances them, or an artificially stiffened matrix has failed.
 pub(super) fn in_doubt<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
@@ -139,8 +140,8 @@ pub(super) fn in_doubt<const D: usize>(
     if lost || leaves(workspace, loads) { Doubt { displacement, lost } } else { Doubt::default() }
 }
 
-/// The rounding of positions [m], the largest of the force of a node [N] and how far that would move one against its inertia [m], in a body
-/// so far from the origin.
+/// The rounding of positions [m], the largest rounding of the force of a node [N], and how far that would move a node against its
+/// inertia [m], in a body at this distance from the origin.
 pub(super) fn most_rounding<const D: usize>(
     system: &System<D>,
     workspace: &Workspace<D>,
@@ -158,7 +159,7 @@ pub(super) fn most_rounding<const D: usize>(
     [f64::EPSILON * size, force, if balance.sigma == 0.0 { 0.0 } else { displacement }]
 }
 
-/// How far rounding may move a node by the matrix of what was found [m]: forces of about its size, of either sign.
+/// How far rounding may move a node with the matrix of the result [m]: by forces of about its size and either sign.
 pub(super) fn random_error<const D: usize>(
     system: &System<D>,
     workspace: &mut Workspace<D>,
@@ -168,7 +169,7 @@ pub(super) fn random_error<const D: usize>(
 ) -> f64 {
     let mixture = mixture(system, &workspace.mass, balance, Definiteness::Exact, settings);
     for (number, force) in workspace.right.iter_mut().enumerate() {
-        // The highest bit of a product with the golden ratio: signs without order, and always the same.
+        // The highest bit of a product with the golden ratio gives signs that look random but are always the same.
         let sign = if (number as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 63 == 0 { 1.0 } else { -1.0 };
         *force = sign * TYPICAL * floor(&workspace.linear, &mixture, number / D, size);
     }
@@ -176,13 +177,13 @@ pub(super) fn random_error<const D: usize>(
     correction(system, workspace, balance, settings).unwrap_or(f64::INFINITY)
 }
 
-/// How far a force that is all rounding would move a node that is stiffer than its mass by a factor, against its inertia [m].
+/// How far a force that is all rounding would move a node against its inertia [m], if its stiffness is its mass times a factor.
 pub(super) fn roundings_of(contrast: f64, size: f64) -> f64 {
     ROUNDING * contrast * size
 }
 
-/// The forces in the free directions that rounding of positions makes, by the last matrix: the root of the sum of their squares [N]. Those of inertia
-/// belong to displacements, whose rounding is smaller.
+/// The forces in the free directions due to rounding of positions, with the last matrix: the root of the sum of their squares
+/// [N]. Inertia forces depend on displacements, whose rounding is smaller.
 pub(super) fn rounding_of_forces<const D: usize>(workspace: &Workspace<D>, mixture: &Mixture<D>) -> f64 {
     let Workspace { linear, x0, free, projectors, .. } = workspace;
     let size = x0.iter().fold(0.0, |most: f64, x| x.abs().larger(most));
@@ -195,7 +196,7 @@ pub(super) fn rounding_of_forces<const D: usize>(workspace: &Workspace<D>, mixtu
     square.sqrt()
 }
 
-/// The largest rounding of the force of a node [N], in a body so far from the origin.
+/// The largest rounding of the force of a node [N], in a body at this distance from the origin.
 fn floor<const D: usize>(linear: &Linear<D>, mixture: &Mixture<D>, node: usize, size: f64) -> f64 {
     ROUNDING * linear.size_at(mixture, node) * size
 }
@@ -206,14 +207,15 @@ fn loads<const D: usize>(system: &mut System<D>, workspace: &mut Workspace<D>, b
     (0..system.nodes).flat_map(|node| workspace.outer.at(node)).map(|f| f * f).sum::<f64>().sqrt()
 }
 
-/// What is out of balance in the free directions, into `workspace.right`.
+/// Writes the residual in the free directions to `workspace.right`.
 fn take_residual<const D: usize>(workspace: &mut Workspace<D>) {
     workspace.right.copy_from_slice(&workspace.residual);
     workspace.contacting.subtract_friction(&mut workspace.right);
     Filter { free: &workspace.free, projectors: &workspace.projectors }.apply(&mut workspace.right);
 }
 
-/// How far the last matrix would move what is out of balance, into `workspace.step`: the longest way of a node [m].
+/// The displacement by the residual with the last matrix, written to `workspace.step`; returns the largest displacement of a node
+/// [m].
 fn correction<const D: usize>(
     system: &System<D>,
     workspace: &mut Workspace<D>,

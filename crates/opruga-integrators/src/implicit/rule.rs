@@ -1,4 +1,4 @@
-//! What an implicit rule says: which balance holds in the stage of a step, and what its end is.
+//! The definition of an implicit integrator: the balance in the stage of a step, and the end of the step.
 
 use super::balance::Balance;
 use super::workspace::Workspace;
@@ -6,45 +6,45 @@ use opruga_core::history::Channel;
 use opruga_core::integrator::Amplification;
 use opruga_core::system::System;
 
-/// What makes one implicit rule differ from another.
+/// The part in which implicit integrators differ.
 pub(crate) trait Rule<const D: usize>: Copy + core::fmt::Debug + Send + Sync + 'static {
-    /// The word that names it.
+    /// The name of the integrator.
     const NAME: &'static str;
-    /// Whether works are integrated by the trapezoidal rule over start and end, or by the value in the stage.
+    /// Whether works are integrated by the trapezoidal rule over start and end, instead of by the value in the stage.
     const TRAPEZOID: bool;
-    /// The same of the rule in the form in which a step was made.
+    /// The same for the form of the rule with which a step was made.
     fn is_trapezoid(&self) -> bool {
         Self::TRAPEZOID
     }
-    /// The same rule for a step in which obstacles hold nodes, if it is another one then: one that damps what is much faster
-    /// than the step, which contact would stir up for ever.
+    /// The rule for a step in which obstacles hold nodes, if it differs: one that damps motion much faster than the step, which
+    /// contact would otherwise excite for ever.
     fn in_contact(self) -> Option<Self> {
         None
     }
-    /// The rule instead of this one where a body in contact would gain energy by it.
+    /// The replacement of this rule if a body in contact would gain energy with it.
     fn calmed(self) -> Option<Self> {
         None
     }
-    /// The rule for a step in which other bodies push, or may push: one whose end is its stage and by whose velocity at the end the body
-    /// got there, so that bodies that come to rest on one another stay at rest.
+    /// The rule for a step in which other bodies push, or may push. Its end is its stage, and the body reaches it with the
+    /// velocity at the end, so that bodies that come to rest on one another stay at rest.
     fn pushed(self) -> Self {
         self
     }
-    /// What it remembers from step to step.
+    /// The data that it remembers from step to step.
     fn history(&self) -> Vec<Channel> {
         Vec::new()
     }
-    /// What one step makes of the damped oscillator, as [`Integrator::amplification`].
+    /// The effect of one step on the damped oscillator, as [`Integrator::amplification`].
     fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification;
-    /// Works y, z out of the state and the history, both less x₀, and the numbers of the balance.
+    /// Computes y, z from the state and the history, both relative to x₀, and the numbers of the balance.
     fn begin(&self, system: &System<D>, workspace: &mut Workspace<D>, h: f64) -> Balance;
-    /// Works displacement `u1` and velocity `v1` of the end out of the stage.
+    /// Computes displacement `u1` and velocity `v1` at the end from the stage.
     fn end(&self, system: &System<D>, workspace: &mut Workspace<D>, balance: &Balance, h: f64);
-    /// What a step after this one of the same length will add to the velocity of a coordinate out of what is remembered,
-    /// besides the forces [m/s]: v₁ and this together change by h F/m in every step.
+    /// The velocity that a following step of the same length will add to a coordinate from the memory, besides the forces [m/s]:
+    /// the sum of v₁ and this changes by h F/m in every step.
     fn remembered(&self, _workspace: &Workspace<D>, _k: usize, _h: f64) -> f64 {
         0.0
     }
-    /// Moves the history on, after obstacles have had their say; `workspace.struck` names the nodes that met one.
+    /// Updates the history, after obstacles have acted; `workspace.struck` names the nodes that met one.
     fn remember(&self, _system: &mut System<D>, _workspace: &Workspace<D>, _h: f64) {}
 }

@@ -1,4 +1,4 @@
-//! The parameters that all implicit rules have.
+//! The parameters that all implicit integrators have.
 
 use super::friction::SlipRule;
 use super::slenderness::is_slender;
@@ -7,32 +7,32 @@ use opruga_core::error::BuildError;
 use opruga_core::spec::{Allowed, Bound, Default, Field, Values};
 use opruga_core::system::System;
 
-/// The part with which an iteration is good enough, and the part that may be left when there is no other.
+/// The fraction of the residual at which an iteration is good enough, and the fraction that may remain after the last one.
 const ENOUGH: [f64; 2] = [0.2, 0.2];
 
-/// The same of a rule that damps slow motions little. What is left comes back in the next step, behind its time, and pushes
-/// along with the motion: where a fiftieth was good enough, a beam of 10 × 2 quadrilaterals still gained energy under `bdf2`.
+/// The same for a rule that damps slow motions little. The residual returns in the next step, delayed, and pushes along with the
+/// motion: with a fiftieth, a beam of 10 × 2 quadrilaterals still gained energy under `bdf2`.
 const ENOUGH_UNDAMPED: [f64; 2] = [1e-3, 0.05];
 
 /// How the equations of a step are solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Settings {
-    /// Iterations of Newton at most.
+    /// The largest number of Newton iterations.
     pub(crate) iterations: u32,
-    /// The same of a step whose end is searched for together with those of other bodies.
+    /// The same for a step whose end is found together with those of other bodies.
     pub(crate) common_iterations: u32,
-    /// The correction that ends the iteration, in extents of the body.
+    /// The correction below which the iteration ends, in extents of the body.
     pub(crate) tolerance: f64,
-    /// Whether a step has a fixed budget, and is as good as one that converged when that is spent.
+    /// Whether a step has a fixed budget, and counts as converged when that is spent.
     pub(crate) real_time: bool,
-    /// The part of what is out of balance with which a step in real time is at its end, and the part that it may leave at most
-    /// where its iterations are spent.
+    /// The fraction of the residual at which a step in real time ends, and the largest fraction that may remain when its
+    /// iterations are spent.
     pub(crate) leaves: [f64; 2],
     pub(crate) solver: Solver,
     pub(crate) otherwise: Otherwise,
 }
 
-/// Which linear solver is asked for.
+/// The linear solver that the scene chooses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Solver {
     /// By size and dimension.
@@ -45,21 +45,21 @@ pub(crate) enum Solver {
     Cholesky,
 }
 
-/// What happens when a step does not converge.
+/// What to do if a step does not converge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Otherwise {
-    /// An error; the state stays.
+    /// Return an error; the state does not change.
     Error,
-    /// The step is made in two halves, these again if need be.
+    /// Make the step in two halves, and these again if necessary.
     Halve,
-    /// The step counts, and is counted.
+    /// Accept the step, and count it.
     Accept,
 }
 
-/// Halvings of a step at most.
+/// The largest number of halvings of a step.
 pub(crate) const MOST_HALVINGS: u32 = 8;
 
-/// The number of Newton's iterations.
+/// The number of Newton iterations.
 pub(crate) const ITERATIONS: Field = Field::new(
     "iterations",
     Allowed::Integer { least: 1, greatest: 1000 },
@@ -75,7 +75,7 @@ pub(crate) const TOLERANCE: Field = Field::new(
     Default::Number(1e-9),
     "The iteration ends when no node is corrected by more than this part of the body's extent.",
 );
-/// Who may solve, in words.
+/// The allowed solvers, in words.
 macro_rules! solvers {
     () => {
         "Who solves for the corrections: conjugate gradients, with a matrix or without one, which give the same bits on every \
@@ -104,7 +104,7 @@ pub(crate) const OTHERWISE: Field = Field::new(
 (these again, up to 1/256), or a step that counts all the same and is counted in a warning.",
 );
 
-/// The number of Newton's iterations in statics.
+/// The number of Newton iterations in statics.
 pub(crate) const ITERATIONS_OF_STATICS: Field = Field::new(
     "iterations",
     Allowed::Integer { least: 1, greatest: 1000 },
@@ -129,7 +129,7 @@ way of what is held (these again, up to 1/256), or a state that counts all the s
     ..OTHERWISE
 };
 
-/// The fields of a rule that steps through time, or of statics: its own, and those that say how equations are solved.
+/// The fields of an integrator or of statics: its own, and those that determine how equations are solved.
 macro_rules! fields {
     (of_time $(, $own:expr)*) => {{
         use $crate::implicit::settings::{ACCURACY, ITERATIONS, LINEAR_SOLVER, OTHERWISE, TOLERANCE};
@@ -163,17 +163,17 @@ or where a motion is decided by little, as in buckling. `implicit_midpoint`, whi
 it in its acceleration, would add up what is left, and refuse the setting.",
 );
 
-/// Rules that keep what a step leaves out of balance.
+/// Integrators that keep the residual of a step.
 const UNDAMPED: [&str; 2] = ["implicit_midpoint", "newmark"];
 
-/// Rules that damp slow motions little.
+/// Integrators that damp slow motions little.
 const DAMPING_LITTLE: [&str; 1] = ["bdf2"];
 
 impl Settings {
-    /// From the parameters of a rule.
+    /// Reads the settings of an integrator.
     ///
     /// # Errors
-    /// [`BuildError`] where they exclude one another.
+    /// [`BuildError`] if parameters exclude one another.
     pub(crate) fn of_rule(kind: &'static str, values: &Values) -> Result<Settings, BuildError> {
         let settings = Settings::new(values);
         if settings.real_time && UNDAMPED.contains(&kind) {
@@ -191,7 +191,7 @@ impl Settings {
         }
         Ok(settings)
     }
-    /// From the parameters of a scene.
+    /// Reads the parameters of a scene.
     pub(crate) fn new(values: &Values) -> Settings {
         let real_time = values.text("accuracy") == Some("real_time");
         let iterations = |own: u32| values.integer("iterations").map_or(own, |n| n as u32);
@@ -217,11 +217,11 @@ impl Settings {
 }
 
 impl Settings {
-    /// How friction follows slides where the matrix knows of it.
+    /// The rule of friction if the matrix contains its derivatives.
     pub(crate) fn against_slide(&self) -> SlipRule {
         SlipRule::AgainstSlide { tolerance: self.tolerance }
     }
-    /// What helps a step of a rule through time that did not converge.
+    /// The hint for a step that did not converge.
     pub(crate) fn hint(&self) -> StepHint {
         match (self.real_time, self.otherwise) {
             (true, _) => StepHint::Exact {},
@@ -229,7 +229,7 @@ impl Settings {
             _ => StepHint::Halve {},
         }
     }
-    /// What helps where no balance is found; `alone` says that there are no obstacles.
+    /// The hint if no equilibrium is found; `alone` means that there are no obstacles.
     pub(crate) fn hint_of_statics(&self, by_arc: bool, alone: bool) -> StepHint {
         match (by_arc, self.otherwise, alone) {
             (true, ..) => StepHint::ShorterArc {},
@@ -242,7 +242,7 @@ impl Settings {
 }
 
 impl Solver {
-    /// Whether the sparse factor is taken for a body in real time, where it is kept: for small stiff ones and for slender ones.
+    /// Whether the sparse factor is used for a body in real time, where it is kept: for small stiff bodies and for slender ones.
     pub(crate) fn is_direct_in_real_time<const D: usize>(self, system: &System<D>) -> bool {
         match self {
             Solver::Cholesky => true,
@@ -250,7 +250,7 @@ impl Solver {
             Solver::Auto => system.nodes >= 50 && (D == 2 || system.nodes <= 600 || is_slender(system)),
         }
     }
-    /// Whether the sparse factor is taken for a body.
+    /// Whether the sparse factor is used for a body.
     pub(crate) fn is_direct<const D: usize>(self, nodes: usize) -> bool {
         match self {
             Solver::Cholesky => true,

@@ -1,16 +1,16 @@
-//! Whether a body is slender, by which of its nodes touch: then the sparse factor is narrow, and conjugate gradients, which pass
-//! news on by one cell a product, are slow and end before the whole has bent.
+//! Whether a body is slender, from which of its nodes are coupled. In slender bodies the sparse factor is narrow. Conjugate
+//! gradients, which pass information on by one cell per product, are slow and would stop before the whole body has bent.
 
 use opruga_core::potential::{Definiteness, DensePart, Sink};
 use opruga_core::system::{Stage, System};
 
-/// A body is slender where no layer of cells has more nodes than so many times the number of layers.
+/// A body is slender if no layer of cells has more nodes than this many times the number of layers.
 const SLENDER: usize = 8;
 
-/// Nodes times nodes of the widest layer at most: the size of the factor.
+/// The largest square of the number of nodes in the widest layer, which is the size of the factor.
 const LARGEST_FACTOR: usize = 400_000;
 
-/// Which nodes touch which, as they arrive.
+/// Which nodes are coupled, as delivered.
 struct Touching {
     neighbours: Vec<Vec<u32>>,
 }
@@ -21,12 +21,12 @@ impl<const D: usize> Sink<D> for Touching {
             self.neighbours[a].push(b as u32);
         }
     }
-    /// Parts of rank one are kept apart from the matrix that is factored.
+    /// Rank-one terms are stored separately from the factored matrix.
     fn low_rank(&mut self, _c: f64, _u: &[(usize, [f64; D])]) {}
     fn dense(&mut self, _part: &DensePart<'_, D>) {}
 }
 
-/// Whether something dense arrives.
+/// Whether a dense part is delivered.
 struct Dense(bool);
 
 impl<const D: usize> Sink<D> for Dense {
@@ -37,14 +37,15 @@ impl<const D: usize> Sink<D> for Dense {
     }
 }
 
-/// Whether a model of a body delivers a dense part, which has a factor and no sparse rows to multiply with.
+/// Whether a model of a body delivers a dense part, which has a factor and no sparse rows for products.
 pub(crate) fn has_dense<const D: usize>(system: &System<D>) -> bool {
     let mut found = Dense(false);
     system.hessian(Stage::Current, 0.0, Definiteness::Exact, &mut found);
     found.0
 }
 
-/// Whether the factor of a body's matrix is narrow for its size. It depends on what touches what alone, not on the state.
+/// Whether the factor of the matrix of a body is narrow for its size. This depends only on which nodes are coupled, not on the
+/// state.
 pub(crate) fn is_slender<const D: usize>(system: &System<D>) -> bool {
     let mut touching = Touching { neighbours: vec![Vec::new(); system.nodes] };
     system.hessian(Stage::Current, 0.0, Definiteness::Exact, &mut touching);
@@ -52,7 +53,7 @@ pub(crate) fn is_slender<const D: usize>(system: &System<D>) -> bool {
         list.sort_unstable();
         list.dedup();
     }
-    // From one end: the last node of a walk from anywhere.
+    // Starting from one end: the last node of a walk from anywhere.
     let Some(end) = layers(&touching.neighbours, 0).last().and_then(|layer| layer.first().copied()) else {
         return false;
     };
@@ -62,7 +63,7 @@ pub(crate) fn is_slender<const D: usize>(system: &System<D>) -> bool {
     reached == system.nodes && widest <= SLENDER * layers.len() && widest * system.nodes <= LARGEST_FACTOR
 }
 
-/// The nodes that are reached from one in no, one, two, … steps.
+/// The nodes that are reached from one node in zero, one, two, … steps.
 fn layers(neighbours: &[Vec<u32>], from: usize) -> Vec<Vec<u32>> {
     let mut seen = vec![false; neighbours.len()];
     if neighbours.is_empty() {

@@ -1,4 +1,4 @@
-//! A stage as it is evaluated: its forces, what is out of balance, its matrix, its incremental potential and its contacts.
+//! The evaluation of a stage: its forces, residual, matrix, incremental potential and contacts.
 
 use super::balance::Balance;
 use super::contact::Verdict;
@@ -13,11 +13,11 @@ use opruga_core::system::System;
 use opruga_core::threads::each_block;
 use opruga_math::Lane;
 
-/// The rounding of an energy as a part of the terms whose difference it is in its models: of a law that takes the energy at rest away,
-/// a stiff body has more of it than energy.
+/// The rounding of an energy as a fraction of the terms whose difference it is. If a law subtracts the energy at rest, this can
+/// exceed the energy of a stiff body.
 pub(super) const CANCELLATION: f64 = 1e-15;
 
-/// The longest way of a node.
+/// The largest displacement of a node.
 pub(crate) fn longest(step: &[f64], dimension: usize) -> f64 {
     let mut longest: f64 = 0.0;
     for node in step.chunks_exact(dimension) {
@@ -26,7 +26,7 @@ pub(crate) fn longest(step: &[f64], dimension: usize) -> f64 {
     longest.sqrt()
 }
 
-/// Looks where nodes are; says whether who is held has changed.
+/// Searches for contacts of the nodes; returns whether the set of held nodes has changed.
 pub(crate) fn look<const D: usize>(
     system: &System<D>,
     workspace: &mut Workspace<D>,
@@ -38,7 +38,7 @@ pub(crate) fn look<const D: usize>(
     contacting.look(&contact_query, impacts_slide)
 }
 
-/// Decides anew who is held, and how, from what the constraints would take.
+/// Decides which nodes are held, and how, from the forces of the constraints.
 pub(crate) fn judge<const D: usize>(
     system: &System<D>,
     workspace: &mut Workspace<D>,
@@ -72,7 +72,7 @@ pub(crate) fn mixture<'a, const D: usize>(
     }
 }
 
-/// The forces at x₀ + u (or at the trial), and what is out of balance.
+/// Evaluates the forces at x₀ + u (or at the trial), and the residual.
 pub(crate) fn evaluate<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
@@ -120,7 +120,7 @@ pub(super) fn rounding_of_models<const D: usize>(system: &System<D>) -> f64 {
     CANCELLATION * system.members.iter().map(|member| member.potential.energy_parts()).sum::<f64>()
 }
 
-/// The incremental potential and the size of its parts [J].
+/// The incremental potential and the size of its terms [J].
 pub(crate) fn potential<const D: usize>(
     system: &System<D>,
     workspace: &Workspace<D>,
@@ -139,13 +139,13 @@ pub(crate) fn potential<const D: usize>(
     if balance.sigma != 0.0
         && let Some(coupled) = &system.inertia
     {
-        // The forces were evaluated last, and with them the way.
+        // The forces were evaluated last, and with them the displacement.
         inertia += coupled.square::<D>(&workspace.displacement);
     }
     inertia *= 0.5 * balance.sigma;
     let mut lifted = 0.0;
     if balance.load != 1.0 {
-        // What the missing part of the weight would have given.
+        // The energy of the missing part of the weight.
         for node in 0..system.nodes {
             for d in 0..D {
                 lifted += (1.0 - balance.load) * workspace.outer.0[d][node] * u[node * D + d];

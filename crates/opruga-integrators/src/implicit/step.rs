@@ -2,17 +2,17 @@
 //!
 //! Guards wrap the minimiser, from the outside to the inside:
 //!
-//! | guard | what it refuses, and what makes the step instead | where |
+//! | guard | what it refuses, and what it does instead | where |
 //! |---|---|---|
-//! | halving | what does not converge: two steps of half the length | `Method::advance` |
-//! | growth | what accepted steps have blown up: nothing | `growth` |
+//! | halving | steps that do not converge: two steps of half the length | `Method::advance` |
+//! | growth | bodies that accepted steps have blown up: nothing | `growth` |
 //! | energy of the rule | a gain of energy in contact: a rule that damps | `energy` |
 //! | energy of the minimiser | a gain of energy by a doubtful stage: Newton's method | `energy` |
-//! | impact | nodes that end inside obstacles: they are put onto them | `impact` |
-//! | convergence | a search that did not end, unless the scene accepts it | `convergence` |
+//! | impact | nodes that end inside obstacles: they are moved to the surface | `impact` |
+//! | convergence | a search that did not converge, unless the scene accepts it | `convergence` |
 //! | contact | an unforeseen contact: the rule in contact | `Method::find_end` |
-//! | budget | what few iterations led to and may have made energy: Newton's method | `fallback` |
-//! | rounding | a stage that rounding hides: iterations of the exact minimiser go on | `rounding`, `rigid_balance` |
+//! | budget | a result of few iterations that may have created energy: Newton's method | `fallback` |
+//! | rounding | a stage that rounding hides: more iterations of the exact minimiser | `rounding`, `rigid_balance` |
 //!
 //! Slenderness (`slenderness`) chooses the linear solver of the real-time minimiser, and refuses nothing.
 
@@ -51,15 +51,15 @@ pub(crate) struct Implicit<R> {
 }
 
 impl<R> Implicit<R> {
-    /// A rule with the settings of a scene.
+    /// Makes an integrator from a rule and the settings of a scene.
     ///
     /// # Errors
-    /// [`BuildError`] where they exclude one another.
+    /// [`BuildError`] if settings exclude one another.
     pub(crate) fn new(kind: &'static str, rule: R, values: &Values) -> Result<Implicit<R>, BuildError> {
         Ok(Implicit { rule, settings: Settings::of_rule(kind, values)? })
     }
 
-    /// Does something with the minimiser that the settings ask for.
+    /// Calls `action` with the minimiser that the settings choose.
     fn with_minimiser<T, const D: usize>(&self, action: impl FnOnce(&dyn Minimiser<D>) -> T) -> T {
         if self.settings.real_time { action(&RealTime(self.settings)) } else { action(&Newton(self.settings)) }
     }
@@ -125,7 +125,7 @@ impl<R: Rule<D>, const D: usize> Integrator<D> for Implicit<R> {
 }
 
 impl<R> Implicit<R> {
-    /// Makes a step with the stage that a minimiser finds.
+    /// Makes a step with the stage that a given minimiser finds.
     pub(crate) fn step_by<const D: usize>(
         &self,
         minimiser: &dyn Minimiser<D>,
@@ -143,7 +143,7 @@ impl<R> Implicit<R> {
     }
 }
 
-/// What makes a step: a rule, and the minimiser that finds its stage.
+/// A method of making a step: a rule, and the minimiser that finds its stage.
 #[derive(Clone, Copy, Debug)]
 struct Method<'a, R, const D: usize> {
     rule: R,
@@ -152,7 +152,7 @@ struct Method<'a, R, const D: usize> {
 }
 
 impl<R: Rule<D>, const D: usize> Method<'_, R, D> {
-    /// Makes a step of h, or two of half the length where it does not converge: the outermost guard.
+    /// Makes a step of h, or two of half the length if it does not converge: the outermost guard.
     fn advance(
         &self,
         system: &mut System<D>,
@@ -164,7 +164,7 @@ impl<R: Rule<D>, const D: usize> Method<'_, R, D> {
         let velocities = holding::take_hold(system, &mut workspace.kick, h);
         let outcome = self.attempt(system, workspace, h);
         if outcome.is_err() {
-            // Nothing has been written but the ledger, and velocities that pins have changed.
+            // Nothing has been written except the ledger, and velocities that pins have changed.
             if let Some(before) = velocities {
                 system.state.v = before;
             }
@@ -202,8 +202,9 @@ impl<R: Rule<D>, const D: usize> Method<'_, R, D> {
         Ok(())
     }
 
-    /// Finds the stage and the end of a step. The guards are asked in this order: contact, convergence, obstacles at the end of the
-    /// step, energy of a minimiser that is not exact, energy of the rule. One that refuses says what makes the step instead.
+    /// Finds the stage and the end of a step. The guards are applied in this order: contact, convergence, obstacles at the end of
+    /// the step, energy of a minimiser that is not exact, energy of the rule. A guard that refuses determines what replaces the
+    /// step.
     fn find_end(&self, system: &mut System<D>, workspace: &mut Workspace<D>, h: f64) -> Result<Found<R>, StepError> {
         let own = if system.pushes.is_some() { self.rule.pushed() } else { self.rule };
         let in_contact = own.in_contact();
@@ -214,7 +215,7 @@ impl<R: Rule<D>, const D: usize> Method<'_, R, D> {
         loop {
             let (balance, solved) = find_stage(rule, minimiser, system, workspace, h)?;
             if let Some(other) = in_contact.filter(|_| rule.in_contact().is_some() && workspace.contacting.any()) {
-                // A contact that nobody has foreseen.
+                // A contact that was not foreseen.
                 rule = other;
                 continue;
             }
@@ -242,7 +243,7 @@ impl<R: Rule<D>, const D: usize> Method<'_, R, D> {
         }
     }
 
-    /// The guard of growth: refuses a body that steps which have not converged have blown up.
+    /// The guard of growth: refuses a body that unconverged steps have blown up.
     fn refuse_growth(
         &self,
         system: &mut System<D>,
@@ -255,7 +256,7 @@ impl<R: Rule<D>, const D: usize> Method<'_, R, D> {
     }
 }
 
-/// Finds the stage of a rule, from the motion of the last step on.
+/// Finds the stage of a rule, starting from the motion of the last step.
 fn find_stage<R: Rule<D>, const D: usize>(
     rule: R,
     minimiser: &dyn Minimiser<D>,
@@ -266,7 +267,7 @@ fn find_stage<R: Rule<D>, const D: usize>(
     workspace.contacting.clear(system.nodes);
     let balance = rule.begin(system, workspace, h);
     workspace.hold(system, balance.theta, h);
-    // Pinned axes are where they have to be.
+    // Pinned axes start at their final positions.
     let Workspace { u, pin_displacement, v0, .. } = &mut *workspace;
     each_block(system.threads, D, [u], |first, [u]| {
         for (k, u) in (first..).zip(u) {
@@ -279,7 +280,7 @@ fn find_stage<R: Rule<D>, const D: usize>(
     Ok((balance, solved))
 }
 
-/// Whether any node would be on an obstacle at the end of the step, or in it, by its velocity alone.
+/// Whether its velocity alone would bring any node onto or into an obstacle by the end of the step.
 fn touches<const D: usize>(system: &System<D>, workspace: &Workspace<D>, h: f64) -> bool {
     let Some(obstacles) = &system.contacts else { return false };
     nodes::<D>(&workspace.x0).iter().zip(nodes::<D>(&workspace.v0)).any(|(from, velocity)| {

@@ -1,4 +1,4 @@
-//! How far a correction may lead towards obstacles where no inertia holds it back.
+//! Limits of corrections towards obstacles if there is no inertia.
 
 use super::balance::Balance;
 use super::contact::{Contact, Contacting};
@@ -12,21 +12,21 @@ use opruga_solve::blocks::nodes;
 /// The longest correction of a node in statics, in extents of the body.
 const LONGEST: f64 = 0.5;
 
-/// The depth in which nodes are caught, in extents of the body: whole rows of nodes behind a surface, all of which would be put
-/// onto it, are no shape to go on from.
+/// The depth up to which nodes are caught, in extents of the body. If whole rows of nodes behind a surface were all moved onto
+/// it, the resulting shape would be unusable.
 const CAUGHT: f64 = 1e-3;
 
-/// Bisections of the part, so that half the extent is divided more finely than `CAUGHT`.
+/// The number of bisections of the fraction of a step, so that half the extent is resolved more finely than `CAUGHT`.
 const BISECTIONS: usize = 12;
 
-/// How often a body is moved as a whole out of what it begins in, at most: from surface to surface.
+/// The largest number of moves that lift a body as a whole out of obstacles, from surface to surface.
 const MOST_LIFTS: u32 = 32;
 
-/// The depth in which no node may be left where forces balance, in extents of the body.
+/// The largest depth of a node in equilibrium, in extents of the body.
 const LEFT: f64 = 1e-6;
 
-/// Where no pin holds a body that begins deep in obstacles, the iteration begins with the body as a whole out of them, in
-/// `workspace.u`: put onto the surface one by one, nodes that are deep inside would tear it.
+/// If no pin holds a body that begins deep in obstacles, the iteration begins with the body moved out of them as a whole, in
+/// `workspace.u`: moving deep nodes onto the surface one by one would tear the body.
 pub(crate) fn lift_out<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, h: f64) {
     if system.contacts.is_none() || workspace.pin_displacement.iter().any(|displacement| !displacement.is_nan()) {
         return;
@@ -44,16 +44,17 @@ pub(crate) fn lift_out<const D: usize>(system: &System<D>, workspace: &mut Works
             lift[d] -= touch.gap * touch.normal[d];
         }
     }
-    // Between obstacles there is no room for the whole: it begins where it is.
+    // There is no room for the body between the obstacles, so it begins where it is.
 }
 
-/// Whether the displacement in `workspace.u` leaves a node in an obstacle that nothing else holds: one that changed sides too often.
+/// Whether the displacement in `workspace.u` leaves a node that nothing else holds inside an obstacle, because its contact
+/// changed too often.
 pub(crate) fn leaves_nodes_inside<const D: usize>(system: &System<D>, workspace: &Workspace<D>, h: f64) -> bool {
     let most = LEFT * workspace.extent;
     deepest(system, workspace, &|node, d| workspace.u[node * D + d], h).is_some_and(|touch| touch.gap < -most)
 }
 
-/// The deepest position of a node that no pin holds, at the displacements that `displacement` tells of nodes and axes; none where all are outside.
+/// The deepest position of a node that no pin holds, with `displacement` as a function of node and axis; none if all are outside.
 fn deepest<const D: usize>(
     system: &System<D>,
     workspace: &Workspace<D>,
@@ -78,8 +79,8 @@ fn deepest<const D: usize>(
     deepest
 }
 
-/// The part of the step in `workspace.step`, whose longest way is `longest`, that is gone at most in statics: it is not longer than the
-/// body, nor does it lead through obstacles.
+/// The largest fraction of the step in `workspace.step` that statics may take; the largest displacement of the step is `longest`.
+/// The limited step is not longer than the body and does not lead through obstacles.
 pub(super) fn part_without_inertia<const D: usize>(
     system: &System<D>,
     workspace: &Workspace<D>,
@@ -96,7 +97,7 @@ pub(super) fn part_without_inertia<const D: usize>(
 }
 
 impl<const D: usize> Contacting<D> {
-    /// The part of a step that ends where the first node that is not held comes into an obstacle, or the whole.
+    /// The fraction of a step at which the first free node enters an obstacle, or the whole.
     fn part_to_obstacles(&self, contact_query: &ContactQuery<'_, D>, step: &[f64]) -> f64 {
         if !self.comes_in(contact_query, step, 1.0) {
             return 1.0;
@@ -113,7 +114,7 @@ impl<const D: usize> Contacting<D> {
         allowed
     }
 
-    /// Whether a part of a step leads a node that is not held deeper into an obstacle than it is.
+    /// Whether a fraction of a step moves a free node deeper into an obstacle than it is.
     fn comes_in(&self, contact_query: &ContactQuery<'_, D>, step: &[f64], part: f64) -> bool {
         let ContactQuery { system, x0, u, theta, h, extent } = *contact_query;
         let Some(obstacles) = &system.contacts else { return false };

@@ -1,4 +1,4 @@
-//! The vectors that an implicit step works on.
+//! The vectors that an implicit step uses.
 
 use super::answer_matrix::AnswerMatrix;
 use super::contact::Contacting;
@@ -14,61 +14,61 @@ use opruga_core::threads::each_block;
 use opruga_math::Lane;
 use opruga_solve::blocks::{Block, isotropic, times};
 
-/// Room for an implicit step. Long vectors hold the coordinates of one node after the other.
+/// The workspace of an implicit step. Long vectors hold the coordinates of one node after the other.
 #[derive(Debug)]
 pub(crate) struct Workspace<const D: usize> {
-    /// State at the start.
+    /// The state at the start.
     pub(crate) x0: Vec<f64>,
     pub(crate) v0: Vec<f64>,
-    /// What pins have changed velocities by at the start of the step; empty: nothing.
+    /// The changes of velocities by pins at the start of the step; empty if there are none.
     pub(crate) kick: Vec<f64>,
-    /// Acceleration at the start, of rules that have one [m/s²].
+    /// The acceleration at the start, for rules that have one [m/s²].
     pub(crate) a0: Vec<f64>,
     /// Mass of every node [kg].
     pub(crate) mass: Vec<f64>,
-    /// The vectors of the stage, less x₀.
+    /// The vectors of the stage, relative to x₀.
     pub(crate) y: Vec<f64>,
     pub(crate) z: Vec<f64>,
-    /// The displacement of the stage from the start, u = x_s − x₀: so velocities lose no digits far from the origin.
+    /// The displacement of the stage from the start, u = x_s − x₀, so that velocities lose no digits far from the origin.
     pub(crate) u: Vec<f64>,
     /// Displacement and velocity at the end of the step.
     pub(crate) u1: Vec<f64>,
     pub(crate) v1: Vec<f64>,
-    /// The force of the models, and what is out of balance.
+    /// The force of the models, and the residual.
     pub(crate) force: Columns<D>,
-    /// The part of it that comes from outside.
+    /// The external part of the force.
     pub(crate) outer: Columns<D>,
     pub(crate) residual: Vec<f64>,
     pub(crate) trial: Vec<f64>,
     pub(crate) step: Vec<f64>,
     pub(crate) right: Vec<f64>,
-    /// The displacement from y, where a mass matrix couples nodes.
+    /// The displacement from y, if a mass matrix couples nodes.
     pub(crate) displacement: Vec<f64>,
-    /// What held directions take of the force [N].
+    /// The part of the force that held directions take [N].
     pub(crate) reaction: Vec<f64>,
     pub(crate) prescribed: Vec<f64>,
-    /// How far pinned axes have to go in the stage; not a number where an axis is free.
+    /// How far pinned axes have to move in the stage; NaN for free axes.
     pub(crate) pin_displacement: Vec<f64>,
-    /// Which nodes are quite free, and the projectors of the others.
+    /// Which nodes are entirely free, and the projectors of the others.
     pub(crate) free: Vec<bool>,
     pub(crate) projectors: Vec<Block<D>>,
     /// Nodes that met an obstacle in this step.
     pub(crate) struck: Vec<Struck<D>>,
-    /// What the rule will still add to velocities out of what it remembers [m/s].
+    /// The velocities that the rule will still add from its memory [m/s].
     pub(crate) memory: Vec<f64>,
     pub(crate) linear: Linear<D>,
-    /// The matrix by which its end answers to other bodies.
+    /// The matrix with which its end responds to other bodies.
     pub(crate) answer: AnswerMatrix<D>,
-    /// Whether the real-time setting factors its matrix with a solver that is asked for, once that was found out.
+    /// Whether the real-time setting factors its matrix with a given solver, once determined.
     pub(crate) direct: Option<(Solver, bool)>,
     /// The matrix of the real-time setting.
     pub(crate) reused: ReusedMatrix<D>,
     pub(crate) contacting: Contacting<D>,
-    /// The motions of the whole that are free.
+    /// The rigid motions that are free.
     pub(crate) rigid: Rigid<D>,
-    /// The last iterations, for what the matrix leaves out.
+    /// The last iterations, for mixing.
     pub(crate) mixing: Mixing,
-    /// The same for the forces that friction goes by, within a direction.
+    /// The same for the normal forces that determine friction, within a direction.
     pub(crate) friction: Mixing,
     /// The largest extent of the body [m].
     pub(crate) extent: f64,
@@ -114,7 +114,7 @@ impl<const D: usize> Default for Workspace<D> {
     }
 }
 
-/// Writes two numbers for every coordinate into columns; indices behind the last node have what that has.
+/// Writes two numbers for every coordinate into columns; indices after the last node repeat that node.
 pub(crate) fn write<const D: usize>(
     index_count: usize,
     nodes: usize,
@@ -187,8 +187,8 @@ impl<const D: usize> Workspace<D> {
         }
     }
 
-    /// Notes how far pinned axes have to go in the stage: a part `theta` of the way to where they have to be at the end of
-    /// the step, `h` after its start.
+    /// Sets how far pinned axes have to move in the stage: the fraction `theta` of the displacement to their positions at the end
+    /// of the step, `h` after its start.
     pub(crate) fn hold(&mut self, system: &System<D>, theta: f64, h: f64) {
         self.pin_displacement.fill(f64::NAN);
         for pin in &system.pins {
@@ -209,7 +209,7 @@ impl<const D: usize> Workspace<D> {
         write(index_count, nodes, threads, stage, |k| [x0[k] + u[k], beta * (u[k] - z[k])]);
     }
 
-    /// The largest force out of balance on a node along what nothing holds [N].
+    /// The largest residual on a node along free directions [N].
     pub(crate) fn largest_residual(&self) -> f64 {
         let mut largest: f64 = 0.0;
         for (node, rest) in self.residual.as_chunks::<D>().0.iter().enumerate() {
@@ -220,6 +220,6 @@ impl<const D: usize> Workspace<D> {
         largest.sqrt()
     }
 
-    /// The stage as forces are evaluated in it.
+    /// The stage in which forces are evaluated.
     pub(crate) const STAGE: Stage = Stage::Work(0);
 }

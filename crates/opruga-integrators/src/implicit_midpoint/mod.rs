@@ -2,18 +2,18 @@
 //!
 //! M (v₁ − v₀) = h F((x₀ + x₁)/2, (x₁ − x₀)/h, t + h/2),  x₁ = x₀ + ½ h (v₀ + v₁).
 //!
-//! Second order, stable for every step on linear systems, symplectic: without damping the amplitude of a linear oscillation
-//! stays as it is, at any h ω, and linear and angular momentum are kept to the tolerance of the iteration. What is too fast
-//! for the step is not damped but slowed down to half a turn in a step.
+//! Second order, stable for every step on linear systems, symplectic: without damping the amplitude of a linear oscillation stays
+//! constant at any h ω, and linear and angular momentum are conserved to the tolerance of the iteration. Motion that is too fast
+//! for the step is not damped but slowed down to half a period per step.
 //!
-//! The stage is the middle: a step of backward Euler of half the length, from which the second half goes on in a straight
-//! line. Energy is kept exactly where forces are linear; a stiff spring that turns within a step exchanges energy with its
-//! stretch, which bounds the step in practice.
+//! The stage is the midpoint: a step of backward Euler of half the length, which the second half extrapolates in a straight line.
+//! Energy is conserved exactly if forces are linear. A stiff spring that rotates within a step exchanges energy with its stretch,
+//! which limits the step in practice.
 //!
-//! In contact the tremor of a stiff body would never end, and friction would act on it. Steps in which obstacles hold nodes
-//! have their stage at θ = 1/(1 + 0.9) instead of ½: what is much faster than the step falls by the factor (1 − θ)/θ = 0.9,
-//! an oscillation with small hω by (θ − ½) h²ω² (the θ-method; Hughes 1987, 8.2). Where such a step would gain energy, as it may
-//! where stiff parts turn far, it is made by backward Euler.
+//! In contact the vibration of a stiff body would never end, and friction would act on it. So steps in which obstacles hold nodes
+//! have their stage at θ = 1/(1 + 0.9) instead of ½: motion much faster than the step falls by the factor (1 − θ)/θ = 0.9, and an
+//! oscillation with small hω by (θ − ½) h²ω² (the θ-method; Hughes 1987, 8.2). If such a step would gain energy, as may happen
+//! when stiff parts rotate far, it is made by backward Euler.
 //!
 //! Source: Hairer, Lubich, Wanner, *Geometric Numerical Integration*, II.1 and IV.2.
 
@@ -47,7 +47,7 @@ much faster than the step falls by a tenth in a step, so that bodies come to res
 #[derive(Debug)]
 pub struct ImplicitMidpointKind;
 
-/// The implicit midpoint rule, or in contact its stage a little later than in the middle.
+/// The implicit midpoint rule; in contact, its stage is a little later than the midpoint.
 #[derive(Clone, Copy, Debug)]
 pub struct ImplicitMidpoint(pub(crate) Theta);
 
@@ -76,7 +76,7 @@ impl<const D: usize> Rule<D> for ImplicitMidpoint {
         ImplicitMidpoint(Theta::END)
     }
     fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification {
-        // The mean velocity w obeys w (1 + θhc + θ²h²ω²) = v₀ − θhω² x₀, and v₁ = v₀ + (w − v₀)/θ.
+        // The mean velocity w satisfies w (1 + θhc + θ²h²ω²) = v₀ − θhω² x₀, and v₁ = v₀ + (w − v₀)/θ.
         let (square, theta) = (omega * omega, self.0.value());
         let factor = 1.0 / (1.0 + theta * h * c + theta * theta * h * h * square);
         let (of_x, of_v) = (-theta * h * square * factor, factor);

@@ -3,15 +3,15 @@
 //! x₁ = x₀ + h v₀ + h² ((½ − β) a₀ + β a₁),  v₁ = v₀ + h ((1 − γ) a₀ + γ a₁),
 //! M ((1 − α_m) a₁ + α_m a₀) = F(x_s, v_s, t_s),  x_s = (1 − α_f) x₁ + α_f x₀, v_s and t_s likewise.
 //!
-//! Without `spectral_radius` it is the rule of average acceleration: α_m = α_f = 0, γ = ½, β = ¼. Second order, stable for
-//! every step on linear systems, no damping at any frequency. With `spectral_radius` ρ from 0 to 1 it is the generalised-α
-//! method, whose amplitude at hω → ∞ falls by the factor ρ in a step and whose damping of slow motion is the least that this
-//! allows: α_m = (2ρ − 1)/(ρ + 1), α_f = ρ/(ρ + 1), γ = ½ − α_m + α_f, β = ¼ (1 − α_m + α_f)². Second order as well.
+//! Without `spectral_radius` it is the average acceleration method: α_m = α_f = 0, γ = ½, β = ¼. Second order, stable for every
+//! step on linear systems, no damping at any frequency. With `spectral_radius` ρ from 0 to 1 it is the generalised-α method. Its
+//! amplitude at hω → ∞ falls by the factor ρ in a step, and its damping of slow motion is the smallest that this permits: α_m =
+//! (2ρ − 1)/(ρ + 1), α_f = ρ/(ρ + 1), γ = ½ − α_m + α_f, β = ¼ (1 − α_m + α_f)². Second order as well.
 //!
-//! **What it remembers** is the acceleration. It begins with F/M, and so it does again after a program has placed a node.
-//! Nodes that meet an obstacle forget theirs across the surface: it belongs to the time before the impact. Free fall is exact.
-//! The rule of average acceleration damps nothing and would feed an oscillation of the contact forces (Hughes et al. 1976): steps
-//! in which obstacles hold nodes are those of the implicit midpoint rule in contact, to which it is akin.
+//! **Memory.** The integrator remembers the acceleration. It begins with F/M, and does so again after a program has placed a
+//! node. Nodes that meet an obstacle lose the component of theirs normal to the surface, because it belongs to the time before
+//! the impact. Free fall is exact. The average acceleration method damps nothing and would sustain an oscillation of the contact
+//! forces (Hughes et al. 1976). So steps in which obstacles hold nodes use the related implicit midpoint rule in contact.
 //!
 //! Source: Newmark 1959; Chung and Hulbert, *A time integration algorithm for structural dynamics with improved numerical
 //! dissipation: the generalized-α method*, 1993 (the force in the averaged state: Erlicher, Bonaventura, Bursi 2002).
@@ -71,7 +71,7 @@ pub struct Newmark {
     alpha_f: f64,
     beta: f64,
     gamma: f64,
-    /// A step of the θ-method instead.
+    /// A step of the θ-method, used instead.
     theta: Option<Theta>,
 }
 
@@ -112,7 +112,7 @@ impl<const D: usize> Rule<D> for Newmark {
         vec![ACCELERATION.declared(), BEGUN.declared()]
     }
     fn in_contact(self) -> Option<Self> {
-        // Average acceleration keeps every oscillation.
+        // Average acceleration conserves every oscillation.
         let keeps = self.alpha_m == 0.0 && self.alpha_f == 0.0 && self.theta.is_none();
         keeps.then_some(Newmark { theta: Some(Theta::IN_CONTACT), ..self })
     }
@@ -127,7 +127,8 @@ impl<const D: usize> Rule<D> for Newmark {
         let (square, theta) = (omega * omega, 1.0 - alpha_f);
         let factor = 1.0 / (1.0 - alpha_m + theta * (square * h * h * beta + c * h * gamma));
         let (early, kick) = (h * h * (0.5 - beta), h * (1.0 - gamma));
-        // At ρ = 1 the mean of both accelerations is what the equation gives: the next motion depends on none that went before.
+        // At ρ = 1 the mean of both accelerations is what the equation gives, so the next motion does not depend on earlier
+        // accelerations.
         let keeps = alpha_m == 0.5 && alpha_f == 0.5;
         let kept = (alpha_m + square * theta * early + c * theta * kick) * factor;
         let a = [-square * factor, -(square * theta * h + c) * factor, if keeps { -1.0 } else { -kept }];
@@ -148,7 +149,7 @@ impl<const D: usize> Rule<D> for Newmark {
         let theta = 1.0 - alpha_f;
         let rate = gamma / (beta * h);
         first_acceleration(system, workspace);
-        // What pins have just taken hold of is not accelerated any more; its neighbours would feel it.
+        // Nodes that pins have just caught no longer accelerate; otherwise it would affect their neighbours.
         let stopped = if begun && system.inertia.is_some() { pinned_coordinates(system) } else { Vec::new() };
         for node in 0..system.nodes {
             for d in 0..D {
@@ -210,7 +211,7 @@ impl<const D: usize> Rule<D> for Newmark {
             let a = times(&struck.kept, &last.at(struck.node));
             last.set(struck.node, a);
         }
-        // What an obstacle or a pin holds is not accelerated where it is held.
+        // A node does not accelerate in the directions in which an obstacle or a pin holds it.
         for node in (0..nodes).filter(|node| !workspace.free[*node]) {
             let along = times(&workspace.projectors[node], &last.at(node));
             last.set(node, along);
@@ -219,7 +220,7 @@ impl<const D: usize> Rule<D> for Newmark {
     }
 }
 
-/// M a₀ = F at the start; where nodes are coupled, those that are held do not accelerate.
+/// M a₀ = F at the start; if nodes are coupled, pinned ones do not accelerate.
 fn first_acceleration<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>) {
     let Workspace { a0, force, right, .. } = workspace;
     a0.clear();

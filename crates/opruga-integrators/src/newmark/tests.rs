@@ -1,4 +1,4 @@
-//! Order 2, no limit, damping at high frequencies as asked for, free fall is exact.
+//! Order 2, no limit, the specified damping at high frequencies, exact free fall.
 
 use super::{Newmark, SPEC};
 use crate::implicit::step::Implicit;
@@ -42,13 +42,12 @@ fn free_fall_is_exact() {
     }
 }
 
-/// The largest eigenvalue at hω → ∞ is the one that was asked for (Chung and Hulbert 1993), and average acceleration has 1
-/// everywhere.
+/// The largest eigenvalue at hω → ∞ is the specified one (Chung and Hulbert 1993); for average acceleration it is 1 everywhere.
 #[test]
 fn the_spectral_radius_is_the_one_that_was_asked_for() {
     for rho in [0.0, 0.3, 0.8, 1.0] {
         let radius = Integrator::<2>::amplification(&rule(Some(rho)), 1.0, 0.0, 1e7).spectral_radius();
-        // Three eigenvalues meet there: a perturbation ε moves them by its cube root.
+        // Three eigenvalues coincide there: a perturbation ε moves them by its cube root.
         assert!((radius - rho).abs() < 2e-4, "{rho}: {radius}");
     }
     for z in [0.1, 1.0, 10.0, 1e4] {
@@ -59,7 +58,7 @@ fn the_spectral_radius_is_the_one_that_was_asked_for() {
     }
 }
 
-/// The rule that keeps every oscillation has no limit and lets none grow, damped or not: rounding is no growth.
+/// The rule that conserves every oscillation has no limit and lets none grow, damped or not: rounding does not count as growth.
 #[test]
 fn a_radius_of_one_lets_nothing_grow() {
     for rho in [0.0, 0.5, 0.9, 0.99, 0.999, 1.0] {

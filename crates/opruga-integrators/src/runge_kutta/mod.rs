@@ -10,13 +10,13 @@
 //! y  = y₀ + h/6 (k₀ + 2 k₁ + 2 k₂ + k₃)        | ⅙  ⅓  ⅓  ⅙
 //! ```
 //!
-//! Fourth order (also with damping), four forces per step. The stability function is R(z) = 1 + z + z²/2 + z³/6 + z⁴/24;
-//! on the imaginary axis |R|² = 1 − (hω)⁶/72 + (hω)⁸/576: stable without damping for h ω ≤ 2√2 = 2.828, where it takes
-//! energy out: (hω)⁶/72 of it per step. A mode without stiffness is stable for h c ≤ 2.785. Free fall is exact.
+//! Fourth order (also with damping), four forces per step. The stability function is R(z) = 1 + z + z²/2 + z³/6 + z⁴/24; on the
+//! imaginary axis |R|² = 1 − (hω)⁶/72 + (hω)⁸/576: stable without damping for h ω ≤ 2√2 = 2.828, where it dissipates the fraction
+//! (hω)⁶/72 of the energy per step. A mode without stiffness is stable for h c ≤ 2.785. Free fall is exact.
 //!
-//! **How the slopes are kept.** They are not: h a₀ = 2 (v₁ − v₀), h a₁ = 2 (v₂ − v₀), h a₂ = v₃ − v₀, and the slopes of x are
-//! the velocities of the stages. All but h a₃/6 of the end is therefore known when y₃ is, and replaces y₂ then. Two
-//! pairs of work columns serve four stages:
+//! **Slopes are not stored**: h a₀ = 2 (v₁ − v₀), h a₁ = 2 (v₂ − v₀), h a₂ = v₃ − v₀, and the slopes of x are the velocities of
+//! the stages. The end except for h a₃/6 is therefore known as soon as y₃ is, and replaces y₂. Two pairs of work columns are
+//! enough for four stages:
 //!
 //! ```text
 //! stage   forces in   reads           writes
@@ -55,7 +55,7 @@ Four forces per step. Stable without damping for h ω ≤ 2.828, where it takes 
 #[derive(Debug)]
 pub struct RungeKuttaKind;
 
-/// The classical rule of fourth order.
+/// The classical fourth-order method.
 #[derive(Clone, Copy, Debug)]
 pub struct RungeKutta;
 

@@ -1,5 +1,5 @@
-//! What every integrator owes a system: obstacles once per step and with the positions before it, pins, the ledger, the
-//! clock, and the same bits with any vector instructions.
+//! The contract of every integrator: obstacles once per step and with the positions before it, pins, the ledger, the clock, and
+//! the same bits with any vector instructions.
 
 use super::{oscillator, problems, run, state, two_nodes};
 use crate::explicit_euler::ExplicitEuler;
@@ -15,10 +15,10 @@ use opruga_core::system::{Pin, System};
 use opruga_math::Simd;
 use std::sync::{Arc, Mutex};
 
-/// Rules that show obstacles the end of their steps.
+/// Integrators that pass the end of their steps to obstacles.
 const EXPLICIT: [&dyn Integrator<2>; 5] = [&ExplicitEuler, &SymplecticEuler, &Heun, &Verlet, &RungeKutta];
 
-/// Every rule that steps through time, with its order.
+/// Every integrator of motion in time, with its order.
 fn rules() -> Vec<(Box<dyn Integrator<2>>, f64)> {
     let orders = |kind: &str| match kind {
         "explicit_euler" | "symplectic_euler" | "backward_euler" => Some(1.0),
@@ -58,7 +58,7 @@ fn every_kind_is_registered_once() {
     }
 }
 
-/// Writes down what obstacles are shown.
+/// Records what obstacles receive.
 #[derive(Debug, Default)]
 struct Witness(Mutex<Vec<(f64, f64, f64)>>);
 
@@ -95,7 +95,7 @@ fn held_axes_follow_their_path() {
     for (rule, _) in &rules() {
         let rule = &**rule;
         let mut system = two_nodes::<2>(0.5);
-        // The first node is led along x with 2 m/s from (1, 0) and is free along y; the second is held in y.
+        // The first node moves along x with 2 m/s from (1, 0) and is free along y; the second is pinned in y.
         let motion = Arc::new(vec![vec![0.0, 0.0, 0.0], vec![10.0, 20.0, 0.0]]);
         system.pins.push(Pin { index: 0, axes: [true, false], anchor: [1.0, 0.0], motion });
         system.pins.push(Pin { index: 1, axes: [false, true], anchor: [0.0, 0.25], motion: Arc::default() });
@@ -107,7 +107,7 @@ fn held_axes_follow_their_path() {
     }
 }
 
-/// The damping account plus the energy is constant but for the error of the rule, which falls at its order.
+/// The damping account plus the energy is constant except for the error of the integrator, which falls at its order.
 #[test]
 fn the_ledger_closes_at_the_order_of_the_rule() {
     for (rule, order) in &rules() {
@@ -120,13 +120,13 @@ fn the_ledger_closes_at_the_order_of_the_rule() {
             assert!(damped > 0.01, "{}", rule.name());
             (problems::energy_of_two_nodes(&system) + damped - before).abs()
         };
-        // Over four halvings: errors of opposite sign meet somewhere on the way.
+        // Over four halvings, because errors of opposite sign may cancel on the way.
         let observed = libm::log2(gap(50) / gap(800)) / 4.0;
         assert!(observed >= order - 0.2, "{}: {observed}", rule.name());
     }
 }
 
-/// A node that is led along a straight path: the pins' work is in the ledger, which closes at the order of the rule.
+/// A node that is moved along a straight path: the work of the pin is in the ledger, which closes at the order of the integrator.
 #[test]
 fn the_work_of_pins_is_in_the_ledger() {
     for (rule, order) in &rules() {
@@ -136,7 +136,7 @@ fn the_work_of_pins_is_in_the_ledger() {
             system.gravity = [0.3, -2.0];
             let (start, speed) = (system.state.x.at(0), [2.0, -0.5]);
             let motion = Arc::new(vec![vec![0.0, 0.0, 0.0], vec![10.0, 10.0 * speed[0], 10.0 * speed[1]]]);
-            // The same node twice: it is held once.
+            // The same node twice: it is pinned once.
             system.pins.push(Pin { index: 0, axes: [true, true], anchor: start, motion: Arc::clone(&motion) });
             system.pins.push(Pin { index: 0, axes: [true, false], anchor: start, motion });
             system.state.v.set(0, speed);
@@ -175,7 +175,7 @@ fn bits_depend_neither_on_instructions_nor_on_the_layout() {
             assert_eq!(run_with(simd), expected, "{} {simd:?}", rule.name());
         }
 
-        // Implicit rules are given one body at a time.
+        // Implicit integrators process one body at a time.
         if rule.needs().hessian {
             continue;
         }

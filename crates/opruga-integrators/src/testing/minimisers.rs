@@ -1,4 +1,5 @@
-//! A minimiser that shares nothing with Newton's method reaches the same incremental potential, and rules do not see which one it was.
+//! A minimiser that shares nothing with Newton's method reaches the same incremental potential, and rules do not depend on which
+//! one is used.
 
 use super::problems::Springs;
 use super::{distance, state};
@@ -25,7 +26,7 @@ use opruga_core::state::{Columns, Layout, Parameter};
 use opruga_core::system::System;
 use opruga_math::{Lane, Simd};
 
-/// Gradient descent: each node by the mean diagonal of its own block alone, with a line search by energy.
+/// Gradient descent: each node moves with the mean diagonal of its own block, with a line search by energy.
 #[derive(Debug)]
 struct GradientDescent(Settings);
 
@@ -74,12 +75,12 @@ impl Minimiser<2> for GradientDescent {
     }
 }
 
-/// Lets both find the same stage from the same start; what Newton's method finds counts.
+/// Lets both find the same stage from the same start; the result of Newton's method counts.
 #[derive(Debug)]
 struct Both {
     newton: Newton,
     descent: GradientDescent,
-    /// Φ where both begin, and where gradient descent and Newton's method end [J].
+    /// Φ at the common start, and at the ends of gradient descent and Newton's method [J].
     energies: RefCell<Vec<[f64; 3]>>,
 }
 
@@ -106,7 +107,7 @@ impl Minimiser<2> for Both {
     }
 }
 
-/// A ring of eight nodes with springs along it and across, that is stretched, spins and is pushed at one node.
+/// A ring of eight nodes with springs along and across it, which is stretched, spins and is pushed at one node.
 fn ring() -> System<2> {
     let (mut x, mut v) = (Columns::zeros(8), Columns::zeros(8));
     for node in 0..8 {
@@ -143,7 +144,7 @@ fn check<R: Rule<2>>(spec: &'static Spec, rule: R) {
         let apart = (descended - found).abs();
         assert!(apart <= 1e-8 * (begun - found), "{}: {descended} and {found} from {begun}", spec.kind);
     }
-    // And whole steps, with what rules remember.
+    // Whole steps too, with the memory of rules.
     let apart = distance(&by_newton, &by_descent) / distance(&by_newton, &vec![0.0; by_newton.len()]);
     assert!(apart <= 1e-8, "{}: {apart}", spec.kind);
 }

@@ -1,4 +1,4 @@
-//! What the tests of all integrators share: small problems with closed forms, and measurements on them.
+//! Common code of the tests of all integrators: small problems with closed forms, and measurements on them.
 
 mod contract;
 mod minimisers;
@@ -32,7 +32,7 @@ pub(crate) fn run<const D: usize>(system: &mut System<D>, integrator: &dyn Integ
     }
 }
 
-/// The vectors that a history keeps of the first node.
+/// The vectors that a history stores for the first node.
 fn vectors<const D: usize>(system: &System<D>) -> Vec<[f64; D]> {
     let of = |(_, content): (_, &Content<D>)| match content {
         Content::Vectors(vectors) => Some(vectors.at(0)),
@@ -45,7 +45,7 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
 }
 
-/// `amplification` against one computed step from (1, 0) and (0, 1), in all coordinates.
+/// Compares `amplification` with one computed step from (1, 0) and (0, 1), in all coordinates.
 fn matrix_of_one_step<const D: usize>(integrator: &dyn Integrator<D>) {
     for (omega, c, h) in
         [(1.0, 0.0, 0.1), (3.0, 0.5, 0.2), (80.0, 160.0, 0.004), (0.0, 2.0, 0.3), (7.0, 30.0, 0.05), (50.0, 1.0, 0.1)]
@@ -56,7 +56,7 @@ fn matrix_of_one_step<const D: usize>(integrator: &dyn Integrator<D>) {
             let one = |row: usize| if row == column { 1.0 } else { 0.0 };
             let mut system = oscillator::<D>(mass, mass * omega * omega, mass * c, one(0), one(1));
             system.equip(integrator);
-            // Of rules with a history, a step in the middle of a run.
+            // For integrators with a history, a step in the middle of a run.
             let mut row = 2;
             for (_, content) in system.history.channels_mut() {
                 match content {
@@ -85,13 +85,13 @@ fn matrix_of_one_step<const D: usize>(integrator: &dyn Integrator<D>) {
     }
 }
 
-/// `amplification` against computed steps, in the plane and in space.
+/// Compares `amplification` with computed steps, in the plane and in space.
 pub(crate) fn check_amplification(plane: &dyn Integrator<2>, space: &dyn Integrator<3>) {
     matrix_of_one_step(plane);
     matrix_of_one_step(space);
 }
 
-/// Observed orders on x″ = −ω²x − c x′ (closed form) with a step that is halved four times.
+/// The observed orders on x″ = −ω²x − c x′ (closed form) with a step that is halved four times.
 fn orders_of_oscillator<const D: usize>(integrator: &dyn Integrator<D>, c: f64) -> Vec<f64> {
     let (omega, end): (f64, f64) = (3.0, 1.3);
     let fast = (omega * omega - 0.25 * c * c).sqrt();
@@ -110,7 +110,7 @@ fn orders_of_oscillator<const D: usize>(integrator: &dyn Integrator<D>, c: f64) 
     errors.windows(2).map(|e| libm::log2(e[0] / e[1])).collect()
 }
 
-/// Observed orders on a spinning, stretched spring between two nodes, from the differences of successive halvings.
+/// The observed orders on a spinning, stretched spring between two nodes, from the differences of successive halvings.
 fn orders_of_spring<const D: usize>(integrator: &dyn Integrator<D>, damping: f64) -> Vec<f64> {
     let ends: Vec<Vec<f64>> = [50, 100, 200, 400, 800]
         .map(|steps| {
@@ -123,7 +123,7 @@ fn orders_of_spring<const D: usize>(integrator: &dyn Integrator<D>, damping: f64
     gaps.windows(2).map(|g| libm::log2(g[0] / g[1])).collect()
 }
 
-/// The observed order is at least `theory − 0.2`, three times in a row, on linear and nonlinear problems, with and
+/// Checks that the observed order is at least `theory − 0.2`, three times in a row, on linear and nonlinear problems, with and
 /// without damping, in the plane and in space.
 pub(crate) fn check_order(plane: &dyn Integrator<2>, space: &dyn Integrator<3>, theory: f64) {
     let rows = [
@@ -137,7 +137,7 @@ pub(crate) fn check_order(plane: &dyn Integrator<2>, space: &dyn Integrator<3>, 
     for (problem, orders) in rows {
         assert!(orders.len() >= 3);
         assert!(orders.iter().all(|p| *p >= theory - 0.2), "{problem}: {orders:?}, theory {theory}");
-        // And not by accident a better rule than the documentation says.
+        // And that the integrator is not accidentally better than documented.
         assert!(orders.iter().all(|p| *p <= theory + 0.6), "{problem}: {orders:?}, theory {theory}");
     }
 }
@@ -162,7 +162,7 @@ pub(crate) fn check_free_fall(integrator: &dyn Integrator<3>, factor: fn(f64) ->
     assert!((system.time - 10.0).abs() < 1e-9);
 }
 
-/// Stable for every step, however large, with and without damping.
+/// Checks stability for every step, however large, with and without damping.
 pub(crate) fn check_no_limit(integrator: &dyn Integrator<2>) {
     for (omega, damping) in [
         (5.0, 0.0),
@@ -186,7 +186,7 @@ pub(crate) fn check_no_limit(integrator: &dyn Integrator<2>) {
     }
 }
 
-/// Linear and angular momentum of a damped, spinning, drifting pair after many steps, relative to the largest share.
+/// The drift of linear and angular momentum of a damped, spinning, drifting pair after many steps, relative to the largest term.
 pub(crate) fn drift_of_momentum(integrator: &dyn Integrator<2>, h: f64, steps: usize) -> [f64; 2] {
     let mut system = two_nodes::<2>(0.4);
     let momenta = |system: &System<2>| {
@@ -205,7 +205,7 @@ pub(crate) fn drift_of_momentum(integrator: &dyn Integrator<2>, h: f64, steps: u
     [((after[0] - before[0]).abs() + (after[1] - before[1]).abs()) / 3.0, (after[2] - before[2]).abs() / 3.0]
 }
 
-/// The undamped stability limit hω: amplitudes stay bounded just below it and explode just above it.
+/// Checks the undamped stability limit hω: amplitudes stay bounded just below it and explode just above it.
 pub(crate) fn check_limit(integrator: &dyn Integrator<2>, limit: f64) {
     let omega = 5.0;
     let largest = |factor: f64| {
@@ -219,7 +219,7 @@ pub(crate) fn check_limit(integrator: &dyn Integrator<2>, limit: f64) {
     assert!((estimate * omega - limit).abs() < 1e-4 * limit, "{estimate}");
 }
 
-/// Without damping every step lets the amplitude grow, as fast as `growth(hω)` per step says.
+/// Checks that without damping the amplitude grows in every step, at the rate `growth(hω)` per step.
 pub(crate) fn check_no_stable_step(integrator: &dyn Integrator<2>, growth: fn(f64) -> f64) {
     let omega = 5.0;
     assert_eq!(Spectrum::uniform(omega, 0.0).largest_stable_step(integrator), None);
@@ -237,7 +237,8 @@ pub(crate) fn check_no_stable_step(integrator: &dyn Integrator<2>, growth: fn(f6
     }
 }
 
-/// Energy of an undamped nonlinear spring stays within a bound that shrinks with h to the power `order`, for a long time.
+/// Checks that the energy of an undamped nonlinear spring stays, for a long time, within a bound that shrinks with h to the power
+/// `order`.
 pub(crate) fn check_bounded_energy(integrator: &dyn Integrator<2>, order: f64) {
     let mut bounds = Vec::new();
     for steps_per_second in [100.0, 200.0] {
@@ -252,7 +253,7 @@ pub(crate) fn check_bounded_energy(integrator: &dyn Integrator<2>, order: f64) {
             let worst = if n < 20_000 { &mut early } else { &mut late };
             *worst = if drift > *worst { drift } else { *worst };
         }
-        // No drift: the error of the last nine tenths is that of the first tenth.
+        // No drift: the error in the last nine tenths equals that in the first tenth.
         assert!(late < 1.05 * early, "{early} {late}");
         bounds.push(late);
     }

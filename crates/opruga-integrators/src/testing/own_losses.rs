@@ -1,4 +1,4 @@
-//! What implicit rules dissipate by themselves, against their formulas in differences of states, and the ledger with it.
+//! The own dissipation of implicit integrators, compared with formulas in differences of states, and the ledger.
 
 use super::{problems, two_nodes};
 use opruga_core::history::Content;
@@ -12,13 +12,13 @@ use std::sync::Arc;
 const NODES: usize = 2;
 type Vectors = [[f64; 2]; NODES];
 
-/// Which formula a rule goes by.
+/// The formula of an integrator.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Formula {
     BackwardEuler,
     Bdf2,
     Midpoint,
-    /// The generalised-α method with its spectral radius; none: average acceleration.
+    /// The generalised-α method with its spectral radius; none for average acceleration.
     GeneralisedAlpha(Option<f64>),
 }
 
@@ -51,7 +51,7 @@ impl Formula {
     }
 }
 
-/// A state: positions, velocities, ∇U, accelerations that a rule remembers, U.
+/// A state: positions, velocities, ∇U, the remembered accelerations, U.
 #[derive(Clone, Copy, Debug)]
 struct Moment {
     x: Vectors,
@@ -104,7 +104,7 @@ fn gradient_at(system: &mut System<2>, x: &Vectors) -> Vectors {
     of(&forces).map(|f| f.map(|f| -f))
 }
 
-/// The formulas in differences of states; `before` is the state at the start of the step before this one.
+/// The formulas in differences of states; `before` is the state at the start of the previous step.
 fn dissipated(formula: Formula, system: &mut System<2>, [before, start, end]: [Option<Moment>; 3], h: f64) -> f64 {
     let (start, end) = (start.unwrap(), end.unwrap());
     let (dx, dv) = (less(&end.x, &start.x), less(&end.v, &start.v));
@@ -139,8 +139,8 @@ fn dissipated(formula: Formula, system: &mut System<2>, [before, start, end]: [O
     }
 }
 
-/// A spring that spins, drifts and swings far, undamped, nine steps a period: every step by its formula, and all together by the
-/// energy that is missing in the end.
+/// A spring that spins, drifts and oscillates with a large amplitude, undamped, nine steps per period: every step obeys its
+/// formula, and their sum is the energy that is missing in the end.
 #[test]
 fn what_a_rule_dissipates_is_what_its_formula_says() {
     for formula in FORMULAS {
@@ -167,14 +167,14 @@ fn what_a_rule_dissipates_is_what_its_formula_says() {
         }
         let missing = begun - problems::energy_of_two_nodes(&system);
         assert!((all - missing).abs() < 1e-10 * begun, "{formula:?}: {all} {missing}");
-        // It is no formula of zeros: what rules exchange with a spring that turns is seen.
+        // The formulas are not trivially zero: the energy exchanged with a rotating spring is visible.
         assert!(most > 1e-4 * begun, "{formula:?}: {most}");
         let damps = matches!(formula, Formula::BackwardEuler | Formula::GeneralisedAlpha(Some(0.0)));
         assert!(!damps || all > 0.05 * begun, "{formula:?}: {all} of {begun}");
     }
 }
 
-/// With a damper, with weight, with a node that a pin leads, and steps of other lengths: nothing is left unexplained.
+/// With a damper, weight, a node that a pin moves, and steps of other lengths: nothing remains unexplained.
 #[test]
 fn the_ledger_of_implicit_rules_closes_whatever_acts() {
     for formula in FORMULAS {

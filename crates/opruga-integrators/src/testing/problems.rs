@@ -1,4 +1,4 @@
-//! Small models, written once more and plainly, since integrators cannot see the crate of models.
+//! Small models, written independently and plainly, since integrators do not depend on the crate of models.
 
 use opruga_core::error::StepError;
 use opruga_core::potential::{Definiteness, Observe, Potential, Properties, Sink, Views};
@@ -61,7 +61,7 @@ pub(crate) fn oscillator<const D: usize>(mass: f64, stiffness: f64, damping: f64
     system
 }
 
-/// Springs with damping along their axes, closed to a ring or not, and in the plane a gas inside: isothermal, p = nRT/A.
+/// Springs with damping along their axes, closed to a ring or not; in the plane, with a gas inside: isothermal, p = nRT/A.
 #[derive(Debug)]
 pub(crate) struct Springs {
     pub(crate) pairs: Vec<[usize; 2]>,
@@ -80,7 +80,7 @@ impl Springs {
 }
 
 impl Springs {
-    /// Delivers matrices of so much along each spring, and so much across.
+    /// Delivers matrices with one factor along each spring and another across it.
     fn deliver<const D: usize>(&self, view: &View<D>, sink: &mut dyn Sink<D>, strength: impl Fn(f64) -> [f64; 2]) {
         for &[a, b] in &self.pairs {
             let d: [f64; D] = core::array::from_fn(|i| view.x[i][a] - view.x[i][b]);

@@ -1,4 +1,4 @@
-//! The rate of the display leaves no trace in the state.
+//! The frame rate of the display leaves no trace in the state.
 
 use super::{state, two_nodes};
 use crate::symplectic_euler::SymplecticEuler;

@@ -1,4 +1,4 @@
-//! Estimated limits against closed-form spectra and against the onset of instability found by running.
+//! Estimated limits, compared with closed-form spectra and with the onset of instability in runs.
 
 use super::problems::{Anchors, Springs};
 use crate::explicit_euler::ExplicitEuler;
@@ -12,7 +12,7 @@ use opruga_core::state::{Columns, Layout, Parameter};
 use opruga_core::system::System;
 use opruga_math::Simd;
 
-/// A ring of radius `radius` whose springs are at rest with edges `rest` times as long, and a gas inside.
+/// A ring of radius `radius` whose springs have rest lengths of `rest` times the edges, and a gas inside.
 fn ring(nodes: usize, radius: f64, rest: f64, stiffness: f64, damping: f64, gas: f64) -> System<2> {
     let (mut x, v) =
         (Columns::zeros(Layout::Single.index_count(nodes)), Columns::zeros(Layout::Single.index_count(nodes)));
@@ -32,7 +32,7 @@ fn estimated(system: &System<2>, integrator: &dyn Integrator<2>) -> Stability {
     estimate(system, integrator).unwrap()
 }
 
-/// Whether small disturbances of an equilibrium grow. They stay within the linear range as long as they do not.
+/// Whether small disturbances of an equilibrium grow. If they do not, they stay within the linear range.
 fn grows(mut system: System<2>, integrator: &dyn Integrator<2>, h: f64, steps: usize) -> bool {
     system.plan(integrator.work_columns());
     let at_rest = system.state.x.clone();
@@ -49,7 +49,7 @@ fn grows(mut system: System<2>, integrator: &dyn Integrator<2>, h: f64, steps: u
     !(0..system.nodes).all(|p| (0..2).all(|d| far(d, p) < 1000.0 * size))
 }
 
-/// The largest h that does not grow within so many steps, by bisection.
+/// The largest h without growth within `steps` steps, by bisection.
 fn onset(make: &dyn Fn() -> System<2>, integrator: &dyn Integrator<2>, guess: f64, steps: usize) -> f64 {
     let (mut low, mut high) = (0.5 * guess, 2.0 * guess);
     assert!(!grows(make(), integrator, low, steps) && grows(make(), integrator, high, steps));
@@ -64,14 +64,14 @@ fn onset(make: &dyn Fn() -> System<2>, integrator: &dyn Integrator<2>, guess: f6
     low
 }
 
-/// A ring of an even number of springs at rest, in which neighbours move against one another: ω² = 4k/m, at most; on a
-/// circle the alternating motion along the edges stretches each by 2 cos(π/N).
+/// A ring of an even number of springs at rest, in which neighbours move in opposite directions: ω² = 4k/m at most. On a circle,
+/// the alternating motion along the edges stretches each by 2 cos(π/N).
 #[test]
 fn rings_have_the_frequency_of_their_closed_form() {
     for nodes in [4, 6, 36, 300, 1024, 4096] {
         let system = ring(nodes, 1.0, 1.0, 1600.0, 40.0, 0.0);
         let stability = estimated(&system, &SymplecticEuler);
-        // All springs stretched by turns, all nodes along the radius or along the edge, whichever is faster.
+        // All springs stretched alternately, all nodes along the radius or along the edge, whichever is faster.
         let (sin, cos) =
             (libm::sin(core::f64::consts::PI / nodes as f64), libm::cos(core::f64::consts::PI / nodes as f64));
         let omega = 80.0 * if sin > cos { sin } else { cos };
@@ -98,12 +98,12 @@ fn the_step_of_the_thesis_ball() {
     assert!((0.0242..0.0251).contains(&undamped), "{undamped}");
 }
 
-/// Estimates lie below the true onset, and not more than a tenth, with and without damping, with and without gas.
+/// Estimates are below the true onset, but by no more than a tenth, with and without damping, with and without gas.
 #[test]
 fn estimates_lie_just_below_the_onset() {
     let rules: [&dyn Integrator<2>; 3] = [&SymplecticEuler, &Verlet, &RungeKutta];
     for (damping, gas) in [(0.0, 0.0), (40.0, 0.0), (4.0, 0.0), (0.0, 2e6), (40.0, 2e6), (0.0, 5e7)] {
-        // Balance of tension and pressure: k (l − l₀) = 2 nRT/(N l).
+        // Equilibrium of tension and pressure: k (l − l₀) = 2 nRT/(N l).
         let edge = 2.0 * 100.0 * libm::sin(core::f64::consts::PI / 36.0);
         let rest = 1.0 - 2.0 * gas / (36.0 * 1600.0 * edge * edge);
         let make = || ring(36, 100.0, rest, 1600.0, damping, gas);
@@ -119,7 +119,7 @@ fn estimates_lie_just_below_the_onset() {
     }
 }
 
-/// Where modes may be undamped, explicit Euler and Heun have no stable step; with drag on every node they have.
+/// If modes may be undamped, explicit Euler and Heun have no stable step; with drag on every node they have one.
 #[test]
 fn rules_that_need_damping_of_every_mode() {
     let rules: [&dyn Integrator<2>; 2] = [&ExplicitEuler, &Heun];
@@ -134,7 +134,7 @@ fn rules_that_need_damping_of_every_mode() {
             system
         };
         let limit = estimated(&make(), rule).largest_stable_step.unwrap();
-        // The fastest mode alone: ω = 80 cos(π/36), c = 5.
+        // Only the fastest mode: ω = 80 cos(π/36), c = 5.
         let fastest = 80.0 * libm::cos(core::f64::consts::PI / 36.0);
         let exact = Spectrum::uniform(fastest, 5.0).largest_stable_step(rule).unwrap();
         assert!(limit <= exact && limit >= 0.9 * exact, "{}: {limit} {exact}", rule.name());
@@ -142,13 +142,13 @@ fn rules_that_need_damping_of_every_mode() {
     }
 }
 
-/// A drag that is weak beside the damping of springs gives every mode a stable step all the same.
+/// A drag that is weak compared with the damping of springs still gives every mode a stable step.
 #[test]
 fn a_weak_drag_beside_damped_springs_gives_a_stable_step() {
     let rules: [&dyn Integrator<2>; 2] = [&ExplicitEuler, &Heun];
     for rule in rules {
         for drag in [0.5, 1.5, 5.0] {
-            // Springs under tension: motions across them are not damped by them.
+            // Springs under tension do not damp motions across them.
             let make = || {
                 let mut system = ring(36, 100.0, 0.9, 1600.0, 40.0, 0.0);
                 system.add(Box::new(Anchors { stiffness: 0.0, damping: drag }));
@@ -160,8 +160,8 @@ fn a_weak_drag_beside_damped_springs_gives_a_stable_step() {
     }
 }
 
-/// Springs damped in proportion, c = γ k: explicit Euler is stable up to γ, where |1 + hμ|² = 1 − hc + h²ω² comes to 1 in every
-/// mode, and up to 2/|μ| of the strongest damped one. Rounding must not hide that.
+/// Stiffness-proportional damping, c = γ k: explicit Euler is stable up to γ, where |1 + hμ|² = 1 − hc + h²ω² reaches 1 in every
+/// mode, and up to 2/|μ| of the most strongly damped mode. Rounding must not hide that.
 #[test]
 fn damping_in_proportion_to_stiffness_gives_explicit_euler_a_stable_step() {
     for (nodes, damping) in [(6, 1.0), (36, 1.0), (36, 8.0), (300, 4.0)] {
@@ -171,20 +171,20 @@ fn damping_in_proportion_to_stiffness_gives_explicit_euler_a_stable_step() {
     }
 }
 
-/// Growth per second of the whole system is what the estimate says (within its safety).
+/// The growth of the whole system per second matches the estimate (within its safety margin).
 #[test]
 fn growth_is_as_fast_as_announced() {
     let h = 0.001;
     let mut system = ring(36, 100.0, 1.0, 1600.0, 0.0, 0.0);
     let announced =
         estimated(&system, &ExplicitEuler).spectrum.growth_per_second(&ExplicitEuler as &dyn Integrator<2>, h);
-    // The alternating motion alone.
+    // Only the alternating motion.
     for p in 0..36 {
         let (x, sign) = (system.state.x.at(p), if p % 2 == 0 { 1e-9 } else { -1e-9 });
         system.state.v.set(p, [-x[1] * sign, x[0] * sign]);
     }
     let speed = |s: &System<2>| s.state.v.0.iter().flatten().map(|v| v * v).sum::<f64>().sqrt();
-    // ω = 79.7 rad/s: 2 ωh π = 1 is met nowhere, so the mean over whole periods is taken from energies.
+    // ω = 79.7 rad/s: 2 ωh π = 1 is never met exactly, so the mean over whole periods is taken from energies.
     let energy = |s: &System<2>, rest: &Columns<2>| {
         let far: f64 = (0..2)
             .flat_map(|d| (0..36).map(move |p| (d, p)))

@@ -2,17 +2,16 @@
 //!
 //! x₁ = x₀ + h v₀ + ½h² a₀,  v* = v₀ + h a₀,  a₁ = a(x₁, v*),  v₁ = v₀ + ½h (a₀ + a₁).
 //!
-//! Second order. Forces that depend on the velocity are evaluated at the end with the *predicted* velocity v*, whose
-//! error O(h²) enters v₁ as O(h³): the order stays 2 with damping. With the half-kick velocity v₀ + ½h a₀, which is more
-//! usual, it drops to 1.
+//! Second order. Forces that depend on the velocity are evaluated at the end with the *predicted* velocity v*, whose error O(h²)
+//! enters v₁ as O(h³), so the order stays 2 with damping. With the more usual half-kick velocity v₀ + ½h a₀, it drops to 1.
 //!
-//! Without damping it is the leapfrog: it keeps the symplectic form, its energy stays within O(h²) for ever, and it is
-//! stable for h ω < 2. With damping the step is stable in a smaller region; a mode without stiffness for h c < 2. Free
-//! fall is exact.
+//! Without damping it is the leapfrog method: it conserves the symplectic form, its energy stays within O(h²) for ever, and it is
+//! stable for h ω < 2. With damping the stable region is smaller; a mode without stiffness is stable for h c < 2. Free fall is
+//! exact.
 //!
-//! **Two forces per step.** The usual saving, a₁ as the a₀ of the next step, is not made: a₁ belongs to v* and not to
-//! v₁, and obstacles, pins and commands move nodes in between. It would keep the order, but the acceleration would be
-//! part of the state (of snapshots, hashes, merged islands) and the step no longer a function of (x, v).
+//! **Two forces per step.** The usual saving, to reuse a₁ as the a₀ of the next step, is not possible: a₁ belongs to v* and not
+//! to v₁, and obstacles, pins and commands move nodes in between. It would keep the order, but the acceleration would become part
+//! of the state (of snapshots, hashes, merged islands), and the step would no longer be a function of (x, v).
 //!
 //! Source: Swope et al. 1982; predicted velocity: Allen and Tildesley, *Computer Simulation of Liquids*, 3.2;
 //! Hairer, Lubich, Wanner, *Geometric numerical integration illustrated by the Störmer–Verlet method*, 2003.
@@ -68,7 +67,7 @@ impl<const D: usize> Integrator<D> for Verlet {
     }
     fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification {
         let square = omega * omega;
-        // What one step makes of x₀ = 1, v₀ = 0 and of x₀ = 0, v₀ = 1.
+        // The effect of one step on x₀ = 1, v₀ = 0 and on x₀ = 0, v₀ = 1.
         let column = |x: f64, v: f64| {
             let a = -square * x - c * v;
             let end = x + h * (v + 0.5 * h * a);
@@ -120,7 +119,7 @@ impl<const D: usize> Update<D> for Drift {
     }
 }
 
-/// v₁ = v₀ + ½h (a₀ + a₁), where h a₀ is found again in v* − v₀.
+/// v₁ = v₀ + ½h (a₀ + a₁), where h a₀ is recovered from v* − v₀.
 struct Kick {
     h: f64,
 }

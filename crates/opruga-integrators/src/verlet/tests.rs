@@ -1,4 +1,4 @@
-//! Order 2 also with damping, limit 2, bounded energy, exact free fall.
+//! Order 2 even with damping, limit 2, bounded energy, exact free fall.
 
 use super::Verlet;
 use crate::testing;
