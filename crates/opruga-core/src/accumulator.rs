@@ -1,10 +1,10 @@
-//! Real time: how many frames of the simulation are due when a display shows its next picture.
+//! Real time: the number of frames of the simulation that are due when a display shows its next picture.
 //!
-//! The simulation always advances by whole frames of one length, whatever the rate of the display. So the same amount
-//! of real time gives the same number of substeps, and with them the same bits, at 30, 60, 144 or 1000 pictures a
-//! second. Time that is left over waits for the next picture; nothing is rounded away.
+//! The simulation always advances by whole frames of one length, whatever the rate of the display. So the same amount of real
+//! time gives the same number of substeps, and so the same bits, at 30, 60, 144 or 1000 pictures per second. Remaining time is
+//! kept for the next picture; nothing is lost by rounding.
 
-/// Attoseconds in a second. A number of seconds below 1000 that an `f64` holds is hardly rounded by them.
+/// Attoseconds in a second. They hardly round an `f64` number of seconds below 1000.
 const ATTOSECONDS: f64 = 1e18;
 
 /// The longest time taken at once [s]: longer pauses count as this long.
@@ -12,68 +12,68 @@ const LONGEST: f64 = 1e6;
 
 /// Collects real time and hands it out in frames.
 ///
-/// The thousandth part of a frame may be handed out early: displays whose period is not a multiple of any unit of time
-/// (1/60 s) would else be one frame behind now and then. What was early is missing later, so there is no drift.
+/// A frame may be handed out early by a thousandth of its length. Otherwise displays whose period is not a multiple of any unit
+/// of time (1/60 s) would be one frame behind now and then. Time handed out early is subtracted later, so there is no drift.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Accumulator {
-    /// Length of a frame [as].
+    /// The length of a frame [as].
     frame: i128,
-    /// The most frames that one call hands out.
+    /// The largest number of frames per call.
     cap: u32,
-    /// Time that waits [as]; from −1/1000 of a frame to less than a frame.
+    /// The time that has not been handed out yet [as]; from −1/1000 of a frame to less than a frame.
     waiting: i128,
-    /// Time that was not simulated [as].
+    /// The time that was not simulated [as].
     dropped: i128,
 }
 
 /// What is due after some real time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Due {
-    /// Frames to simulate now.
+    /// The number of frames to simulate now.
     pub frames: u32,
-    /// Time beyond the cap that will not be simulated [s]: the simulation falls behind the clock by this.
+    /// Time beyond the cap that will not be simulated [s]: the simulation falls behind the clock by this much.
     pub dropped: f64,
 }
 
 impl Accumulator {
-    /// An accumulator for frames of this length [s] that hands out at most `cap_frames` at once.
+    /// Makes an accumulator for frames of this length [s] that hands out at most `cap_frames` at once.
     ///
-    /// The cap keeps a simulation that is slower than real time from falling behind ever further. `None` where the
-    /// length is not a number between a nanosecond and 1e6 seconds.
+    /// The cap keeps a simulation that is slower than real time from falling behind ever further. Returns `None` if the length is
+    /// not between a nanosecond and 1e6 seconds.
     pub fn new(frame: f64, cap_frames: u32) -> Option<Accumulator> {
         let length = (1e-9..=LONGEST).contains(&frame).then(|| attoseconds(frame))?;
         Some(Accumulator { frame: length, cap: cap_frames, waiting: 0, dropped: 0 })
     }
 
-    /// Adds real time that has passed [s] and says how many frames are due. What is no positive number counts as zero.
+    /// Adds elapsed real time [s] and returns how many frames are due. Negative numbers and NaN count as zero.
     pub fn advance(&mut self, elapsed: f64) -> Due {
         self.waiting += if elapsed > 0.0 { attoseconds(elapsed) } else { 0 };
         let due = ((self.waiting + self.frame / 1000) / self.frame).max(0);
         self.waiting -= due * self.frame;
-        // Whole frames beyond the cap are dropped, the rest of a frame stays.
+        // Whole frames beyond the cap are dropped; the fraction of a frame is kept.
         let frames = due.min(i128::from(self.cap));
         let dropped = (due - frames) * self.frame;
         self.dropped += dropped;
         Due { frames: frames as u32, dropped: dropped as f64 / ATTOSECONDS }
     }
 
-    /// How far the clock is into the next frame, 0 to 1: for a display that draws between two frames.
+    /// The position of the clock within the next frame, 0 to 1, for a display that interpolates between two frames.
     pub fn fraction(&self) -> f64 {
         (self.waiting.max(0) as f64) / (self.frame as f64)
     }
 
-    /// All time that was dropped so far [s].
+    /// The total time that was dropped [s].
     pub fn dropped(&self) -> f64 {
         self.dropped as f64 / ATTOSECONDS
     }
 
-    /// Forgets time that waits, after a pause.
+    /// Discards the time not yet handed out, after a pause.
     pub fn reset(&mut self) {
         self.waiting = 0;
     }
 }
 
-/// Seconds in whole attoseconds.
+/// Converts seconds to whole attoseconds.
 fn attoseconds(seconds: f64) -> i128 {
     let seconds = if seconds < LONGEST { seconds } else { LONGEST };
     (seconds * ATTOSECONDS).round() as i128
@@ -83,7 +83,7 @@ fn attoseconds(seconds: f64) -> i128 {
 mod tests {
     use super::*;
 
-    /// Frames of 1/60 s that are due after so many pictures at a rate.
+    /// The number of frames of 1/60 s that are due after some pictures at a given rate.
     fn frames(rate: u32, pictures: u32) -> u32 {
         let mut accumulator = Accumulator::new(1.0 / 60.0, 100).unwrap();
         (0..pictures).map(|_| accumulator.advance(1.0 / f64::from(rate)).frames).sum()
@@ -118,7 +118,7 @@ mod tests {
         let mut accumulator = Accumulator::new(0.25, 3).unwrap();
         assert_eq!(accumulator.advance(0.3), Due { frames: 1, dropped: 0.0 });
         assert_eq!(accumulator.fraction(), 0.2);
-        // 2.05 s wait: eight frames, of which five are dropped.
+        // 2.05 s are pending: eight frames, of which five are dropped.
         assert_eq!(accumulator.advance(2.0), Due { frames: 3, dropped: 1.25 });
         assert_eq!(accumulator.dropped(), 1.25);
         assert_eq!(accumulator.advance(0.2), Due { frames: 1, dropped: 0.0 });

@@ -16,7 +16,7 @@ impl<const D: usize> System<D> {
     /// ends it: then obstacles act.
     ///
     /// # Errors
-    /// [`StepError`] where a model refuses the state.
+    /// [`StepError`] if a model refuses the state.
     pub fn advance<U: Update<D>>(
         &mut self,
         evaluate: Stage,
@@ -36,7 +36,7 @@ impl<const D: usize> System<D> {
             self.take_pinned_motion(0..self.index_count());
         }
         let hindered = self.contacts.is_some() || self.stabilisers.largest_velocity.is_some();
-        // Of several stages no single force is what has moved the nodes.
+        // If there are several stages, no single force has moved the nodes.
         let several = step.is_some() && evaluate != Stage::Current && self.contacts.is_some();
         let mut contact_lanes = 0;
         for tile in 0..self.plan.len() {
@@ -80,7 +80,7 @@ impl<const D: usize> System<D> {
         Ok(())
     }
 
-    /// Lets every model look at the body as a whole.
+    /// Calls `prepare` of every model.
     pub(crate) fn prepare(&mut self, stage: Stage, time: f64) -> Result<(), StepError> {
         let view = view(&self.state, self.nodes, self.layout, stage, time, self.threads);
         for member in &mut self.members {
@@ -124,7 +124,7 @@ impl<const D: usize> System<D> {
                 }
             }
         }
-        // A pin balances the forces of the models, whatever the stabiliser leaves of them.
+        // A pin balances the forces of the models before the stabiliser limits them.
         let force_on = |d: usize, index: usize| force[d][index - range.start];
         self.pinned_nodes.add_work_against(&range, weight, force_on, view.v, &mut self.work.user);
         if let Some(limit) = self.stabilisers.largest_force {
@@ -133,7 +133,7 @@ impl<const D: usize> System<D> {
         }
     }
 
-    /// Keeps where the nodes of a tile were: obstacles look at the way from there.
+    /// Stores the positions of the nodes of a tile: obstacles use the path from there.
     #[inline]
     fn keep_positions(&mut self, tile: usize) {
         if self.contacts.is_some() {
@@ -153,7 +153,7 @@ impl<const D: usize> System<D> {
         self.simd.run(Move { update, range, force, inverse_mass: &self.inverse_mass, state: &mut self.state });
     }
 
-    /// Puts the mean force of the step of `h`, m Δv/h, in place of the last one: what obstacles reckon with.
+    /// Replaces the last force by the mean force of the step of `h`, m Δv/h, which obstacles use.
     fn take_mean_force(&mut self, tile: usize, h: f64) {
         let range = self.plan.range(tile);
         let buffer = self.plan.buffer(tile);
@@ -162,7 +162,7 @@ impl<const D: usize> System<D> {
         self.simd.run(MeanForce { range, force, before, mass: &self.mass, after: self.state.v.slices(), h });
     }
 
-    /// Lets obstacles hold back the nodes of a tile; gives the lanes in which they did, a bit each.
+    /// Applies obstacles to the nodes of a tile; returns the lanes in which they acted, one bit each.
     #[inline]
     fn collide(&mut self, tile: usize, h: f64) -> u8 {
         let range = self.plan.range(tile);
@@ -170,14 +170,14 @@ impl<const D: usize> System<D> {
         if self.contacts.is_none() {
             return 0;
         }
-        // What an obstacle takes of the motion of a pinned node its pin gives back.
+        // The motion that an obstacle takes from a pinned node is restored by its pin.
         self.give_pinned_motion(range.clone());
         let contact_lanes = self.resolve_contacts(tile, h);
         self.take_pinned_motion(range);
         contact_lanes
     }
 
-    /// Shortens the velocities that are above the limit, of all nodes.
+    /// Limits the velocities of all nodes.
     pub(crate) fn limit_velocities(&mut self) {
         self.limit_velocities_of(0..self.index_count());
     }
@@ -216,7 +216,7 @@ impl<const D: usize> System<D> {
     }
 }
 
-/// Hands a tile to the integrator.
+/// Passes a tile to the integrator.
 struct Move<'a, U, const D: usize> {
     update: &'a U,
     range: Range<usize>,
@@ -232,7 +232,7 @@ impl<U: Update<D>, const D: usize> Work for Move<'_, U, D> {
     }
 }
 
-/// Works out the mean force of a step from the velocities before and after it.
+/// Computes the mean force of a step from the velocities before and after it.
 struct MeanForce<'a, const D: usize> {
     range: Range<usize>,
     force: [&'a mut [f64]; D],
@@ -259,7 +259,7 @@ impl<const D: usize> Work for MeanForce<'_, D> {
     }
 }
 
-/// Whether an index holds a node of a body; the others fill packs up.
+/// Whether an index holds a node of a body; the others fill up packs.
 fn is_node(layout: Layout, nodes: usize, bodies: usize, index: usize) -> bool {
     match layout {
         Layout::Single => index < nodes,

@@ -1,16 +1,16 @@
-//! What ends a step, or the preparation of a model, that takes long.
+//! Requests to end a long step, or a long preparation of a model.
 
 use core::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Whether a step that takes long shall end: because somebody asks for it, or because it is late by a clock. It is looked at within steps
-/// and within preparations that take seconds, and shared by who computes and who waits.
+/// Whether a long step shall end, because somebody requests it or because it has exceeded a time limit. It is checked within
+/// steps and within preparations that take seconds, and is shared by those who compute and those who wait.
 #[derive(Debug)]
 pub struct BreakOff {
     asked: AtomicBool,
-    /// The bits of a moment of the clock [s].
+    /// The bits of the time limit on the clock [s].
     latest: AtomicU64,
     clock: fn() -> f64,
-    /// The bits of the share of a preparation that is done; NaN: there is none.
+    /// The bits of the fraction of a preparation that is done; NaN if there is none.
     prepared: AtomicU64,
 }
 
@@ -21,7 +21,7 @@ impl Default for BreakOff {
 }
 
 impl BreakOff {
-    /// One that can end steps by the time as well: `clock` says what it is [s].
+    /// Makes one with a time limit too: `clock` returns the time [s].
     pub fn with_clock(clock: fn() -> f64) -> BreakOff {
         let (latest, prepared) = (f64::INFINITY.to_bits(), f64::NAN.to_bits());
         BreakOff {
@@ -32,32 +32,32 @@ impl BreakOff {
         }
     }
 
-    /// Asks for the end of what is computed and of all that follows, or no longer.
+    /// Requests the end of the present and all following computations, or withdraws the request.
     pub fn ask(&self, wanted: bool) {
         self.asked.store(wanted, Ordering::Relaxed);
     }
 
-    /// Whether somebody asks for the end.
+    /// Whether the end is requested.
     pub fn is_asked(&self) -> bool {
         self.asked.load(Ordering::Relaxed)
     }
 
-    /// Ends what is computed so many seconds from now; infinitely many: never.
+    /// Sets a time limit of `seconds` from now; infinity means none.
     pub fn end_after(&self, seconds: f64) {
         self.latest.store(((self.clock)() + seconds).to_bits(), Ordering::Relaxed);
     }
 
-    /// Reports that this share (0 to 1) of a preparation is done. None: there is no preparation.
+    /// Reports that this fraction (0 to 1) of a preparation is done; `None` if there is no preparation.
     pub fn set_prepared(&self, share: Option<f64>) {
         self.prepared.store(share.unwrap_or(f64::NAN).to_bits(), Ordering::Relaxed);
     }
 
-    /// The share of the present preparation that is done, 0 to 1.
+    /// The fraction of the present preparation that is done, 0 to 1.
     pub fn prepared(&self) -> Option<f64> {
         Some(f64::from_bits(self.prepared.load(Ordering::Relaxed))).filter(|share| !share.is_nan())
     }
 
-    /// Whether what is computed shall end.
+    /// Whether the present computation shall end.
     pub fn is_wanted(&self) -> bool {
         let latest = f64::from_bits(self.latest.load(Ordering::Relaxed));
         self.is_asked() || latest.is_finite() && (self.clock)() >= latest

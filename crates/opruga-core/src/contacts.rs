@@ -1,11 +1,11 @@
-//! What rigid obstacles are to a system: one pass over the nodes after they were moved freely.
+//! The interface of rigid obstacles to a system: one pass over the nodes after they were moved freely.
 
 use crate::state::{Columns, Layout, Parameter};
 use core::fmt::Debug;
 use core::ops::Range;
 use opruga_math::{Simd, WIDTH};
 
-/// Nodes of a tile, just moved freely, that obstacles may hold back.
+/// The nodes of a tile, after a free move, on which obstacles may act.
 #[derive(Debug)]
 pub struct Moved<'a, const D: usize> {
     /// The indices of the tile.
@@ -34,23 +34,23 @@ pub struct Moved<'a, const D: usize> {
     pub loss_friction: &'a mut [f64; WIDTH],
     /// Work done on the body by obstacles that move [J], eight partial sums.
     pub work_colliders: &'a mut [f64; WIDTH],
-    /// Energy given by putting nodes back on the surface: what their way did beyond their mean velocity, Σ F·(h v̄ − Δx) [J],
-    /// eight partial sums.
+    /// Energy from moving nodes back to the surface, the difference between the work of their displacement and that of their mean
+    /// velocity, Σ F·(h v̄ − Δx) [J], eight partial sums.
     pub work_correction: &'a mut [f64; WIDTH],
 }
 
 /// A surface next to a node at the end of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touch<const D: usize> {
-    /// Which surface, by a number that stays the same.
+    /// The surface, as a number that stays the same.
     pub surface: usize,
-    /// The distance of the node, less the thickness; negative inside [m].
+    /// The distance of the node minus the thickness; negative inside [m].
     pub gap: f64,
     /// The distance before the step, in the frame of the obstacle [m].
     pub gap_before: f64,
     /// The unit normal out of the obstacle.
     pub normal: [f64; D],
-    /// Where a node that clings to the obstacle gets from where it was [m].
+    /// The position to which a node that sticks to the obstacle would move [m].
     pub carried: [f64; D],
     /// Velocity of the obstacle at the node [m/s].
     pub velocity: [f64; D],
@@ -58,21 +58,21 @@ pub struct Touch<const D: usize> {
     pub friction: f64,
     /// Ratio of normal speeds after and before an impact.
     pub restitution: f64,
-    /// Normal speed up to which nothing bounces [m/s].
+    /// The normal speed up to which there is no bounce [m/s].
     pub rest_speed: f64,
-    /// The distance below which a gap is nothing but rounding [m].
+    /// The size below which a gap counts as rounding [m].
     pub rounding: f64,
 }
 
 /// The obstacles that a block of bodies may meet within a frame.
 pub trait Contacts<const D: usize>: Send + Sync + Debug {
-    /// Holds back the nodes of a tile: non-penetration, restitution, friction. Gives the lanes in which it held any, a bit
-    /// each: lane l has the indices with number l modulo eight.
+    /// Applies non-penetration, restitution and friction to the nodes of a tile. Returns the lanes in which it acted on any, one
+    /// bit each: lane l contains the indices that are l modulo eight.
     fn resolve(&self, simd: Simd, moved: &mut Moved<D>) -> u8;
-    /// Calls back with every surface that a node has come to that goes from `from` to `to` [m] in the step of `h` that
-    /// ends at `time` [s]: those whose gap at the end is at most `reach` [m], or that it has crossed.
+    /// Calls back with every surface that a node reaches when it moves from `from` to `to` [m] in the step of `h` that ends at
+    /// `time` [s]: those whose gap at the end is at most `reach` [m], and those that it has crossed.
     ///
-    /// For implicit integrators, which hold nodes back while they look for the end of the step.
+    /// For implicit integrators, which constrain nodes while they solve for the end of the step.
     fn touch(
         &self,
         _from: &[f64; D],

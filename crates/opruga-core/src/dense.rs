@@ -1,18 +1,18 @@
-//! Dense symmetric matrices, of which one half is kept.
+//! Dense symmetric matrices, of which one half is stored.
 //!
-//! A matrix of 6000 rows does not fit into any cache, so a product takes as long as its numbers take to come from memory. Of two entries
-//! that are equal one is kept, and each that comes is used twice. The order of sums is the same for every set of instructions.
+//! A matrix of 6000 rows does not fit into any cache, so a product takes as long as reading its numbers from memory. Of two equal
+//! entries only one is stored, and each entry read is used twice. The order of sums is the same for every set of instructions.
 
 use core::fmt;
 use opruga_math::{Column, Pack, Simd, WIDTH, Work};
 
-/// Rows and columns of a tile.
+/// The number of rows and columns of a tile.
 pub const SIDE: usize = 32;
 
-/// Packs in a row of a tile.
+/// The number of packs in a row of a tile.
 const PACKS: usize = SIDE / WIDTH;
 
-/// A symmetric matrix, in tiles of 32 rows and columns: those below and on the diagonal, row by row of tiles.
+/// A symmetric matrix in tiles of 32 rows and columns: those below and on the diagonal, one row of tiles after the other.
 ///
 /// Rows are filled up to whole tiles, with zeros.
 #[derive(Clone, PartialEq)]
@@ -28,7 +28,7 @@ impl fmt::Debug for Dense {
 }
 
 impl Dense {
-    /// Takes the entries on and below the diagonal.
+    /// Makes a matrix from the entries on and below the diagonal.
     pub fn of_lower(size: usize, entry: impl Fn(usize, usize) -> f64) -> Dense {
         let tiles = size.div_ceil(SIDE);
         let mut numbers = Column::zeros(tiles * (tiles + 1) / 2 * SIDE * SIDE);
@@ -43,11 +43,11 @@ impl Dense {
         }
         Dense { size, numbers }
     }
-    /// Rows.
+    /// The number of rows.
     pub fn size(&self) -> usize {
         self.size
     }
-    /// Rows filled up to whole tiles: the length of vectors that it is multiplied with.
+    /// The number of rows filled up to whole tiles: the length of the vectors in products.
     pub fn padded(&self) -> usize {
         self.size.next_multiple_of(SIDE)
     }
@@ -60,14 +60,14 @@ impl Dense {
     pub fn heap_bytes(&self) -> usize {
         self.numbers.heap_bytes()
     }
-    /// y = A x of a symmetric matrix, for vectors one after the other of [`Dense::padded`] numbers each: every number is read from
-    /// memory once for eight of them.
+    /// y = A x for consecutive vectors of [`Dense::padded`] numbers each. Every number of the matrix is read from memory once for
+    /// eight of them.
     pub fn multiply(&self, simd: Simd, x: &[f64], y: &mut [f64]) {
         let length = self.padded();
         if length == 0 {
             return;
         }
-        // Up to four vectors would leave half of the eight lanes empty.
+        // With up to four vectors, half of the eight lanes would be empty.
         match x.len() / length {
             1 => return simd.run(Product::<1> { matrix: self, x, y }),
             2 => return simd.run(Product::<2> { matrix: self, x, y }),
@@ -94,7 +94,7 @@ impl Dense {
     }
 }
 
-/// Where an entry on or below the diagonal of tiles lies.
+/// The offset of an entry on or below the diagonal of tiles.
 #[inline(always)]
 fn at(row: usize, column: usize) -> usize {
     let (i, j) = (row / SIDE, column / SIDE);
@@ -116,7 +116,7 @@ impl<const N: usize> Work for Product<'_, N> {
         let length = matrix.padded();
         y.fill(0.0);
         for i in 0..length / SIDE {
-            // A part of each row's sum stays in each lane until the row of tiles is done.
+            // Every lane keeps its part of each row sum until the row of tiles is done.
             let mut sums = [[P::zero(); N]; SIDE];
             for j in 0..=i {
                 let tile = matrix.tile(i, j);
@@ -141,8 +141,8 @@ impl<const N: usize> Work for Product<'_, N> {
     }
 }
 
-/// The packs of a row of a tile. A loop, because a closure is compiled without the vector instructions of its caller: its loads were
-/// calls.
+/// The packs of a row of a tile. This is a loop, because a closure is compiled without the vector instructions of its caller, so
+/// that its loads would be calls.
 #[inline(always)]
 fn packs_of<P: Pack>(row: &[f64]) -> [P; PACKS] {
     let mut out = [P::zero(); PACKS];
@@ -152,7 +152,7 @@ fn packs_of<P: Pack>(row: &[f64]) -> [P; PACKS] {
     out
 }
 
-/// Adds T x to sums that are still spread over lanes.
+/// Adds T x to sums that are still distributed over lanes.
 #[inline(always)]
 fn along_rows<P: Pack, const N: usize>(tile: &[f64], x: [&[f64]; N], sums: &mut [[P; N]; SIDE]) {
     let mut packs = [[P::zero(); PACKS]; N];
@@ -187,14 +187,15 @@ fn along_columns<P: Pack, const N: usize>(tile: &[f64], x: [&[f64]; N]) -> [[P; 
     packs
 }
 
-/// The product with up to eight vectors: lanes are vectors, whose numbers lie side by side.
+/// The product with up to eight vectors: lanes are vectors, whose numbers are side by side.
 struct Products<'a> {
     matrix: &'a Dense,
     x: &'a [f64],
     y: &'a mut [f64],
 }
 
-/// Rows of a tile that are summed together: their x and their sums stay in registers. With AVX2 two rows take as long, eight a third longer.
+/// The number of rows of a tile that are summed together: their x and their sums stay in registers. With AVX2, two rows take as
+/// long, and eight take a third longer.
 const ROWS: usize = 4;
 
 impl Work for Products<'_> {
@@ -220,7 +221,7 @@ impl Work for Products<'_> {
     }
 }
 
-/// Adds T x to a tile on the diagonal.
+/// Adds T x for a tile on the diagonal.
 #[inline(always)]
 fn once<P: Pack>(tile: &[f64], x: &[f64], y: &mut [f64]) {
     for (row, y) in tile.chunks_exact(SIDE).zip(y.chunks_exact_mut(WIDTH)) {

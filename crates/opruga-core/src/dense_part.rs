@@ -1,40 +1,42 @@
-//! Dense matrices that turn with their body, in a frame that may follow its nodes.
+//! Dense matrices that rotate with their body, in a frame that may follow its nodes.
 
 use crate::dense::Dense;
 use opruga_math::Simd;
 use std::sync::Arc;
 
-/// A dense symmetric matrix that turns with its body: c 𝓡 A 𝓡ᵀ on a list of nodes, where 𝓡 turns every node by R.
+/// A dense symmetric matrix that rotates with its body: c 𝓡 A 𝓡ᵀ on a list of nodes, where 𝓡 rotates every node by R.
 ///
-/// A is K or, where the frame follows displacements, Tᵀ K T + J Qᵀ + Q Jᵀ with T = 1 − V Jᵀ ([`Following`]).
+/// A is K or, if the frame follows displacements, Tᵀ K T + J Qᵀ + Q Jᵀ with T = 1 − V Jᵀ ([`Following`]).
 #[derive(Clone, Copy, Debug)]
 pub struct DensePart<'a, const D: usize> {
     /// The factor c.
     pub factor: f64,
     /// The rotation R, by rows.
     pub frame: &'a [[f64; D]; D],
-    /// The indices of the nodes that K knows, in its order; every one once.
+    /// The indices of the nodes of K, in its order, each once.
     pub indices: &'a [u32],
-    /// K, D rows a node.
+    /// K, with D rows per node.
     pub matrix: &'a Arc<Dense>,
-    /// How the frame follows displacements, where it does.
+    /// How the frame follows displacements; none if it does not.
     pub following: Option<&'a Following>,
 }
 
-/// A part c u uᵀ of rank one: c, and the entries of u by the indices of nodes.
+/// A rank-one term c u uᵀ: c, and the entries of u by the indices of nodes.
 pub type RankOnePart<const D: usize> = (f64, Vec<(usize, [f64; D])>);
 
-/// How a frame follows displacements d, seen from the frame: by the spin θ = Jᵀ d about each axis, which displaces nodes by V θ. What is
-/// left, d − V θ, strains the body. Vectors have [`Dense::padded`] numbers each and stand one after the other, one for each axis.
+/// How a frame follows displacements d, in the coordinates of the frame: it rotates by the spin θ = Jᵀ d about each axis, which
+/// displaces nodes by V θ. The remainder, d − V θ, strains the body. Vectors have [`Dense::padded`] numbers each and are
+/// consecutive, one for each axis.
 #[derive(Clone, Debug, Default)]
 pub struct Following {
-    /// J without what changes with the state: the k-th column of J is Σ `mix[k][l]` times the l-th of these. Kept at one address.
+    /// The part of J that does not change with the state: the k-th column of J is Σ `mix[k][l]` times the l-th of these. It stays
+    /// at one address.
     pub base: Arc<Vec<f64>>,
-    /// That which changes with the state, by rows.
+    /// The part that changes with the state, by rows.
     pub mix: [[f64; 3]; 3],
     /// V.
     pub spins: Vec<f64>,
-    /// Q, over the factor of the part: what forces that turn add.
+    /// Q, over the factor of the matrix: the terms from forces that rotate.
     pub forces: Vec<f64>,
 }
 
@@ -45,7 +47,7 @@ impl Following {
     }
 }
 
-/// Vectors of a length, one after the other, that a matrix mixes: the k-th is Σ `mix[k][l]` times the l-th of `base`.
+/// Linear combinations of consecutive vectors of a given length: the k-th is Σ `mix[k][l]` times the l-th of `base`.
 pub fn mixed(mix: &[[f64; 3]; 3], base: &[f64], length: usize) -> Vec<f64> {
     let mut out = vec![0.0; base.len()];
     for (row, out) in mix.iter().zip(out.chunks_exact_mut(length)) {
@@ -65,7 +67,7 @@ fn add(out: &mut [f64], factor: f64, x: &[f64]) {
 }
 
 impl<const D: usize> DensePart<'_, D> {
-    /// A x at the indices of this part, given what x is at each index; node by node.
+    /// A x at the indices of this part, node by node, given x as a function of the index.
     pub fn product(&self, x: impl Fn(usize) -> [f64; D]) -> Vec<[f64; D]> {
         let length = self.matrix.padded();
         let mut turned = vec![0.0; 2 * length];
@@ -79,7 +81,7 @@ impl<const D: usize> DensePart<'_, D> {
         self.product_in_frame(own, out);
         out.chunks_exact(D).take(self.indices.len()).map(|g| self.turned_back(g)).collect()
     }
-    /// A x / c in the frame; x becomes the strain.
+    /// A x / c in the frame; x is replaced by the strain.
     fn product_in_frame(&self, x: &mut [f64], out: &mut [f64]) {
         let simd = Simd::best();
         let Some(following) = self.following else { return self.matrix.multiply(simd, x, out) };
@@ -102,7 +104,7 @@ impl<const D: usize> DensePart<'_, D> {
     fn turned_back(&self, g: &[f64]) -> [f64; D] {
         core::array::from_fn(|i| self.factor * (0..D).map(|j| self.frame[i][j] * g[j]).sum::<f64>())
     }
-    /// The block of two of its nodes, by their numbers in the list, without what a frame that follows adds.
+    /// The block of two of its nodes, by their numbers in the list, without the terms of a frame that follows.
     pub fn block(&self, a: usize, b: usize) -> [[f64; D]; D] {
         let mut half = [[0.0; D]; D];
         let mut out = [[0.0; D]; D];
@@ -118,10 +120,11 @@ impl<const D: usize> DensePart<'_, D> {
         }
         out
     }
-    /// What a frame that follows adds to the blocks, as parts c u uᵀ of rank one, two for each axis; costs a product with K for each.
+    /// The terms that a frame that follows adds to the blocks, as rank-one terms c u uᵀ, two for each axis. Each costs a product
+    /// with K.
     ///
-    /// Tᵀ K T + J Qᵀ + Q Jᵀ = K + J Zᵀ + Z Jᵀ with Z = Q − K V + ½ J VᵀK V, and j zᵀ + z jᵀ is ½ (a j + z/a)(…)ᵀ − ½ (a j − z/a)(…)ᵀ;
-    /// a gives both vectors one size.
+    /// Tᵀ K T + J Qᵀ + Q Jᵀ = K + J Zᵀ + Z Jᵀ with Z = Q − K V + ½ J VᵀK V, and j zᵀ + z jᵀ is ½ (a j + z/a)(…)ᵀ − ½ (a j −
+    /// z/a)(…)ᵀ, where a gives both vectors the same size.
     pub fn parts_of_rank_one(&self) -> Vec<RankOnePart<D>> {
         let Some(following) = self.following else { return Vec::new() };
         let (length, Following { spins, forces, .. }) = (self.matrix.padded(), following);

@@ -1,4 +1,4 @@
-//! What can go wrong while a world is built or stepped.
+//! Errors while a world is built or stepped.
 
 use opruga_math::message::{AnyMessage, Field, IntoField};
 use opruga_math::messages;
@@ -15,10 +15,10 @@ pub struct BuildError {
 }
 
 impl BuildError {
-    /// The code of a preparation that was broken off from outside.
+    /// The code of a preparation that was stopped from outside.
     pub const BROKEN_OFF: &'static str = "run.broken_off";
 
-    /// A preparation that was broken off from outside.
+    /// The error of a preparation that was stopped from outside.
     pub fn broken_off(kind: impl Into<String>) -> BuildError {
         BuildError::of(kind, BrokenOff::Preparation {})
     }
@@ -26,7 +26,7 @@ impl BuildError {
     pub fn new(kind: impl Into<String>, code: &'static str, text: impl Into<String>) -> BuildError {
         BuildError::of(kind, AnyMessage::plain(code, text.into()))
     }
-    /// An error of a kind of thing from a message.
+    /// An error of a kind, from a message.
     pub fn of(kind: impl Into<String>, about: impl Into<AnyMessage>) -> BuildError {
         BuildError { kind: kind.into(), about: about.into() }
     }
@@ -42,7 +42,7 @@ impl IntoField for BuildError {
     }
 }
 
-/// What a body that diverges leaves: the finite numbers, or the range of its positions [m].
+/// The range that a diverging body has left: that of finite numbers, or that of its positions [m].
 pub fn what_was_left(range: Option<f64>) -> String {
     match range {
         None => "the finite numbers".into(),
@@ -52,7 +52,7 @@ pub fn what_was_left(range: Option<f64>) -> String {
     }
 }
 
-/// How far a step was found, and from what cells.
+/// Up to which load a step was found, and from how many degenerate cells.
 fn circumstances(beyond: Option<f64>, inverted: u32, cells: u32) -> String {
     match (beyond, inverted) {
         (Some(load), _) => format!(", beyond {} of the load", number(load)),
@@ -62,14 +62,14 @@ fn circumstances(beyond: Option<f64>, inverted: u32, cells: u32) -> String {
 }
 
 messages! {
-    /// Why a preparation has ended early.
+    /// Why a preparation ended early.
     #[derive(Clone, Debug, PartialEq)]
     pub enum BrokenOff {
         "run.broken_off" #[error("the preparation was broken off")]
         Preparation {},
     }
 
-    /// What refuses, and why: a [`BuildError`] as a part of a text.
+    /// The thing that refuses, and why: a [`BuildError`] as a part of a text.
     #[derive(Clone, Debug, PartialEq)]
     pub enum Source {
         "part.source" #[error("{kind}: {about}")]
@@ -80,15 +80,15 @@ messages! {
     /// Why a substep could not be made.
     #[derive(Clone, Debug, PartialEq)]
     pub enum StepError {
-        /// A position or velocity is not finite any more, or a position is so far from the origin that it is mostly rounding: the body by
-        /// its index in the island, the node, the time at the start of the substep \[s\], and how far from the origin along an axis positions
-        /// keep their digits \[m\], where the node went beyond that.
+        /// A position or velocity is no longer finite, or a position is so far from the origin that rounding dominates. The
+        /// fields are the index of the body in the island, the node, the time at the start of the substep \[s\], and, if the node
+        /// went beyond it, the distance from the origin along an axis up to which positions keep their digits \[m\].
         "part.step" #[error("node {node} of body {body} left {} at t = {} s", what_was_left(*range), number(*time))]
         Diverged { body: usize, node: u32, time: f64, range: Option<f64> },
-        /// An implicit rule has not found the end of the step: after so many iterations of Newton, with the largest force out of balance
-        /// on a node \[N\], the largest displacement in the last iteration \[m\], the correction that ends the iteration \[m\], the time at the
-        /// start of the step \[s\], the part of the load up to which a balance was found, and how many cells are degenerate or inverted
-        /// where the step begins, of how many.
+        /// An implicit integrator has not found the end of the step. The fields are the number of Newton iterations, the largest
+        /// residual force on a node \[N\], the largest displacement in the last iteration \[m\], the correction that ends the
+        /// iteration \[m\], the time at the start of the step \[s\], the fraction of the load up to which an equilibrium was
+        /// found, the number of degenerate or inverted cells at the start of the step, and the total number of cells.
         "part.step"
         #[error("`{integrator}` did not converge in {} at t = {} s{}: the forces are out of balance by {} N, and the last correction was {} m", counted(u64::from(*iterations), "iteration", "iterations"), number(*time), circumstances(*beyond, *inverted, *cells), number(*residual), number(*correction))]
         #[allowed("{} m", number(*tolerance))] #[hint("{hint}")]
@@ -104,10 +104,10 @@ messages! {
             cells: u32,
             hint: AnyMessage,
         },
-        /// The step was broken off from outside.
+        /// The step was stopped from outside.
         "part.step" #[error("the step was broken off")]
         BrokenOff {},
-        /// A model has no meaning in this state; what helps under the settings of the rule, where the model does not say it.
+        /// A model has no value in this state; with a hint from the settings of the integrator if the model gives none.
         "part.step" #[error("{model}: {about}")]
         #[allowed("{}", about.allowed().unwrap_or_default())]
         #[hint("{}", about.hint().or_else(|| helps.as_ref().map(ToString::to_string)).unwrap_or_default())]
@@ -116,7 +116,7 @@ messages! {
 }
 
 impl StepError {
-    /// A model has no meaning in this state.
+    /// A model has no value in this state.
     pub fn of(model: &'static str, about: impl Into<AnyMessage>) -> StepError {
         StepError::Model { model, about: about.into(), helps: None }
     }

@@ -1,7 +1,7 @@
-//! What is kept from step to step beside positions and velocities: channels with a name and a type.
+//! Data that are kept from step to step besides positions and velocities: channels with a name and a type.
 //!
-//! Whoever keeps something declares its channels once ([`Integrator::history`](crate::integrator::Integrator::history)). Snapshots,
-//! recordings, rewinding, islands that are built anew and resets follow from the declaration.
+//! An integrator that keeps data declares its channels once ([`Integrator::history`](crate::integrator::Integrator::history)).
+//! Snapshots, recordings, rewinding, rebuilding of islands and resets follow from the declaration.
 
 use crate::state::Columns;
 use core::marker::PhantomData;
@@ -10,11 +10,11 @@ use core::marker::PhantomData;
 pub trait PerBodyValue: Copy + Default + 'static {
     /// The content of a channel with this value.
     fn content<const D: usize>(self) -> Content<D>;
-    /// The value of a channel; none where it holds another type.
+    /// The value of a channel; `None` if it holds another type.
     fn of<const D: usize>(content: &Content<D>) -> Option<Self>;
 }
 
-/// A channel of one value per body: a number, a whole number or a truth.
+/// A channel of one value per body: a number, a whole number or a Boolean.
 #[derive(Clone, Copy, Debug)]
 pub struct PerBody<T> {
     name: &'static str,
@@ -34,7 +34,7 @@ pub enum Type {
     Number,
     /// One whole number per body.
     Count,
-    /// One truth per body.
+    /// One Boolean per body.
     Flag,
     /// One vector per node.
     Vectors,
@@ -43,39 +43,39 @@ pub enum Type {
 /// The declaration of a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Channel {
-    /// Its name, unique in a history.
+    /// The name, unique in a history.
     pub name: &'static str,
-    /// What it holds.
+    /// The type of its content.
     pub holds: Type,
 }
 
-/// What a channel holds.
+/// The content of a channel.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Content<const D: usize> {
     /// A number.
     Number(f64),
     /// A whole number.
     Count(u64),
-    /// A truth.
+    /// A Boolean.
     Flag(bool),
     /// A vector per node, in the order of the indices.
     Vectors(Columns<D>),
 }
 
 impl<T: PerBodyValue> PerBody<T> {
-    /// A channel of that name.
+    /// A channel with this name.
     pub const fn new(name: &'static str) -> PerBody<T> {
         PerBody { name, value: PhantomData }
     }
     /// Its declaration.
     pub fn declared(&self) -> Channel {
-        // The dimension makes no difference to a value per body.
+        // For a value per body the dimension does not matter.
         Channel { name: self.name, holds: T::default().content::<2>().holds() }
     }
 }
 
 impl PerNode {
-    /// A channel of that name.
+    /// A channel with this name.
     pub const fn new(name: &'static str) -> PerNode {
         PerNode { name }
     }
@@ -100,7 +100,7 @@ macro_rules! per_body {
 per_body!(f64 => Number, u64 => Count, bool => Flag);
 
 impl<const D: usize> Content<D> {
-    /// The content at the start: zero.
+    /// The initial content: zero.
     fn initial(holds: Type, index_count: usize) -> Content<D> {
         match holds {
             Type::Number => Content::Number(0.0),
@@ -118,7 +118,7 @@ impl<const D: usize> Content<D> {
             Content::Vectors(_) => Type::Vectors,
         }
     }
-    /// Takes the value of another content into memory that is there already.
+    /// Copies another content, reusing memory.
     fn copy_from(&mut self, other: &Content<D>) {
         match (self, other) {
             (Content::Vectors(own), Content::Vectors(other)) => {
@@ -132,7 +132,7 @@ impl<const D: usize> Content<D> {
     }
 }
 
-/// The channels of a system, in the order of their declaration, with what they hold; part of the state.
+/// The channels of a system, in the order of their declaration, with their contents; part of the state.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct History<const D: usize> {
     owner: &'static str,
@@ -140,13 +140,13 @@ pub struct History<const D: usize> {
 }
 
 impl<const D: usize> History<D> {
-    /// Channels of an owner, such as an integrator, for so many indices; all begin at zero.
+    /// Channels of an owner, such as an integrator, for `index_count` indices; all begin at zero.
     pub fn new(owner: &'static str, channels: &[Channel], index_count: usize) -> History<D> {
         let mut history = History { owner, channels: Vec::new() };
         history.add(channels, index_count);
         history
     }
-    /// Adds channels, which begin at zero; one that is there stays as it is.
+    /// Adds channels, which begin at zero; existing ones do not change.
     pub fn add(&mut self, channels: &[Channel], index_count: usize) {
         for channel in channels {
             if self.find(channel.name).is_none() {
@@ -154,19 +154,19 @@ impl<const D: usize> History<D> {
             }
         }
     }
-    /// The name of the integrator whose it is.
+    /// The name of the integrator that owns it.
     pub fn owner(&self) -> &'static str {
         self.owner
     }
-    /// All channels and what they hold.
+    /// All channels and their contents.
     pub fn channels(&self) -> impl ExactSizeIterator<Item = (Channel, &Content<D>)> + Clone {
         self.channels.iter().map(|(channel, content)| (*channel, content))
     }
-    /// All channels, with contents that may be changed.
+    /// All channels, with mutable contents.
     pub fn channels_mut(&mut self) -> impl ExactSizeIterator<Item = (Channel, &mut Content<D>)> {
         self.channels.iter_mut().map(|(channel, content)| (*channel, content))
     }
-    /// Whether an owner has declared these channels; others may have been added behind them.
+    /// Whether this owner has declared these channels; others may have been added after them.
     pub fn is_of(&self, owner: &str, channels: &[Channel]) -> bool {
         let declared = self.channels.iter().map(|(channel, _)| channel);
         self.owner == owner && self.channels.len() >= channels.len() && declared.zip(channels).all(|(a, b)| a == b)
@@ -176,24 +176,24 @@ impl<const D: usize> History<D> {
         self.channels.iter().position(|(channel, _)| channel.name == name)
     }
 
-    /// The value of a channel; that at the start where the system has no such channel.
+    /// The value of a channel; the initial one if the system has no such channel.
     pub fn get<T: PerBodyValue>(&self, channel: PerBody<T>) -> T {
         self.find(channel.name).and_then(|k| T::of(&self.channels[k].1)).unwrap_or_default()
     }
-    /// Gives a channel a value; nothing happens where the system has no such channel.
+    /// Sets the value of a channel; does nothing if the system has no such channel.
     pub fn set<T: PerBodyValue>(&mut self, channel: PerBody<T>, value: T) {
         if let Some(k) = self.find(channel.name).filter(|k| T::of(&self.channels[*k].1).is_some()) {
             self.channels[k].1 = value.content();
         }
     }
-    /// The vectors of a channel; none where the system has no such channel.
+    /// The vectors of a channel; `None` if the system has no such channel.
     pub fn vectors(&self, channel: PerNode) -> Option<&Columns<D>> {
         match &self.channels[self.find(channel.name)?].1 {
             Content::Vectors(columns) => Some(columns),
             _ => None,
         }
     }
-    /// The same to be changed.
+    /// The same, mutable.
     pub fn vectors_mut(&mut self, channel: PerNode) -> Option<&mut Columns<D>> {
         let k = self.find(channel.name)?;
         match &mut self.channels[k].1 {
@@ -202,7 +202,7 @@ impl<const D: usize> History<D> {
         }
     }
 
-    /// Puts all channels to where they begin: what is kept does not lead to a state that was changed from outside.
+    /// Resets all channels: their contents do not fit a state that was changed from outside.
     pub fn reset(&mut self) {
         for (channel, content) in &mut self.channels {
             match content {
@@ -211,7 +211,7 @@ impl<const D: usize> History<D> {
             }
         }
     }
-    /// Takes what another history holds into memory that is there already.
+    /// Copies the contents of another history, reusing memory.
     pub fn copy_from(&mut self, other: &History<D>) {
         if !self.is_alike(other) {
             self.clone_from(other);
@@ -259,7 +259,7 @@ mod tests {
         history.vectors_mut(ACCELERATION).expect("vectors").set(5, [1.0, 2.0]);
         assert_eq!((history.get(LOAD), history.get(TURN), history.get(BEGUN)), (0.25, 3, true));
         assert_eq!(history.vectors(ACCELERATION).expect("vectors").at(5), [1.0, 2.0]);
-        // A name alone does not open a channel.
+        // The name alone does not give access to a channel.
         const OTHER: PerBody<f64> = PerBody::new("turn");
         history.set(OTHER, 7.0);
         assert_eq!((history.get(OTHER), history.get(TURN)), (0.0, 3));
@@ -288,7 +288,7 @@ mod tests {
         history.set(TURN, 2);
         history.add(&[TURN.declared(), PerBody::<f64>::new("last").declared()], 8);
         assert_eq!((history.get(TURN), history.channels().len()), (2, 5));
-        // Whoever declared the first of them still owns them.
+        // The owner that declared the first ones stays the owner.
         let declared: Vec<Channel> = history.channels().map(|(channel, _)| channel).collect();
         assert!(history.is_of("rule", &declared[..4]) && !history.is_of("rule", &declared[1..]));
     }

@@ -1,6 +1,6 @@
-//! What implicit integrators ask of a system: forces, energy and derivatives in trial states, pins, limits.
+//! The interface for implicit integrators: forces, energy and derivatives in trial states, pins, limits.
 //!
-//! A trial state lies in work columns ([`Stage::Work`]); the state of the system stays as it is until the rule commits.
+//! A trial state is in work columns ([`Stage::Work`]); the state of the system does not change until the integrator commits.
 
 use crate::error::StepError;
 use crate::potential::{Account, Definiteness, Sink};
@@ -10,12 +10,12 @@ use crate::tile::{Tile, Weight};
 use opruga_math::{WIDTH, sum_in_fixed_order};
 
 impl<const D: usize> System<D> {
-    /// The force of all models and the weight on every node in a state, at a time after the start of the step [N].
+    /// Computes the force of all models and the weight on every node in a state, at a time after the start of the step [N].
     ///
-    /// `weight` [s] is the share of this evaluation in the step's work integrals; zero for a mere trial.
+    /// `weight` [s] is the share of this evaluation in the work integrals of the step; zero for a trial.
     ///
     /// # Errors
-    /// [`StepError`] where a model refuses the state.
+    /// [`StepError`] if a model refuses the state.
     pub fn evaluate(&mut self, stage: Stage, time: f64, weight: f64, out: &mut Columns<D>) -> Result<(), StepError> {
         self.ensure_workspace();
         self.prepare(stage, self.time + time)?;
@@ -23,15 +23,15 @@ impl<const D: usize> System<D> {
         Ok(())
     }
 
-    /// As [`System::evaluate`] of the state that was evaluated last, once more: what models worked out then still holds.
+    /// Repeats [`System::evaluate`] in the state that was evaluated last; the preparation of the models is still valid.
     pub fn evaluate_again(&mut self, stage: Stage, time: f64, weight: f64, out: &mut Columns<D>) {
         self.gather_forces(stage, time, weight, out);
     }
 
-    /// Lets some models alone look at a state, by their numbers, as [`System::evaluate`] lets all of them.
+    /// Prepares only some models, by their numbers, in a state, whereas [`System::evaluate`] prepares all of them.
     ///
     /// # Errors
-    /// [`StepError`] where a model refuses the state.
+    /// [`StepError`] if a model refuses the state.
     pub fn prepare_some(&mut self, which: &[usize], stage: Stage, time: f64) -> Result<(), StepError> {
         let view = view(&self.state, self.nodes, self.layout, stage, self.time + time, self.threads);
         for number in which {
@@ -52,7 +52,7 @@ impl<const D: usize> System<D> {
         }
         self.add_pushes(out);
         if weight == 0.0 {
-            // A trial counts nothing.
+            // A trial does not change the counts.
             self.work.limited_forces = limited;
         }
     }
@@ -66,13 +66,13 @@ impl<const D: usize> System<D> {
         }
     }
 
-    /// Whether second derivatives depend on positions alone: not on the time, nor on what models remember.
+    /// Whether second derivatives depend only on positions, neither on the time nor on the memory of models.
     pub fn hessian_is_of_positions(&self) -> bool {
         self.members.iter().all(|m| m.memory.is_empty() && m.potential.properties().account == Account::Elastic)
     }
 
-    /// The potential energy of all models, of the weight and of the forces of other bodies in a state [J], after [`System::evaluate`] of the same state;
-    /// none where a model that pushes has no energy.
+    /// The potential energy of all models, of the weight and of the forces of other bodies in a state [J], after
+    /// [`System::evaluate`] in the same state; `None` if a model with forces has no energy.
     pub fn potential_energy(&self, stage: Stage, time: f64) -> Option<f64> {
         let silent = |member: &Member<D>| {
             member.potential.properties().account == Account::User && !member.potential.properties().views.energy
@@ -81,7 +81,7 @@ impl<const D: usize> System<D> {
             .then(|| self.stored_energy(stage, time) - self.work_of_pushes(stage, time))
     }
 
-    /// Σ F·x of the forces of other bodies, which are those of a potential: they stay throughout the step [J].
+    /// Σ F·x of the forces of other bodies, which count as those of a potential because they are constant during the step [J].
     fn work_of_pushes(&self, stage: Stage, time: f64) -> f64 {
         let Some(pushes) = &self.pushes else { return 0.0 };
         let view = self.view(stage, self.time + time);
@@ -94,7 +94,7 @@ impl<const D: usize> System<D> {
         sum
     }
 
-    /// Whether every model says what its forces do: it has an energy, or its power is entered as that of damping or of loads.
+    /// Whether every model accounts for its forces: it has an energy, or its power is entered as that of damping or of loads.
     pub fn has_energy(&self) -> bool {
         self.members.iter().all(|member| {
             let views = member.potential.properties().views;
@@ -102,7 +102,7 @@ impl<const D: usize> System<D> {
         })
     }
 
-    /// The energy of all models that have one, and of the weight, in a state [J], after [`System::evaluate`] of the same state.
+    /// The energy of all models that have one, and of the weight, in a state [J], after [`System::evaluate`] in the same state.
     pub fn stored_energy(&self, stage: Stage, time: f64) -> f64 {
         let view = self.view(stage, self.time + time);
         let mut sum = 0.0;
@@ -133,12 +133,12 @@ impl<const D: usize> System<D> {
         sum_in_fixed_order(&parts) + coupled.unwrap_or(0.0)
     }
 
-    /// The vectors of one body, the coordinates of one node after the other.
+    /// The vectors of one body, with the coordinates of one node after the other.
     pub fn node_by_node(&self, columns: &Columns<D>) -> Vec<f64> {
         (0..self.nodes).flat_map(|node| columns.at(node)).collect()
     }
 
-    /// The part of the forces that comes from outside, weight and loads, after [`System::evaluate`] of the same state [N].
+    /// The external part of the forces, weight and loads, after [`System::evaluate`] in the same state [N].
     pub fn outer_forces(&mut self, stage: Stage, time: f64, out: &mut Columns<D>) {
         let now = self.time + time;
         let view = view(&self.state, self.nodes, self.layout, stage, now, self.threads);
@@ -161,7 +161,7 @@ impl<const D: usize> System<D> {
         self.add_pushes(out);
     }
 
-    /// Delivers the second derivatives of what acts from outside, after [`System::evaluate`] of the same state.
+    /// Delivers the second derivatives of external members, after [`System::evaluate`] in the same state.
     pub fn outer_hessian(&self, stage: Stage, time: f64, keep: Definiteness, sink: &mut dyn Sink<D>) {
         let view = self.view(stage, self.time + time);
         for member in self.members.iter().filter(|member| member.potential.properties().account == Account::User) {
@@ -171,7 +171,7 @@ impl<const D: usize> System<D> {
         }
     }
 
-    /// Delivers ∂²U/∂x∂x of all models in a state, after [`System::evaluate`] of the same state.
+    /// Delivers ∂²U/∂x∂x of all models in a state, after [`System::evaluate`] in the same state.
     pub fn hessian(&self, stage: Stage, time: f64, keep: Definiteness, sink: &mut dyn Sink<D>) {
         let view = self.view(stage, self.time + time);
         for member in &self.members {
@@ -181,7 +181,7 @@ impl<const D: usize> System<D> {
         }
     }
 
-    /// Delivers −∂F/∂v of all models in a state, after [`System::evaluate`] of the same state.
+    /// Delivers −∂F/∂v of all models in a state, after [`System::evaluate`] in the same state.
     pub fn damping_matrix(&self, stage: Stage, time: f64, sink: &mut dyn Sink<D>) {
         let view = self.view(stage, self.time + time);
         for member in self.members.iter().filter(|member| member.potential.properties().views.damping) {
@@ -194,28 +194,28 @@ impl<const D: usize> System<D> {
         self.members.iter().any(|member| member.potential.properties().views.damping)
     }
 
-    /// Calls back with every pinned axis of a node, once: index, axis.
+    /// Calls `visit` with the index and axis of every pinned axis of a node, once.
     pub fn pinned_axes(&self, visit: &mut dyn FnMut(usize, usize)) {
         for (index, d) in self.pinned_nodes.within(&(0..self.index_count())) {
             visit(index, d);
         }
     }
 
-    /// Begins an implicit step: makes room, and takes the motion of pinned nodes that the step finds from the ledger.
+    /// Begins an implicit step: allocates memory, and subtracts the initial motion of pinned nodes from the ledger.
     pub fn begin_implicit(&mut self) {
         self.ensure_workspace();
         self.take_pinned_motion(0..self.index_count());
     }
 
-    /// Puts pinned nodes of a state where they have to be, at a time after the start of the step.
+    /// Moves the pinned nodes of a state to their prescribed positions, at a time after the start of the step.
     pub fn hold(&mut self, stage: Stage, time: f64) {
         if !self.pins.is_empty() {
             self.hold_pins(stage, self.time + time);
         }
     }
 
-    /// Ends an implicit step of `h` whose end is in the current state: pinned nodes are where they have to be, speeds are
-    /// limited, models move their memory on, time passes.
+    /// Ends an implicit step of `h` whose end is in the current state: moves pinned nodes to their positions, limits speeds,
+    /// updates the memory of models and the time.
     pub fn end_implicit(&mut self, h: f64) {
         self.hold(Stage::Current, h);
         self.limit_velocities();

@@ -1,21 +1,21 @@
-//! What a consistent mass matrix has more than lumped masses.
+//! The difference between a consistent mass matrix and lumped masses.
 //!
-//! M = diag(m) + D: the same number of every pair of nodes for all axes. The sum of all numbers of D is zero, so the mass of
-//! a body is that of its nodes; each weighs by the sum of its row.
+//! M = diag(m) + D, with the same number for all axes of a pair of nodes. All numbers of D sum to zero, so the mass of a body is
+//! that of its nodes; the weight of a node comes from the sum of its row.
 
 use opruga_math::{WIDTH, sum_in_fixed_order};
 
 /// The matrix D [kg] in compressed rows, symmetric.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Inertia {
-    /// Where the entries of each node begin, and where the last end.
+    /// The first entry of each node, and the end of the last one.
     start: Vec<u32>,
     column: Vec<u32>,
     value: Vec<f64>,
 }
 
 impl Inertia {
-    /// The matrix of so many nodes, from entries (row, column, mass) that are added up in their order.
+    /// The matrix for `nodes` nodes, from entries (row, column, mass) that are added in their order.
     pub fn new(nodes: usize, mut entries: Vec<(u32, u32, f64)>) -> Inertia {
         entries.sort_by_key(|(row, column, _)| (*row, *column));
         let mut out = Inertia { start: vec![0; nodes + 1], ..Inertia::default() };
@@ -50,7 +50,7 @@ impl Inertia {
         self.start.len().saturating_sub(1)
     }
 
-    /// (D x)ₐ of a vector that holds the coordinates of one node after the other.
+    /// (D x)ₐ for a vector that holds the coordinates of one node after the other.
     #[inline]
     pub fn product<const D: usize>(&self, node: usize, x: &[f64]) -> [f64; D] {
         let mut out = [0.0; D];
@@ -74,7 +74,7 @@ impl Inertia {
         sum_in_fixed_order(&parts)
     }
 
-    /// All entries, those of others added behind.
+    /// All entries, followed by those of others.
     pub(crate) fn with(&self, others: Vec<(u32, u32, f64)>) -> Inertia {
         let own = (0..self.nodes()).flat_map(|a| self.row(a).map(move |(b, mass)| (a as u32, b as u32, mass)));
         Inertia::new(self.nodes(), own.chain(others).collect())

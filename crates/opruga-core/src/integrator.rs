@@ -1,4 +1,4 @@
-//! What an integrator is to a world: it moves a system on by one substep, and knows its own stability.
+//! The interface of integrators: an integrator moves a system on by one substep, and describes its own stability.
 
 use crate::error::{BuildError, StepError};
 use crate::history::{Channel, History};
@@ -11,104 +11,105 @@ use core::fmt::Debug;
 use core::sync::atomic::{AtomicU64, Ordering};
 use opruga_math::Lane;
 
-/// A rule that moves a system from time t to t + h.
+/// A method that moves a system from time t to t + h.
 pub trait Integrator<const D: usize>: Send + Sync + Debug {
-    /// The word that names it.
+    /// The name of the integrator.
     fn name(&self) -> &'static str;
-    /// What it asks of every model; checked when a world is built.
+    /// The views that it needs of every model; checked when a world is built.
     fn needs(&self) -> Views {
         Views::default()
     }
-    /// How many pairs of columns (x, v) it uses within a step.
+    /// The number of pairs of columns (x, v) that it uses within a step.
     fn work_columns(&self) -> usize {
         0
     }
-    /// What it keeps from step to step beside x and v; part of the state.
+    /// The data that it keeps from step to step besides x and v; part of the state.
     fn history(&self) -> Vec<Channel> {
         Vec::new()
     }
-    /// The matrix that takes (x, v), and behind them the vectors of its history, to the next step on the damped oscillator
-    /// x″ = −ω²x − c x′.
+    /// The matrix that takes (x, v), followed by the vectors of its history, to the next step for the damped oscillator x″ = −ω²x
+    /// − c x′.
     ///
-    /// Its spectral radius is at most 1 where the step h is stable. The state is scaled as (x, v), not (ωx, v).
+    /// Its spectral radius is at most 1 if the step h is stable. The state is scaled as (x, v), not (ωx, v).
     fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification;
-    /// Refuses a system that it cannot step, such as a free body where an equilibrium is asked for; `obstacles` says whether
-    /// there are any that may hold it.
+    /// Refuses a system that it cannot step, such as a free body in statics; `obstacles` tells whether there are any that may
+    /// hold it.
     ///
     /// # Errors
     /// [`BuildError`] with the reason.
     fn check(&self, _system: &System<D>, _obstacles: bool) -> Result<(), BuildError> {
         Ok(())
     }
-    /// Names and values of what a reader may want to see, such as the part of the load that is on.
+    /// Names and values of readings, such as the applied fraction of the load.
     fn readings(&self, _system: &System<D>) -> Vec<Reading> {
         Vec::new()
     }
-    /// The part of the loads that is on, where an integrator puts them on by and by.
+    /// The applied fraction of the loads, if the integrator applies them gradually.
     fn part_of_load(&self, _system: &System<D>) -> Option<f64> {
         None
     }
-    /// Whether the same bits come out on every processor, and not only on those of one class.
+    /// Whether it gives the same bits on every processor, and not only on those of one class.
     fn same_bits_everywhere(&self, _system: &System<D>) -> bool {
         true
     }
-    /// Whether a step ends where forces balance, however far that is from where it begins and whatever the velocities.
+    /// Whether a step ends in an equilibrium, however far from its start and whatever the velocities.
     fn is_static(&self) -> bool {
         false
     }
-    /// Whether it enters what it dissipates by itself into [`crate::system::Work8::numerical`], from its own formula. What a rule
-    /// does not enter there is left unexplained.
+    /// Whether it enters its own dissipation into [`crate::system::Work8::numerical`], from its own formula. Dissipation that is
+    /// not entered there remains unexplained.
     fn measures_its_damping(&self) -> bool {
         false
     }
-    /// Whether no other rule leaves less energy unexplained where bodies meet obstacles.
+    /// Whether no other integrator leaves less energy unexplained when bodies meet obstacles.
     fn makes_least_of_contact(&self) -> bool {
         false
     }
-    /// Whether its steps spread the work on one system over [`System::threads`].
+    /// Whether its steps distribute the work on one system over [`System::threads`].
     fn shares_threads(&self) -> bool {
         false
     }
-    /// Whether it solves with a mass matrix that couples nodes ([`System::inertia`]).
+    /// Whether it supports a mass matrix that couples nodes ([`System::inertia`]).
     fn takes_mass_matrix(&self) -> bool {
         false
     }
-    /// What it needs for one body whose models couple so many pairs of nodes [bytes], beside the state.
+    /// The memory that it needs for one body whose models couple this many pairs of nodes [bytes], besides the state.
     fn memory(&self, counts: &Counts, _couplings: f64) -> f64 {
         16.0 * D as f64 * counts.nodes * self.work_columns() as f64
     }
     /// Makes one substep of h [s].
     ///
     /// # Errors
-    /// [`StepError`] where a model refuses.
+    /// [`StepError`] if a model refuses.
     fn step(&self, system: &mut System<D>, h: f64) -> Result<(), StepError>;
-    /// Whether its steps have a fixed budget, and leave a part of what is out of balance to those that follow.
+    /// Whether its steps have a fixed budget, and leave a part of the residual to later steps.
     fn has_budget(&self) -> bool {
         false
     }
-    /// Whether other bodies push within the step ([`System::pushes`]): so contact is part of the balance that it solves for. Else contact
-    /// changes velocities after the step.
+    /// Whether the forces of other bodies act within the step ([`System::pushes`]), so that contact is part of the balance that
+    /// it solves. Otherwise contact changes velocities after the step.
     fn takes_pushes(&self) -> bool {
         false
     }
-    /// Works out, after a step, how its end answers to pushes, for [`Integrator::answer`]. Gives the number of the matrix that it goes by: with
-    /// the same number come the same answers. None where it could not.
+    /// Computes, after a step, how its end responds to forces of other bodies, for [`Integrator::answer`]. Returns the number of
+    /// the matrix that it uses: the same number means the same responses. `None` if it could not.
     ///
     /// # Errors
-    /// [`StepError`] where a model refuses.
+    /// [`StepError`] if a model refuses.
     fn prepare_answer(&self, _system: &mut System<D>) -> Result<Option<u64>, StepError> {
         Ok(None)
     }
-    /// Replaces forces on the nodes, that act throughout the step [N], by the displacements that they add to its end, to first order [m]: in so many
-    /// vectors, one after the other, each with the coordinates of one node after the other. Says whether it could.
+    /// Replaces forces on the nodes that act throughout the step [N] by the displacements that they add to its end, to first
+    /// order [m]. The given number of vectors are consecutive, each with the coordinates of one node after the other. Returns
+    /// whether it could.
     fn answer(&self, _system: &mut System<D>, _vectors: &mut [f64], _count: usize) -> bool {
         false
     }
-    /// Begins a substep of h [s] whose end is searched for together with the ends of other bodies; none where the rule does not solve for
-    /// its end.
+    /// Begins a substep of h [s] whose end is found together with the ends of other bodies; `None` if the integrator does not
+    /// solve for its end.
     ///
     /// # Errors
-    /// [`StepError`] where a model refuses the start.
+    /// [`StepError`] if a model refuses the start.
     fn open(&self, _system: &mut System<D>, _h: f64) -> Option<Result<Box<dyn OpenStep<D>>, StepError>> {
         None
     }
@@ -125,7 +126,7 @@ impl<const D: usize> System<D> {
     }
 }
 
-/// A number that no matrix has had before in this program, for [`Integrator::prepare_answer`].
+/// A number that no matrix has had before in this process, for [`Integrator::prepare_answer`].
 pub fn next_matrix_number() -> u64 {
     static NEXT: AtomicU64 = AtomicU64::new(0);
     NEXT.fetch_add(1, Ordering::Relaxed)
@@ -135,21 +136,21 @@ pub fn next_matrix_number() -> u64 {
 pub trait IntegratorKind<const D: usize>: Send + Sync {
     /// Its parameters and documentation.
     fn spec(&self) -> &'static Spec;
-    /// Whether it steps eight alike bodies side by side; else every body is stepped by itself.
+    /// Whether it steps eight identical bodies side by side; otherwise every body is stepped by itself.
     fn batches(&self) -> bool {
         true
     }
     /// Builds it.
     ///
     /// # Errors
-    /// [`BuildError`] where a combination of parameters has no meaning.
+    /// [`BuildError`] if a combination of parameters has no meaning.
     fn build(&self, values: &Values) -> Result<Box<dyn Integrator<D>>, BuildError>;
 }
 
-/// The most numbers per degree of freedom that an integrator carries from step to step.
+/// The largest number of values per degree of freedom that an integrator carries from step to step.
 pub const MOST_CARRIED: usize = 4;
 
-/// What one step makes of x, v and what an integrator remembers, on a linear oscillator.
+/// The effect of one step on x, v and the memory of an integrator, for a linear oscillator.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Amplification {
     size: usize,
@@ -166,14 +167,15 @@ impl Amplification {
         }
         Amplification { size: N, rows }
     }
-    /// How many numbers are carried from step to step: x, v and the history.
+    /// The number of values that are carried from step to step: x, v and the history.
     pub fn size(&self) -> usize {
         self.size
     }
     /// The largest absolute eigenvalue.
     pub fn spectral_radius(&self) -> f64 {
         let (m, mut size, mut apart) = (&self.rows, self.size, 0.0);
-        // What nothing else depends on is an eigenvalue of its own. Where it meets others, rounding would move them all.
+        // A value on which nothing else depends has its own eigenvalue. It is split off, because rounding would move it together
+        // with close eigenvalues.
         while size > 2 && m[..size - 1].iter().all(|row| row[size - 1] == 0.0) {
             size -= 1;
             apart = m[size][size].abs().larger(apart);
@@ -184,8 +186,9 @@ impl Amplification {
         };
         if radius.is_finite() { radius.larger(apart) } else { radius }
     }
-    /// The same eigenvalues in units in which rows are as large as columns: positions, velocities and accelerations differ by powers
-    /// of the step, beside which rounding would be more than the distance of an eigenvalue from 1. Powers of two round nothing.
+    /// The same eigenvalues, in units in which rows are as large as columns. Positions, velocities and accelerations differ by
+    /// powers of the step, so rounding would otherwise exceed the distance of an eigenvalue from 1. Powers of two cause no
+    /// rounding.
     fn balanced(&self) -> [[f64; MOST_CARRIED]; MOST_CARRIED] {
         const SWEEPS: usize = 40;
         let (n, mut a) = (self.size, self.rows);
@@ -215,7 +218,7 @@ impl Amplification {
         }
         a
     }
-    /// lim |Aⁿ|^(1/n) by Gelfand, n = 2⁶⁰: the rounding of the k-th square counts 2⁻ᵏ only.
+    /// lim |Aⁿ|^(1/n) (Gelfand), n = 2⁶⁰: the rounding of the k-th square counts only 2⁻ᵏ.
     fn radius_by_squaring(&self) -> f64 {
         const SQUARES: usize = 60;
         let n = self.size;
@@ -259,7 +262,7 @@ impl core::ops::Index<usize> for Amplification {
 fn radius_of_two(m: [[f64; 2]; 2]) -> f64 {
     let half_trace = 0.5 * (m[0][0] + m[1][1]);
     let determinant = m[0][0] * m[1][1] - m[0][1] * m[1][0];
-    // Written so that nothing cancels for a matrix close to the unit matrix.
+    // Written without cancellation for a matrix close to the unit matrix.
     let half_difference = 0.5 * (m[0][0] - m[1][1]);
     let discriminant = half_difference * half_difference + m[0][1] * m[1][0];
     if discriminant < 0.0 { determinant.sqrt() } else { half_trace.abs() + discriminant.sqrt() }
@@ -282,7 +285,7 @@ mod tests {
         assert!((four.spectral_radius() - 1.0).abs() < 1e-14, "{}", four.spectral_radius());
         let free = Amplification::new([[1.0, 7.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 0.3]]);
         assert!((free.spectral_radius() - 1.0).abs() < 1e-14, "{}", free.spectral_radius());
-        // Three eigenvalues of −1 but for rounding: what nothing depends on is apart from the others.
+        // Three eigenvalues of −1 except for rounding: the value on which nothing depends is separate from the others.
         let apart = Amplification::new([[-1.0, 4e-4, 0.0], [-4e-4, -1.0, 0.0], [7.0, 5.0, -1.0]]);
         assert!((apart.spectral_radius() - 1.0).abs() < 1e-7, "{}", apart.spectral_radius());
         let lonely = Amplification::new([[0.5, 0.0, 0.0], [0.0, 0.5, 0.0], [1.0, 1.0, -3.0]]);

@@ -1,51 +1,52 @@
-//! The account of a system: what went into and out of its energy, and what solving its equations took.
+//! The ledger of a system: the energy that went in and out, and the work of solving its equations.
 
 use opruga_math::{Lane, WIDTH};
 
-/// What went into and out of the energy since the ledger was last emptied [J]; eight partial sums each.
+/// The energy that went in and out since the ledger was last emptied [J]; eight partial sums each.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Work8 {
-    /// Work of forces from outside, of moving obstacles and of pins.
+    /// Work of external forces, of moving obstacles and of pins.
     pub user: [f64; WIDTH],
     /// Energy given to the gas by ramps, heating and leaks.
     pub gas: [f64; WIDTH],
-    /// Energy taken by damping.
+    /// Energy dissipated by damping.
     pub damping: [f64; WIDTH],
-    /// Energy taken by friction.
+    /// Energy dissipated by friction.
     pub friction: [f64; WIDTH],
-    /// Energy taken by impacts.
+    /// Energy dissipated by impacts.
     pub contact: [f64; WIDTH],
-    /// Energy given by obstacles that put nodes back on their surface.
+    /// Energy from obstacles that move nodes back to their surface.
     pub correction: [f64; WIDTH],
-    /// What a rule takes by itself, but for what the potential energy U gave: loads less damping as they were entered, less the
-    /// work of the impulses of the rule. With U₀ − U₁ over the same steps, and what the gas was given and obstacles corrected, it is
-    /// the energy that the rule dissipates ([`crate::integrator::Integrator::measures_its_damping`]). U falls out of the sum over steps,
-    /// so nobody needs to know it between them.
+    /// The own dissipation of an integrator, without the change of the potential energy U: loads minus damping as entered, minus
+    /// the work of the impulses of the integrator. Together with U₀ − U₁ over the same steps, the energy given to the gas and the
+    /// corrections of obstacles, it is the energy that the integrator dissipates
+    /// ([`crate::integrator::Integrator::measures_its_damping`]). U cancels in the sum over steps, so it is not needed between
+    /// them.
     pub numerical: [f64; WIDTH],
     /// How often a force was limited.
     pub limited_forces: u64,
     /// How often a velocity was limited.
     pub limited_velocities: u64,
-    /// What implicit integrators did.
+    /// The work of implicit integrators.
     pub solver: SolverWork,
 }
 
-/// Work of one account within a step of several stages [J], eight partial sums.
+/// The work of one account within a step of several stages [J], eight partial sums.
 ///
-/// Damping and loads work by velocities, which an integrator asks at its stages. It does not know there what an obstacle will
-/// leave of them: a node that lies on a floor falls within every stage and stands at the end of every step. A step
-/// that ends in contact therefore counts by the velocities that it begins with, which contact has seen. Over many steps
-/// that is the trapezoidal rule but for its two ends.
+/// The work of damping and loads depends on velocities, which an integrator evaluates at its stages. These do not include the
+/// effect of obstacles: a node that lies on a floor falls within every stage and is at rest at the end of every step. A step that
+/// ends in contact therefore uses its initial velocities, which contact has already changed. Over many steps this is the
+/// trapezoidal rule except for its two ends.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct StepWork {
-    /// By the velocities of all stages, as it was counted [J].
+    /// With the velocities of all stages, as counted [J].
     counted: [f64; WIDTH],
-    /// Power at the beginning of the step [W].
+    /// The power at the start of the step [W].
     at_start: [f64; WIDTH],
 }
 
 impl StepWork {
-    /// Notes what a stage has counted: power [W] times its weight [s].
+    /// Records the contribution of a stage: power [W] times its weight [s].
     #[inline]
     pub(crate) fn note(&mut self, power: &[f64; WIDTH], weight: f64, starts: bool) {
         for l in 0..WIDTH {
@@ -55,7 +56,7 @@ impl StepWork {
             }
         }
     }
-    /// Lets the step of `h` [s] count by its beginning in some lanes, a bit each.
+    /// Makes the step of `h` [s] count by its start in some lanes, one bit each.
     pub(crate) fn count_by_start(&self, h: f64, lanes: u8, account: &mut [f64; WIDTH]) {
         for l in (0..WIDTH).filter(|l| lanes >> l & 1 == 1) {
             account[l] += h * self.at_start[l] - self.counted[l];
@@ -63,45 +64,45 @@ impl StepWork {
     }
 }
 
-/// What implicit integrators did since the ledger was last emptied.
+/// The work of implicit integrators since the ledger was last emptied.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SolverWork {
-    /// Systems of equations that were solved, one a step.
+    /// The number of systems of equations solved, one per step.
     pub steps: u64,
-    /// Iterations of Newton.
+    /// The number of Newton iterations.
     pub iterations: u64,
-    /// Iterations of the linear solver.
+    /// The number of iterations of the linear solver.
     pub linear_iterations: u64,
-    /// The largest force out of balance on a node at the end of a step [N].
+    /// The largest residual force on a node at the end of a step [N].
     pub residual: f64,
-    /// Steps that were accepted though they had not converged.
+    /// The number of steps that were accepted without convergence.
     pub accepted: u64,
-    /// Steps that were halved since they had not converged.
+    /// The number of steps that were halved for lack of convergence.
     pub halved: u64,
-    /// How often one step was halved at most: its shortest part is 2⁻ⁿ of it.
+    /// The largest number of halvings of one step: its shortest part is 2⁻ⁿ of it.
     pub deepest: u64,
-    /// Steps of the real-time setting that may be worse than it promises: a budget that was spent, or equations so slow to solve
-    /// that what is left says little.
+    /// The number of steps of the real-time setting that may be worse than promised: the budget was spent, or the equations were
+    /// so slow to solve that the residual says little.
     pub cut_off: u64,
-    /// What was left out of balance at the end of such a step at most, as the way that it would move nodes if each stood
-    /// alone [m].
+    /// The largest residual at the end of such a step, as the distance that it would move nodes if each were alone [m].
     pub left: f64,
-    /// Steps that ended where forces balance to their rounding, though what is left of them would still move nodes visibly.
+    /// The number of steps that ended where forces balance to their rounding, although the residual would still move nodes
+    /// visibly.
     pub estimated: u64,
-    /// By how much at most it would [m].
+    /// The largest such displacement [m].
     pub error_estimate: f64,
-    /// Steps in which forces that rounding of positions makes were larger than the loads.
+    /// The number of steps in which forces due to rounding of positions exceeded the loads.
     pub conditioned: u64,
-    /// How many times at most they were as large.
+    /// The largest ratio of these forces to the loads.
     pub conditioning: f64,
     /// How often a body that rested in a degenerate shape was displaced at random.
     pub disturbed: u64,
-    /// How often that was in vain.
+    /// How often that did not help.
     pub stayed_degenerate: u64,
 }
 
 impl SolverWork {
-    /// Adds what was done elsewhere or later.
+    /// Adds work that was done elsewhere or later.
     pub fn add(&mut self, other: &SolverWork) {
         self.steps += other.steps;
         self.iterations += other.iterations;

@@ -5,21 +5,21 @@ use crate::workspace::Workspace;
 use opruga_math::WIDTH;
 
 impl<const D: usize> Workspace<D> {
-    /// Grows to what the steps of a system need.
+    /// Grows to the size that the steps of a system need.
     pub fn fit(&mut self, system: &System<D>) {
         self.grow(system.plan.buffer_length(), system.stages, system.index_count());
     }
 }
 
 impl<const D: usize> System<D> {
-    /// Takes a workspace for its own, or gives it back.
+    /// Swaps its memory with that of a workspace, to borrow it or to give it back.
     pub fn exchange(&mut self, workspace: &mut Workspace<D>) {
         std::mem::swap(&mut self.forces, &mut workspace.forces);
         std::mem::swap(&mut self.before, &mut workspace.before);
         std::mem::swap(&mut self.velocity_before, &mut workspace.velocity_before);
         std::mem::swap(&mut self.state.work, &mut workspace.stages);
     }
-    /// Makes a workspace for a step where nobody has lent one.
+    /// Makes a workspace for a step if none was lent.
     pub(crate) fn ensure_workspace(&mut self) {
         let (buffers, stages, index_count) = (self.plan.buffer_length(), self.stages, self.index_count());
         let own = self.state.work.iter().take(stages).flatten().all(|c| c.0[0].len() >= index_count + WIDTH);

@@ -1,4 +1,4 @@
-//! The language of Opruga: what models, integrators and obstacles are to one another.
+//! The common language of Opruga: the interfaces of models, integrators and obstacles.
 
 pub mod accumulator;
 mod advance;

@@ -1,30 +1,31 @@
-//! How much memory a body will take, estimated from the counts of its mesh before anything is built.
+//! The memory that a body will need, estimated from the counts of its mesh before anything is built.
 //!
-//! The figures of bytes are those of measured runs (docs/performance.md, "Memory"): a test compares estimates with what runs take.
+//! The numbers of bytes come from measured runs (docs/performance.md, "Memory"); a test compares estimates with the memory of
+//! runs.
 
 use opruga_mesh::Mesh;
 
-/// What a part of a body needs.
+/// The needs of a part of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Need {
     /// Memory [bytes].
     pub bytes: f64,
-    /// How many pairs of nodes it couples: blocks above the diagonal of a matrix.
+    /// The number of pairs of nodes that it couples: blocks above the diagonal of a matrix.
     pub couplings: f64,
 }
 
-/// How many there are of what takes memory. Sides that cells share are counted by their mean number in large meshes.
+/// The counts that determine memory. Sides that cells share are counted by their mean number in large meshes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Counts {
     /// Nodes.
     pub nodes: f64,
-    /// Edges of the mesh: those of cells, or of surfaces and wires where there are no cells.
+    /// Edges of the mesh: those of cells, or of surfaces and wires if there are no cells.
     pub edges: f64,
     /// Edges of surfaces across which two triangles bend.
     pub hinges: f64,
     /// Sides of the boundary.
     pub facets: f64,
-    /// Cells, as the bytes that finite elements keep of them.
+    /// Cells, as the bytes that finite elements store for them.
     pub cell_bytes: f64,
     /// Pairs of nodes that have a cell in common.
     pub cell_pairs: f64,
@@ -33,7 +34,7 @@ pub struct Counts {
 }
 
 impl Counts {
-    /// Those of a mesh.
+    /// The counts of a mesh.
     pub fn of<const D: usize>(mesh: &Mesh<D>) -> Counts {
         let (cells, facets) = (&mesh.cells, mesh.facets.len() as f64);
         // Per cell: edges, pairs of nodes, bytes.
@@ -65,12 +66,12 @@ impl Counts {
         }
     }
 
-    /// What the mesh takes, however many bodies are made of it [bytes].
+    /// The memory of the mesh, however many bodies use it [bytes].
     pub fn mesh_bytes<const D: usize>(&self) -> f64 {
         self.nodes * (20.0 + 30.0 * D as f64) + 40.0 * self.facets
     }
 
-    /// What the description of one body and the state of its nodes take [bytes].
+    /// The memory of the description of one body and of the state of its nodes [bytes].
     pub fn state_bytes<const D: usize>(&self) -> f64 {
         1000.0 + self.nodes * (40.0 + 30.0 * D as f64)
     }

@@ -1,74 +1,77 @@
-//! A step whose end is searched for together with the ends of other bodies.
+//! A step whose end is found together with the ends of other bodies.
 
 use crate::error::StepError;
 use crate::system::System;
 
-/// A step of an implicit rule that has begun: forces balance where the incremental potential Φ(u) of the body and what acts between bodies
-/// are least together. u [m] are displacements from the start of the step, the coordinates of one node after the other.
+/// A step of an implicit integrator that has begun: forces balance where the sum of the incremental potential Φ(u) of the body
+/// and the interactions between bodies is minimal. u [m] are displacements from the start of the step, with the coordinates of
+/// one node after the other.
 ///
 /// ```text
 /// Φ = σ/2 |u − y|²_M + U(x₀ + u),   r = ∂Φ/∂u,   A ≈ ∂²Φ/∂u² without negative eigenvalues
 /// ```
 ///
-/// Obstacles hold nodes, and pins lead them: `prescribed` is how far these still have to go, and A is solved in the directions that are free.
+/// Obstacles hold nodes, and pins move them: `prescribed` is how far these still have to move, and A is solved in the free
+/// directions.
 pub trait OpenStep<const D: usize>: Send {
-    /// Lets a body of statics stay where it is now by a part of its mass, y = u and σ [1/s²], from the next evaluation on. Bodies that move have inertia
-    /// of their own, and take no note of it.
+    /// Ties a body of statics to its present position by a part of its mass, y = u and σ [1/s²], from the next evaluation on.
+    /// Bodies that move have their own inertia and ignore this.
     fn stay(&mut self, _sigma: f64) {}
     /// u.
     fn displacements(&self) -> &[f64];
     /// The correction of u [m], which the search writes.
     fn correction(&mut self) -> &mut [f64];
-    /// Evaluates forces at u and a part of the correction.
+    /// Evaluates forces at u plus a fraction of the correction.
     ///
     /// # Errors
-    /// [`StepError`] where a model has no meaning there.
+    /// [`StepError`] if a model has no value there.
     fn evaluate(&mut self, system: &mut System<D>, part: f64) -> Result<(), StepError>;
-    /// Φ and the size of its parts where forces were evaluated last [J]; none where damping or a model without an energy takes part.
+    /// Φ and the size of its terms in the last evaluated state [J]; `None` if there is damping or a model without an energy.
     fn potential(&self, system: &System<D>) -> Option<[f64; 2]>;
-    /// What rounding makes of Φ by itself, in its models [J].
+    /// The rounding of Φ in its models [J].
     fn rounding(&self, system: &System<D>) -> f64;
-    /// What rounding of positions makes of r by itself, in the directions that are free and by the last derivatives: the root of the sum of squares [N].
+    /// The part of r that is due to rounding of positions, in the free directions and with the last derivatives: the root of the
+    /// sum of squares [N].
     fn rounding_of_forces(&self, system: &System<D>) -> f64;
-    /// r where forces were evaluated last [N].
+    /// r in the last evaluated state [N].
     fn residual(&self) -> &[f64];
-    /// Adds a part of the correction to u.
+    /// Adds a fraction of the correction to u.
     fn advance(&mut self, part: f64);
-    /// Looks which nodes obstacles hold; says whether that has changed.
+    /// Searches for nodes that obstacles hold; returns whether they have changed.
     fn look(&mut self, system: &System<D>) -> bool;
-    /// Takes the derivatives where forces were evaluated last, exact ones if these are asked for and positive definite, and factors them in the
-    /// directions that are free; says whether that could be done.
+    /// Assembles the derivatives in the last evaluated state, the exact ones if `exact` is set and they are positive definite,
+    /// and factors them in the free directions; returns whether that was possible.
     fn factor(&mut self, system: &System<D>, exact: bool) -> bool;
-    /// The mean diagonal entry of A at a node [N/m]; 0 where a pin holds all of it.
+    /// The mean diagonal entry of A at a node [N/m]; 0 if a pin holds all of it.
     fn stiffness(&self, system: &System<D>, node: usize) -> f64;
-    /// How far prescribed nodes still have to go [m].
+    /// How far prescribed nodes still have to move [m].
     fn prescribed(&self) -> &[f64];
-    /// −(r + forces − friction) − A `prescribed`, in the directions that are free: what the correction has to balance, besides what is prescribed
-    /// [N]. Forces are those that other bodies will not take.
+    /// −(r + forces − friction) − A `prescribed`, in the free directions: what the correction has to balance, besides the
+    /// prescribed displacements [N]. `forces` are forces that other bodies will not take.
     fn right_side(&mut self, system: &System<D>, forces: &[f64], out: &mut [f64]);
     /// y = A x.
     fn multiply(&self, system: &System<D>, x: &[f64], y: &mut [f64]);
-    /// Keeps what is free of a vector.
+    /// Projects a vector onto the free directions.
     fn filter(&self, x: &mut [f64]);
-    /// x = A⁻¹ x in the directions that are free.
+    /// x = A⁻¹ x in the free directions.
     fn solve(&self, x: &mut [f64]);
-    /// Lets the friction of obstacles follow what holds nodes, A correction + r + forces; gives by what the force on the nodes has changed
-    /// [N], or nothing where that is settled to `tolerance` of itself.
+    /// Adapts the friction of obstacles to the forces that hold nodes, A correction + r + forces. Writes the change of the force
+    /// on the nodes [N], or nothing if it has settled to the fraction `tolerance`.
     fn follow(&mut self, system: &System<D>, forces: &[f64], tolerance: f64, out: &mut [f64]) -> bool;
-    /// The work along the correction of friction on obstacles and of what holds nodes [J].
+    /// The work along the correction of friction on obstacles and of the forces that hold nodes [J].
     fn given(&mut self) -> f64;
-    /// Decides anew which nodes obstacles hold, and how; says whether that has changed.
+    /// Decides which nodes obstacles hold, and how; returns whether that has changed.
     fn judge(&mut self, system: &System<D>) -> bool;
-    /// The correction with which the search ends [m].
+    /// The correction below which the search ends [m].
     fn goal(&self) -> f64;
-    /// The most iterations, and whether a step that has not converged then counts.
+    /// The largest number of iterations, and whether a step that has not converged is then accepted.
     fn most_iterations(&self) -> (u32, bool);
-    /// How often a step whose search does not end is halved at most.
+    /// The largest number of halvings of a step whose search does not end.
     fn most_halvings(&self) -> u32;
-    /// Ends the step with the pushes of other bodies in `system.pushes`, which belong to u; counts the iterations of the search, and a step that counts though
-    /// the search has not converged.
+    /// Ends the step with the forces of other bodies in `system.pushes`, which belong to u. Records the iterations of the search,
+    /// and whether the step was accepted without convergence.
     ///
     /// # Errors
-    /// [`StepError`] where a model refuses the end.
+    /// [`StepError`] if a model refuses the end.
     fn close(self: Box<Self>, system: &mut System<D>, iterations: u32, converged: bool) -> Result<(), StepError>;
 }

@@ -1,19 +1,19 @@
-//! What pins do to the motion of a system: they put nodes where they have to be, and their work is entered.
+//! The effect of pins on a system: they move nodes to prescribed positions, and their work is entered.
 
 use crate::system::{Stage, System};
 use core::ops::Range;
 use opruga_math::WIDTH;
 
 impl<const D: usize> System<D> {
-    /// Tells the ledger how far pins move in the step of `h` that comes.
+    /// Records how far pins move in the coming step of `h`.
     pub fn lead_pins(&mut self, h: f64) {
         self.pinned_nodes.learn(&self.pins, self.time, h);
     }
 
-    /// Gives pinned nodes the velocity of their path at the start of a frame, where they have another: at the start of a run, or where a
-    /// command has just taken hold of them. Dampers between them and their neighbours would act for a step by a motion that ended with
-    /// the hold, which costs every rule its order. What that changes of the kinetic energy is work of the pins. Where a mass matrix
-    /// couples nodes it is an impulse on others too, and is left to the rule.
+    /// Gives pinned nodes the velocity of their path at the start of a frame if they have another one: at the start of a run, or
+    /// if a command has just pinned them. Otherwise dampers between them and their neighbours would act for one step with a
+    /// velocity that no longer exists, which reduces the order of every integrator. The change of kinetic energy is work of the
+    /// pins. If a mass matrix couples nodes, this is an impulse on other nodes too, and is left to the integrator.
     pub fn take_hold(&mut self) {
         if self.inertia.is_some() {
             return;
@@ -30,8 +30,8 @@ impl<const D: usize> System<D> {
         }
     }
 
-    /// Puts pinned nodes where they are prescribed to be, at the velocity of their path there; where a mass matrix couples them
-    /// to others they keep the one that the step has given them, since a change of it is an impulse on those too.
+    /// Moves pinned nodes to their prescribed positions and gives them the velocity of their path there. If a mass matrix couples
+    /// them to others, they keep the velocity of the step, since changing it would be an impulse on the others too.
     pub(crate) fn hold_pins(&mut self, stage: Stage, time: f64) {
         let (x, v) = match stage {
             Stage::Current => (&mut self.state.x, &mut self.state.v),
@@ -53,12 +53,12 @@ impl<const D: usize> System<D> {
         }
     }
 
-    /// Takes the kinetic energy along pinned axes from the work of the pins: what they find.
+    /// Subtracts the kinetic energy along pinned axes, before pins act, from the work of the pins.
     pub(crate) fn take_pinned_motion(&mut self, range: Range<usize>) {
         self.add_pinned_motion(range, -0.5);
     }
 
-    /// Adds the kinetic energy along pinned axes to the work of the pins: what they leave.
+    /// Adds the kinetic energy along pinned axes, after pins have acted, to the work of the pins.
     pub(crate) fn give_pinned_motion(&mut self, range: Range<usize>) {
         self.add_pinned_motion(range, 0.5);
     }

@@ -1,4 +1,4 @@
-//! Nodes that are pinned or led: where they have to be, and what work that takes.
+//! Nodes that are pinned or moved: their prescribed positions, and the work that this takes.
 
 use core::ops::Range;
 use opruga_math::WIDTH;
@@ -6,13 +6,13 @@ use opruga_math::WIDTH;
 /// A node pinned along some axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pin<const D: usize> {
-    /// Where the node lies in the columns.
+    /// The index of the node in the columns.
     pub index: usize,
     /// Which axes are pinned.
     pub axes: [bool; D],
-    /// Where it is pinned [m].
+    /// The position at which it is pinned [m].
     pub anchor: [f64; D],
-    /// Displacement from there over time, rows `[t, dx, dy(, dz)]`; empty: none.
+    /// Displacement from there over time, rows `[t, dx, dy(, dz)]`; empty if there is none.
     pub motion: std::sync::Arc<Vec<Vec<f64>>>,
 }
 
@@ -22,8 +22,8 @@ impl<const D: usize> Pin<D> {
         let (offset, rate) = along_path::<D>(&self.motion, time);
         (core::array::from_fn(|d| self.anchor[d] + offset[d]), rate)
     }
-    /// The acceleration of the path about a time [m/s²]: the velocity over so long after it less that over as long before it,
-    /// so that corners of the path count by what they change of the velocity.
+    /// The acceleration of the path about a time [m/s²]: from the velocities over `span` after and before it, so that corners of
+    /// the path count by the change of velocity.
     pub fn acceleration(&self, time: f64, span: f64) -> [f64; D] {
         if self.motion.is_empty() {
             return [0.0; D];
@@ -33,7 +33,7 @@ impl<const D: usize> Pin<D> {
     }
 }
 
-/// The point and its velocity on a piecewise straight path with rows `[t, x, y(, z)]`, at rest before and after it.
+/// The point and its velocity on a piecewise linear path with rows `[t, x, y(, z)]`, which is at rest before and after it.
 pub fn along_path<const D: usize>(path: &[Vec<f64>], time: f64) -> ([f64; D], [f64; D]) {
     let point = |row: &Vec<f64>| core::array::from_fn(|d| row[d + 1]);
     let (Some(first), Some(last)) = (path.first(), path.last()) else {
@@ -56,7 +56,7 @@ pub fn along_path<const D: usize>(path: &[Vec<f64>], time: f64) -> ([f64; D], [f
     (point(last), [0.0; D])
 }
 
-/// What the pins hold: every node once with its pinned axes, by index.
+/// The pinned nodes: every node once with its pinned axes, ordered by index.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct PinnedNodes<const D: usize>(Vec<PinnedNode<D>>);
 
@@ -65,12 +65,12 @@ pub(crate) struct PinnedNodes<const D: usize>(Vec<PinnedNode<D>>);
 struct PinnedNode<const D: usize> {
     index: usize,
     axes: [bool; D],
-    /// Its mean velocity within the step, where that is known [m/s]: a motion may begin or end within a step.
+    /// Its mean velocity within the step, if known [m/s]: a motion may begin or end within a step.
     mean: Option<[f64; D]>,
 }
 
 impl<const D: usize> PinnedNodes<D> {
-    /// What these pins hold; a node pinned twice is listed once.
+    /// The nodes of these pins; a node that is pinned twice is listed once.
     pub(crate) fn of(pins: &[Pin<D>]) -> PinnedNodes<D> {
         let mut nodes: Vec<PinnedNode<D>> =
             pins.iter().map(|pin| PinnedNode { index: pin.index, axes: pin.axes, mean: None }).collect();
@@ -84,7 +84,7 @@ impl<const D: usize> PinnedNodes<D> {
         });
         PinnedNodes(nodes)
     }
-    /// Learns how far pins move in the step to come.
+    /// Sets how far pins move in the coming step.
     pub(crate) fn learn(&mut self, pins: &[Pin<D>], time: f64, h: f64) {
         for pin in pins.iter().filter(|pin| !pin.motion.is_empty()) {
             let (from, to) = (pin.target(time).0, pin.target(time + h).0);

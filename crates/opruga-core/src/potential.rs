@@ -1,4 +1,4 @@
-//! What a model is to an integrator: forces, energy and second derivatives, and nothing about how it steps.
+//! The interface of models to integrators: forces, energy and second derivatives, independent of how an integrator steps.
 
 pub use crate::dense_part::{DensePart, Following, RankOnePart, mixed};
 use crate::error::{BuildError, StepError};
@@ -13,7 +13,7 @@ use opruga_math::{Simd, WIDTH};
 use opruga_mesh::Mesh;
 use std::borrow::Cow;
 
-/// Which questions a model answers.
+/// The quantities that a model provides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Views {
     /// There is an energy whose negative gradient is the force at rest.
@@ -27,7 +27,7 @@ pub struct Views {
 }
 
 impl Views {
-    /// Whether everything that is needed is there.
+    /// Whether everything that is needed is provided.
     pub fn include(self, needed: Views) -> bool {
         (self.energy || !needed.energy)
             && (self.hessian || !needed.hessian)
@@ -36,18 +36,18 @@ impl Views {
     }
 }
 
-/// Where the energy and the power of a model are entered in the ledger.
+/// The account of the ledger in which the energy and the power of a model are entered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Account {
     /// Elastic energy; power is dissipated by damping.
     Elastic,
     /// Energy of the gas.
     Gas,
-    /// Work of forces from outside.
+    /// Work of external forces.
     User,
 }
 
-/// Whether a Hessian is taken as it is, or each stencil's block without its negative eigenvalues.
+/// Whether a Hessian is taken as it is, or with the block of each stencil without its negative eigenvalues.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Definiteness {
     /// The second derivatives.
@@ -56,28 +56,28 @@ pub enum Definiteness {
     Clamped,
 }
 
-/// The name and the value of something that a reader may want to see of a body: `volume`, `chamber2.pressure`.
+/// The name and the value of a reading of a body: `volume`, `chamber2.pressure`.
 pub type Reading = (Cow<'static, str>, f64);
 
-/// How often something happened in a model, per substep and body.
+/// How often an event happened in a model, per substep and body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Count {
-    /// What happened.
+    /// The event.
     pub what: AnyMessage,
     /// How often.
     pub count: u64,
 }
 
-/// Symmetric matrices of up to eight stencils of the same number of nodes, side by side in the lanes.
+/// Symmetric matrices of up to eight stencils with the same number of nodes, side by side in the lanes.
 #[derive(Clone, Copy, Debug)]
 pub struct StencilPack<'a> {
-    /// Nodes of a stencil.
+    /// The number of nodes of a stencil.
     pub nodes: usize,
-    /// How many stencils there are; lanes from there on mean nothing.
+    /// The number of stencils; later lanes are meaningless.
     pub count: usize,
     /// Indices of the nodes, `[node][lane]`.
     pub indices: &'a [u32],
-    /// Blocks K_ab row by row, `[a][b][row][column][lane]`; those with a > b are not looked at.
+    /// Blocks K_ab row by row, `[a][b][row][column][lane]`; those with a > b are not read.
     pub blocks: &'a [f64],
 }
 
@@ -103,26 +103,26 @@ impl StencilPack<'_> {
     }
 }
 
-/// Matrices of many stencils that are worked out on demand: what lets a [`Sink`] spread the work over threads.
+/// Matrices of many stencils that are computed on demand, so that a [`Sink`] can distribute the work over threads.
 pub trait StencilPacks<const D: usize>: Sync {
-    /// Nodes of a stencil.
+    /// The number of nodes of a stencil.
     fn nodes(&self) -> usize;
-    /// How many stencils there are; all packs but the last are full.
+    /// The number of stencils; all packs but the last are full.
     fn stencils(&self) -> usize;
-    /// Whether these are the indices of all packs, one pack after the other as in [`StencilPack::indices`].
+    /// Whether these are the indices of all packs, one pack after the other, as in [`StencilPack::indices`].
     fn are_at(&self, indices: &[u32]) -> bool;
-    /// Delivers the packs with an index in `rows` in their order, each with its number among all.
+    /// Delivers the packs with an index in `rows`, in order, each with its number among all packs.
     fn deliver(&self, rows: &Range<usize>, to: &mut dyn FnMut(usize, &StencilPack<'_>));
 }
 
-/// Where a model delivers its Hessian.
+/// The receiver of a Hessian.
 pub trait Sink<const D: usize> {
     /// Adds the block ∂²U/∂xₐ∂x_b for two indices of the same body.
     fn block(&mut self, a: usize, b: usize, value: [[f64; D]; D]);
-    /// Adds c·u uᵀ, where u is given by its entries at some indices: never written out as a dense matrix.
+    /// Adds c·u uᵀ, where u is given by its entries at some indices; it is never expanded to a dense matrix.
     fn low_rank(&mut self, c: f64, u: &[(usize, [f64; D])]);
-    /// Adds a dense matrix that turns with its body. A sink that keeps a sparse matrix keeps this part beside it, as it is; one that looks
-    /// at entries alone sees them block by block.
+    /// Adds a dense matrix that rotates with its body. A sink with a sparse matrix stores this part separately, as it is; a sink
+    /// that processes only entries receives them block by block.
     fn dense(&mut self, part: &DensePart<'_, D>) {
         for (a, row) in part.indices.iter().enumerate() {
             for (b, column) in part.indices.iter().enumerate() {
@@ -143,40 +143,40 @@ pub trait Sink<const D: usize> {
             }
         }
     }
-    /// The same of many, which may be worked out on so many threads; they change no bits.
+    /// The same for many stencils, which may be computed on several threads; these do not change the bits.
     fn stencil_packs(&mut self, _threads: usize, packs: &dyn StencilPacks<D>) {
         packs.deliver(&(0..usize::MAX), &mut |_, pack| self.stencils(pack));
     }
 }
 
-/// What stays the same while a [`Potential`] lives.
+/// The constant properties of a [`Potential`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Properties {
-    /// The word that names the model.
+    /// The name of the model.
     pub name: &'static str,
-    /// Which questions it answers.
+    /// The quantities that it provides.
     pub views: Views,
-    /// Where energy and power are entered.
+    /// The account in which energy and power are entered.
     pub account: Account,
-    /// The rate λ [1/s] at which it brakes every node at least, f = −λ m v, whatever the motion; the least of its bodies.
+    /// The rate λ [1/s] at which it brakes every node at least, f = −λ m v, whatever the motion; the smallest of its bodies.
     pub uniform_damping: f64,
-    /// How many numbers `prepare` leaves behind.
+    /// The length of the scratch that `prepare` fills.
     pub scratch_len: usize,
-    /// Whether `prepare` and the derivatives are spread over [`View::threads`], for bodies that are large enough.
+    /// Whether `prepare` and the derivatives use [`View::threads`], for bodies that are large enough.
     pub shares_threads: bool,
-    /// Whether `add_force` itself begins the forces of a tile with the weight where `tile.weight` says so, which saves a pass.
+    /// Whether `add_force` itself begins the forces of a tile with the weight if there is `tile.weight`, which saves a pass.
     pub begins_tiles: bool,
-    /// Whether `prepare` reads all that forces depend on, so that nodes of one stencil may move one after the other.
+    /// Whether `prepare` reads everything on which forces depend, so that nodes of one stencil may move one after the other.
     pub forces_in_prepare: bool,
-    /// Whether nodes push only one another: forces have no sum and no moment about any point, and turn with the body. The conformance suite
-    /// checks the sums. None where a model does not say: then the integrators measure it in every step.
+    /// Whether forces act only between nodes: they have no sum and no moment about any point, and rotate with the body. The
+    /// conformance suite checks the sums. `None` if a model does not declare it; integrators then measure it in every step.
     pub acts_between_nodes: Option<bool>,
-    /// Whether the world judges by its energy if a body rests in another balance than that of its own shape.
+    /// Whether the world checks, from the energy of this model, if a body rests in another equilibrium than its own shape.
     pub judges_balance: bool,
 }
 
 impl Properties {
-    /// Those of an elastic model without anything special.
+    /// The properties of an elastic model without special features.
     pub const fn new(name: &'static str, views: Views) -> Properties {
         Properties {
             name,
@@ -193,37 +193,38 @@ impl Properties {
     }
 }
 
-/// A model of one body, or of eight alike bodies side by side: the energy U(x) and what derives from it.
+/// A model of one body, or of eight identical bodies side by side: the energy U(x) and its derivatives.
 ///
-/// This is the only dynamic dispatch: one call per model and tile. `memory` is what the model remembers from step to
-/// step (an amount of gas, a ramp); it is part of the state. `scratch` is what [`Potential::prepare`] works out for the
-/// calls that follow it.
+/// This is the only dynamic dispatch: one call per model and tile. `memory` is the data that the model remembers from step to
+/// step (an amount of gas, a ramp); it is part of the state. `scratch` holds the results of [`Potential::prepare`] for the calls
+/// that follow it.
 pub trait Potential<const D: usize>: Observe<D> + Send + Sync + Debug {
-    /// What stays the same while it lives.
+    /// Its constant properties.
     fn properties(&self) -> Properties;
-    /// Calls back with the nodes of every term of the energy that couples nodes, in any order: what colours, tiles and drawings
-    /// of the coupling need. A term of one node, or of the whole body (the volume of a gas, whose facets are named), is none.
+    /// Calls back with the nodes of every term of the energy that couples nodes, in any order, for colours, tiles and drawings of
+    /// the coupling. Terms of one node, or of the whole body (the volume of a gas, for which the facets are given), are not
+    /// included.
     fn stencils(&self, _visit: &mut dyn FnMut(&[u32])) {}
-    /// What its consistent mass matrix adds to the lumped masses of pairs of nodes, (row, column, mass [kg]); nothing where
-    /// masses are lumped.
+    /// The difference between its consistent mass matrix and the lumped masses, for pairs of nodes (row, column, mass [kg]);
+    /// empty if masses are lumped.
     fn inertia(&self) -> &[(u32, u32, f64)] {
         &[]
     }
-    /// What is remembered at the start.
+    /// The initial memory.
     fn initial_memory(&self) -> Vec<f64> {
         Vec::new()
     }
-    /// Works out what concerns the body as a whole (volume, pressure, a factor over time).
+    /// Computes quantities of the body as a whole (volume, pressure, a factor over time).
     ///
     /// # Errors
-    /// [`StepError::Model`] where the model has no meaning in this state.
+    /// [`StepError::Model`] if the model has no value in this state.
     fn prepare(&self, _simd: Simd, _view: &View<D>, _memory: &[f64], _scratch: &mut [f64]) -> Result<(), StepError> {
         Ok(())
     }
-    /// Adds the whole force of the model, −∂U/∂x and damping [N], on every node of the tile.
+    /// Adds the whole force of the model, −∂U/∂x and damping [N], to every node of the tile.
     fn add_force(&self, simd: Simd, view: &View<D>, scratch: &[f64], tile: &mut Tile<D>);
-    /// Moves the memory on by one substep; returns the energy put into each body by that [J]. The scratch is that of the
-    /// last `prepare` and may be overwritten.
+    /// Updates the memory after a substep; returns the energy that this gives to each body [J]. The scratch is that of the last
+    /// `prepare` and may be overwritten.
     fn remember(
         &self,
         _simd: Simd,
@@ -234,30 +235,30 @@ pub trait Potential<const D: usize>: Observe<D> + Send + Sync + Debug {
     ) -> [f64; WIDTH] {
         [0.0; WIDTH]
     }
-    /// The energy U of each body [J], after `prepare` in the same state: eight numbers whose sum is that of one body,
-    /// or one number for each of eight bodies.
+    /// The energy U of each body [J], after `prepare` in the same state: eight numbers whose sum is that of one body, or one
+    /// number for each of eight bodies.
     fn energy(&self, _simd: Simd, _view: &View<D>, _scratch: &[f64]) -> [f64; WIDTH] {
         [0.0; WIDTH]
     }
-    /// The size of the parts whose difference U is at rest, of all bodies together [J]: rounding of these is no energy. Zero
-    /// where U is a sum of squares.
+    /// The size of the terms whose difference U is at rest, for all bodies together [J]: rounding of these is not energy. Zero if
+    /// U is a sum of squares.
     fn energy_parts(&self) -> f64 {
         0.0
     }
     /// Delivers ∂²U/∂x∂x, after `prepare` in the same state.
     fn hessian(&self, _view: &View<D>, _scratch: &[f64], _keep: Definiteness, _sink: &mut dyn Sink<D>) {}
-    /// Delivers −∂F/∂v, the matrix of damping, after `prepare` in the same state.
+    /// Delivers −∂F/∂v, the damping matrix, after `prepare` in the same state.
     fn damping_matrix(&self, _view: &View<D>, _scratch: &[f64], _sink: &mut dyn Sink<D>) {}
-    /// Adds ∂²U/∂x∂x · direction; indices outside of the bodies are left alone.
+    /// Adds ∂²U/∂x∂x · direction; indices outside of the bodies do not change.
     fn add_hessian_product(&self, view: &View<D>, scratch: &[f64], direction: &[&[f64]; D], out: &mut [&mut [f64]; D]) {
         let mut product = ProductSink { direction, out };
         self.hessian(view, scratch, Definiteness::Exact, &mut product);
     }
 }
 
-/// What people and programs read of a model; no integrator asks for it.
+/// Data of a model for people and programs; integrators do not use it.
 pub trait Observe<const D: usize> {
-    /// Why it has no energy, or no symmetric second derivatives, for refusals; nothing where it has both.
+    /// Why it has no energy, or no symmetric second derivatives, for refusals; `None` if it has both.
     fn lacks(&self) -> Option<AnyMessage> {
         None
     }
@@ -265,31 +266,32 @@ pub trait Observe<const D: usize> {
     fn bonds(&self) -> &[[u32; 2]] {
         &[]
     }
-    /// Names and values per body of what a reader may want to see (`volume`, `pressure`), body by body.
+    /// Names and values of the readings of a body (`volume`, `pressure`).
     fn readings(&self, _view: &View<D>, _scratch: &[f64], _memory: &[f64], _body: usize) -> Vec<Reading> {
         Vec::new()
     }
-    /// The pressure of the gas [Pa] that each node of a body bounds, in any order; nothing where the model holds no gas.
+    /// The pressure of the gas [Pa] at each node that bounds it, in any order; empty if the model contains no gas.
     fn node_pressures(&self, _view: &View<D>, _scratch: &[f64], _body: usize) -> Vec<(u32, f64)> {
         Vec::new()
     }
-    /// Stress and volume ratio of the cells of a body, in any order; nothing where the model knows none.
+    /// Stress and volume ratio of the cells of a body, in any order; empty if the model has none.
     fn cell_states(&self, _view: &View<D>, _body: usize) -> Vec<CellState> {
         Vec::new()
     }
-    /// Stress and volume ratio of the facets of a body, in any order, for a model that knows its boundary alone; `cell` is the facet.
+    /// Stress and volume ratio of the facets of a body, in any order, for a model that consists only of its boundary; `cell` is
+    /// the facet.
     fn facet_states(&self, _view: &View<D>, _body: usize) -> Vec<CellState> {
         Vec::new()
     }
-    /// How often something happened that a user should know of (a limit acted): counts kept in the memory.
+    /// How often something happened that a user should know of (such as a limit that acted): counts in the memory.
     fn counts(&self, _memory: &[f64]) -> Vec<Count> {
         Vec::new()
     }
-    /// What deserves attention in the shapes of its bodies in a state, counted by every call: the memory keeps none of it.
+    /// Warnings about the shapes of its bodies in a state, counted anew by every call and not kept in the memory.
     fn shape_counts(&self, _view: &View<D>) -> Vec<Count> {
         Vec::new()
     }
-    /// Whether what it was built of has the same bits on every processor: not where a library factored a matrix.
+    /// Whether its data have the same bits on every processor: not if a library factored a matrix.
     fn same_bits_everywhere(&self) -> bool {
         true
     }
@@ -299,17 +301,17 @@ pub trait Observe<const D: usize> {
     }
 }
 
-/// What a cell of a body is under, or a facet.
+/// The state of a cell of a body, or of a facet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellState {
     /// The cell, in the order of [`opruga_mesh::Cells::iter`].
     pub cell: u32,
-    /// Its mean Cauchy stress σ [Pa], row by row; in the plane with what acts across it.
+    /// Its mean Cauchy stress σ [Pa], row by row; in the plane including the stress across it.
     pub stress: [[f64; 3]; 3],
     /// Its volume over that at rest, J.
     pub volume_ratio: f64,
-    /// The least J at its integration points, of its shape and of what its law is asked with: a cell with a volume may be flat or
-    /// inside out at some of them.
+    /// The smallest J at its integration points, both of its shape and of the gradient with which its law is evaluated: a cell
+    /// with a volume may be flat or inverted at some of them.
     pub smallest_volume_ratio: f64,
     /// Its volume at rest [m³], in the plane its area times the thickness.
     pub measure: f64,
@@ -324,9 +326,9 @@ impl CellState {
         let shear = square(s[0][1]) + square(s[1][2]) + square(s[2][0]);
         (0.5 * normal + 3.0 * shear).sqrt()
     }
-    /// Whether it has no volume or a negative one, somewhere: less than a thousandth of its volume at rest, or a number that is none.
+    /// Whether it has no volume or a negative one somewhere: less than a thousandth of its volume at rest, or NaN.
     pub fn is_degenerate(&self) -> bool {
-        /// Cells below this part of their volume have none.
+        /// Cells below this fraction of their volume count as having none.
         const NO_VOLUME: f64 = 1e-3;
         !matches!(self.smallest_volume_ratio.partial_cmp(&NO_VOLUME), Some(core::cmp::Ordering::Greater))
     }
@@ -336,7 +338,7 @@ impl CellState {
     }
 }
 
-/// Multiplies the blocks of a Hessian with a vector as they arrive.
+/// Multiplies the delivered blocks of a Hessian with a vector.
 struct ProductSink<'a, 'b, const D: usize> {
     direction: &'a [&'a [f64]; D],
     out: &'a mut [&'b mut [f64]; D],
@@ -374,7 +376,7 @@ impl<const D: usize> Sink<D> for ProductSink<'_, '_, D> {
     }
 }
 
-/// What a model is built from: a body at rest, or eight alike ones with their own parameters.
+/// The data from which a model is built: a body at rest, or eight identical ones with their own parameters.
 #[derive(Clone, Debug)]
 pub struct Ingredients<'a, const D: usize> {
     /// The rest shape, the same for all.
@@ -383,22 +385,22 @@ pub struct Ingredients<'a, const D: usize> {
     pub layout: Layout,
     /// The parameters of each body: one entry, or eight.
     pub values: &'a [&'a Values],
-    /// Mass of every node [kg], laid out like the columns.
+    /// Mass of every node [kg], with the layout of the columns.
     pub mass: &'a crate::state::Parameter,
-    /// Density of every cell [kg/m³], where they differ.
+    /// Density of every cell [kg/m³], if they differ.
     pub densities: Option<&'a [f64]>,
     /// Thickness out of the plane in 2D, of a sheet in 3D [m].
     pub thickness: f64,
     /// Acceleration of gravity [m/s²].
     pub gravity: [f64; D],
-    /// Length of a substep as the scene declares it [s]: for published schemes whose stiffness depends on it, and for nothing else.
+    /// The length of a substep that the scene declares [s], only for published schemes whose stiffness depends on it.
     pub step: f64,
-    /// What breaks off a preparation that takes seconds, and is told how far it is.
+    /// Stops a preparation that takes seconds, and receives its progress.
     pub break_off: &'a crate::break_off::BreakOff,
 }
 
 impl<const D: usize> Ingredients<'_, D> {
-    /// The same number of every body, eight times if there is only one.
+    /// A number for every body, eight times if there is only one.
     pub fn by_body(&self, mut number: impl FnMut(&Values) -> f64) -> [f64; WIDTH] {
         core::array::from_fn(|l| number(self.values[l.min(self.values.len() - 1)]))
     }
@@ -408,18 +410,18 @@ impl<const D: usize> Ingredients<'_, D> {
 pub trait Model<const D: usize>: Send + Sync {
     /// Its parameters and documentation.
     fn spec(&self) -> &'static Spec;
-    /// Whether its potentials have an energy and second derivatives, on every body and with the defaults of its parameters; what some
-    /// parameters take away, their documentation says.
+    /// Whether its potentials have an energy and second derivatives, on every body and with the default parameters. The
+    /// documentation of parameters describes exceptions.
     fn views(&self) -> Views {
         Views { energy: true, hessian: true, symmetric: true, damping: false }
     }
-    /// What it needs for one body beside the mesh and the state.
+    /// Its needs for one body, besides the mesh and the state.
     fn need(&self, _counts: &Counts) -> Need {
         Need::default()
     }
-    /// Builds it for one body, or for eight alike ones.
+    /// Builds it for one body, or for eight identical ones.
     ///
     /// # Errors
-    /// [`BuildError`] where the body cannot carry the model or a combination of parameters has no meaning.
+    /// [`BuildError`] if the body cannot carry the model or a combination of parameters has no meaning.
     fn build(&self, ingredients: &Ingredients<D>) -> Result<Box<dyn Potential<D>>, BuildError>;
 }

@@ -1,7 +1,7 @@
-//! What a model, integrator, shape or collider says about its parameters.
+//! The description of the parameters of a model, integrator, shape or collider.
 //!
-//! One description serves the scene reader, the error messages, the documentation, the JSON Schema and the panels
-//! of the studio. It knows nothing of any file format.
+//! One description serves the scene reader, the error messages, the documentation, the JSON Schema and the panels of the studio.
+//! It does not depend on any file format.
 
 mod allowed;
 mod condition;
@@ -14,12 +14,12 @@ pub use names::{close_matches, nearest};
 
 use crate::error::BuildError;
 
-/// Everything there is to know about one kind of thing that a scene can name.
+/// The complete description of a kind of thing that a scene can name.
 #[derive(Clone, Copy, Debug)]
 pub struct Spec {
-    /// The word in the scene file.
+    /// The name in the scene file.
     pub kind: &'static str,
-    /// One line for lists.
+    /// A one-line summary for lists.
     pub summary: &'static str,
     /// Physics, formula, source and limits, in Markdown.
     pub documentation: &'static str,
@@ -27,34 +27,35 @@ pub struct Spec {
     pub dimensions: &'static [usize],
     /// The parameters, in the order of the documentation.
     pub fields: &'static [Field],
-    /// What the layers above ask about it; most kinds have no role.
+    /// The roles that the layers above use; most kinds have none.
     pub roles: &'static [Role],
 }
 
-/// What a kind does that the layers above ask about, so that none of them has to know a kind by its word.
+/// What a kind does, for the layers above, so that none of them depends on the name of a kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// A model that owns cells of the mesh and knows their stress and volume ratio J. Two models that own one cell are refused.
+    /// A model that owns cells of the mesh and provides their stress and volume ratio J. Two models that own the same cell are
+    /// refused.
     OwnsCells,
-    /// A model of the solid inside a closed boundary, by the nodes of the boundary alone.
+    /// A model of the solid inside a closed boundary that uses only the nodes of the boundary.
     InsideOfBoundary,
     /// A model of gas in closed chambers.
     Gas,
     /// A model whose forces act along the edges of the mesh; pictures draw them as lines.
     Edges,
-    /// The model that a world adds to every body where it has a drag (`world.drag`). Its first parameter is the rate [1/s].
+    /// The model that a world adds to every body if it has a drag (`world.drag`). Its first parameter is the rate [1/s].
     WorldDrag,
     /// A model whose readings have the units of the published program: pixels instead of metres.
     Published,
-    /// An obstacle that fills all of space on one side of a plane. Its vector `normal` points out of it.
+    /// An obstacle that fills the space on one side of a plane. Its vector `normal` points out of it.
     HalfSpace,
     /// A shape that takes cells, and values of nodes, from a mesh file.
     CellsFromFile,
-    /// An integrator whose steps end where forces balance.
+    /// An integrator whose steps end in an equilibrium.
     Statics,
-    /// The integrator that a program offers where a person has named none, or one without a stable step. It is explicit.
+    /// The integrator that a program offers if the user has named none, or one without a stable step. It is explicit.
     OfferedExplicit,
-    /// The integrator that takes the place of [`Role::Statics`] where a body has to move. It is stable at any step.
+    /// The integrator that replaces [`Role::Statics`] if a body has to move. It is stable at any step.
     OfferedImplicit,
 }
 
@@ -63,7 +64,7 @@ impl Spec {
     pub fn has_role(&self, role: Role) -> bool {
         self.roles.contains(&role)
     }
-    /// The sets of fields of which exactly one is given, each once.
+    /// The sets of fields of which exactly one must be given, each set once.
     pub fn choices(&self) -> impl Iterator<Item = &'static [&'static str]> {
         self.fields.iter().filter_map(|field| match field.default {
             Default::OneOf(set) if set.first() == Some(&field.name) => Some(set),
@@ -75,26 +76,26 @@ impl Spec {
 /// One parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Field {
-    /// The word in the scene file.
+    /// The name in the scene file.
     pub name: &'static str,
-    /// What values are allowed.
+    /// The allowed values.
     pub range: Allowed,
     /// The SI unit; empty for a plain number or word.
     pub unit: &'static str,
-    /// What holds where the scene is silent.
+    /// The default.
     pub default: Default,
-    /// One sentence in words of physics.
+    /// One sentence in terms of physics.
     pub documentation: &'static str,
-    /// Where it has a say: where all of these hold.
+    /// The conditions under which it has an effect: all of them must hold.
     pub applies: &'static [Condition],
-    /// The value with which an editor begins where the scene is silent and there is no default.
+    /// The initial value in an editor if the field is not given and has no default.
     pub start: Option<f64>,
-    /// Other fields that are given with it or not at all.
+    /// Other fields that must be given together with it.
     pub companions: &'static [&'static str],
 }
 
 impl Field {
-    /// A parameter by its word, allowed values, unit, default and sentence.
+    /// A parameter from its name, allowed values, unit, default and sentence.
     pub const fn new(
         name: &'static str,
         range: Allowed,
@@ -104,15 +105,15 @@ impl Field {
     ) -> Field {
         Field { name, range, unit, default, documentation, applies: &[], start: None, companions: &[] }
     }
-    /// The same parameter where it has a say under conditions only.
+    /// The same parameter, with an effect only under these conditions.
     pub const fn applies(self, applies: &'static [Condition]) -> Field {
         Field { applies, ..self }
     }
-    /// The same parameter with the value at which an editor begins.
+    /// The same parameter, with this initial value in an editor.
     pub const fn starts_at(self, start: f64) -> Field {
         Field { start: Some(start), ..self }
     }
-    /// The same parameter with others that are given with it or not at all.
+    /// The same parameter, with others that must be given together with it.
     pub const fn with(self, companions: &'static [&'static str]) -> Field {
         Field { companions, ..self }
     }
@@ -123,16 +124,16 @@ impl Field {
 pub enum Allowed {
     /// A finite number between two bounds.
     Number {
-        /// The least value.
+        /// The lower bound.
         least: Bound,
-        /// The greatest value.
+        /// The upper bound.
         greatest: Bound,
     },
     /// A whole number between two bounds, both allowed.
     Integer {
-        /// The least value.
+        /// The smallest value.
         least: i64,
-        /// The greatest value.
+        /// The largest value.
         greatest: i64,
     },
     /// `true` or `false`.
@@ -145,17 +146,17 @@ pub enum Allowed {
     Vector,
     /// As many finite numbers as the scene has dimensions, not all zero.
     Direction,
-    /// A list of points, each as many numbers as the scene has dimensions.
+    /// A list of points, each with as many numbers as the scene has dimensions.
     Points,
     /// A list of whole numbers not below zero.
     Integers,
     /// A list of numbers.
     Numbers,
-    /// A curve over time: `[[t, value], …]`, t rising.
+    /// A curve over time: `[[t, value], …]`, with increasing t.
     Curve,
-    /// The same of values that are not negative.
+    /// The same with values that are not negative.
     CurveNotNegative,
-    /// A path over time: `[[t, x, y(, z)], …]`, t rising.
+    /// A path over time: `[[t, x, y(, z)], …]`, with increasing t.
     Path,
 }
 
@@ -181,20 +182,20 @@ impl Allowed {
     pub const FRACTION: Allowed = Allowed::Number { least: Bound::Closed(0.0), greatest: Bound::Closed(1.0) };
 }
 
-/// What holds where the scene is silent.
+/// The value of a field that is not given.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Default {
-    /// The scene must say it.
+    /// The field must be given.
     Required,
     /// The field stays empty.
     Absent,
-    /// The field stays empty, and another one of these is given: exactly one of them is.
+    /// The field stays empty; exactly one of these fields must be given.
     OneOf(&'static [&'static str]),
     /// A number.
     Number(f64),
     /// A whole number.
     Integer(i64),
-    /// A truth value.
+    /// A Boolean.
     Boolean(bool),
     /// A word.
     Text(&'static str),
@@ -209,7 +210,7 @@ pub enum Value {
     Number(f64),
     /// A whole number.
     Integer(i64),
-    /// A truth value.
+    /// A Boolean.
     Boolean(bool),
     /// A text or a word.
     Text(String),
@@ -235,7 +236,7 @@ impl PartialEq for Values {
 }
 
 impl Values {
-    /// The defaults of a specification; required fields stay empty until [`Values::set`] fills them.
+    /// The defaults of a specification; required fields stay empty until [`Values::set`] sets them.
     pub fn defaults(spec: &'static Spec, dimension: usize) -> Values {
         let mut entries = Vec::new();
         for field in spec.fields {
@@ -251,18 +252,18 @@ impl Values {
         }
         Values { spec, entries }
     }
-    /// The word that names the kind.
+    /// The name of the kind.
     pub fn kind(&self) -> &'static str {
         self.spec.kind
     }
-    /// What describes it.
+    /// Its description.
     pub fn spec(&self) -> &'static Spec {
         self.spec
     }
     /// Sets a field after checking it against its specification.
     ///
     /// # Errors
-    /// A [`ValueError`] says what is allowed; the values stay as they were.
+    /// A [`ValueError`] with the allowed values; the values do not change.
     pub fn set(&mut self, spec: &Spec, name: &str, value: Value, dimension: usize) -> Result<(), ValueError> {
         let Some(field) = spec.fields.iter().find(|f| f.name == name) else {
             return Err(ValueError::UnknownField {
@@ -281,10 +282,10 @@ impl Values {
         }
         Ok(())
     }
-    /// Sets a field as [`Values::set`] does; of those of which exactly one is given, the others are put aside.
+    /// Sets a field like [`Values::set`]; if exactly one field of a set may be given, clears the others.
     ///
     /// # Errors
-    /// A [`ValueError`] says what is allowed; the values stay as they were.
+    /// A [`ValueError`] with the allowed values; the values do not change.
     pub fn set_instead(&mut self, spec: &Spec, name: &str, value: Value, dimension: usize) -> Result<(), ValueError> {
         self.set(spec, name, value, dimension)?;
         for set in spec.choices().filter(|set| set.contains(&name)) {
@@ -315,7 +316,7 @@ impl Values {
             _ => None,
         }
     }
-    /// The truth value of a field; `false` where it has none.
+    /// The Boolean of a field; `false` if it has none.
     pub fn flag(&self, name: &str) -> bool {
         matches!(self.get(name), Some(Value::Boolean(true)))
     }
@@ -326,14 +327,14 @@ impl Values {
             _ => None,
         }
     }
-    /// The numbers of a field, if it has some.
+    /// The numbers of a field, if it has any.
     pub fn numbers(&self, name: &str) -> Option<&[f64]> {
         match self.get(name) {
             Some(Value::Numbers(x)) => Some(x),
             _ => None,
         }
     }
-    /// The vector of a field; zeros where it has none.
+    /// The vector of a field; zeros if it has none.
     pub fn vector<const D: usize>(&self, name: &str) -> [f64; D] {
         let mut out = [0.0; D];
         for (o, x) in out.iter_mut().zip(self.numbers(name).unwrap_or(&[])) {
@@ -341,24 +342,24 @@ impl Values {
         }
         out
     }
-    /// The rows of a field; none where it has none.
+    /// The rows of a field; empty if it has none.
     pub fn rows(&self, name: &str) -> &[Vec<f64>] {
         match self.get(name) {
             Some(Value::Rows(x)) => x,
             _ => &[],
         }
     }
-    /// The whole numbers of a field; none where it has none.
+    /// The whole numbers of a field; empty if it has none.
     pub fn integers(&self, name: &str) -> &[u32] {
         match self.get(name) {
             Some(Value::Integers(x)) => x,
             _ => &[],
         }
     }
-    /// The sets of fields of which exactly one must be given, where none is or several are.
+    /// Checks the sets of fields of which exactly one must be given.
     ///
     /// # Errors
-    /// `model.one_of` for the first of them.
+    /// `model.one_of` for the first set of which none or several are given.
     pub fn check_choices(&self, spec: &Spec) -> Result<(), BuildError> {
         match spec.choices().find(|set| set.iter().filter(|name| self.get(name).is_some()).count() != 1) {
             Some(set) => Err(BuildError::of(spec.kind, ChoiceError::OneOf { fields: quoted(set) })),
@@ -373,10 +374,10 @@ impl Values {
 }
 
 impl Allowed {
-    /// The value itself if it is allowed; else the value and what is allowed, in words.
+    /// Returns the value itself if it is allowed.
     ///
     /// # Errors
-    /// The offending value and what is allowed.
+    /// The offending value and the allowed values, in words.
     pub fn accept(&self, value: Value, dimension: usize) -> Result<Value, (String, AllowedValues)> {
         let refuse = |v: &Value| Err((v.to_string(), self.describe(dimension)));
         let rows_ok = |rows: &[Vec<f64>], length: usize| {

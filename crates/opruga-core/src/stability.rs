@@ -1,22 +1,21 @@
-//! How large a step may be: the spectra of stiffness and damping, and what an integrator makes of them.
+//! The largest stable step, from the spectra of stiffness and damping and from the integrator.
 //!
-//! Near any state a system moves like M x″ = −K x − C x′. Its fastest oscillation is ω = √λ(M⁻¹K), its strongest
-//! damping c = λ(M⁻¹C). Both are found before a run from the forces themselves:
+//! Near any state a system moves according to M x″ = −K x − C x′. Its fastest oscillation is ω = √λ(M⁻¹K), its strongest damping
+//! c = λ(M⁻¹C). Both are found before a run from the forces themselves:
 //!
 //! K d ≈ (F(x − εd) − F(x + εd)) / 2ε,  C d = F(x, 0) − F(x, d),
 //!
-//! so every model takes part, the gas as a whole included, also one that has no Hessian, and by the fast code that the
-//! step uses. Obstacles add nothing: explicit integrators meet them by impulses, which have no stiffness.
+//! so every model takes part, including the gas as a whole and models without a Hessian, with the fast code that the step uses.
+//! Obstacles contribute nothing: explicit integrators treat them by impulses, which have no stiffness.
 //!
-//! **Which eigenvalue.** The products drive a Lanczos recurrence on the symmetric M^-½ K M^-½. It uses the same products
-//! as a power iteration from the same start vector, but the best combination of all of them; a power iteration still
-//! misses 2 % after 30 products on a long chain of springs, whose spectrum is dense at its upper end. The largest Ritz
-//! value plus its residual is taken; the step found from it is lowered by 2 %. Negative eigenvalues (a body about to
-//! buckle) are no matter of the step.
+//! **Which eigenvalue.** The products drive a Lanczos recurrence on the symmetric M^-½ K M^-½. It uses the same products as a
+//! power iteration from the same start vector, but the best combination of all of them; a power iteration still misses 2 % after
+//! 30 products on a long chain of springs, whose spectrum is dense at its upper end. The largest Ritz value plus its residual is
+//! taken; the resulting step is reduced by 2 %. Negative eigenvalues (a body about to buckle) do not affect the step.
 //!
-//! **Which modes.** A mode M μ² q + C μ q + K q = 0 with q*Mq = 1 obeys μ² + c μ + ω² = 0 with c = q*Cq and ω² = q*Kq. So
-//! the pairs (ω², c) of all modes lie in the joint numerical range of K and C, whatever their eigenvectors. Around it a
-//! polygon is drawn, from the spectra of K, of C and of C − γK with γ = c_max/ω²_max:
+//! **Which modes.** A mode M μ² q + C μ q + K q = 0 with q*Mq = 1 satisfies μ² + c μ + ω² = 0 with c = q*Cq and ω² = q*Kq. So the
+//! pairs (ω², c) of all modes are in the joint numerical range of K and C, whatever their eigenvectors. A polygon encloses it,
+//! from the spectra of K, of C and of C − γK with γ = c_max/ω²_max:
 //!
 //! ```text
 //!     c │     ______________         0 ≤ ω² ≤ ω²_max,  c_min ≤ c ≤ c_max,
@@ -49,19 +48,20 @@ messages! {
     }
 }
 
-/// Limits are lowered by this factor, for small changes of the state.
+/// Limits are reduced by this factor, to allow for small changes of the state.
 const SAFETY: f64 = 0.98;
 
 /// Displacements for the differences of forces, in extents of the system.
 const DISPLACEMENT: f64 = 1e-7;
 
-/// Damping that departs from one in proportion to stiffness by less than this part of the strongest is in proportion.
+/// If damping differs from stiffness-proportional damping by less than this fraction of the strongest damping, it counts as
+/// proportional.
 const PROPORTIONAL: f64 = 1e-7;
 
-/// A rule that is stable up to this angle ωh of a step has no limit: the implicit ones.
+/// An integrator that is stable up to this angle ωh per step has no limit: the implicit ones.
 const LARGEST_PHASE: f64 = 1e6;
 
-/// Where the frequencies and the damping of all modes of a system lie.
+/// The ranges of the frequencies and damping of all modes of a system.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spectrum {
     /// The fastest oscillation, √ of the largest eigenvalue of M⁻¹K [rad/s].
@@ -74,30 +74,31 @@ pub struct Spectrum {
     pub offset: [f64; 2],
 }
 
-/// What the spectra of a system say about the step of an integrator.
+/// The spectra of a system, and the resulting limit of the step of an integrator.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stability {
-    /// The spectra, each with its residual on the safe side; a least damping below 1 % of the strongest counts as that of the
-    /// drag on every node, which is known.
+    /// The spectra, with each residual added on the safe side. If the smallest damping is below 1 % of the strongest, it is
+    /// replaced by that of the drag on every node, which is known.
     pub spectrum: Spectrum,
-    /// The largest step for which no mode grows, lowered by 2 % [s]; infinite for a free body and for integrators
-    /// without a limit, `None` where every step lets one grow.
+    /// The largest step for which no mode grows, reduced by 2 % [s]; infinite for a free body and for integrators without a
+    /// limit; `None` if a mode grows at every step.
     pub largest_stable_step: Option<f64>,
 }
 
 /// Estimates the spectra of a system in its present state, and the largest stable step of an integrator.
 ///
-/// About 30 evaluations of all forces, 100 with damping; the system is left as it is. Pinned nodes and axes do not count.
+/// This takes about 30 evaluations of all forces, 100 with damping; the system does not change. Pinned nodes and axes do not
+/// count.
 ///
 /// # Errors
-/// [`StepError`] where a model refuses the state or its forces are not finite.
+/// [`StepError`] if a model refuses the state or its forces are not finite.
 pub fn estimate<const D: usize>(system: &System<D>, integrator: &dyn Integrator<D>) -> Result<Stability, StepError> {
     let spectrum = Spectrum::of(system)?;
     Ok(Stability { spectrum, largest_stable_step: spectrum.largest_stable_step(integrator).map(|h| SAFETY * h) })
 }
 
 impl Spectrum {
-    /// All modes with frequencies up to ω [rad/s], all damped alike [1/s].
+    /// All modes with frequencies up to ω [rad/s], with equal damping [1/s].
     pub fn uniform(omega: f64, damping: f64) -> Spectrum {
         let low = if omega > 0.0 { 0.0 } else { damping };
         Spectrum { omega, damping, least_damping: damping, offset: [low, damping] }
@@ -106,7 +107,7 @@ impl Spectrum {
     /// Estimates the spectra of a system in its present state.
     ///
     /// # Errors
-    /// [`StepError`] where a model refuses the state or its forces are not finite.
+    /// [`StepError`] if a model refuses the state or its forces are not finite.
     pub fn of<const D: usize>(system: &System<D>) -> Result<Spectrum, StepError> {
         let mut probe = Probe::new(system);
         let weights = probe.weights.clone();
@@ -118,7 +119,8 @@ impl Spectrum {
         probe.start_damping()?;
         let [weakest, strongest] = extremes(&weights, true, 0.0, |d, out| probe.add_damping(d, out))?;
         let damping = strongest.larger(0.0);
-        // A weak drag beside strong springs is lost in what the recurrence leaves; what every node feels is known.
+        // A drag that is weak compared with strong springs is lost in the residual of the recurrence; the damping that every node
+        // has is known.
         let uniform: f64 = system.members.iter().map(|m| m.potential.properties().uniform_damping).sum();
         let found = if weakest > 0.01 * damping { weakest } else { 0.0 };
         let least_damping = found.larger(uniform).smaller(damping);
@@ -130,15 +132,15 @@ impl Spectrum {
             probe.add_damping(d, out)?;
             probe.add_stiffness(-gamma, d, out)
         })?;
-        // Damping in proportion to stiffness leaves the rounding of differences here.
+        // For stiffness-proportional damping, this is the rounding of differences.
         let offset = offset.map(|end| if end.abs() <= PROPORTIONAL * damping { 0.0 } else { end });
         Ok(Spectrum { omega, damping, least_damping, offset })
     }
 
     /// The largest step of an integrator that is stable for all modes [s].
     ///
-    /// Infinite where nothing oscillates and nothing is damped, or the integrator has no limit; `None` where every step lets
-    /// a mode grow.
+    /// Infinite if nothing oscillates and nothing is damped, or if the integrator has no limit; `None` if a mode grows at every
+    /// step.
     pub fn largest_stable_step<const D: usize>(&self, integrator: &dyn Integrator<D>) -> Option<f64> {
         let fastest = self.omega.larger(self.damping);
         if fastest == 0.0 {
@@ -174,31 +176,31 @@ impl Spectrum {
                 high = middle;
             }
         }
-        // Growth too slow for the tolerance at the limit is growth nevertheless: half the step must show none.
+        // Growth that is too slow for the tolerance at the limit is still growth: half the step must show none.
         (worst(integrator, &modes, 0.5 * low) <= 1.0 + SLOWEST).then_some(low)
     }
 
-    /// How fast the amplitude of the worst mode grows in steps of h [1/s]: ln ρ / h; zero where h is stable.
+    /// The growth rate of the amplitude of the worst mode in steps of h [1/s]: ln ρ / h; zero if h is stable.
     pub fn growth_per_second<const D: usize>(&self, integrator: &dyn Integrator<D>, h: f64) -> f64 {
         let radius = worst(integrator, &self.corners(), h);
         if radius <= 1.0 + ROUNDING { 0.0 } else { Lane::ln(radius) / h }
     }
 
-    /// Pairs (ω, c) on the boundary of the polygon: its least and its strongest damping at many frequencies.
+    /// Pairs (ω, c) on the boundary of the polygon: its smallest and its strongest damping at many frequencies.
     fn corners(&self) -> Vec<(f64, f64)> {
         const POINTS: usize = 24;
         let most = self.omega * self.omega;
         let mut squares: Vec<f64> = (0..=POINTS).map(|k| (k * k) as f64 / (POINTS * POINTS) as f64 * most).collect();
         let gamma = if most > 0.0 { self.damping / most } else { 0.0 };
         if gamma > 0.0 {
-            // Where the slanted edges meet the level ones.
+            // The intersections of the slanted edges with the horizontal ones.
             for offset in self.offset {
                 squares.extend([(self.damping - offset) / gamma, (self.least_damping - offset) / gamma]);
             }
         }
         let mut out = Vec::with_capacity(2 * squares.len());
         for square in squares {
-            // By rounding alone a corner may lie beyond the edges that meet in it.
+            // Because of rounding, a corner may be beyond the edges that meet there.
             if !(-1e-9 * most..=(1.0 + 1e-9) * most).contains(&square) {
                 continue;
             }
@@ -213,14 +215,15 @@ impl Spectrum {
     }
 }
 
-/// What is left at half a step of growth that is within the tolerance of 1e-9 at the step: even with the sixth power of the step
-/// it is more than this, and rounding of the matrices of rules with much to carry is less.
+/// The growth that remains at half a step if it is within the tolerance of 1e-9 at the full step: it exceeds this even if it
+/// falls with the sixth power of the step, and rounding of the amplification matrices of integrators with a large memory is
+/// smaller.
 const SLOWEST: f64 = 1e-12;
 
-/// How far rounding lifts the spectral radius of a stable step above 1.
+/// How far rounding may raise the spectral radius of a stable step above 1.
 const ROUNDING: f64 = 4e-15;
 
-/// The largest spectral radius at some points; what is not finite counts as infinite.
+/// The largest spectral radius at some points; NaN counts as infinite.
 fn worst<const D: usize>(integrator: &dyn Integrator<D>, points: &[(f64, f64)], h: f64) -> f64 {
     let mut worst = 0.0;
     for &(omega, c) in points {
@@ -233,12 +236,12 @@ fn worst<const D: usize>(integrator: &dyn Integrator<D>, points: &[(f64, f64)], 
 /// Evaluates forces in states near that of a system.
 struct Probe<'a, const D: usize> {
     system: &'a System<D>,
-    /// M^-½ for every coordinate that can move, else zero.
+    /// M^-½ for every coordinate that can move, otherwise zero.
     weights: Columns<D>,
-    /// The state to be evaluated.
+    /// The state to evaluate.
     x: Columns<D>,
     v: Columns<D>,
-    /// What `prepare` leaves behind there.
+    /// The results of `prepare` in that state.
     scratch: Vec<Column>,
     slots: Column,
     force: Columns<D>,
@@ -289,7 +292,7 @@ impl<'a, const D: usize> Probe<'a, D> {
         }
     }
 
-    /// The forces of all models, or of the damped ones, in the state to be evaluated.
+    /// The forces of all models, or of the damped ones, in the state to evaluate.
     fn evaluate(&mut self, damped_only: bool) -> Result<(), StepError> {
         let system = self.system;
         let index_count = system.index_count();
@@ -342,7 +345,7 @@ impl<'a, const D: usize> Probe<'a, D> {
         Ok(())
     }
 
-    /// Remembers the forces of damped models without velocities.
+    /// Stores the forces of damped models without velocities.
     fn start_damping(&mut self) -> Result<(), StepError> {
         self.x = self.system.state.x.clone();
         self.v = Columns::zeros(self.system.index_count());
@@ -351,7 +354,7 @@ impl<'a, const D: usize> Probe<'a, D> {
         Ok(())
     }
 
-    /// Adds C d, from the difference that a velocity along d of at most 1 m/s makes: damping is linear in the velocity.
+    /// Adds C d, from the difference due to a velocity along d of at most 1 m/s: damping is linear in the velocity.
     fn add_damping(&mut self, d: &Columns<D>, out: &mut Columns<D>) -> Result<(), StepError> {
         let step = 1.0 / largest(d);
         self.x.clone_from(&self.system.state.x);

@@ -1,8 +1,8 @@
-//! Where positions and velocities live: one column per coordinate, one body or eight alike bodies side by side.
+//! The storage of positions and velocities: one column per coordinate, for one body or for eight identical bodies side by side.
 
 use opruga_math::{Column, Pack, Register, RepeatStrip, StripMut, WIDTH, lanes};
 
-/// How the nodes of a block lie in its columns.
+/// The layout of the nodes of a block in its columns.
 ///
 /// Every loop of physics runs over the indices of a column, eight at a time:
 ///
@@ -27,7 +27,7 @@ impl Layout {
             Layout::Batch => WIDTH,
         }
     }
-    /// The number of indices that so many nodes take, padded to whole packs.
+    /// The number of indices of this many nodes, padded to whole packs.
     pub fn index_count(self, nodes: usize) -> usize {
         (nodes * self.stride()).next_multiple_of(WIDTH)
     }
@@ -46,7 +46,7 @@ impl Layout {
 pub struct Columns<const D: usize>(pub [Column; D]);
 
 impl<const D: usize> Columns<D> {
-    /// Zeros, with room for a whole pack behind the last index.
+    /// Zeros, with space for a whole pack after the last index.
     pub fn zeros(index_count: usize) -> Columns<D> {
         Columns(core::array::from_fn(|_| Column::zeros(index_count + WIDTH)))
     }
@@ -55,12 +55,12 @@ impl<const D: usize> Columns<D> {
     pub fn slices(&self) -> [&[f64]; D] {
         core::array::from_fn(|d| &*self.0[d])
     }
-    /// Eight indices at once.
+    /// Loads eight indices at once.
     #[inline(always)]
     pub fn load<P: Pack>(&self, index: usize) -> [P; D] {
         lanes!(P, d => P::load(&self.0[d][index..]))
     }
-    /// Writes eight indices at once.
+    /// Stores eight indices at once.
     #[inline(always)]
     pub fn store<P: Pack>(&mut self, index: usize, value: [P; D]) {
         for d in 0..D {
@@ -92,13 +92,13 @@ pub fn load<P: Pack, const D: usize>(columns: &[&[f64]; D], index: usize) -> [P;
     lanes!(P, d => P::load(&columns[d][index..]))
 }
 
-/// A number per index that is often the same everywhere: then eight values stand for the whole column.
+/// A number per index that is often the same everywhere; then eight values represent the whole column.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameter(Numbers);
 
 #[derive(Clone, Debug, PartialEq)]
 enum Numbers {
-    /// The same eight numbers all along.
+    /// The same eight numbers throughout.
     Repeated(Eight),
     /// One number per index.
     Each(Column),
@@ -110,7 +110,7 @@ enum Numbers {
 struct Eight([f64; WIDTH]);
 
 impl Parameter {
-    /// Zero everywhere, for laws that read fewer numbers than there is room for.
+    /// Zero everywhere, for laws that read fewer numbers than the interface provides.
     pub const NONE: Parameter = Parameter(Numbers::Repeated(Eight([0.0; WIDTH])));
 
     /// The same number everywhere.
@@ -121,7 +121,7 @@ impl Parameter {
     pub fn by_body(values: [f64; WIDTH]) -> Parameter {
         Parameter(Numbers::Repeated(Eight(values)))
     }
-    /// A number for every index; stored once if they are all the same to the bit.
+    /// A number for every index; stored once if all are the same to the bit.
     pub fn column(values: Vec<f64>) -> Parameter {
         let first = values.first().copied().unwrap_or(0.0);
         if values.iter().all(|v| v.to_bits() == first.to_bits()) {
@@ -131,7 +131,7 @@ impl Parameter {
         column[..values.len()].copy_from_slice(&values);
         Parameter(Numbers::Each(column))
     }
-    /// From the number of every item (node, spring, …) and body, laid out like the columns.
+    /// From the number of every item (node, spring, …) and body, with the layout of the columns.
     pub fn from_items(layout: Layout, items: usize, mut number: impl FnMut(usize, usize) -> f64) -> Parameter {
         let mut values = vec![0.0; items * layout.stride()];
         for item in 0..items {
@@ -191,7 +191,7 @@ impl Parameter {
             Numbers::Each(column) => column[index],
         }
     }
-    /// Whether eight values stand for the whole column.
+    /// Whether eight values represent the whole column.
     #[inline(always)]
     pub fn repeats(&self) -> bool {
         matches!(self.0, Numbers::Repeated(_))
@@ -213,7 +213,7 @@ impl Parameter {
     }
 }
 
-/// Eight items of a column: neighbours from an index on, or each at an index of its own.
+/// Eight items of a column: consecutive from an index on, or each with its own index.
 #[derive(Clone, Copy, Debug)]
 pub enum At<'a> {
     /// From this index on.
@@ -229,13 +229,13 @@ pub struct View<'a, const D: usize> {
     pub x: [&'a [f64]; D],
     /// Velocities v [m/s].
     pub v: [&'a [f64]; D],
-    /// Nodes of one body.
+    /// The number of nodes of one body.
     pub nodes: usize,
     /// One body or eight.
     pub layout: Layout,
     /// Time [s].
     pub time: f64,
-    /// Threads that work on this state may be spread over ([`crate::threads`]); they change no bits.
+    /// The number of threads over which work on this state may be distributed ([`crate::threads`]); they do not change the bits.
     pub threads: usize,
 }
 
@@ -254,8 +254,8 @@ impl<const D: usize> View<'_, D> {
 
 /// A sum over items whose bits do not depend on the layout: eight partial sums by item number modulo eight.
 ///
-/// With one body the eight partial sums are the eight indices of one pack. With eight bodies side by side they are eight
-/// packs. Both are added up in the same order.
+/// With one body, the eight partial sums are the eight lanes of one pack. With eight bodies side by side they are eight packs.
+/// Both are summed in the same order.
 #[derive(Clone, Copy)]
 pub struct OrderedSum<P: Pack> {
     layout: Layout,
@@ -280,12 +280,12 @@ impl<P: Pack> OrderedSum<P> {
             Layout::Batch => self.packs[(index / WIDTH) % WIDTH] += value,
         }
     }
-    /// Adds the values of a pack whose number modulo eight is `slot`, of bodies side by side.
+    /// Adds the values of a pack whose number modulo eight is `slot`, for bodies side by side.
     #[inline(always)]
     pub fn add_to(&mut self, slot: usize, value: P) {
         self.packs[slot] += value;
     }
-    /// The sum: for one body the same number eight times, else the number of each of eight bodies.
+    /// The sum: for one body the same number eight times, otherwise the number of each of eight bodies.
     #[inline(always)]
     pub fn total(&self) -> P {
         match self.layout {

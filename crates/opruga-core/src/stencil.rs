@@ -1,7 +1,7 @@
-//! Models made of stencils: few nodes each, one formula for all of them.
+//! Models that consist of stencils: few nodes each, with one formula for all of them.
 //!
-//! A [`Kernel`] is the energy of one stencil of N nodes with its gradient, written once over [`Lane`]. [`Stencils`]
-//! lifts it to a [`Potential`] of a whole body, or of eight alike ones:
+//! A [`Kernel`] is the energy of one stencil of N nodes with its gradient, written once over [`Lane`]. [`Stencils`] turns it into
+//! a [`Potential`] of a whole body, or of eight identical ones:
 //!
 //! ```text
 //! elements, sorted by their lowest node      0 1 2 3 4 5 6 7 …     eight at a time through the kernel
@@ -11,8 +11,8 @@
 //! nodes: slots by ascending element, corner    ●       ●           added up one after the other
 //! ```
 //!
-//! Every tile evaluates all elements that touch it (those across its border are evaluated by both tiles). So a node
-//! receives the same numbers in the same order whatever the tiles and the layout: its force has the same bits.
+//! Every tile evaluates all elements that touch it (both tiles evaluate those across their border). So a node receives the same
+//! numbers in the same order, whatever the tiles and the layout, and its force has the same bits.
 
 mod clamp;
 mod dual;
@@ -28,35 +28,35 @@ use crate::tile::{TILE, Tile};
 use core::marker::PhantomData;
 use opruga_math::{Lane, Pack, Register, Simd, WIDTH, Work};
 
-/// All stencils of one kernel on one body, or on eight alike ones.
+/// All stencils of one kernel on one body, or on eight identical ones.
 #[derive(Debug)]
 pub struct Stencils<L, const N: usize, const K: usize> {
     kernel: PhantomData<L>,
     layout: Layout,
     nodes: usize,
-    /// Nodes of each element; elements ascend by lowest node, then as rows.
+    /// The nodes of each element; elements are sorted by lowest node, then as rows.
     elements: Vec<[u32; N]>,
     parameters: [Parameter; K],
     damped: bool,
-    /// Where the elements of each block of [`TILE`] indices begin in `list`, and where the last ends.
+    /// The start of the elements of each block of [`TILE`] indices in `list`, and the end of the last.
     blocks: Vec<u32>,
-    /// Elements that touch a block, ascending; for one body filled up to whole packs with its last element.
+    /// The elements that touch a block, ascending; for one body, filled up to whole packs with the last element.
     list: Vec<u32>,
-    /// For each pack of `list`: whether elements and all of their nodes are eight neighbours.
+    /// For each pack of `list`: whether elements and all of their nodes are eight consecutive ones.
     straight: Vec<bool>,
-    /// Where the slots of each node begin in `share`, and where the last ends.
+    /// The start of the slots of each node in `share`, and the end of the last.
     share_start: Vec<u32>,
-    /// The slots that a node adds up: local node (upper bits) and index in the list of its block (lower bits).
+    /// The slots that a node sums: local node (upper bits) and index in the list of its block (lower bits).
     share: Vec<u32>,
 }
 
-/// Bits of a share that hold the index in the list.
+/// The number of bits of a share that hold the index in the list.
 const SHARE_BITS: u32 = 28;
 
 impl<L, const N: usize, const K: usize> Stencils<L, N, K> {
     /// Lays out stencils; `parameters` gives those of an element (by its number in `elements`) of a body.
     ///
-    /// `damped` says whether [`Kernel::damping`] is asked.
+    /// `damped` tells whether [`Kernel::damping`] is evaluated.
     pub fn new(
         layout: Layout,
         nodes: usize,
@@ -73,7 +73,7 @@ impl<L, const N: usize, const K: usize> Stencils<L, N, K> {
             Parameter::from_items(layout, order.len(), |element, body| parameters(order[element] as usize, body)[k])
         });
 
-        // Elements of every block, and of every node the slots in the block that the node lies in.
+        // The elements of every block, and for every node the slots in the block of the node.
         let block_nodes = TILE / layout.stride();
         let mut lists: Vec<Vec<u32>> = vec![Vec::new(); nodes.div_ceil(block_nodes)];
         let mut share_start = vec![0u32; nodes + 1];
@@ -137,12 +137,12 @@ impl<L, const N: usize, const K: usize> Stencils<L, N, K> {
         }
     }
 
-    /// Nodes of every element, in the order of evaluation.
+    /// The nodes of every element, in the order of evaluation.
     pub fn elements(&self) -> &[[u32; N]] {
         &self.elements
     }
 
-    /// Adds the forces of one block on its nodes in the range of the tile.
+    /// Adds the forces of one block to its nodes in the range of the tile.
     #[inline(always)]
     fn add_block<P: Pack, const D: usize>(&self, block: usize, view: &View<D>, tile: &mut Tile<D>)
     where
@@ -154,7 +154,7 @@ impl<L, const N: usize, const K: usize> Stencils<L, N, K> {
         tile.slots.grow(N * D * count * stride);
         let slots = &mut tile.slots[..N * D * count * stride];
 
-        // Forces of all elements into slots.
+        // Forces of all elements, written to slots.
         let step = if self.layout == Layout::Single { WIDTH } else { 1 };
         for k in (0..count).step_by(step) {
             let items = &self.list[from + k..from + k + step];
@@ -190,7 +190,7 @@ impl<L, const N: usize, const K: usize> Stencils<L, N, K> {
                 }
             }
             if self.damped {
-                // The block of its first node enters the power of an element, if the tile covers it.
+                // The power of an element belongs to the block of its first node, if the tile covers it.
                 let own = (block * TILE).max(tile.range.start)..((block + 1) * TILE).min(tile.range.end);
                 for l in 0..WIDTH {
                     let item = items[l.min(step - 1)];
@@ -203,7 +203,7 @@ impl<L, const N: usize, const K: usize> Stencils<L, N, K> {
             }
         }
 
-        // Slots onto nodes.
+        // From slots to nodes.
         let start = (block * TILE).max(tile.range.start) / stride;
         let end = ((block + 1) * TILE).min(tile.range.end).div_ceil(stride).min(self.nodes);
         for node in start..end {
@@ -232,7 +232,7 @@ impl<L, const N: usize, const K: usize> Stencils<L, N, K> {
         }
     }
 
-    /// Eight neighbouring elements from one on, whose nodes are neighbours too, or one element of eight bodies.
+    /// Eight consecutive elements, whose nodes are consecutive too, or one element of eight bodies.
     #[inline(always)]
     fn in_a_row(&self, first: u32) -> Eight<'_, N> {
         let stride = self.layout.stride();
@@ -240,7 +240,7 @@ impl<L, const N: usize, const K: usize> Stencils<L, N, K> {
         Eight { items: At::Run(first as usize * stride), nodes: Nodes::InARow(nodes) }
     }
 
-    /// Eight elements of one body, wherever they lie.
+    /// Eight elements of one body, with arbitrary indices.
     #[inline(always)]
     fn scattered<'a>(&self, items: &'a [u32]) -> Eight<'a, N> {
         let mut nodes = [[0u32; WIDTH]; N];
@@ -286,7 +286,7 @@ struct Eight<'a, const N: usize> {
     nodes: Nodes<N>,
 }
 
-/// The indices of their nodes: the first of eight neighbours, or each.
+/// The indices of their nodes: the first of eight consecutive ones, or each.
 enum Nodes<const N: usize> {
     InARow([usize; N]),
     Scattered([[u32; WIDTH]; N]),
@@ -302,7 +302,7 @@ impl<const N: usize> Eight<'_, N> {
         }
         out
     }
-    /// A vector of every node of those from `offset` on.
+    /// A vector at every node of those from `offset` on.
     #[inline(always)]
     fn read<R: Register, const D: usize>(&self, columns: &[&[f64]; D], offset: usize) -> [[R; D]; N] {
         let mut out = [[R::zero(); D]; N];

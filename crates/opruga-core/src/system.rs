@@ -1,4 +1,4 @@
-//! A system: bodies that are stepped together, the models that act on them and what they collide with.
+//! A system: bodies that are stepped together, the models that act on them, and the obstacles that they meet.
 
 use crate::contacts::Contacts;
 use crate::error::StepError;
@@ -16,16 +16,16 @@ pub use crate::ledger::{SolverWork, Work8};
 pub use crate::pins::{Pin, along_path};
 pub use crate::workspace::{Cache, Workspace};
 
-/// Which columns hold the state in which forces are evaluated, or into which an update writes.
+/// The columns that hold the state in which forces are evaluated, or into which an update writes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
     /// Positions and velocities of the system.
     Current,
-    /// Work columns of that number.
+    /// Work columns with this number.
     Work(usize),
 }
 
-/// Positions and velocities, and room for stages of an integrator.
+/// Positions and velocities, and the stages of an integrator.
 #[derive(Clone, Debug)]
 pub struct State<const D: usize> {
     /// Positions x [m].
@@ -36,7 +36,7 @@ pub struct State<const D: usize> {
     pub work: Vec<[Columns<D>; 2]>,
 }
 
-/// Limits of the thesis against instability, off by default; every use is counted.
+/// The limits of the thesis against instability, off by default; every use is counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stabilisers {
     /// The largest force on a node [N].
@@ -45,45 +45,46 @@ pub struct Stabilisers {
     pub largest_velocity: Option<f64>,
 }
 
-/// What an integrator does with the forces of a tile: reads the state, writes positions and velocities.
+/// The use of the forces of a tile by an integrator: it reads the state, and writes positions and velocities.
 pub trait Update<const D: usize> {
-    /// Which columns are written.
+    /// The columns that are written.
     fn writes(&self) -> Stage;
-    /// The time of the written state after the start of the step [s].
+    /// The time of the written state since the start of the step [s].
     fn time(&self) -> f64;
     /// Moves the nodes of a tile; `force[d][p - range.start]` [N] belongs to index p.
     fn tile<P: Pack>(&self, range: Range<usize>, force: &[&[f64]; D], inverse_mass: &Parameter, state: &mut State<D>);
 }
 
-/// One model of a system and what it keeps.
+/// One model of a system and its data.
 #[derive(Debug)]
 pub struct Member<const D: usize> {
     /// The model.
     pub potential: Box<dyn Potential<D>>,
-    /// What it remembers from step to step; part of the state.
+    /// Its memory from step to step; part of the state.
     pub memory: Vec<f64>,
-    /// What `prepare` left behind.
+    /// The results of `prepare`.
     pub scratch: Column,
-    /// Where its power is entered, if it has any: asked once and not with every tile.
+    /// The account of its power, if it has any; determined once and not for every tile.
     pub(crate) flows: Option<Account>,
     /// Whether it begins the forces of tiles.
     pub(crate) begins_tiles: bool,
 }
 
-/// Bodies that are stepped together: one, or up to eight alike ones side by side.
+/// Bodies that are stepped together: one, or up to eight identical ones side by side.
 #[derive(Debug)]
 pub struct System<const D: usize> {
-    /// The vector instructions in force.
+    /// The vector instructions in use.
     pub simd: Simd,
-    /// What ends a step that takes long, with [`crate::error::StepError::BrokenOff`].
+    /// Stops a long step, with [`crate::error::StepError::BrokenOff`].
     pub break_off: std::sync::Arc<crate::break_off::BreakOff>,
-    /// Threads that the work on this system may be spread over; it then runs in a pool of them. They change no bits.
+    /// The number of threads over which the work on this system may be distributed; it then runs in a pool of them. They do not
+    /// change the bits.
     pub threads: usize,
     /// One body or eight.
     pub layout: Layout,
-    /// Nodes of one body.
+    /// The number of nodes of one body.
     pub nodes: usize,
-    /// Bodies: 1 to 8.
+    /// The number of bodies: 1 to 8.
     pub bodies: usize,
     /// Time [s].
     pub time: f64,
@@ -93,9 +94,10 @@ pub struct System<const D: usize> {
     pub mass: Parameter,
     /// 1 / mass [1/kg].
     pub inverse_mass: Parameter,
-    /// What a consistent mass matrix adds to the masses of the nodes; none: masses are lumped.
+    /// The difference between a consistent mass matrix and the masses of the nodes; `None` if masses are lumped.
     pub inertia: Option<Inertia>,
-    /// The masses of the shape functions [kg], ∫ρNₐ, by which nodes weigh where the mass matrix is consistent; none: `mass`.
+    /// The masses of the shape functions [kg], ∫ρNₐ, which determine the weight of nodes if the mass matrix is consistent; `None`
+    /// means `mass`.
     pub(crate) weighing: Option<Parameter>,
     /// Acceleration of gravity [m/s²].
     pub gravity: [f64; D],
@@ -103,25 +105,25 @@ pub struct System<const D: usize> {
     pub members: Vec<Member<D>>,
     /// Pinned nodes, by index.
     pub pins: Vec<Pin<D>>,
-    /// What the nodes may collide with in this frame.
+    /// The obstacles that the nodes may meet in this frame.
     pub contacts: Option<std::sync::Arc<dyn Contacts<D>>>,
-    /// Forces with which other bodies push nodes throughout the step, by index [N]; none: it touches nobody. Implicit integrators take
-    /// them into the balance, explicit ones do not look at them.
+    /// The forces of other bodies on nodes throughout the step, by index [N]; `None` if no body is touched. Implicit integrators
+    /// include them in the balance; explicit ones ignore them.
     pub pushes: Option<Vec<(usize, [f64; D])>>,
-    /// The thesis's limits.
+    /// The limits of the thesis.
     pub stabilisers: Stabilisers,
     /// Energy that went in and out.
     pub work: Work8,
-    /// What the integrator remembers.
+    /// The memory of the integrator.
     pub history: History<D>,
-    /// What the integrator keeps between steps to save time; no result depends on it.
+    /// Data that the integrator keeps between steps to save time; no result depends on them.
     pub cache: Cache,
     pub(crate) plan: TilePlan,
-    /// What the pins hold.
+    /// The pinned nodes.
     pub(crate) pinned_nodes: PinnedNodes<D>,
-    /// Work of damping and of loads in the step that is made, where that has several stages.
+    /// The work of damping and of loads in the present step, if it has several stages.
     pub(crate) step_work: [StepWork; 2],
-    /// Pairs of columns that the integrator uses within a step.
+    /// The number of pairs of columns that the integrator uses within a step.
     pub(crate) stages: usize,
     pub(crate) forces: [Column; D],
     pub(crate) before: [Column; D],
@@ -179,17 +181,17 @@ impl<const D: usize> System<D> {
             slots: Column::default(),
         }
     }
-    /// Goes on with a step that takes long.
+    /// Checks whether a long step may continue.
     ///
     /// # Errors
-    /// [`StepError::BrokenOff`] where it shall end: what was made of it is to be taken back.
+    /// [`StepError::BrokenOff`] if it shall end; its effects must be undone.
     pub fn go_on(&self) -> Result<(), StepError> {
         match self.break_off.is_wanted() {
             true => Err(StepError::BrokenOff {}),
             false => Ok(()),
         }
     }
-    /// The masses by which the nodes weigh [kg]: their own, or with a consistent mass matrix ∫ρNₐ.
+    /// The masses that determine the weight of the nodes [kg]: their own, or with a consistent mass matrix ∫ρNₐ.
     pub fn weighing(&self) -> &Parameter {
         self.weighing.as_ref().unwrap_or(&self.mass)
     }
@@ -199,7 +201,7 @@ impl<const D: usize> System<D> {
         if !coupled.is_empty() {
             let before = self.inertia.take().unwrap_or_else(|| Inertia::new(self.nodes, Vec::new()));
             let inertia = before.with(coupled.to_vec());
-            // Row sums, so that a body falls as one: M a = M 1 g.
+            // Row sums, so that a body falls as a whole: M a = M 1 g.
             self.weighing = Some(Parameter::from_items(self.layout, self.nodes, |node, body| {
                 let more: f64 = inertia.row(node).map(|(_, mass)| mass).sum();
                 self.mass.at(self.layout.index(node, body)) + more
@@ -212,17 +214,17 @@ impl<const D: usize> System<D> {
         let flows = (views.damping || account == Account::User).then_some(account);
         self.members.push(Member { potential, memory, scratch, flows, begins_tiles });
     }
-    /// Lays out tiles and buffers after the models, the pins or the integrator changed.
+    /// Lays out tiles and buffers after the models, the pins or the integrator have changed.
     pub fn plan(&mut self, work_columns: usize) {
         let index_count = self.layout.index_count(self.nodes);
         let stride = self.layout.stride();
         let mut spans = Vec::new();
         let mut last = (usize::MAX, usize::MAX);
-        // Nodes of a stencil are not moved before the last of them has read the others.
+        // Nodes of a stencil must not move before the last of them has read the others.
         for member in self.members.iter().filter(|member| !member.potential.properties().forces_in_prepare) {
             member.potential.stencils(&mut |nodes| {
                 let (a, b) = nodes.iter().fold((u32::MAX, 0), |(a, b), node| (a.min(*node), b.max(*node)));
-                // Only pairs of different tiles matter; neighbours repeat.
+                // Only pairs of different tiles matter; neighbouring pairs repeat.
                 let pair = (a as usize * stride, (b as usize + 1) * stride - 1);
                 let tiles = (pair.0 / TILE, pair.1 / TILE);
                 if tiles.0 != tiles.1 && tiles != last {
@@ -244,7 +246,7 @@ impl<const D: usize> System<D> {
         view(&self.state, self.nodes, self.layout, stage, time, self.threads)
     }
 
-    /// Ends a substep: models move their memory on, time passes.
+    /// Ends a substep: updates the memory of models and the time.
     pub fn finish_step(&mut self, h: f64) {
         let now = self.time + h;
         let view = view(&self.state, self.nodes, self.layout, Stage::Current, now, self.threads);
@@ -275,7 +277,7 @@ impl<const D: usize> System<D> {
     /// The force of the models of one account on every node in the current state [N], laid out in columns.
     ///
     /// # Errors
-    /// [`StepError`] where a model refuses the state.
+    /// [`StepError`] if a model refuses the state.
     pub fn forces_of(&mut self, account: Account) -> Result<Columns<D>, StepError> {
         let mut out = Columns::zeros(self.index_count());
         self.ensure_workspace();
@@ -302,10 +304,10 @@ impl<const D: usize> System<D> {
         Ok(out)
     }
 
-    /// The force on every node in the current state [N], gravity included, laid out in columns.
+    /// The force on every node in the current state [N], including gravity, in columns.
     ///
     /// # Errors
-    /// [`StepError`] where a model refuses the state.
+    /// [`StepError`] if a model refuses the state.
     pub fn forces(&mut self, velocities: bool) -> Result<Columns<D>, StepError> {
         let mut out = Columns::zeros(self.index_count());
         self.ensure_workspace();
@@ -345,7 +347,7 @@ pub(crate) fn view<const D: usize>(
     View { x: x.slices(), v: v.slices(), nodes, layout, time, threads }
 }
 
-/// The larger of two numbers, `b` if `a` is not a number.
+/// The larger of two numbers; `b` if `a` is NaN.
 pub fn larger(a: f64, b: f64) -> f64 {
     a.larger(b)
 }

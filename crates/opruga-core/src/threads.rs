@@ -1,8 +1,9 @@
-//! Pieces of work on several threads. Which piece is done by which thread changes no bits: every piece has its own room.
+//! Pieces of work on several threads. The assignment of pieces to threads does not change the bits, because every piece has its
+//! own memory.
 //!
-//! There is one door for all of it. [`together`] calls the threads of the pool that the caller runs in (the world's), and
-//! they stay awake as long as it lasts; what goes through this door meanwhile is handed to them. `threads` says whether
-//! work may be.
+//! This module is the only entry point. [`together`] calls the threads of the pool in which the caller runs (that of the world),
+//! and they stay awake until it returns; work that is submitted here meanwhile is distributed to them. `threads` tells whether
+//! work may be distributed.
 
 use opruga_math::Team;
 use std::cell::RefCell;
@@ -13,7 +14,7 @@ thread_local! {
     static TEAM: RefCell<Option<Arc<Team>>> = const { RefCell::new(None) };
 }
 
-/// Whoever leads a team leads it no longer, and its members go home.
+/// Ends the leadership of a team when dropped, and releases its members.
 struct Leading;
 
 impl Drop for Leading {
@@ -24,7 +25,7 @@ impl Drop for Leading {
     }
 }
 
-/// Does something while so many threads are at hand for its pieces, the caller's among them.
+/// Runs `work` while `threads` threads, including the caller's, are ready for its pieces.
 pub fn together<R>(threads: usize, work: impl FnOnce() -> R) -> R {
     if threads < 2 || team().is_some() {
         return work();
@@ -34,7 +35,7 @@ pub fn together<R>(threads: usize, work: impl FnOnce() -> R) -> R {
         for number in 1..threads {
             let team = Arc::clone(&team);
             scope.spawn(move |_| {
-                // A leader that waits for the end of all this may find this here still to be done.
+                // A thread that leads a team may run this job while it waits; it must not serve.
                 if TEAM.with_borrow(Option::is_none) {
                     team.serve(number);
                 }
@@ -50,7 +51,7 @@ fn team() -> Option<Arc<Team>> {
     TEAM.with_borrow(Option::clone)
 }
 
-/// The team that the caller leads, where work on so many pieces may be handed out.
+/// The team that the caller leads, if work on this many pieces may be distributed.
 fn team_for(threads: usize, pieces: usize) -> Option<Arc<Team>> {
     if threads > 1 && pieces > 1 { team() } else { None }
 }
@@ -77,7 +78,7 @@ pub fn each_with<T: Send, U: Send>(
     }
 }
 
-/// Does the work on parts of a slice that begin at the given indices, which rise from 0 on.
+/// Does the work on parts of a slice that begin at the given indices, which increase from 0.
 pub fn each_part<T: Send>(threads: usize, slice: &mut [T], starts: &[usize], work: impl Fn(usize, &mut [T]) + Sync) {
     match team_for(threads, starts.len()) {
         Some(team) => team.each_part(slice, starts, work),
@@ -90,11 +91,11 @@ pub fn each_part<T: Send>(threads: usize, slice: &mut [T], starts: &[usize], wor
     }
 }
 
-/// Nodes in a block of vectors that are worked on by one thread.
+/// The number of nodes in a block of vectors that one thread processes.
 const BLOCK: usize = 512;
 
-/// Does the work on blocks of some vectors with so many numbers a node; it is told where its block begins. All end with the
-/// shortest.
+/// Does the work on blocks of vectors with several numbers per node; it receives the start of its block. All vectors end with the
+/// shortest one.
 pub fn each_block<T: Send, const N: usize>(
     threads: usize,
     numbers: usize,

@@ -1,25 +1,25 @@
-//! Tiles: the columns are walked in pieces that fit the first-level cache.
+//! Tiles: the columns are processed in pieces that fit into the first-level cache.
 
 use crate::state::Parameter;
 use core::ops::Range;
 use opruga_math::{Column, Pack, Simd, StripMut, WIDTH, Work, lanes};
 
-/// Indices of a tile.
+/// The number of indices of a tile.
 pub const TILE: usize = 512;
 
-/// The forces on the nodes of one tile, while models add to them.
+/// The forces on the nodes of one tile, to which models add.
 #[derive(Debug)]
 pub struct Tile<'a, const D: usize> {
     /// The indices of the tile; both ends are multiples of eight.
     pub range: Range<usize>,
     /// Force [N]: `force[d][p - range.start]` belongs to index p.
     pub force: [&'a mut [f64]; D],
-    /// Power that the model takes from (dissipation) or gives to (loads) the bodies [W], eight partial sums.
+    /// Power that the model dissipates (damping) or gives to the bodies (loads) [W], eight partial sums.
     pub power: &'a mut [f64; WIDTH],
-    /// The weight m g that the forces begin with, while nobody has written it: only the first model sees it, and only if it
-    /// says [`crate::potential::Potential::begins_tiles`]; then it owes [`Tile::settle`] or the same result.
+    /// The weight m g with which the forces begin, as long as it has not been written. Only the first model receives it, and only
+    /// if it sets [`crate::potential::Potential::begins_tiles`]; it then has to call [`Tile::settle`] or do the same itself.
     pub weight: Option<Weight<'a, D>>,
-    /// Room for the forces of stencils before they are added up at the nodes.
+    /// A buffer for the forces of stencils before they are summed at the nodes.
     pub slots: &'a mut Column,
 }
 
@@ -33,14 +33,14 @@ pub struct Weight<'a, const D: usize> {
 }
 
 impl<const D: usize> Tile<'_, D> {
-    /// Begins the forces with the weight, unless that is done.
+    /// Begins the forces with the weight, unless that has been done.
     #[inline]
     pub fn settle(&mut self, simd: Simd) {
         if self.weight.is_some() {
             simd.run(Settle { tile: self });
         }
     }
-    /// The same within work for a set of instructions.
+    /// The same within work for one set of instructions.
     #[inline(always)]
     pub fn settle_by<P: Pack>(&mut self) {
         let Some(weight) = self.weight.take() else { return };
@@ -68,23 +68,23 @@ impl<const D: usize> Work for Settle<'_, '_, D> {
     }
 }
 
-/// In which order tiles are evaluated and moved.
+/// The order in which tiles are evaluated and moved.
 ///
-/// The forces of a tile read positions of its neighbours. A tile may move only when every tile that reads it has its
-/// forces. For a chain that is one tile later, so the forces wait in the cache; for a mesh of wide numbering it is
+/// The forces of a tile read positions of its neighbours. A tile may move only when the forces of every tile that reads it have
+/// been computed. For a chain that is one tile later, so the forces stay in the cache; for a mesh with distant node numbers it is
 /// later, and more buffers are needed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TilePlan {
     tiles: Vec<Range<usize>>,
     buffer: Vec<u32>,
-    /// For every tile the tiles that may move after its forces are known, in order.
+    /// For every tile, the tiles that may move once its forces are known, in order.
     release: Vec<u32>,
     release_start: Vec<u32>,
     buffers: usize,
 }
 
 impl TilePlan {
-    /// The plan of so many indices, given every pair (first, last) of indices that a stencil spans.
+    /// The plan for `index_count` indices, given every pair (first, last) of indices that a stencil spans.
     pub fn new(index_count: usize, spans: impl Iterator<Item = (usize, usize)>) -> TilePlan {
         let count = index_count.div_ceil(TILE);
         let tiles: Vec<_> = (0..count).map(|t| t * TILE..((t + 1) * TILE).min(index_count)).collect();
@@ -130,7 +130,7 @@ impl TilePlan {
     pub fn range(&self, tile: usize) -> Range<usize> {
         self.tiles[tile].clone()
     }
-    /// Where the forces of a tile lie among the buffers.
+    /// The index of the buffer with the forces of a tile.
     #[inline(always)]
     pub fn buffer(&self, tile: usize) -> usize {
         self.buffer[tile] as usize * TILE
@@ -140,7 +140,7 @@ impl TilePlan {
     pub fn released_after(&self, tile: usize) -> &[u32] {
         &self.release[self.release_start[tile] as usize..self.release_start[tile + 1] as usize]
     }
-    /// Indices of all buffers together.
+    /// The number of indices of all buffers together.
     pub fn buffer_length(&self) -> usize {
         self.buffers * TILE
     }

@@ -1,25 +1,25 @@
-//! Memory that steps need: lent to a system for a step, or kept by its integrator.
+//! Memory for steps: lent to a system for a step, or kept by its integrator.
 
 use crate::state::Columns;
 use crate::tile::TILE;
 use opruga_math::{Column, WIDTH};
 
-/// What an integrator keeps between steps to save time; no result depends on it.
+/// Data that an integrator keeps between steps to save time; no result depends on them.
 #[derive(Debug, Default)]
 pub struct Cache(Option<Box<dyn core::any::Any + Send + Sync>>);
 
 impl Cache {
-    /// Takes what is kept out, or something new where nothing of the kind is there.
+    /// Takes the stored data out, or new data if there are none of this type.
     pub fn take<T: Default + Send + Sync + 'static>(&mut self) -> Box<T> {
         self.0.take().and_then(|kept| kept.downcast().ok()).unwrap_or_default()
     }
-    /// Puts it back.
+    /// Puts the data back.
     pub fn put<T: Send + Sync + 'static>(&mut self, kept: Box<T>) {
         self.0 = Some(kept);
     }
 }
 
-/// Memory that is used within a step only: forces, stages of an integrator, the motion before obstacles act.
+/// Memory that is used only within a step: forces, stages of an integrator, the motion before obstacles act.
 ///
 /// Systems that are stepped one after the other share one, so that it stays in the cache.
 #[derive(Debug)]

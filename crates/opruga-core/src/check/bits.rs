@@ -1,4 +1,4 @@
-//! Tiles, sets of instructions, layouts: the same numbers to the bit.
+//! Tiles, vector instructions, layouts: the same numbers to the bit.
 
 use super::Suite;
 use super::case::{Answer, Body, Case, by_node, difference, irregular, regular, unequal_bits};
@@ -9,7 +9,7 @@ use crate::tile::TILE;
 use opruga_math::{Lane, Simd, WIDTH, sum_in_fixed_order};
 
 impl<const D: usize> Suite<'_, D> {
-    /// Tiles, sets of instructions, layouts: to the bit.
+    /// Checks tiles, vector instructions and layouts, to the bit.
     pub(super) fn same_bits(
         &self,
         random: &mut Random,
@@ -37,7 +37,7 @@ impl<const D: usize> Suite<'_, D> {
             for cut in &cuts {
                 tiles += unequal_bits(&columns(&case.forces(best, cut, None)?.0), &whole);
             }
-            // Begun with the weight, by the model or before it.
+            // The forces begin with the weight, added by the model or before it.
             let mass = Parameter::from_items(case.layout, nodes, |n, l| self.bodies[l].mass[n]);
             if case.potential.properties().begins_tiles {
                 for cut in &cuts {
@@ -56,7 +56,7 @@ impl<const D: usize> Suite<'_, D> {
         add("tiles", tiles, 0.0);
         add("lanes", lanes, 0.0);
 
-        // Each of eight bodies alone.
+        // Each of eight bodies by itself.
         let mut batch = 0.0;
         let mut powers = 0.0;
         let (together, power) = eight.forces(best, &regular(eight.index_count(), TILE), None)?;
@@ -71,7 +71,7 @@ impl<const D: usize> Suite<'_, D> {
             powers = Lane::larger(difference(&[power[l]], &[own_power], 0.0), powers);
         }
         add("batch", batch, 0.0);
-        // Power is added up in another order.
+        // Power is summed in another order.
         add("batch power", powers, 1e-11);
         Ok(())
     }

@@ -1,4 +1,4 @@
-//! A built model with the state in which it is asked, and how answers are compared.
+//! A built model with the state in which it is evaluated, and the comparison of results.
 
 use super::Options;
 use super::random::{Random, dot, times};
@@ -17,7 +17,7 @@ pub(super) struct Body<const D: usize> {
     pub(super) mass: Vec<f64>,
 }
 
-/// Positions and velocities as a model sees them, on one thread.
+/// Positions and velocities as a model receives them, on one thread.
 fn view<'a, const D: usize>(
     x: &'a Columns<D>,
     v: &'a Columns<D>,
@@ -28,7 +28,7 @@ fn view<'a, const D: usize>(
     View { x: x.slices(), v: v.slices(), nodes, layout, time, threads: 1 }
 }
 
-/// Mean length of the edges of a mesh.
+/// The mean length of the edges of a mesh.
 pub(super) fn mean_edge<const D: usize>(mesh: &Mesh<D>) -> f64 {
     let edges = mesh.edges(opruga_mesh::EdgeSet::All);
     let mut sum = 0.0;
@@ -50,7 +50,7 @@ impl<const D: usize> Body<D> {
                 center[d] += p[d] / nodes as f64;
             }
         }
-        // A random deformation of the whole, then of every node.
+        // A random deformation of the whole body, then of every node.
         let mut affine = [[0.0; D]; D];
         for (i, row) in affine.iter_mut().enumerate() {
             for (j, entry) in row.iter_mut().enumerate() {
@@ -77,7 +77,7 @@ impl<const D: usize> Body<D> {
     }
 }
 
-/// A built model with the state in which it is asked.
+/// A built model with the state in which it is evaluated.
 pub(super) struct Case<'a, const D: usize> {
     pub(super) potential: &'a dyn Potential<D>,
     pub(super) layout: Layout,
@@ -123,7 +123,8 @@ impl<'a, const D: usize> Case<'a, D> {
         self.prepare(simd)?;
         Ok(self.potential.energy(simd, &self.view(), &self.scratch))
     }
-    /// Force and power with the indices cut into tiles; `weight` begins the forces, by the model itself where `fused`.
+    /// Force and power with the indices divided into tiles. If there is a `weight`, the forces begin with it; with `fused` the
+    /// model itself adds it.
     pub(super) fn forces(
         &mut self,
         simd: Simd,
@@ -153,7 +154,7 @@ impl<'a, const D: usize> Case<'a, D> {
         }
         Ok((out, power))
     }
-    /// Forces node by node of one body, in tiles as a step has them.
+    /// Forces node by node of one body, in the tiles of a step.
     pub(super) fn plain(&mut self, simd: Simd) -> Answer<(Vec<[f64; D]>, f64)> {
         let tiles = regular(self.index_count(), TILE);
         let (columns, power) = self.forces(simd, &tiles, None)?;
@@ -165,7 +166,7 @@ pub(super) fn regular(index_count: usize, length: usize) -> Vec<Range<usize>> {
     (0..index_count).step_by(length).map(|s| s..(s + length).min(index_count)).collect()
 }
 
-/// Tiles of random sizes, in no order.
+/// Tiles of random sizes, in random order.
 pub(super) fn irregular(index_count: usize, random: &mut Random) -> Vec<Range<usize>> {
     let mut tiles = Vec::new();
     let mut start = 0;
@@ -205,7 +206,7 @@ pub(super) fn largest<'a>(numbers: impl IntoIterator<Item = &'a f64>) -> f64 {
     out
 }
 
-/// The largest difference, relative to the largest entry of `b` and at least to `scale`.
+/// The largest difference, relative to the largest entry of `b`, but at least to `scale`.
 pub(super) fn difference(a: &[f64], b: &[f64], scale: f64) -> f64 {
     let errors: Vec<f64> = a.iter().zip(b).map(|(x, y)| x - y).collect();
     let scale = Lane::larger(largest(b), scale);

@@ -1,4 +1,4 @@
-//! Forces and Hessians against differences.
+//! Forces and Hessians, compared with finite differences.
 
 use super::Suite;
 use super::case::{Answer, Body, Case, by_node, difference, largest, mean_edge};
@@ -39,7 +39,7 @@ impl<const D: usize> Assembled<D> {
     }
 }
 
-/// How many entries of a Hessian couple nodes that no stencil declares.
+/// Counts the entries of a Hessian that couple nodes without a declared stencil.
 struct Undeclared {
     nodes: usize,
     stride: usize,
@@ -68,7 +68,7 @@ impl<const D: usize> Sink<D> for Undeclared {
         let coupled = a != b && value.iter().flatten().any(|entry| *entry != 0.0);
         self.count += usize::from(coupled && !self.declared[a * self.nodes + b]);
     }
-    // What couples all nodes is no stencil.
+    // A coupling of all nodes is not a stencil.
     fn low_rank(&mut self, _: f64, _: &[(usize, [f64; D])]) {}
     fn dense(&mut self, _: &DensePart<'_, D>) {}
 }
@@ -161,7 +161,7 @@ impl<const D: usize> Suite<'_, D> {
         let size = case.nodes * D;
         let scale = largest(&matrix);
 
-        // Differences of forces, column by column.
+        // Finite differences of forces, column by column.
         let mut expected = vec![0.0; size * size];
         for node in 0..case.nodes {
             for d in 0..D {
@@ -184,7 +184,7 @@ impl<const D: usize> Suite<'_, D> {
         }
         add("stencils", Undeclared::of(&case) as f64, 0.0);
 
-        // Product with a vector, of one body and of eight.
+        // The product with a vector, for one body and for eight.
         let all = self.build(None)?;
         let bodies: Vec<Body<D>> = self.bodies.iter().map(Body::still).collect();
         let mut eight = Case::new(&*all, Layout::Batch, &bodies.iter().collect::<Vec<_>>(), self.options.time);
@@ -207,7 +207,7 @@ impl<const D: usize> Suite<'_, D> {
         let of_eight = Assembled::of(&eight, Definiteness::Exact);
         add("product", difference(&of_eight, &matrix, 1e-300), 1e-12);
 
-        // Clamped stresses make no positive matrix where the tangent is not symmetric.
+        // If the tangent is not symmetric, clamped stresses do not give a positive matrix.
         if !potential.properties().views.symmetric {
             return Ok(());
         }
@@ -241,7 +241,7 @@ impl<const D: usize> Suite<'_, D> {
         }
         case.prepare(best)?;
         let matrix = Assembled::of_damping(&case);
-        // Forces at rest cancel in the differences: their rounding counts.
+        // Forces at rest cancel in the differences, but their rounding remains.
         let rest = 1e-8 * largest(case.plain(best)?.0.iter().flatten()) / h;
         add("damping matrix", difference(&expected, &matrix, rest), 1e-7);
 

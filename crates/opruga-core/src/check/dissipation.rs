@@ -1,4 +1,4 @@
-//! Damping takes energy out, says how much, and leaves rigid motion alone.
+//! Damping dissipates energy, reports how much, and does not affect rigid motion.
 
 use super::Suite;
 use super::case::{Answer, difference, largest};
@@ -33,7 +33,7 @@ impl<const D: usize> Suite<'_, D> {
             Ok((drag, power, work))
         };
         let (random_drag, power, work) = damping(&|node| body.v[node])?;
-        // Forces at rest are subtracted: their rounding counts.
+        // Forces at rest are subtracted, but their rounding remains.
         let rest = self.case(potential, &body.still()).plain(best)?.0;
         let rounding = 1e-4 * largest(rest.iter().flatten());
         let scale = Lane::larger(largest(&random_drag), rounding);

@@ -24,10 +24,10 @@ impl<const D: usize> Suite<'_, D> {
         let (force, _) = case.plain(best)?;
         let flat: Vec<f64> = force.iter().flatten().copied().collect();
         let energy = sum_in_fixed_order(&case.energy(best)?);
-        // Energies are compared with what a force does over an edge, where they are smaller than that.
+        // Energies are compared with the work of a force over an edge if they are smaller than that.
         let scale = largest(&flat) * mean_edge(self.mesh);
 
-        // Moved, and turned about the first node with the velocities.
+        // Moved, and rotated about the first node together with the velocities.
         let shift: [f64; D] = random.vector::<D>().map(|c| c * extent);
         let turn = rotation::<D>(random);
         let center = body.x[0];
@@ -55,7 +55,7 @@ impl<const D: usize> Suite<'_, D> {
             }
         }
 
-        // Net force and torque about the first node, relative to the sum of their parts.
+        // Net force and torque about the first node, relative to the sum of their terms.
         let (mut net, mut torque) = ([0.0; D], [[0.0; D]; D]);
         let (mut strength, mut moment) = (0.0, 0.0);
         for node in 0..nodes {

@@ -1,6 +1,6 @@
 //! The conformance suite: what every model must obey, checked on random states from a fixed seed.
 //!
-//! A model joins by one line in a test:
+//! One line in a test adds a model:
 //!
 //! ```ignore
 //! conformance("springs", &MassSpring, &[values], &mesh, &Options::default()).assert();
@@ -9,22 +9,22 @@
 //! | row | what is compared |
 //! |---|---|
 //! | gradient | force at rest with central differences of the energy (fourth order) |
-//! | hessian | second derivatives with central differences of the force; symmetric where the model says so |
+//! | hessian | second derivatives with central differences of the force; symmetric if the model declares it |
 //! | product | `add_hessian_product` with the assembled matrix; eight bodies with one |
-//! | clamped | the clamped Hessian has no negative eigenvalue, where it is symmetric |
-//! | views | energy and second derivatives are there if the model says so of all its potentials |
-//! | tiles | forces in tiles of any size with forces in one tile, to the bit; also begun with the weight |
+//! | clamped | the clamped Hessian has no negative eigenvalue, if it is symmetric |
+//! | views | energy and second derivatives exist if the model declares them for all its potentials |
+//! | tiles | forces in tiles of any size with forces in one tile, to the bit; also if they begin with the weight |
 //! | lanes | all sets of vector instructions of this processor, to the bit |
 //! | batch | eight bodies side by side with each alone, to the bit, forces and energy |
 //! | translation, rotation | U(Qx + t) = U(x), F(Qx + t, Qv) = Q F(x, v) |
 //! | net force, net torque | Σ F = 0, Σ x × F = 0, damping included |
 //! | infinitesimal rotation | H Ωx = Ω ∇U for skew Ω, also under load |
-//! | rigid motion | no damping force where v = v₀ + ω × x |
+//! | rigid motion | no damping force if v = v₀ + ω × x |
 //! | damping matrix | −∂F/∂v with central differences of the force in the velocities |
-//! | power | what the model says that damping takes is −F·v of damping and not negative |
+//! | power | the power of damping that the model reports is −F·v of the damping force, and not negative |
 //! | coincident | all nodes in one point: energy and force are finite |
 //!
-//! Rows that ask for what a model says it lacks ([`Potential::views`], [`Options::rigid`]) are left out.
+//! Rows for properties that a model does not claim ([`Potential::views`], [`Options::rigid`]) are left out.
 
 mod bits;
 mod case;
@@ -42,34 +42,34 @@ use opruga_math::{Lane, Simd, WIDTH, sum_in_fixed_order};
 use opruga_mesh::Mesh;
 pub use random::Random;
 
-/// In which states a model is checked, and what it does not claim.
+/// The states in which a model is checked, and the properties that it claims.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
     /// Seed of the random states.
     pub seed: u64,
-    /// How many states.
+    /// The number of states.
     pub states: usize,
-    /// Random displacement of each coordinate, in mean edge lengths of the mesh.
+    /// The random displacement of each coordinate, in mean edge lengths of the mesh.
     pub noise: f64,
-    /// Factor on the rest shape before that.
+    /// The factor by which the rest shape is scaled before that.
     pub stretch: f64,
-    /// Whether the first axis is mirrored: a body turned inside out.
+    /// Whether the first axis is mirrored, which inverts the body.
     pub mirrored: bool,
     /// Whether the model claims the rows on rigid motion, net force and net torque.
     pub rigid: bool,
-    /// Whether the parameters leave what [`Model::views`] claims.
+    /// Whether the parameters keep the properties that [`Model::views`] claims.
     pub views: bool,
-    /// Whether it claims a finite force where all nodes coincide.
+    /// Whether the model claims a finite force if all nodes coincide.
     pub coincident: bool,
-    /// Whether differences are taken, as many as coordinates: not for meshes of more than some hundred nodes.
+    /// Whether finite differences are taken, as many as there are coordinates; not for meshes of more than some hundred nodes.
     pub derivatives: bool,
-    /// Time of the state [s].
+    /// The time of the state [s].
     pub time: f64,
-    /// Depth out of the plane, or thickness of a sheet [m].
+    /// The depth out of the plane, or the thickness of a sheet [m].
     pub thickness: f64,
-    /// Allowed error of the gradient, relative to the largest force.
+    /// The allowed error of the gradient, relative to the largest force.
     pub gradient_tolerance: f64,
-    /// Allowed error of the Hessian, relative to its largest entry.
+    /// The allowed error of the Hessian, relative to its largest entry.
     pub hessian_tolerance: f64,
 }
 
@@ -98,16 +98,16 @@ impl Default for Options {
 pub struct Row {
     /// What was compared.
     pub quantity: &'static str,
-    /// In which state.
+    /// The number of the state.
     pub state: usize,
-    /// The largest error; relative unless it is a count of unequal bits.
+    /// The largest error; relative, unless it is a count of unequal bits.
     pub error: f64,
-    /// The error that is allowed.
+    /// The allowed error.
     pub tolerance: f64,
 }
 
 impl Row {
-    /// Whether the error is allowed; an error that is not a number is not.
+    /// Whether the error is allowed; NaN is not.
     pub fn passes(&self) -> bool {
         self.error <= self.tolerance
     }
@@ -122,7 +122,7 @@ pub struct Report {
     pub dimension: usize,
     /// The comparisons.
     pub rows: Vec<Row>,
-    /// Why no state could be checked, if so.
+    /// The reason if no state could be checked.
     pub refused: Option<String>,
 }
 
@@ -131,14 +131,14 @@ impl Report {
     pub fn passes(&self) -> bool {
         self.refused.is_none() && self.rows.iter().all(Row::passes)
     }
-    /// The largest error of a quantity; `None` where it was not compared.
+    /// The largest error of a quantity; `None` if it was not compared.
     pub fn worst(&self, quantity: &str) -> Option<f64> {
         self.rows.iter().filter(|r| r.quantity == quantity).map(|r| r.error).reduce(Lane::larger)
     }
-    /// Fails a test with a table of all rows unless everything passes.
+    /// Fails a test with a table of all rows, unless everything passes.
     ///
     /// # Panics
-    /// Where a row does not pass.
+    /// If a row does not pass.
     #[track_caller]
     pub fn assert(&self) {
         assert!(self.passes(), "{self}");

@@ -9,7 +9,7 @@ impl Random {
     pub fn new(seed: u64) -> Random {
         Random(seed)
     }
-    /// Any 64 bits.
+    /// 64 random bits.
     pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
@@ -33,7 +33,7 @@ impl Random {
 
 pub(super) type Matrix<const D: usize> = [[f64; D]; D];
 
-/// A random rotation: Gram–Schmidt on random vectors, the last one turned so that the determinant is one.
+/// A random rotation: Gram–Schmidt on random vectors; the last one is chosen so that the determinant is one.
 pub(super) fn rotation<const D: usize>(random: &mut Random) -> Matrix<D> {
     let mut q = [[0.0; D]; D];
     for i in 0..D {

@@ -1,4 +1,5 @@
-//! Runs whose second nodes are the next ones: outlines, rows of grids. The inner loop of springs and of gas in the plane.
+//! Runs in which the second nodes follow the first ones by one: outlines, rows of grids. This is the inner loop of springs and of
+//! gas in the plane.
 
 use super::PairLaw;
 use super::lone::Lone;
@@ -10,21 +11,21 @@ use opruga_math::{Lane, Pack, RepeatStrip, Simd, Strip, StripMut, WIDTH, Work, l
 pub(super) struct Chain<'a, 'v, L, const D: usize> {
     pub(super) law: L,
     pub(super) view: &'a View<'v, D>,
-    /// The first index of the first node.
+    /// The index of the first node of the first pair.
     pub(super) a: usize,
     /// The index of the first pair among the parameters.
     pub(super) first: usize,
-    /// Indices of all pairs.
+    /// The number of indices of all pairs.
     pub(super) length: usize,
     pub(super) layout: Layout,
-    /// The pair by itself that comes next.
+    /// The separate pair that comes next.
     pub(super) closing: Option<Lone>,
 }
 
 /// One case of the loop.
 struct Walk<'a, 'c, 'v, 't, L, const D: usize, const BATCH: bool, const FRESH: bool, const SAME: bool> {
     chain: &'a Chain<'c, 'v, L, D>,
-    // By reference: numbers beside pointers would be read together with them, which waits until each has been written.
+    // By reference: numbers next to pointers would be read together with them, which has to wait until each has been written.
     weight: &'a Weight<'a, D>,
     tile: &'a mut Tile<'t, D>,
     power: &'a mut [f64; WIDTH],
@@ -48,7 +49,7 @@ impl<L: PairLaw<D>, const D: usize, const BATCH: bool, const FRESH: bool, const 
 impl<L: PairLaw<D>, const D: usize> Chain<'_, '_, L, D> {
     /// Adds the forces of the run to a tile.
     ///
-    /// One loop serves all cases; which of them is the case is known to the compiler.
+    /// One loop serves all cases; the case is known at compile time.
     pub(super) fn add(&self, simd: Simd, tile: &mut Tile<D>, power: &mut [f64; WIDTH]) {
         match self.layout {
             Layout::Single => self.add_laid_out::<false>(simd, tile, power),
@@ -62,9 +63,9 @@ impl<L: PairLaw<D>, const D: usize> Chain<'_, '_, L, D> {
             tile.settle(simd);
             return simd.run(Walk::<_, _, BATCH, false, true> { chain: self, weight, tile, power });
         }
-        // If nobody has written the forces of the tile, and its nodes all belong to the run, the loop begins them.
+        // If nothing has written the forces of the tile, and its nodes all belong to the run, the loop begins them.
         let [_, second, third] = self.law.parameters();
-        // What lies behind the last node is padding.
+        // Padding follows the last node.
         let nodes = tile.range.end.min(self.view.nodes * self.layout.stride());
         let whole = self.a <= tile.range.start && nodes <= self.a + self.length + self.layout.stride();
         match tile.weight {
@@ -79,12 +80,11 @@ impl<L: PairLaw<D>, const D: usize> Chain<'_, '_, L, D> {
         }
     }
 
-    /// The loop. Node p receives the force of its own pair and that of the pair before it, which is the pack of forces
-    /// moved up by one node.
+    /// The loop. Node p receives the force of its own pair and that of the previous pair, which is the pack of forces shifted by
+    /// one node.
     ///
-    /// `FRESH`: there is a weight, the same for all nodes, and the forces of the tile are written and not added to.
-    /// `SAME`: all but the
-    /// first parameter of the law are the same for all pairs, and are read once.
+    /// `FRESH`: there is a weight, equal for all nodes, and the forces of the tile are overwritten instead of added. `SAME`: all
+    /// but the first parameter of the law are equal for all pairs, and are read once.
     #[inline(always)]
     fn walk<P: Pack, const BATCH: bool, const FRESH: bool, const SAME: bool>(
         &self,
@@ -119,15 +119,15 @@ impl<L: PairLaw<D>, const D: usize> Chain<'_, '_, L, D> {
             let (f, _) = law.force([p0.load(0), second, third], d, rate, law.ahead(d));
             previous = f;
             if lead < WIDTH {
-                // The pair before the first node is not the last of the pack.
+                // The pair before the first node is not the last one of the pack.
                 for i in 0..D {
                     let last = f[i].to_array()[lead - 1];
                     previous[i] = P::splat(last);
                 }
             }
         }
-        // Pairs end before the last node; nodes end with the run or with the tile, and those behind it belong to another
-        // tile, whose forces may wait next door.
+        // Pairs end before the last node. Nodes end with the run or with the tile; later ones belong to another tile, whose
+        // forces may already be stored next to these.
         let (pairs, nodes) = (a + length - start, end - start);
         let mut walker =
             Walker { law, next, lead, packed, x, v, p0, p1, p2, same, weight, previous, ahead: [P::zero(); MOST_LAG] };
@@ -146,38 +146,38 @@ impl<L: PairLaw<D>, const D: usize> Chain<'_, '_, L, D> {
     }
 }
 
-/// What the loop along a chain needs.
+/// The data of the loop along a chain.
 struct Walker<'a, P, L, const D: usize> {
     law: L,
     next: usize,
     lead: usize,
-    /// Indices of the nodes, filled up to whole packs.
+    /// The number of indices of the nodes, filled up to whole packs.
     packed: usize,
     x: Strip<'a, D>,
     v: Strip<'a, D>,
     p0: RepeatStrip<'a>,
     p1: RepeatStrip<'a>,
     p2: RepeatStrip<'a>,
-    /// The second and third parameter and the weight, where they are the same everywhere.
+    /// The second and third parameters and the weight, if they are the same everywhere.
     same: [P; 2],
     weight: [P; D],
-    /// The forces of the pack before.
+    /// The forces of the previous pack.
     previous: [P; D],
-    /// What the law said of the packs to come.
+    /// The results of [`PairLaw::ahead`] for the coming packs.
     ahead: [P; MOST_LAG],
 }
 
-/// The most packs between [`PairLaw::ahead`] and the force. A processor looks ahead by itself, but not as far as a root
-/// and a division take; what waits for them fills its queues.
+/// The largest number of packs between [`PairLaw::ahead`] and the force. A processor looks ahead by itself, but not as far as a
+/// root and a division take; operations that wait for them fill its queues.
 const MOST_LAG: usize = 2;
 
-/// Packs between [`PairLaw::ahead`] and the force: a pack of many registers is far enough by itself.
+/// The number of packs between [`PairLaw::ahead`] and the force: a pack of many registers is far enough by itself.
 const fn lag<P: Pack>() -> usize {
     if P::PARTS > 2 { 1 } else { MOST_LAG }
 }
 
 impl<P: Pack, L: PairLaw<D>, const D: usize> Walker<'_, P, L, D> {
-    /// Asks the law ahead of the pack from `k` on.
+    /// Calls [`PairLaw::ahead`] for the pack from `k` on.
     #[inline(always)]
     fn look_ahead(&mut self, into: usize, k: usize) {
         if L::AHEAD {
@@ -190,7 +190,7 @@ impl<P: Pack, L: PairLaw<D>, const D: usize> Walker<'_, P, L, D> {
         }
     }
 
-    /// The pack of nodes from `k` on; gives the power of their pairs. `EDGE`: not all eight are there.
+    /// Processes the pack of nodes from `k` on; returns the power of their pairs. `EDGE`: not all eight exist.
     #[inline(always)]
     fn step<const BATCH: bool, const FRESH: bool, const SAME: bool, const EDGE: bool>(
         &mut self,
@@ -208,7 +208,7 @@ impl<P: Pack, L: PairLaw<D>, const D: usize> Walker<'_, P, L, D> {
         if later < self.packed {
             self.look_ahead(lag::<P>() - 1, later);
         }
-        // Part by part: what a law computes with fits the registers of any processor.
+        // Part by part: the data of a law fit into the registers of any processor.
         let mut f = [P::zero(); D];
         let mut dissipated = P::zero();
         for part in 0..P::PARTS {

@@ -16,7 +16,7 @@ impl PairTable {
         let stride = self.layout.stride();
         let (start, end) = (tile.range.start, tile.range.end);
         let mut power = [0.0; WIDTH];
-        // A tile of the plan knows its runs; any other range looks at all.
+        // A tile of the plan knows its runs; any other range checks all of them.
         let numbered = start % TILE == 0 && end <= start + TILE;
         let mine = if numbered {
             &self.tile_runs[self.runs_from(start / TILE)..self.runs_from(start / TILE + 1)]
@@ -42,14 +42,14 @@ impl PairTable {
             }
             let (a, b) = (run.a as usize * stride, run.b as usize * stride);
             let (first, length) = (run.first as usize * stride, run.count as usize * stride);
-            // The indices of the run whose first (second) node lies in the tile.
+            // The indices of the run whose first (second) node is in the tile.
             let own = within(a, length, start, end);
             let other = within(b, length, start, end);
             if own.is_empty() && other.is_empty() {
                 continue;
             }
             if run.b == run.a + 1 && length > WIDTH {
-                // What closes an outline comes behind it, in one piece of work.
+                // The pair that closes an outline follows its chain, in one piece of work.
                 let closing = if k < count && nth(k).count == 1 { Some(lone(nth(k))) } else { None };
                 k += usize::from(closing.is_some());
                 Chain { law, view, a, first, length, layout: self.layout, closing }.add(simd, tile, &mut power);
@@ -127,7 +127,7 @@ impl PairTable {
         }
     }
 
-    /// Evaluates the indices `all` of a run once and adds them to the nodes of the tile.
+    /// Evaluates the indices `all` of a run once and adds the forces to the nodes of the tile.
     #[inline(always)]
     #[allow(clippy::too_many_arguments)] // inner loop of `add_force`
     fn run<P: Pack, L: PairLaw<D>, const D: usize>(
@@ -147,7 +147,7 @@ impl PairTable {
         let packed = all.len().next_multiple_of(WIDTH);
         let column_length = packed + 2 * WIDTH;
         tile.slots.grow(D * column_length);
-        // One strip from the lower end on serves both ends: few pointers stay in registers.
+        // One strip from the lower end on serves both ends, so that few pointers stay in registers.
         let base = a.min(b);
         let (to_a, to_b) = (a - base, b - base);
         let span = packed + to_a.max(to_b);
@@ -161,7 +161,7 @@ impl PairTable {
         );
         // Slot columns begin with a spare pack, so that a shifted read stays inside.
         let mut slots = StripMut::<1>::new([&mut **tile.slots], 0, D * column_length);
-        // Indices of the run, counted from `all.start`, whose first node belongs to the tile.
+        // Indices of the run, relative to `all.start`, whose first node belongs to the tile.
         let (low, high) = (own.start.saturating_sub(all.start), own.end.saturating_sub(all.start));
         for k in (0..packed).step_by(WIDTH) {
             let (at_a, at_b) = (k + to_a, k + to_b);
@@ -174,7 +174,7 @@ impl PairTable {
                 slots.store(0, i * column_length + WIDTH + k, force[i]);
             }
             if L::DAMPED {
-                // The tile of the first node enters the power.
+                // The power belongs to the tile of the first node.
                 if k >= low && k + WIDTH <= high {
                     *power += dissipated;
                 } else {
@@ -185,7 +185,7 @@ impl PairTable {
                 }
             }
         }
-        // Indices that are a first node, and a second node; most are both.
+        // Indices that are first nodes, and that are second nodes; most are both.
         let firsts = a + own.start..a + own.end;
         let seconds = b + other.start..b + other.end;
         let both = firsts.start.max(seconds.start)..firsts.end.min(seconds.end);
@@ -193,7 +193,7 @@ impl PairTable {
         for i in 0..D {
             let column = &tile.slots[i * column_length..(i + 1) * column_length];
             let into = &mut *tile.force[i];
-            // Stretches of first nodes alone, of second nodes alone, and of both.
+            // Stretches of first nodes only, of second nodes only, and of both.
             let overlap = !(both.is_empty() || own.is_empty() || other.is_empty());
             let alone = if overlap {
                 [
@@ -218,7 +218,7 @@ impl PairTable {
         }
     }
 
-    /// Adds up a function of both ends over all pairs, with bits that do not depend on the layout.
+    /// Sums a function of both ends over all pairs, with bits that do not depend on the layout.
     #[inline(always)]
     pub fn sum<P: Pack, T: PairTerm<P, D>, const D: usize>(&self, view: &View<D>, term: T) -> P {
         match self.layout {
@@ -227,7 +227,7 @@ impl PairTable {
         }
     }
 
-    /// The same for a layout that the compiler knows: then the partial sums stay in registers.
+    /// The same for a layout known at compile time, so that the partial sums stay in registers.
     #[inline(always)]
     fn sum_laid_out<P: Pack, T: PairTerm<P, D>, const D: usize, const BATCH: bool>(
         &self,
@@ -247,7 +247,7 @@ impl PairTable {
             let [p0, p1, p2] = term.parameters();
             let (p0, p1, p2) = (p0.strip(first, packed), p1.strip(first, packed), p2.strip(first, packed));
             for eight in (0..packed).step_by(if BATCH { WIDTH * WIDTH } else { WIDTH }) {
-                // Side by side, every pack has a partial sum of its own among eight.
+                // Side by side, every pack has its own partial sum, one of eight.
                 for j in 0..if BATCH { WIDTH } else { 1 } {
                     let k = eight + j * WIDTH;
                     if BATCH && k >= packed {
@@ -335,8 +335,8 @@ impl<L: PairLaw<D>, const D: usize> Work for Long<'_, '_, '_, L, D> {
     }
 }
 
-/// Adds slots to `count` forces from `at` on: one slot times `sign`, or (`BOTH`) the slot of the first node and then
-/// `sign` times that of the second. What lies behind stays as it is.
+/// Adds slots to `count` forces from `at` on: one slot times `sign`, or (`BOTH`) the slot of the first node and then `sign` times
+/// that of the second. Later forces do not change.
 #[inline(always)]
 fn add_slots<P: Pack, const BOTH: bool>(
     into: &mut [f64],

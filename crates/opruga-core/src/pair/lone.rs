@@ -1,4 +1,4 @@
-//! Pairs by themselves: what closes an outline behind its chain, and what follows no other pair.
+//! Separate pairs: the pair that closes an outline after its chain, and pairs that follow no other pair.
 
 use super::PairLaw;
 use super::parameters::law_parameters;
@@ -17,7 +17,7 @@ pub(super) struct Lone {
 }
 
 impl Lone {
-    /// Adds its force on those of its nodes that lie in a tile.
+    /// Adds its force to those of its nodes that are in a tile.
     #[inline(always)]
     pub(super) fn add<P: Pack, L: PairLaw<D>, const D: usize>(
         &self,
@@ -35,7 +35,7 @@ impl Lone {
         }
     }
 
-    /// Its power stands in the first of eight partial sums.
+    /// Its power is in the first of eight partial sums.
     #[inline(always)]
     fn add_of_one<P: Pack, L: PairLaw<D>, const D: usize>(&self, law: L, view: &View<D>, tile: &mut Tile<D>) -> P {
         let &Lone { a, b, number, .. } = self;
@@ -59,7 +59,7 @@ impl Lone {
             if !tile.range.contains(&node) {
                 continue;
             }
-            // Whole packs are written, since whole packs are read soon after.
+            // Whole packs are written, because whole packs are read soon afterwards.
             let (first, lane) = ((node - tile.range.start) / WIDTH * WIDTH, node % WIDTH);
             let (until, before) = (P::first(lane + 1), P::first(lane));
             for i in 0..D {
@@ -99,7 +99,7 @@ impl Lone {
     }
 }
 
-/// A pair by itself, as a piece of work.
+/// A separate pair, as a piece of work.
 pub(super) struct Alone<'a, 'v, 't, L, const D: usize> {
     pub(super) lone: Lone,
     pub(super) law: L,

@@ -1,8 +1,8 @@
-//! Models made of pairs of nodes: springs, edges of a gas chamber.
+//! Models that consist of pairs of nodes: springs, edges of a gas chamber.
 //!
-//! Pairs are sorted into *runs*, stretches in which both ends advance by one node: a whole outline, a row of a grid.
-//! A run is evaluated once per pair, eight at a time, without any index. Pairs outside of long runs are evaluated from
-//! both of their ends, node by node (*pull*). Both add up in an order that depends neither on tiles nor on the layout.
+//! Pairs are sorted into *runs*, stretches in which both ends advance by one node: a whole outline, a row of a grid. A run is
+//! evaluated once per pair, eight at a time, without any index. Pairs outside of long runs are evaluated from both of their ends,
+//! node by node (*pull*). Both add forces in an order that depends neither on tiles nor on the layout.
 //!
 //! ```text
 //! run of 5:   a   0 1 2 3 4        pull of node 7:   partners 2, 9, 12
@@ -25,28 +25,28 @@ use pull::Pull;
 pub trait PairLaw<const D: usize>: Copy {
     /// Whether the law reads velocities.
     const DAMPED: bool;
-    /// Whether the law reads two numbers that are the same for all pairs of a body ([`PairLaw::uniform`]), and no others.
+    /// Whether the law reads two numbers that are equal for all pairs of a body ([`PairLaw::uniform`]), and no others.
     const UNIFORM: bool;
     /// The force on the second node is this times the force on the first: −1 or +1.
     const SECOND: f64;
-    /// Whether [`PairLaw::ahead`] has something to say.
+    /// Whether [`PairLaw::ahead`] computes anything.
     const AHEAD: bool;
     /// Three numbers per pair that the law reads.
     fn parameters(&self) -> [&Parameter; 3];
-    /// In place of the second and third of them, where the law is uniform: two numbers for each body.
+    /// If the law is uniform, replaces the second and third of them: two numbers for each body.
     #[inline(always)]
     fn uniform<P: Pack>(&self) -> [P; 2] {
         [P::zero(); 2]
     }
-    /// What the law needs of d = xₐ − x_b and takes the processor long, such as a division by |d|: loops ask for it some
-    /// packs before they ask for the force, so that nothing waits for it.
+    /// A result that the force needs, depends only on d = xₐ − x_b and is slow to compute, such as a division by |d|. Loops
+    /// request it some packs before the force, so that nothing waits for it.
     fn ahead<S: Lane>(&self, d: [S; D]) -> S;
-    /// Force on the first node [N] and dissipated power [W] of pairs, from d = xₐ − x_b, its rate, and what
-    /// [`PairLaw::ahead`] said of d.
+    /// The force on the first node [N] and the dissipated power [W] of pairs, from d = xₐ − x_b, its rate, and the result of
+    /// [`PairLaw::ahead`] for d.
     fn force<S: Lane>(&self, parameters: [S; 3], d: [S; D], rate: [S; D], ahead: S) -> ([S; D], S);
 }
 
-/// A function of a pair that is added up over all pairs.
+/// A function of a pair that is summed over all pairs.
 pub trait PairTerm<P: Pack, const D: usize>: Copy {
     /// Three numbers per pair that the function reads.
     fn parameters(&self) -> [&Parameter; 3];
@@ -68,11 +68,11 @@ struct Run {
 pub struct PairTable {
     layout: Layout,
     runs: Vec<Run>,
-    /// The runs that touch each tile of the plan, one tile after the other, and where those of each tile begin.
+    /// The runs that touch each tile of the plan, one tile after the other, and the start of each list.
     tile_runs: Vec<u32>,
     tile_start: Vec<u32>,
     pull: Option<Pull>,
-    /// Pairs, and one more without effect if some are pulled.
+    /// The number of pairs, plus one without effect if some are pulled.
     count: usize,
     pairs: Vec<[u32; 2]>,
 }
@@ -81,8 +81,8 @@ pub struct PairTable {
 const SHORTEST_RUN: u32 = 24;
 
 impl PairTable {
-    /// Sorts pairs of `nodes` nodes into runs; the shorter ones are pulled where `antisymmetric` says that the law changes sign
-    /// with its argument.
+    /// Sorts pairs of `nodes` nodes into runs. The shorter runs are pulled if `antisymmetric` says that the law changes sign with
+    /// its argument.
     pub fn new(layout: Layout, nodes: usize, pairs: &[[u32; 2]], antisymmetric: bool) -> PairTable {
         let mut runs: Vec<Run> = Vec::new();
         for (k, &[a, b]) in pairs.iter().enumerate() {
@@ -91,7 +91,7 @@ impl PairTable {
                 _ => runs.push(Run { a, b, first: k as u32, count: 1 }),
             }
         }
-        // A few short runs are cheaper as runs than a table for every node.
+        // A few short runs are cheaper than a table for every node.
         let short: u32 = runs.iter().filter(|r| r.count < SHORTEST_RUN).map(|r| r.count).sum();
         let pulled = antisymmetric && short as usize * 2 > pairs.len() && nodes > 16;
         let mut pull = None;
@@ -149,7 +149,7 @@ impl PairTable {
         }
     }
 
-    /// How many pairs need parameters: all, and one without effect if some are pulled.
+    /// The number of pairs that need parameters: all, plus one without effect if some are pulled.
     pub fn parameter_count(&self) -> usize {
         self.count
     }
@@ -166,14 +166,14 @@ impl PairTable {
             + self.pairs.capacity() * 8
     }
 
-    /// Where the runs of a tile begin.
+    /// The start of the runs of a tile.
     #[inline]
     fn runs_from(&self, tile: usize) -> usize {
         self.tile_start[tile.min(self.tile_start.len() - 1)] as usize
     }
 }
 
-/// The runs that touch each tile, one tile after the other, and where those of each tile begin.
+/// The runs that touch each tile, one tile after the other, and the start of each list.
 fn runs_by_tile(layout: Layout, nodes: usize, runs: &[Run]) -> (Vec<u32>, Vec<u32>) {
     let stride = layout.stride();
     let mut lists = vec![Vec::new(); layout.index_count(nodes).div_ceil(TILE)];
@@ -202,7 +202,7 @@ fn within(from: usize, length: usize, start: usize, end: usize) -> Range<usize> 
     low..high.max(low)
 }
 
-/// Where the slot lies that an index of a run's first (second) nodes receives.
+/// The slot that an index of the first (second) nodes of a run receives.
 #[inline(always)]
 fn slot_of(index: usize, node: usize, start: usize) -> usize {
     WIDTH + index - node - start

@@ -1,4 +1,4 @@
-//! The numbers of pairs, as laws and sums read them: eight at a time.
+//! The parameters of pairs, as laws and sums read them: eight at a time.
 
 use super::PairLaw;
 use crate::state::{At, Parameter};

@@ -29,24 +29,24 @@ impl<L: PairLaw<D>, const D: usize> Work for Gather<'_, '_, '_, L, D> {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Pull {
     pub(super) width: usize,
-    /// The most partners that a node of each pack of nodes has: the slots behind them are empty.
+    /// The largest number of partners of a node in each pack of nodes; later slots are empty.
     pub(super) widths: Vec<u32>,
-    /// `[node / 8][slot][node % 8]`: the partner, or the node itself where there is none.
+    /// `[node / 8][slot][node % 8]`: the partner, or the node itself if there is none.
     pub(super) partner: Vec<u32>,
-    /// The number of the pair, or that of a pair without effect.
+    /// The number of the pair, or that of the pair without effect.
     pub(super) pair: Vec<u32>,
-    /// `[node / 8][slot]`: whether the eight partners, and the eight pairs, follow each other: then they are read at once.
+    /// `[node / 8][slot]`: whether the eight partners, and the eight pairs, are consecutive, so that they are read at once.
     pub(super) together: Vec<bool>,
     /// The pulled pairs by number, padded to packs with the pair without effect, and their two ends.
     pub(super) loose: Vec<u32>,
     pub(super) ends: [Vec<u32>; 2],
 }
 
-/// Partners of a node that are looked at together.
+/// The number of partners of a node that are processed together.
 const AT_ONCE: usize = 6;
 
 impl Pull {
-    /// The slots that are not empty for eight indices.
+    /// The number of slots that are not empty for eight indices.
     #[inline(always)]
     fn used(&self, layout: Layout, index: usize) -> usize {
         let pack = index / WIDTH;
@@ -104,7 +104,7 @@ impl PairTable {
             let width = pull.used(self.layout, index);
             for from in (0..width).step_by(AT_ONCE) {
                 let slots = from..(from + AT_ONCE).min(width);
-                // First what takes long, for all partners; meanwhile the rest of the first ones is worked out.
+                // First the slow part for all partners; the rest of the first ones is computed meanwhile.
                 let (mut d, mut ahead) = ([[P::zero(); D]; AT_ONCE], [P::zero(); AT_ONCE]);
                 for slot in slots.clone() {
                     let (partner, _) = pull.slot(self.layout, index, slot);

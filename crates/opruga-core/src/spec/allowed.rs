@@ -1,15 +1,15 @@
-//! What values are allowed, and why others are refused, as messages.
+//! Allowed values, and refusals of others, as messages.
 
 use super::{Allowed, Bound};
 use opruga_math::messages;
 
-/// The hint that names the nearest word; empty where there is none.
+/// The hint with the nearest name; empty if there is none.
 fn did_you_mean(word: &Option<String>) -> String {
     word.as_ref().map_or_else(String::new, |word| format!("did you mean `{word}`?"))
 }
 
 messages! {
-    /// What values a field may take, in words.
+    /// The values that a field may take, in words.
     #[derive(Clone, Debug, PartialEq)]
     pub enum AllowedValues {
         "part.allowed" #[error("a finite number")]
@@ -47,7 +47,7 @@ messages! {
     /// Why a value was refused.
     #[derive(Clone, Debug, PartialEq)]
     pub enum ValueError {
-        /// There is no field of that name.
+        /// There is no field with that name.
         "scene.unknown_field" #[error("there is no field `{name}`")] #[hint("{}", did_you_mean(nearest))]
         UnknownField { name: String, nearest: Option<String> },
         /// The value is outside of its range or of another type.
@@ -55,7 +55,7 @@ messages! {
         NotAllowed { name: String, value: String, allowed: AllowedValues },
     }
 
-    /// Why fields of which exactly one is given were refused.
+    /// Why fields of which exactly one must be given were refused.
     #[derive(Clone, Debug, PartialEq)]
     pub enum ChoiceError {
         "model.one_of" #[error("exactly one of {fields} must be given")]
@@ -73,7 +73,7 @@ pub fn quoted(fields: &[&str]) -> String {
 }
 
 impl Allowed {
-    /// What is allowed, in words.
+    /// The allowed values, in words.
     pub fn describe(&self, dimension: usize) -> AllowedValues {
         match self {
             Allowed::Number { least, greatest } => {

@@ -1,11 +1,11 @@
-//! Where a parameter has a say.
+//! Conditions under which a parameter has an effect.
 
 use super::{Field, Value, Values};
 use opruga_math::message::AnyMessage;
 use opruga_math::messages;
 
 messages! {
-    /// Words of which one holds.
+    /// Words of which one must hold.
     #[derive(Clone, Debug, PartialEq)]
     pub enum Alternatives {
         "part.alternatives" #[error("{word}")]
@@ -14,7 +14,7 @@ messages! {
         Either { word: String, rest: AnyMessage },
     }
 
-    /// What must hold for a parameter to have a say, in words.
+    /// A condition under which a parameter has an effect, in words.
     #[derive(Clone, Debug, PartialEq)]
     pub enum ConditionText {
         "part.condition" #[error("in {dimension}D")]
@@ -32,25 +32,25 @@ messages! {
     }
 }
 
-/// What must hold for a parameter to have a say.
+/// A condition under which a parameter has an effect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Condition {
-    /// The scene has so many dimensions.
+    /// The scene has this many dimensions.
     Dimension(usize),
     /// Another field has one of these words.
     Word(&'static str, &'static [&'static str]),
     /// Another field is given, or true.
     Given(&'static str),
-    /// One at least of some other fields is given, or true.
+    /// At least one of some other fields is given, or true.
     GivenOneOf(&'static [&'static str]),
     /// Another field is not given, or false.
     NotGiven(&'static str),
-    /// Another field is another number than zero.
+    /// Another field is not zero.
     NotZero(&'static str),
 }
 
 impl Condition {
-    /// Whether it holds among the values of all fields.
+    /// Whether it holds for these values of all fields.
     pub fn holds(&self, values: &Values, dimension: usize) -> bool {
         let given = |name: &str| values.get(name).is_some_and(|value| *value != Value::Boolean(false));
         match *self {
@@ -73,7 +73,7 @@ fn alternatives(words: impl DoubleEndedIterator<Item = String>) -> AnyMessage {
 }
 
 impl Condition {
-    /// It in words.
+    /// The condition in words.
     pub fn text(&self) -> ConditionText {
         match *self {
             Condition::Dimension(dimension) => ConditionText::Dimension { dimension },
@@ -91,11 +91,11 @@ impl Condition {
 }
 
 impl Field {
-    /// The first condition that does not hold among the values of all fields: then the parameter has no effect.
+    /// The first condition that does not hold for these values of all fields: the parameter then has no effect.
     pub fn without_effect(&self, values: &Values, dimension: usize) -> Option<&'static Condition> {
         self.applies.iter().find(|condition| !condition.holds(values, dimension))
     }
-    /// The sentence of the parameter, and where it has a say.
+    /// The sentence of the parameter, and the conditions under which it has an effect.
     pub fn full_documentation(&self) -> String {
         if self.applies.is_empty() {
             return self.documentation.to_string();

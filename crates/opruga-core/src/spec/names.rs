@@ -1,6 +1,6 @@
-//! Names that are near to what was written.
+//! Names that are close to a given word.
 
-/// What else in the field bears a name, letters and digits only, and how it is called here.
+/// Other names of the same things in the field, as letters and digits only, and their names here.
 const OTHER_NAMES: [(&str, &str); 23] = [
     ("rk4", "runge_kutta"),
     ("rungekutta4", "runge_kutta"),
@@ -27,7 +27,8 @@ const OTHER_NAMES: [(&str, &str); 23] = [
     ("name", "title"),
 ];
 
-/// The candidate that another name in the field stands for, or that differs from a word in the fewest letters, if it is near enough to be meant.
+/// The candidate that another name in the field stands for, or that differs from a word in the fewest letters, if it is close
+/// enough to be meant.
 pub fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Option<String> {
     let candidates: Vec<&str> = candidates.collect();
     let spelt: String = word.to_lowercase().chars().filter(|c| c.is_alphanumeric()).collect();
@@ -38,17 +39,18 @@ pub fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Opt
     candidates
         .into_iter()
         .map(|c| (letters_apart(word, c), c))
-        // A word of which no letter is kept is near to nothing.
+        // A word that shares no letter is not close.
         .filter(|(distance, c)| *distance <= limit && *distance < c.chars().count())
         .min()
         .map(|(_, c)| c.to_string())
 }
 
-/// The most words that are offered for another one.
+/// The largest number of words that are offered for another one.
 const MOST_OFFERED: usize = 4;
 
-/// All candidates that may be meant by a word, the nearest first: those a few letters away as a whole or up to a part of
-/// them, as `balloon-in-a-box` is to `ballon`; of equally near ones, the one that begins like the word longer.
+/// All candidates that may be meant by a word, the closest first. They differ from it by a few letters, either as a whole or up
+/// to one of their parts, as `balloon-in-a-box` from `ballon`. Of equally close ones, the one with the longer common beginning
+/// comes first.
 pub fn close_matches<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Vec<String> {
     let candidates: Vec<&str> = candidates.collect();
     let limit = word.chars().count() / 3 + 1;

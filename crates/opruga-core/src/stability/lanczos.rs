@@ -1,14 +1,14 @@
-//! The ends of a spectrum by Lanczos' recurrence.
+//! The ends of a spectrum by the Lanczos recurrence.
 
 use super::Unstable;
 use crate::error::StepError;
 use crate::state::Columns;
 use opruga_math::{Lane, WIDTH, sum_in_fixed_order};
 
-/// The most products with K or C.
+/// The largest number of products with K or C.
 const MOST_PRODUCTS: usize = 300;
 
-/// A Ritz value counts as found when its residual is at most this part of the largest one.
+/// A Ritz value has converged if its residual is at most this fraction of the largest one.
 const TOLERANCE: f64 = 2e-3;
 
 /// The largest entry, by absolute value.
@@ -39,8 +39,8 @@ fn dot<const D: usize>(a: &Columns<D>, b: &Columns<D>) -> f64 {
 
 /// Bounds on the smallest and the largest eigenvalue of W A W, where W is diagonal and `product` adds A d to zeros.
 ///
-/// Lanczos' recurrence q ← (W A W − α) q − β q′ from a fixed start; both ends, or only the upper one, are followed until
-/// their residuals are small against the larger of them and `reference`.
+/// The Lanczos recurrence q ← (W A W − α) q − β q′ from a fixed start. Both ends, or only the upper one, are followed until their
+/// residuals are small compared with the larger of them and `reference`.
 pub(super) fn extremes<const D: usize>(
     weights: &Columns<D>,
     both: bool,
@@ -62,7 +62,7 @@ pub(super) fn extremes<const D: usize>(
             r.0[i].fill(0.0);
         }
         product(&d, &mut r)?;
-        // What the product has in the direction of the last two vectors is the new row of the tridiagonal matrix.
+        // The components of the product along the last two vectors are the new row of the tridiagonal matrix.
         let beta = matrix.beta.last().copied().unwrap_or(0.0);
         for i in 0..D {
             for ((r, w), before) in r.0[i].iter_mut().zip(&weights.0[i]).zip(&before.0[i]) {
@@ -88,7 +88,7 @@ pub(super) fn extremes<const D: usize>(
         for (end, value) in [low, high].into_iter().enumerate() {
             let residual = matrix.residual(value);
             if found[end].is_none() && (last || residual <= TOLERANCE * scale.larger(reference)) {
-                // Where everything is exhausted the values are exact.
+                // If the space is exhausted, the values are exact.
                 let rest = if beta <= 1e-12 * scale || iteration == freedom { 0.0 } else { residual };
                 found[end] = Some(if end == 0 { value - rest } else { value + rest });
             }
@@ -128,7 +128,7 @@ fn start<const D: usize>(weights: &Columns<D>) -> Columns<D> {
     out
 }
 
-/// A symmetric tridiagonal matrix: its diagonal, and what lies beside it (one entry more: the next one).
+/// A symmetric tridiagonal matrix: its diagonal and its off-diagonal (with one additional entry: the next one).
 #[derive(Default)]
 struct Tridiagonal {
     alpha: Vec<f64>,
@@ -148,7 +148,7 @@ impl Tridiagonal {
         }
         [self.bisect(low, high, 1), self.bisect(low, high, n)]
     }
-    /// The value below which `count` eigenvalues begin to lie.
+    /// The value below which there are `count` eigenvalues.
     fn bisect(&self, mut low: f64, mut high: f64, count: usize) -> f64 {
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
@@ -160,7 +160,7 @@ impl Tridiagonal {
         }
         0.5 * (low + high)
     }
-    /// How many eigenvalues lie below a value (Sturm's sequence).
+    /// The number of eigenvalues below a value (Sturm sequence).
     fn below(&self, value: f64) -> usize {
         let mut count = 0;
         let mut pivot = 1.0;
@@ -172,7 +172,7 @@ impl Tridiagonal {
         }
         count
     }
-    /// How far the eigenvalue is from one of the whole matrix, at most: next β times the last entry of its unit vector.
+    /// The largest distance of the eigenvalue from one of the whole matrix: next β times the last entry of its unit vector.
     fn residual(&self, value: f64) -> f64 {
         let n = self.alpha.len();
         let (mut before, mut entry, mut square) = (0.0, 1.0, 1.0);

@@ -1,4 +1,4 @@
-//! The recurrence against known spectra; how steps of real integrators compare with their true limits is tested beside
+//! The recurrence, compared with known spectra. The steps of real integrators are compared with their true limits in the crate of
 //! the integrators.
 
 use super::*;
@@ -76,7 +76,7 @@ fn anchored(
 }
 
 fn close(computed: f64, exact: f64) {
-    // Not below the truth but for rounding, and not much above it.
+    // Not below the exact value except for rounding, and not much above it.
     assert!(computed >= 0.999_999 * exact && computed <= 1.005 * exact, "{computed} {exact}");
 }
 
@@ -143,7 +143,7 @@ fn limits_of_symplectic_euler() {
     assert!((limit(0.0, 10.0) - 0.2).abs() < 1e-9);
     assert!((limit(1e-6, 10.0) - 0.2).abs() < 1e-6);
     assert!((limit(10.0, 1e-7) - 0.2).abs() < 1e-6);
-    // The worst corner is that of the fastest oscillation and the strongest damping, whatever lies between.
+    // The worst corner is that of the fastest oscillation and the strongest damping, whatever is between.
     let proportional = Spectrum { omega: 80.0, damping: 160.0, least_damping: 0.0, offset: [0.0, 0.0] };
     assert!((proportional.largest_stable_step(&SYMPLECTIC).unwrap() - limit(80.0, 160.0)).abs() < 1e-12);
 }
@@ -152,13 +152,13 @@ fn limits_of_symplectic_euler() {
 fn limits_of_explicit_euler() {
     let limit = |omega, least, most| rectangle(omega, [least, most]).largest_stable_step(&EXPLICIT);
     assert_eq!(limit(80.0, 0.0, 0.0), None);
-    // Where one mode may be undamped there is no stable step, however strong the damping of others.
+    // If one mode may be undamped there is no stable step, however strong the damping of others.
     assert_eq!(limit(80.0, 0.0, 160.0), None);
-    // All damped alike: h = c/ω².
+    // Equal damping of all modes: h = c/ω².
     let h = limit(80.0, 1.0, 1.0).unwrap();
     assert!((h * 6400.0 - 1.0).abs() < 1e-4, "{h}");
     assert!((limit(0.0, 4.0, 4.0).unwrap() - 0.5).abs() < 1e-9);
-    // Damping in proportion to stiffness, c = ω²/160: h = 1/160 for every mode.
+    // Stiffness-proportional damping, c = ω²/160: h = 1/160 for every mode.
     let proportional = Spectrum { omega: 80.0, damping: 40.0, least_damping: 0.0, offset: [0.0, 0.0] };
     let h = proportional.largest_stable_step(&EXPLICIT).unwrap();
     assert!((h * 160.0 - 1.0).abs() < 1e-4, "{h}");
@@ -183,7 +183,7 @@ fn the_polygon_is_narrow_where_damping_follows_stiffness() {
         spectrum.offset[0].abs() < 0.05 * spectrum.damping && spectrum.offset[1].abs() < 0.05 * spectrum.damping,
         "{spectrum:?}"
     );
-    // Against the stiffness: the loosest spring has the strongest damper.
+    // Opposite to the stiffness: the softest spring has the strongest damper.
     let opposes =
         anchored(Layout::Single, 200, 1, 1.0, stiffness.clone(), stiffness.iter().map(|k| 0.1 * (219.0 - k)).collect());
     let spectrum = Spectrum::of(&opposes).unwrap();

@@ -1,9 +1,9 @@
-//! Matrices of stencils made positive semidefinite, eight at a time.
+//! Removes negative eigenvalues from matrices of stencils, eight at a time.
 
 use super::kernel::Blocks;
 use opruga_math::{Lane, Pack, Register, Simd, WIDTH, Work, symmetric};
 
-/// The rows of most stencils' Hessians, and the most rows: of a hexahedron.
+/// The number of rows of the Hessians of most stencils, and the largest number, that of a hexahedron.
 const ROWS: [usize; 2] = [12, 24];
 
 /// Removes the negative eigenvalues of symmetric block matrices, eight side by side.
@@ -12,7 +12,7 @@ pub fn clamp<const D: usize, const N: usize>(matrices: &mut [Blocks<D, N>]) {
     if N * D <= ROWS[0] { clamp_in::<D, N, { ROWS[0] }>(matrices) } else { clamp_in::<D, N, { ROWS[1] }>(matrices) }
 }
 
-/// The same in squares of so many rows; rows that are not in use are zero and stay so.
+/// The same in squares with M rows; unused rows are zero and stay so.
 fn clamp_in<const D: usize, const N: usize, const M: usize>(matrices: &mut [Blocks<D, N>]) {
     let mut square = [[[0.0; WIDTH]; M]; M];
     for some in matrices.chunks_mut(WIDTH) {
@@ -65,7 +65,7 @@ impl<const M: usize> Work for PositivePart<'_, M> {
 mod tests {
     use super::*;
 
-    /// The clamped matrix of diag(2, −3) turned by 30° is 2 n nᵀ.
+    /// The clamped matrix of diag(2, −3) rotated by 30° is 2 n nᵀ.
     #[test]
     fn clamp_drops_the_negative_eigenvalue() {
         let (c, s) = (0.75f64.sqrt(), 0.5);

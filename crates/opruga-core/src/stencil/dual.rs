@@ -5,7 +5,7 @@ use opruga_math::Lane;
 
 /// A number and its derivative with respect to one variable (forward differentiation).
 ///
-/// Comparisons look at the value alone; where a formula selects one of two branches, so does its derivative.
+/// Comparisons use only the value; if a formula selects one of two branches, so does its derivative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dual<S> {
     /// The value.

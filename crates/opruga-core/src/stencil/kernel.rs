@@ -1,4 +1,4 @@
-//! The law of one stencil: energy and gradient over lanes, and what follows from them.
+//! The law of one stencil: energy and gradient over lanes, and their derivatives.
 
 use super::dual::Dual;
 use core::fmt::Debug;
@@ -9,21 +9,21 @@ pub type Blocks<const D: usize, const N: usize> = [[[[f64; D]; D]; N]; N];
 
 /// The law of one stencil of N nodes in D dimensions with K parameters.
 ///
-/// Formulas are straight code over [`Lane`], without closures and without branches on values ([`Lane::select`]); methods
-/// should be `#[inline(always)]`, so that they become vector code inside of the loops here.
+/// Formulas are straight-line code over [`Lane`], without closures and without branches on values ([`Lane::select`]). Methods
+/// should be `#[inline(always)]`, so that they become vector code in the loops here.
 pub trait Kernel<const D: usize, const N: usize, const K: usize>: Copy + Debug + Send + Sync + 'static {
-    /// The word that names the model.
+    /// The name of the model.
     const NAME: &'static str;
     /// The energy U [J].
     fn energy<S: Lane>(parameters: &[S; K], x: &[[S; D]; N]) -> S;
     /// ∂U/∂x of every node [N].
     fn gradient<S: Lane>(parameters: &[S; K], x: &[[S; D]; N]) -> [[S; D]; N];
-    /// The force of damping on every node [N] and the power that it takes [W]; asked only where the model is damped.
+    /// The damping force on every node [N] and the power that it dissipates [W]; evaluated only if the model is damped.
     #[inline(always)]
     fn damping<S: Lane>(_parameters: &[S; K], _x: &[[S; D]; N], _v: &[[S; D]; N]) -> ([[S; D]; N], S) {
         ([[S::zero(); D]; N], S::zero())
     }
-    /// −∂F/∂v of the force of damping; as it stands, its exact derivative by dual numbers.
+    /// −∂F/∂v of the damping force; by default its exact derivative by dual numbers.
     fn damping_matrix(parameters: &[f64; K], x: &[[f64; D]; N]) -> Blocks<D, N> {
         let constants = parameters.map(Dual::constant);
         let x = x.map(|node| node.map(Dual::constant));
@@ -43,7 +43,7 @@ pub trait Kernel<const D: usize, const N: usize, const K: usize>: Copy + Debug +
         }
         out
     }
-    /// ∂²U/∂x∂x; as it stands, the exact derivative of [`Kernel::gradient`] by dual numbers.
+    /// ∂²U/∂x∂x; by default the exact derivative of [`Kernel::gradient`] by dual numbers.
     fn hessian(parameters: &[f64; K], x: &[[f64; D]; N]) -> Blocks<D, N> {
         let constants = parameters.map(Dual::constant);
         let mut at = x.map(|node| node.map(Dual::constant));
