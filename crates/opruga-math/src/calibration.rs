@@ -1,12 +1,12 @@
-//! Loops that show what the machine can do, to be timed beside those that are to be judged. They are compiled here, as kernels
-//! are, whatever program calls them.
+//! Loops that measure the speed of the machine, for comparison with other loops. They are compiled here, like kernels, whatever
+//! program calls them.
 
 use crate::{Pack, Simd, WIDTH, Work};
 
 const ROUNDS: usize = 4096;
 const CHAINS: usize = 12;
 
-/// Products and sums in registers, not fused, in twelve chains that do not wait for one another; their number.
+/// Products and sums in registers, not fused, in twelve independent chains; returns their number.
 #[inline(never)]
 pub fn products_and_sums(simd: Simd, out: &mut [f64; WIDTH]) -> usize {
     struct Chains<'a>(&'a mut [f64]);
@@ -15,7 +15,7 @@ pub fn products_and_sums(simd: Simd, out: &mut [f64; WIDTH]) -> usize {
         #[inline(always)]
         fn run<P: Pack>(self) {
             let (factor, term) = (P::splat(0.999_999), P::splat(1e-6));
-            // Numbers that are not known before: else the compiler knows the end.
+            // The numbers are loaded at run time; otherwise the compiler would know the result.
             let mut chains = [P::load(&*self.0); CHAINS];
             for k in 0..CHAINS {
                 chains[k] += P::splat(k as f64);
@@ -36,7 +36,7 @@ pub fn products_and_sums(simd: Simd, out: &mut [f64; WIDTH]) -> usize {
     2 * ROUNDS * CHAINS * WIDTH
 }
 
-/// a = b + c/2 over arrays of one length, a multiple of the width; the number of bytes that are read and written.
+/// a = b + c/2 over arrays of equal length, a multiple of the width; returns the number of bytes that are read and written.
 #[inline(never)]
 pub fn triad(simd: Simd, a: &mut [f64], b: &[f64], c: &[f64]) -> usize {
     struct Triad<'a>(&'a mut [f64], &'a [f64], &'a [f64]);
@@ -54,7 +54,7 @@ pub fn triad(simd: Simd, a: &mut [f64], b: &[f64], c: &[f64]) -> usize {
     bytes
 }
 
-/// Takes the inverse of the root of every number, as many as a multiple of the width; the number of packs.
+/// Replaces every number by the inverse of its root; their number is a multiple of the width. Returns the number of packs.
 #[inline(never)]
 pub fn inverse_roots(simd: Simd, numbers: &mut [f64]) -> usize {
     struct Roots<'a>(&'a mut [f64]);

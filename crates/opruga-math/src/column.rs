@@ -1,17 +1,17 @@
-//! A column of numbers that begins on a cache line, so that no pack of it lies across two.
+//! A column of numbers that begins on a cache line, so that no pack of it crosses the border of a cache line.
 
 use aligned_vec::{AVec, ConstAlign};
 use core::ops::{Deref, DerefMut};
 
-/// Bytes of a cache line.
+/// The size of a cache line [bytes].
 const LINE: usize = 64;
 
-/// Numbers side by side, the first at the beginning of a cache line.
+/// Consecutive numbers, the first at the start of a cache line.
 #[derive(Clone, PartialEq)]
 pub struct Column(AVec<f64, ConstAlign<LINE>>);
 
 impl Column {
-    /// So many zeros.
+    /// A column of `length` zeros.
     pub fn zeros(length: usize) -> Column {
         let mut numbers = AVec::with_capacity(LINE, length);
         numbers.resize(length, 0.0);
@@ -21,7 +21,7 @@ impl Column {
     pub fn heap_bytes(&self) -> usize {
         self.0.capacity() * size_of::<f64>()
     }
-    /// Makes room: zeros behind the last number if there are fewer than `length`.
+    /// Appends zeros if there are fewer than `length` numbers.
     pub fn grow(&mut self, length: usize) {
         if self.0.len() < length {
             self.0.resize(length, 0.0);

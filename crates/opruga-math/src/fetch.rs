@@ -1,14 +1,14 @@
-//! Numbers brought nearer before they are read.
+//! Prefetching of numbers before they are read.
 #![allow(unsafe_code)]
 
 use core::ops::Range;
 
-/// Bytes of a line of the cache.
+/// The size of a cache line [bytes].
 #[cfg(target_arch = "x86_64")]
 const LINE: usize = 64;
 
-/// Asks the processor to bring a part of a list into its first-level cache, where what reads the list does so too seldom for the processor
-/// to see it coming. What lies beyond the end is left out; processors that cannot be asked are not.
+/// Asks the processor to bring a part of a list into its first-level cache, for lists that are read too seldom for the processor
+/// to predict it. The part beyond the end of the list is ignored; on processors without such an instruction nothing happens.
 #[inline(always)]
 pub fn fetch_early<T>(list: &[T], part: Range<usize>) {
     #[cfg(target_arch = "x86_64")]
@@ -16,7 +16,7 @@ pub fn fetch_early<T>(list: &[T], part: Range<usize>) {
         use core::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
         let end = part.end.min(list.len());
         for place in (part.start..end).step_by((LINE / size_of::<T>().clamp(1, LINE)).max(1)) {
-            // SAFETY: every x86-64 has the instruction, the address lies within the list, and nothing is read.
+            // SAFETY: every x86-64 has the instruction, the address is within the list, and nothing is read.
             unsafe { _mm_prefetch::<_MM_HINT_T0>(list.as_ptr().add(place).cast()) };
         }
     }

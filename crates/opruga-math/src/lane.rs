@@ -2,16 +2,16 @@
 
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-/// How many numbers the wide lane holds, on every machine.
+/// The number of values in the wide lane, on every machine.
 ///
-/// The width is *virtual*: a processor with narrower registers takes several instructions per
-/// operation. Sums are therefore split the same way everywhere, which is what makes their bits equal.
+/// The width is *virtual*: a processor with narrower registers takes several instructions per operation. Sums are therefore split
+/// the same way everywhere, which makes their bits equal.
 pub const WIDTH: usize = 8;
 
 /// `f64`, or eight of them: one formula serves the scalar reference and the vector path.
 ///
-/// Branches are written as [`Lane::select`], so that both sides are always evaluated and the
-/// operations (and with them the bits) do not depend on the width.
+/// Branches are written as [`Lane::select`], so that both sides are always evaluated, and the operations (and so the bits) do not
+/// depend on the width.
 pub trait Lane:
     Copy
     + Send
@@ -25,46 +25,46 @@ pub trait Lane:
     + AddAssign
     + SubAssign
 {
-    /// The outcome of a comparison, one truth value per number.
+    /// The result of a comparison, one truth value per number.
     type Mask: Copy;
 
-    /// The same number in every place.
+    /// The same number in every lane.
     fn splat(value: f64) -> Self;
     /// Square root, correctly rounded.
     fn sqrt(self) -> Self;
     /// Absolute value.
     fn abs(self) -> Self;
-    /// Where `self < other`.
+    /// True where `self < other`.
     fn less(self, other: Self) -> Self::Mask;
-    /// Where `self <= other`.
+    /// True where `self <= other`.
     fn less_or_equal(self, other: Self) -> Self::Mask;
-    /// `yes` where the mask holds, else `no`.
+    /// `yes` where the mask is true, otherwise `no`.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
-    /// Where both masks hold.
+    /// True where both masks are true.
     fn both(a: Self::Mask, b: Self::Mask) -> Self::Mask;
-    /// Whether the mask holds anywhere.
+    /// Whether the mask is true anywhere.
     fn any(mask: Self::Mask) -> bool;
     /// Natural logarithm (own series, the same bits everywhere); the argument must be positive and normal.
     fn ln(self) -> Self;
     /// Exponential function (own series, the same bits everywhere).
     fn exp(self) -> Self;
 
-    /// The lesser of the two; `other` where `self` is not a number.
+    /// The smaller of the two; `other` where `self` is NaN.
     #[inline(always)]
     fn smaller(self, other: Self) -> Self {
         Self::select(self.less(other), self, other)
     }
-    /// The greater of the two; `other` where `self` is not a number.
+    /// The larger of the two; `other` where `self` is NaN.
     #[inline(always)]
     fn larger(self, other: Self) -> Self {
         Self::select(other.less(self), self, other)
     }
-    /// Zero in every place.
+    /// Zero in every lane.
     #[inline(always)]
     fn zero() -> Self {
         Self::splat(0.0)
     }
-    /// One in every place.
+    /// One in every lane.
     #[inline(always)]
     fn one() -> Self {
         Self::splat(1.0)
@@ -115,31 +115,31 @@ impl Lane for f64 {
     }
 }
 
-/// Numbers of a row: what [`Register::gather_rows`] reads at each place.
+/// The number of values in a row, which [`Register::gather_rows`] reads for each lane.
 pub const ROW: usize = 4;
 
-/// As many numbers as the processor computes at once: a piece of a [`Pack`].
+/// As many numbers as the processor computes at once: a part of a [`Pack`].
 ///
 /// A formula that needs more values at a time than there are registers is faster register by register than pack by pack.
 pub trait Register: Lane {
-    /// How many numbers.
+    /// How many numbers it holds.
     const NUMBERS: usize;
     /// Reads the numbers.
     ///
     /// # Safety
-    /// So many numbers must lie there.
+    /// `from` must point to that many numbers.
     #[allow(unsafe_code)]
     unsafe fn read(from: *const f64) -> Self;
     /// Writes the numbers.
     ///
     /// # Safety
-    /// There must be room for so many numbers.
+    /// There must be space for that many numbers.
     #[allow(unsafe_code)]
     unsafe fn write(self, to: *mut f64);
     /// Reads the numbers from the start of a slice.
     #[inline(always)]
     fn load(from: &[f64]) -> Self {
-        // SAFETY: the slice holds so many numbers.
+        // SAFETY: the slice holds that many numbers.
         #[allow(unsafe_code)]
         unsafe {
             Self::read(from[..Self::NUMBERS].as_ptr())
@@ -148,35 +148,35 @@ pub trait Register: Lane {
     /// Writes the numbers to the start of a slice.
     #[inline(always)]
     fn store(self, to: &mut [f64]) {
-        // SAFETY: the slice has room for so many numbers.
+        // SAFETY: the slice has space for that many numbers.
         #[allow(unsafe_code)]
         unsafe {
             self.write(to[..Self::NUMBERS].as_mut_ptr());
         }
     }
-    /// Reads numbers of single precision from the start of a slice.
+    /// Reads single-precision numbers from the start of a slice.
     fn load_single(from: &[f32]) -> Self;
-    /// Reads the numbers from so many indices of a slice.
+    /// Reads the numbers at the given indices of a slice.
     fn gather(from: &[f64], indices: &[u32]) -> Self;
-    /// Reads so many rows of [`ROW`] numbers; the first register has the first numbers of all rows.
+    /// Reads rows of [`ROW`] numbers, one for each lane; the first register has the first numbers of all rows.
     ///
-    /// Four times faster than gathering column by column, where positions are copied to rows first.
+    /// If positions have been copied to rows first, this is four times faster than gathering column by column.
     fn gather_rows(from: &[f64], rows: &[u32]) -> [Self; ROW];
-    /// Writes rows of [`ROW`] numbers one after the other; the first register has the first numbers of all rows.
+    /// Writes consecutive rows of [`ROW`] numbers; the first register has the first numbers of all rows.
     fn store_rows(columns: [Self; ROW], to: &mut [f64]);
-    /// The numbers moved up by one place, the last number of the register before them first.
+    /// The numbers shifted up by one lane, with the last number of the previous register in the first lane.
     fn after(self, before: Self) -> Self;
-    /// Where the place in the register is less than `count`.
+    /// True where the index of the lane is less than `count`.
     fn first(count: usize) -> Self::Mask;
 }
 
 /// Eight numbers computed side by side: a [`Lane`] that can be read from and written to columns of memory.
 ///
-/// The types behind it belong to one set of vector instructions each and are made by [`crate::Simd::run`] alone.
+/// Each type that implements it belongs to one set of vector instructions, and only [`crate::Simd::run`] creates its values.
 pub trait Pack: Lane {
-    /// What the processor computes at once.
+    /// The part that the processor computes at once.
     type Part: Register;
-    /// How many of them make eight numbers.
+    /// How many parts make eight numbers.
     const PARTS: usize;
     /// One of the parts.
     fn part(self, number: usize) -> Self::Part;
@@ -189,24 +189,24 @@ pub trait Pack: Lane {
     /// Reads eight numbers.
     ///
     /// # Safety
-    /// Eight numbers must lie there.
+    /// `from` must point to eight numbers.
     #[allow(unsafe_code)]
     unsafe fn read(from: *const f64) -> Self;
     /// Writes eight numbers.
     ///
     /// # Safety
-    /// There must be room for eight numbers.
+    /// There must be space for eight numbers.
     #[allow(unsafe_code)]
     unsafe fn write(self, to: *mut f64);
-    /// Reads eight numbers from eight indices of a slice.
+    /// Reads the numbers at eight indices of a slice.
     fn gather(from: &[f64], indices: &[u32]) -> Self;
     /// The eight numbers in order.
     fn to_array(self) -> [f64; WIDTH];
     /// Eight numbers in order.
     fn from_array(numbers: [f64; WIDTH]) -> Self;
-    /// The numbers moved up by one place, the last number of `previous` first.
+    /// The numbers shifted up by one lane, with the last number of `previous` in the first lane.
     fn after(self, previous: Self) -> Self;
-    /// Where the place is less than `count`.
+    /// True where the index of the lane is less than `count`.
     fn first(count: usize) -> Self::Mask;
     /// The sum of the eight numbers in one fixed order: ((0+4)+(2+6)) + ((1+5)+(3+7)).
     #[inline(always)]
@@ -221,10 +221,10 @@ pub fn sum_in_fixed_order(a: &[f64; WIDTH]) -> f64 {
     ((a[0] + a[4]) + (a[2] + a[6])) + ((a[1] + a[5]) + (a[3] + a[7]))
 }
 
-/// An array of lanes, each from its number: `lanes!(P, d => expression)`.
+/// An array of lanes, each computed from its index: `lanes!(P, d => expression)`.
 ///
-/// A macro and not a function with a closure: closures are not inlined into code for vector instructions reliably,
-/// and what is not inlined costs ten times the time.
+/// This is a macro and not a function with a closure, because closures are not inlined reliably into code for vector
+/// instructions, and code that is not inlined takes ten times as long.
 #[macro_export]
 macro_rules! lanes {
     ($type:ty, $number:ident => $value:expr) => {{

@@ -1,4 +1,4 @@
-//! Numbers of Opruga: one formula over `f64` or eight of them, the same bits with every set of vector instructions.
+//! Numbers of Opruga: one formula over `f64` or eight of them, with the same bits for every set of vector instructions.
 
 pub mod calibration;
 mod column;

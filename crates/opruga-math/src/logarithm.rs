@@ -2,7 +2,7 @@
 
 use crate::lane::Lane;
 
-/// ln 2 in two parts: the first is exact times any exponent.
+/// ln 2 in two parts: the product of the first part and any exponent is exact.
 const LN_2: [f64; 2] = [6.931_471_803_691_238e-1, 1.908_214_929_270_587_7e-10];
 
 /// Coefficients of (ln(1 + f) − f + f²/2 − …) in s = f/(2 + f) (fdlibm, `e_log.c`).
@@ -16,7 +16,7 @@ const LOGARITHM: [f64; 7] = [
     1.479_819_860_511_658_6e-1,
 ];
 
-/// ln(m 2ᵏ) for √½ ≤ m < √2: the operations of `libm::log` in its order, so that lanes have its bits.
+/// ln(m 2ᵏ) for √½ ≤ m < √2, with the operations of `libm::log` in the same order, so that lanes have the same bits.
 #[inline(always)]
 pub(crate) fn logarithm_of_parts<S: Lane>(mantissa: S, exponent: S) -> S {
     let c = |k: usize| S::splat(LOGARITHM[k]);
@@ -25,7 +25,7 @@ pub(crate) fn logarithm_of_parts<S: Lane>(mantissa: S, exponent: S) -> S {
     let s = f / (S::splat(2.0) + f);
     let z = s * s;
     let w = z * z;
-    // Two halves of the series, with the names of fdlibm.
+    // The two halves of the series, with the names of fdlibm.
     let t1 = w * (c(1) + w * (c(3) + w * c(5)));
     let t2 = z * (c(0) + w * (c(2) + w * (c(4) + w * c(6))));
     let r = t2 + t1;

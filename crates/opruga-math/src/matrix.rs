@@ -1,4 +1,4 @@
-//! Small square matrices over lanes: what the mechanics of a point needs.
+//! Small square matrices over lanes, for the mechanics at a point.
 //!
 //! `[i][j]` is row i, column j. Everything is written for D = 2 and D = 3 and inlined into vector code.
 
@@ -7,7 +7,7 @@ use crate::lane::Lane;
 /// A square matrix, `[row][column]`.
 pub type Matrix<S, const D: usize> = [[S; D]; D];
 
-/// Zero in every entry.
+/// Zeros in every entry.
 #[inline(always)]
 pub fn zeros<S: Lane, const D: usize>() -> Matrix<S, D> {
     [[S::zero(); D]; D]
@@ -117,7 +117,7 @@ pub fn trace<S: Lane, const D: usize>(a: &Matrix<S, D>) -> S {
     sum
 }
 
-/// The cofactors of A: ∂(det A)/∂A, which is det A · A⁻ᵀ where that exists.
+/// The cofactors of A: ∂(det A)/∂A, which is det A · A⁻ᵀ if that exists.
 #[inline(always)]
 pub fn cofactor<S: Lane, const D: usize>(a: &Matrix<S, D>) -> Matrix<S, D> {
     const { assert!(D == 2 || D == 3) }

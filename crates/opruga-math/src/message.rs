@@ -1,7 +1,7 @@
-//! Errors and warnings as values: a stable code, fields with names, and the English text beside the code.
+//! Errors and warnings as values: a stable code, named fields, and the English text next to the code.
 //!
-//! A message never holds a sentence that another message wrote: where a part of it varies, that part is a field, and
-//! may be a message itself. So a catalogue of another language needs the code and the fields alone.
+//! A message never contains the text of another message: a variable part is a field, which may be a message itself. So a
+//! catalogue of another language needs only the code and the fields.
 
 use crate::words::number;
 use core::fmt;
@@ -12,25 +12,25 @@ use std::sync::Arc;
 pub enum Field {
     /// A quantity in the unit that the text names.
     Number(f64),
-    /// How many, or which one, counted from 0.
+    /// A count, or an index from 0.
     Count(i64),
-    /// A name or a text from outside, the same in all languages.
+    /// A name or a text from outside, which is the same in all languages.
     Text(String),
-    /// A part of the text that has its own entry in a catalogue.
+    /// A part of the text, with its own entry in a catalogue.
     Message(AnyMessage),
 }
 
-/// A parameter of a shape that a text names: as a scene writes it, or what stands for it where there is no scene.
+/// A parameter of a shape that a text names, as it is written in a scene, or its replacement if there is no scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Setting {
     /// In a scene: `` `size` ``, or with a value `` `open = "cap"` ``.
     InScene {
         /// The name of the parameter.
         name: &'static str,
-        /// The value, as a scene has it.
+        /// The value, as written in a scene.
         value: Option<String>,
     },
-    /// What a command line has for it, such as `--size`.
+    /// The equivalent on a command line, such as `--size`.
     InCall(String),
 }
 
@@ -39,7 +39,7 @@ impl Setting {
     pub fn named(name: &'static str) -> Setting {
         Setting::InScene { name, value: None }
     }
-    /// A parameter with a value, as a scene has it.
+    /// A parameter with a value, as written in a scene.
     pub fn with(name: &'static str, value: impl fmt::Display) -> Setting {
         Setting::InScene { name, value: Some(value.to_string()) }
     }
@@ -55,14 +55,14 @@ impl fmt::Display for Setting {
     }
 }
 
-/// What takes the place of each setting that a message names.
+/// A function that replaces each setting that a message names.
 pub type Replacing<'r> = dyn Fn(&Setting) -> Setting + 'r;
 
 /// An error, a warning, or a part of one.
 pub trait Message: std::error::Error + Send + Sync + 'static {
-    /// The stable code, such as `model.open_surface`; that of a part of a text begins with `part.`.
+    /// The stable code, such as `model.open_surface`; the code of a part of a text begins with `part.`.
     fn code(&self) -> &'static str;
-    /// The name of the variant: tells apart the texts that share a code.
+    /// The name of the variant, which distinguishes texts that share a code.
     fn variant(&self) -> &'static str;
     /// The fields by name, in the order of declaration.
     fn fields(&self) -> Vec<(&'static str, Field)>;
@@ -70,23 +70,23 @@ pub trait Message: std::error::Error + Send + Sync + 'static {
     fn value(&self) -> Option<String> {
         None
     }
-    /// The parameters of a scene that the message is about, by their words there, the one that matters most first.
+    /// The parameters of a scene to which the message refers, by their names there, the most important one first.
     fn parameters(&self) -> Vec<String> {
         parameters_of_parts(self.fields())
     }
-    /// What is allowed, in English.
+    /// The allowed values, in English.
     fn allowed(&self) -> Option<String> {
         None
     }
-    /// What helps, in English.
+    /// A hint, in English.
     fn hint(&self) -> Option<String> {
         None
     }
-    /// The same with other settings; none where it names none.
+    /// The same message with other settings; `None` if it names no settings.
     fn replaced(&self, _settings: &Replacing<'_>) -> Option<AnyMessage> {
         None
     }
-    /// The English text with what is allowed and what helps: `text; allowed: …; hint: …`.
+    /// The English text with the allowed values and the hint: `text; allowed: …; hint: …`.
     fn in_full(&self) -> String {
         let beside = [("allowed", self.allowed()), ("hint", self.hint())];
         let beside = beside.into_iter().filter_map(|(label, text)| text.map(|text| format!("; {label}: {text}")));
@@ -94,7 +94,7 @@ pub trait Message: std::error::Error + Send + Sync + 'static {
     }
 }
 
-/// The parameters that the parts of a message are about.
+/// The parameters to which the parts of a message refer.
 #[doc(hidden)]
 pub fn parameters_of_parts(fields: Vec<(&'static str, Field)>) -> Vec<String> {
     let of = |field| match field {
@@ -104,7 +104,7 @@ pub fn parameters_of_parts(fields: Vec<(&'static str, Field)>) -> Vec<String> {
     fields.into_iter().flat_map(|(_, field)| of(field)).collect()
 }
 
-/// What a catalogue must know of a variant of a message.
+/// The data of a variant of a message that a catalogue needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Variant {
     /// The stable code.
@@ -113,11 +113,11 @@ pub struct Variant {
     pub name: &'static str,
     /// The names of its fields.
     pub fields: &'static [&'static str],
-    /// The English text, what is allowed and what helps, as they stand in the source; empty where there are none.
+    /// The English text, the allowed values and the hint, as written in the source; empty if there are none.
     pub english: [&'static str; 3],
 }
 
-/// A message of any type: cloned without copying, equal where code, variant and fields are.
+/// A message of any type: cloned without copying, equal if code, variant and fields are equal.
 #[derive(Clone)]
 pub struct AnyMessage(Arc<dyn Message>);
 
@@ -127,13 +127,13 @@ impl<M: Message> From<M> for AnyMessage {
     }
 }
 
-/// A message whose fields and texts were changed.
+/// A message with changed fields and texts.
 #[derive(Debug)]
 struct Restated {
     code: &'static str,
     variant: &'static str,
     fields: Vec<(&'static str, Field)>,
-    /// The English text, the value, what is allowed and what helps.
+    /// The English text, the value, the allowed values and the hint.
     english: String,
     beside: [Option<String>; 3],
     parameters: Vec<String>,
@@ -172,14 +172,14 @@ impl Message for Restated {
 }
 
 impl AnyMessage {
-    /// A message with a text in English alone, of a program that adds kinds of its own.
+    /// A message with a text in English only, for a program that adds its own kinds.
     pub fn plain(code: &'static str, english: String) -> AnyMessage {
         let fields = vec![("text", Field::Text(english.clone()))];
         let (beside, parameters) = ([None, None, None], Vec::new());
         AnyMessage::from(Restated { code, variant: "Plain", fields, english, beside, parameters })
     }
 
-    /// The same with other names: `name` changes a field that is one, `text` those within an English text.
+    /// The same with other names: `name` changes fields that are names, `text` changes names within an English text.
     #[must_use]
     pub fn renamed(&self, name: &dyn Fn(&str) -> String, text: &dyn Fn(&str) -> String) -> AnyMessage {
         let field = |field: Field| match field {
@@ -233,7 +233,7 @@ impl fmt::Display for Field {
 
 /// A type that a field of a message may have.
 pub trait IntoField: Clone {
-    /// The value, as a catalogue takes it.
+    /// The value as a field for catalogues.
     fn field(&self) -> Field;
     /// The same with other settings.
     #[must_use]
@@ -283,7 +283,7 @@ macro_rules! lists {
     })* };
 }
 
-/// A place, rounded as numbers are.
+/// A position, rounded as numbers are.
 impl<const D: usize> IntoField for [f64; D] {
     fn field(&self) -> Field {
         Field::Text(format!("({})", self.map(number).join(", ")))
@@ -301,7 +301,7 @@ impl IntoField for AnyMessage {
     }
 }
 
-/// What is not there is an empty text.
+/// A missing value is an empty text.
 impl<T: IntoField> IntoField for Box<T> {
     fn field(&self) -> Field {
         T::field(self)
@@ -320,7 +320,7 @@ impl<T: IntoField> IntoField for Option<T> {
     }
 }
 
-/// What is there, as a part of a text; nothing otherwise.
+/// The text of a part if there is one; otherwise empty.
 pub fn if_any<T: fmt::Display>(part: &Option<T>) -> String {
     part.as_ref().map_or_else(String::new, T::to_string)
 }
@@ -328,10 +328,10 @@ pub fn if_any<T: fmt::Display>(part: &Option<T>) -> String {
 /// Declares errors or warnings: an enum by `thiserror` whose variants have a stable code, typed fields and an English
 /// text, as `thiserror` formats it. Variants without fields are written with empty braces.
 ///
-/// `#[value(…)]`, `#[parameters(…)]`, `#[allowed(…)]` and `#[hint(…)]`, in this order, stand beside it: the text of the offending value,
-/// the words of the parameters of a scene that the message is about, and the texts of what is allowed and what helps. Where one of the
-/// last two is empty, there is none. A message without parameters has those of its parts. A message is itself a field: [`IntoField`]
-/// is written with it.
+/// `#[value(…)]`, `#[parameters(…)]`, `#[allowed(…)]` and `#[hint(…)]` may follow, in this order: the text of the offending
+/// value, the names of the parameters of a scene to which the message refers, and the texts of the allowed values and of the
+/// hint. If one of the last two is empty, there is none. A message without parameters has those of its parts. A message is itself
+/// a field: the macro also implements [`IntoField`].
 ///
 /// ```
 /// use opruga_math::words::number;
@@ -428,7 +428,7 @@ macro_rules! messages {
     )* };
 }
 
-/// A text beside that of a message, if there is one.
+/// An additional text of a message, if there is one.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! text_beside {
@@ -443,7 +443,7 @@ macro_rules! text_beside {
     };
 }
 
-/// The parameters that a message is about.
+/// The parameters to which a message refers.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! parameters_beside {
@@ -455,7 +455,7 @@ macro_rules! parameters_beside {
     };
 }
 
-/// Declares names of things as parts of messages: an enum without fields, whose variants share a code and have a text each.
+/// Declares names of things as parts of messages: an enum without fields, whose variants share a code and have one text each.
 ///
 /// ```
 /// opruga_math::terms! {

@@ -1,7 +1,7 @@
-//! One number as a register: what runs on targets other than x86-64, and what the tests compare with.
+//! One number as a register, for targets other than x86-64 and as a reference in tests.
 //!
 //! # Safety
-//! `read` and `write` hand the promise of their caller on.
+//! `read` and `write` rely on the guarantees of their caller.
 #![allow(unsafe_code)]
 
 use crate::lane::{ROW, Register};
@@ -10,12 +10,12 @@ impl Register for f64 {
     const NUMBERS: usize = 1;
     #[inline(always)]
     unsafe fn read(from: *const f64) -> f64 {
-        // SAFETY: the caller promises a number.
+        // SAFETY: the caller guarantees a number.
         unsafe { from.read() }
     }
     #[inline(always)]
     unsafe fn write(self, to: *mut f64) {
-        // SAFETY: the caller promises room for a number.
+        // SAFETY: the caller guarantees space for a number.
         unsafe { to.write(self) }
     }
     #[inline(always)]

@@ -1,7 +1,7 @@
 //! Eight numbers in as many registers as the processor needs for them.
 //!
 //! # Safety
-//! `read` and `write` hand the promise of their caller on to the registers.
+//! `read` and `write` pass the guarantees of their caller on to the registers.
 #![allow(unsafe_code)]
 
 use crate::lane::{Lane, Pack, Register, WIDTH};
@@ -12,7 +12,7 @@ use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 #[repr(C, align(64))]
 pub(crate) struct Registers<R, const N: usize>([R; N]);
 
-/// One register after the other; a macro, since closures are not inlined reliably.
+/// One register after the other. This is a macro, because closures are not inlined reliably.
 macro_rules! each {
     ($r:ident => $value:expr) => {{
         let mut out = [R::zero(); N];
@@ -145,18 +145,18 @@ impl<R: Register, const N: usize> Pack for Registers<R, N> {
     }
     #[inline(always)]
     fn store(self, to: &mut [f64]) {
-        // SAFETY: the slice has room for eight numbers.
+        // SAFETY: the slice has space for eight numbers.
         unsafe { self.write(to[..WIDTH].as_mut_ptr()) }
     }
     #[inline(always)]
     unsafe fn read(from: *const f64) -> Self {
-        // SAFETY: the caller promises eight numbers.
+        // SAFETY: the caller guarantees eight numbers.
         each!(r => unsafe { R::read(from.add(R::NUMBERS * r)) })
     }
     #[inline(always)]
     unsafe fn write(self, to: *mut f64) {
         for r in 0..N {
-            // SAFETY: the caller promises room for eight numbers.
+            // SAFETY: the caller guarantees space for eight numbers.
             unsafe { self.0[r].write(to.add(R::NUMBERS * r)) }
         }
     }

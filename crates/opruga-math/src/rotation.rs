@@ -1,13 +1,12 @@
-//! The rotation that is nearest to a matrix.
+//! The rotation nearest to a matrix.
 //!
 //! In space it needs no singular values. With the sum f = σ₁ + σ₂ + σ₃ (the last with the sign of det F) and the
 //! invariants I = tr C, J = det F of F, C = FᵀF, f is the largest root of
 //!
 //! f⁴ − 2 I f² − 8 J f + 2 tr C² − I² = 0,
 //!
-//! and since R is the derivative of f by F, R = ((f² + I) F − 2 F C + 2 f cof F)/(f³ − I f − 2 J). The denominator is
-//! 2 (σ₁ + σ₂)(σ₂ + σ₃)(σ₃ + σ₁): it is small where the rotation is badly determined, and there singular vectors
-//! decide.
+//! and since R is the derivative of f by F, R = ((f² + I) F − 2 F C + 2 f cof F)/(f³ − I f − 2 J). The denominator is 2 (σ₁ +
+//! σ₂)(σ₂ + σ₃)(σ₃ + σ₁). It is small if the rotation is badly determined; then singular vectors are used.
 //!
 //! Source: Davenport 1968 for the quartic (of the quaternion of R); Lin, Chitalu, Komura, "Isotropic ARAP energy using
 //! Cauchy–Green invariants" (2022) for its derivative.
@@ -16,20 +15,20 @@ use crate::lane::Lane;
 use crate::matrix::{self, Matrix};
 use crate::singular::{direction, singular};
 
-/// The least denominator in units of f³ with which the formula is taken: at rest it is 16/27, for a flattened matrix with
-/// equal stretches ½. Errors of rounding grow as its inverse.
+/// The smallest denominator, in units of f³, for which the formula is used: at rest it is 16/27, for a flattened matrix with
+/// equal stretches ½. Rounding errors grow as its inverse.
 const WELL_DETERMINED: f64 = 0.02;
 
-/// The relative change of f after which it is found: the next one would be its square.
+/// The relative change of f below which it has converged: the next change would be its square.
 const FOUND: f64 = 1e-9;
 
-/// The most iterations; where the rotation is well determined, ten are enough, and three for strains of some per cent.
+/// The largest number of iterations. If the rotation is well determined, ten are enough, and three for strains of some per cent.
 const MOST_ITERATIONS: usize = 12;
 
-/// The rotation that is nearest to a matrix: R of F = R S with det R = 1 and S symmetric, tr S as large as can be.
+/// The rotation nearest to a matrix: R of F = R S with det R = 1, S symmetric and the largest possible tr S.
 ///
-/// F may be flat or turned inside out. Where R is not unique (S has two smallest stretches of opposite sign), it is the one
-/// of the singular vectors; where there is no direction at all, the unit matrix.
+/// F may be degenerate or inverted. If R is not unique (S has two smallest stretches of opposite sign), it is that of the
+/// singular vectors; if F has no direction at all, it is the unit matrix.
 #[inline(always)]
 pub fn nearest_rotation<S: Lane, const D: usize>(f: &Matrix<S, D>) -> Matrix<S, D> {
     const { assert!(D == 2 || D == 3) }
@@ -62,8 +61,8 @@ fn in_space<S: Lane, const D: usize>(f: &Matrix<S, D>) -> Matrix<S, D> {
     let twice_volume = two * matrix::determinant_by(f, &cofactors);
     let last = two * matrix::inner(&right, &right) - first * first;
 
-    // The largest root by Newton from above, f ≤ √(3 I): it falls all the way. A number that is found stays as it is to the
-    // bit, so it does not depend on its neighbours in the lanes.
+    // The largest root by Newton's method from above, f ≤ √(3 I): f decreases monotonically. A converged number does not change
+    // in any bit, so it does not depend on its neighbours in the lanes.
     let mut sum = (S::splat(3.0) * first).sqrt();
     let mut change = sum;
     let mut open = S::zero().less(S::one());
@@ -89,13 +88,13 @@ fn in_space<S: Lane, const D: usize>(f: &Matrix<S, D>) -> Matrix<S, D> {
     }
     let inverse = S::one() / denominator;
     let rough = matrix::scaled(&matrix::plus(&matrix::product(f, &inner), two * sum, &cofactors), inverse);
-    // What rounding has left has the singular vectors of F and singular values near 1: R (3 − RᵀR)/2 puts them there.
+    // The result with rounding errors has the singular vectors of F and singular values near 1; R (3 − RᵀR)/2 corrects them.
     let mut rest = matrix::scaled(&matrix::transposed_product(&rough, &rough), -S::splat(0.5));
     for i in 0..D {
         rest[i][i] += S::splat(1.5);
     }
     let mut out = matrix::product(&rough, &rest);
-    // Comparisons with what is no number hold nowhere: not sound is more than its opposite.
+    // Comparisons with NaN are false, so the mask is built from the opposite of `sound`.
     if S::any(S::zero().less(S::select(sound, S::zero(), S::one()))) {
         let singular = singular(f).rotation();
         for i in 0..D {
@@ -122,7 +121,7 @@ mod tests {
         }
     }
 
-    /// |RᵀR − 1|, |det R − 1| and the asymmetry of RᵀF, as parts of |F|.
+    /// |RᵀR − 1|, |det R − 1| and the asymmetry of RᵀF, relative to |F|.
     fn errors<const D: usize>(f: &Matrix<f64, D>, r: &Matrix<f64, D>) -> [f64; 3] {
         let (unit, stretch) = (matrix::transposed_product(r, r), matrix::transposed_product(r, f));
         let size = matrix::inner(f, f).sqrt() + 1e-300;
@@ -136,7 +135,7 @@ mod tests {
         [orthogonal, (matrix::determinant(r) - 1.0).abs(), symmetric]
     }
 
-    /// The formula, the singular vectors where it is not sound, and its change-over, for stretches of every kind.
+    /// The formula, the singular vectors where it is not accurate, and the transition between them, for stretches of every kind.
     #[test]
     fn rotations_of_any_matrix_are_proper_and_leave_a_symmetric_stretch() {
         let mut random = Random(3);
@@ -146,7 +145,7 @@ mod tests {
             let f: Matrix<f64, 3> = match k % 3 {
                 0 => random.matrix(),
                 _ => {
-                    // A stretch between two rotations: flat, long, inside out.
+                    // A stretch between two rotations: flat, long, inverted.
                     let (u, v) = (nearest_rotation(&random.matrix::<3>()), nearest_rotation(&random.matrix::<3>()));
                     let strain = [1e-12, 1e-6, 1e-2, 0.3, 0.9, 1.0][k % 6];
                     let mut us = u;
@@ -203,7 +202,7 @@ mod tests {
         }
     }
 
-    /// Of eight matrices side by side every one gets the bits that it gets alone.
+    /// Each of eight matrices side by side has the same bits as alone.
     #[test]
     fn neighbours_in_the_lanes_change_no_bits() {
         use crate::lane::{Pack, Register, WIDTH};

@@ -1,19 +1,19 @@
-//! Which vector instructions run the wide lane, chosen once at run time.
+//! The vector instructions of the wide lane, chosen once at run time.
 //!
-//! The same body of code is compiled three times, inside functions that are allowed to use SSE2,
-//! AVX2 or AVX-512. Rust never contracts `a * b + c` into a fused operation, so the three give the same bits.
+//! The same code is compiled three times, in functions that may use SSE2, AVX2 or AVX-512. Rust never contracts `a * b + c` into
+//! a fused operation, so the three give the same bits.
 
 use crate::lane::Pack;
 use crate::registers::Registers;
 use core::sync::atomic::{AtomicU8, Ordering};
 
-/// What [`Simd::best`] has found: 1 and its number; 0: nobody has asked.
+/// The result of [`Simd::best`]: 1 plus its number, or 0 if it has not been called yet.
 static BEST: AtomicU8 = AtomicU8::new(0);
 
 /// A set of vector instructions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Simd {
-    /// What every machine of the target has (SSE2 on x86-64, 128-bit vectors or none elsewhere).
+    /// The instructions that every machine of the target has (SSE2 on x86-64, 128-bit vectors or none elsewhere).
     Baseline,
     /// 256-bit vectors.
     Avx2,
@@ -41,7 +41,7 @@ impl Simd {
     /// The best set that this processor has.
     #[inline]
     pub fn best() -> Simd {
-        // Asked with every piece of work: one number is sooner read than the answers for all features.
+        // Called for every piece of work: reading one number is faster than reading the answers for all features.
         match BEST.load(Ordering::Relaxed) {
             1 => Simd::Baseline,
             2 => Simd::Avx2,
@@ -70,8 +70,8 @@ impl Simd {
         }
         Simd::Baseline
     }
-    /// The set of a name (`sse2`, `avx2`, `avx512`), or the best one below it that this processor has; `scalar` is what
-    /// every machine of the target has.
+    /// The set with this name (`sse2`, `avx2`, `avx512`), or the best one below it that this processor has; `scalar` is the set
+    /// that every machine of the target has.
     pub fn named(name: &str) -> Option<Simd> {
         let wanted = match name {
             "scalar" | "sse2" => Simd::Baseline,
@@ -87,13 +87,13 @@ impl Simd {
     }
     /// Runs a piece of work compiled for this set of instructions.
     ///
-    /// A set that the processor lacks is replaced by what every machine has.
+    /// A set that the processor lacks is replaced by that which every machine has.
     #[inline(always)]
     pub fn run<W: Work>(self, work: W) -> W::Output {
         #[cfg(target_arch = "x86_64")]
         {
             match self {
-                // SAFETY: the processor was asked for the features that the shells enable.
+                // SAFETY: the processor was tested for the features that the wrapper functions enable.
                 #[allow(unsafe_code)]
                 Simd::Avx512 if Simd::best() >= Simd::Avx512 => return unsafe { run_avx512(work) },
                 #[allow(unsafe_code)]
@@ -109,13 +109,13 @@ impl Simd {
 
 /// A piece of work that is compiled once per set of instructions; its `run` must be `#[inline(always)]`.
 pub trait Work {
-    /// What the work gives back.
+    /// The result of the work.
     type Output;
     /// Does the work with eight numbers at a time.
     fn run<P: Pack>(self) -> Self::Output;
 }
 
-// Functions of their own: callers stay small, and crates that ask for the same work use what one of them has compiled.
+// Separate functions: callers stay small, and crates that need the same work use the version that one of them has compiled.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx,avx2,avx512f,avx512dq,avx512vl")]
 #[inline(never)]
@@ -141,7 +141,7 @@ mod tests {
     use super::*;
     use crate::lane::{Lane, ROW, Register, WIDTH};
 
-    /// Every operation on awkward numbers, written one after the other.
+    /// Every operation on special numbers, written one after the other.
     struct Everything;
     impl Work for Everything {
         type Output = Vec<u64>;
@@ -175,7 +175,7 @@ mod tests {
             for value in most {
                 out.extend(value.to_array().map(f64::to_bits));
             }
-            // Rows of four of 0 … 39, in no order.
+            // Rows of four of 0 … 39, in random order.
             let rows: Vec<f64> = (0..40).map(f64::from).collect();
             let order = [7, 0, 9, 1, 5, 2, 4, 3];
             let mut columns = [P::zero(); ROW];
@@ -185,7 +185,7 @@ mod tests {
                     columns[k].set_part(part, own[k]);
                 }
             }
-            // Single precision, from a place on no border.
+            // Single precision, from an unaligned index.
             let single: Vec<f32> = (0..=WIDTH).map(|k| k as f32 / 3.0).collect();
             let mut wide = P::zero();
             for part in 0..P::PARTS {
@@ -224,7 +224,7 @@ mod tests {
         }
     }
 
-    /// Logarithms of numbers of every size, also of those that have none.
+    /// Logarithms of numbers of every size, including those without a logarithm.
     struct Logarithms<'a>(&'a [f64]);
     impl Work for Logarithms<'_> {
         type Output = Vec<u64>;
@@ -240,7 +240,7 @@ mod tests {
         let mut random = 1u64;
         for k in 0..80_000 {
             random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            // Any bits of a positive number, numbers near 1, and numbers near √½ and √2.
+            // Random bits of a positive number, numbers near 1, and numbers near √½ and √2.
             let near = 1.0 + (random >> 11) as f64 / (1u64 << 53) as f64;
             numbers.push(match k % 4 {
                 0 => f64::from_bits(random >> 1),

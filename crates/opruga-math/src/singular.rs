@@ -1,11 +1,11 @@
 //! Singular values with proper rotations.
 //!
-//! F = U diag(σ) Vᵀ with det U = det V = 1 and |σ| falling; so the last σ is negative where F turns the body inside out,
-//! and R = U Vᵀ is a rotation always (Irving, Teran, Fedkiw 2004).
+//! F = U diag(σ) Vᵀ with det U = det V = 1 and decreasing |σ|. So the last σ is negative if F is inverted, and R = U Vᵀ is always
+//! a rotation (Irving, Teran, Fedkiw 2004).
 //!
-//! One-sided Jacobi rotations (Hestenes 1958) make the columns of B = F V orthogonal: small singular values are as
-//! accurate as large ones. A number whose columns are orthogonal already is left as it is to the bit, so its result does
-//! not depend on its neighbours in the lanes.
+//! One-sided Jacobi rotations (Hestenes 1958) make the columns of B = F V orthogonal: small singular values are as accurate as
+//! large ones. A matrix whose columns are already orthogonal does not change in any bit, so its result does not depend on its
+//! neighbours in the lanes.
 
 use crate::lane::Lane;
 use crate::matrix::{self, Matrix};
@@ -15,7 +15,7 @@ use crate::matrix::{self, Matrix};
 pub struct Singular<S, const D: usize> {
     /// The left rotation.
     pub u: Matrix<S, D>,
-    /// The singular values, falling in size; the last has the sign of the determinant.
+    /// The singular values, in decreasing size; the last has the sign of the determinant.
     pub sigma: [S; D],
     /// The right rotation.
     pub v: Matrix<S, D>,
@@ -29,10 +29,10 @@ impl<S: Lane, const D: usize> Singular<S, D> {
     }
 }
 
-/// The most sweeps over all pairs of columns; six bring any 3×3 matrix to rounding.
+/// The largest number of sweeps over all pairs of columns; six bring any 3×3 matrix to rounding.
 const MOST_SWEEPS: usize = 12;
 
-/// Columns whose cosine is less than this are orthogonal.
+/// Columns whose cosine is less than this count as orthogonal.
 const ORTHOGONAL: f64 = 1e-16;
 
 /// Lengths below this have no direction.
@@ -85,7 +85,7 @@ pub fn singular<S: Lane, const D: usize>(f: &Matrix<S, D>) -> Singular<S, D> {
         }
         out
     };
-    // The first axis: that of the longest column, x where nothing has a length.
+    // The first axis: that of the longest column; x if no column has a length.
     let mut axis = [S::zero(); D];
     axis[0] = S::one();
     let (first, length) = direction(&column(&b, 0), &axis);
@@ -98,7 +98,7 @@ pub fn singular<S: Lane, const D: usize>(f: &Matrix<S, D>) -> Singular<S, D> {
             sigma[1] += second[i] * b[i][1];
         }
     } else {
-        // The second: made exactly orthogonal to the first; any orthogonal one where the column has no length.
+        // The second: made exactly orthogonal to the first; any orthogonal one if the column has no length.
         let mut second = column(&b, 1);
         let mut along = S::zero();
         for i in 0..D {
@@ -112,7 +112,7 @@ pub fn singular<S: Lane, const D: usize>(f: &Matrix<S, D>) -> Singular<S, D> {
         let y_least = y.less_or_equal(z);
         let [a, c, d] = [first[0], first[1], first[D - 1]];
         let zero = S::zero();
-        // first × e of the axis that it is least along.
+        // The cross product of `first` and the axis along which it has the smallest component.
         let mut other = [zero; D];
         other[0] = S::select(x_least, zero, S::select(y_least, -d, c));
         other[1] = S::select(x_least, d, S::select(y_least, zero, -a));
@@ -132,7 +132,7 @@ pub fn singular<S: Lane, const D: usize>(f: &Matrix<S, D>) -> Singular<S, D> {
     Singular { u, sigma, v }
 }
 
-/// A vector without its length, and its length; the substitute and zero where it has none.
+/// A vector divided by its length, and its length; the substitute and zero if it has none.
 #[inline(always)]
 pub(crate) fn direction<S: Lane, const D: usize>(a: &[S; D], substitute: &[S; D]) -> ([S; D], S) {
     let mut square = S::zero();
@@ -149,7 +149,7 @@ pub(crate) fn direction<S: Lane, const D: usize>(a: &[S; D], substitute: &[S; D]
     (out, S::select(real, length, S::zero()))
 }
 
-/// One rotation of two columns; whether any number was turned.
+/// One rotation of two columns; returns whether any matrix was rotated.
 #[inline(always)]
 fn make_orthogonal<S: Lane, const D: usize>(b: &mut Matrix<S, D>, v: &mut Matrix<S, D>, p: usize, q: usize) -> bool {
     let (mut alpha, mut beta, mut gamma) = (S::zero(), S::zero(), S::zero());
@@ -162,7 +162,7 @@ fn make_orthogonal<S: Lane, const D: usize>(b: &mut Matrix<S, D>, v: &mut Matrix
     if !S::any(open) {
         return false;
     }
-    // t² + 2 ζ t − 1 = 0, the smaller root; zero and so no turn where the columns are orthogonal.
+    // t² + 2 ζ t − 1 = 0, the smaller root; zero, and so no rotation, if the columns are orthogonal.
     let zeta = (beta - alpha) / S::select(open, gamma + gamma, S::one());
     let magnitude = S::one() / (zeta.abs() + (S::one() + zeta * zeta).sqrt());
     let t = S::select(open, S::select(zeta.less(S::zero()), -magnitude, magnitude), S::zero());
@@ -224,7 +224,7 @@ mod tests {
             let size = [1.0, 1e-6, 1e6][k % 3];
             let mut a: Matrix<f64, 3> = core::array::from_fn(|_| core::array::from_fn(|_| size * next()));
             if k % 5 == 1 {
-                // Flat, or a line.
+                // A plane, or a line.
                 a[2] = core::array::from_fn(|j| a[0][j] + 2.0 * a[1][j]);
             }
             if k % 10 == 1 {

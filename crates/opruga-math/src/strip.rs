@@ -1,17 +1,17 @@
-//! Pieces of columns that a loop walks eight numbers at a time.
+//! Pieces of columns that a loop processes eight numbers at a time.
 //!
-//! A strip checks once that all of its columns are long enough; after that a single comparison guards a step of the
-//! loop, however many columns it touches.
+//! A strip checks once that all of its columns are long enough; after that a single comparison guards each step of the loop,
+//! however many columns it reads or writes.
 //!
 //! # Safety
-//! The pointers come from slices that were long enough when the strip was made and that it borrows. Every access
-//! asserts that it stays below the common length.
+//! The pointers come from slices that the strip borrows and that were long enough when it was made. Every access asserts that it
+//! stays below the common length.
 #![allow(unsafe_code)]
 
 use crate::lane::{Pack, Register, WIDTH};
 use core::marker::PhantomData;
 
-/// The same piece of `N` columns, to be read.
+/// The same piece of `N` columns, for reading.
 #[derive(Clone, Copy, Debug)]
 pub struct Strip<'a, const N: usize> {
     start: [*const f64; N],
@@ -19,7 +19,7 @@ pub struct Strip<'a, const N: usize> {
     borrow: PhantomData<&'a f64>,
 }
 
-/// The same piece of `N` columns, to be read and written.
+/// The same piece of `N` columns, for reading and writing.
 #[derive(Debug)]
 pub struct StripMut<'a, const N: usize> {
     start: [*mut f64; N],
@@ -28,7 +28,7 @@ pub struct StripMut<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Strip<'a, N> {
-    /// The numbers from `start` on, `length` of each column.
+    /// The numbers from `start` on, `length` in each column.
     #[inline(always)]
     pub fn new(columns: &[&'a [f64]; N], start: usize, length: usize) -> Self {
         let mut pointers = [core::ptr::null(); N];
@@ -37,14 +37,14 @@ impl<'a, const N: usize> Strip<'a, N> {
         }
         Strip { start: pointers, length, borrow: PhantomData }
     }
-    /// Eight numbers of a column from place `k` on.
+    /// Eight numbers of a column from index `k` on.
     #[inline(always)]
     pub fn load<P: Pack>(&self, column: usize, k: usize) -> P {
         assert!(k + WIDTH <= self.length);
         // SAFETY: see the head of the file.
         unsafe { P::read(self.start[column].add(k)) }
     }
-    /// One part of the eight numbers of a column from place `k` on.
+    /// One part of the eight numbers of a column from index `k` on.
     #[inline(always)]
     pub fn load_part<P: Pack>(&self, column: usize, k: usize, part: usize) -> P::Part {
         assert!(k + WIDTH <= self.length && part < P::PARTS);
@@ -54,7 +54,7 @@ impl<'a, const N: usize> Strip<'a, N> {
 }
 
 impl<'a, const N: usize> StripMut<'a, N> {
-    /// The numbers from `start` on, `length` of each column.
+    /// The numbers from `start` on, `length` in each column.
     #[inline(always)]
     pub fn new(columns: [&'a mut [f64]; N], start: usize, length: usize) -> Self {
         let mut pointers = [core::ptr::null_mut(); N];
@@ -63,28 +63,28 @@ impl<'a, const N: usize> StripMut<'a, N> {
         }
         StripMut { start: pointers, length, borrow: PhantomData }
     }
-    /// Eight numbers of a column from place `k` on.
+    /// Eight numbers of a column from index `k` on.
     #[inline(always)]
     pub fn load<P: Pack>(&self, column: usize, k: usize) -> P {
         assert!(k + WIDTH <= self.length);
         // SAFETY: see the head of the file.
         unsafe { P::read(self.start[column].add(k)) }
     }
-    /// One part of the eight numbers of a column from place `k` on.
+    /// One part of the eight numbers of a column from index `k` on.
     #[inline(always)]
     pub fn load_part<P: Pack>(&self, column: usize, k: usize, part: usize) -> P::Part {
         assert!(k + WIDTH <= self.length && part < P::PARTS);
         // SAFETY: see the head of the file.
         unsafe { P::Part::read(self.start[column].add(k + part * P::Part::NUMBERS)) }
     }
-    /// Writes one part of the eight numbers of a column from place `k` on.
+    /// Writes one part of the eight numbers of a column from index `k` on.
     #[inline(always)]
     pub fn store_part<P: Pack>(&mut self, column: usize, k: usize, part: usize, value: P::Part) {
         assert!(k + WIDTH <= self.length && part < P::PARTS);
         // SAFETY: see the head of the file.
         unsafe { value.write(self.start[column].add(k + part * P::Part::NUMBERS)) }
     }
-    /// Writes eight numbers of a column from place `k` on.
+    /// Writes eight numbers of a column from index `k` on.
     #[inline(always)]
     pub fn store<P: Pack>(&mut self, column: usize, k: usize, value: P) {
         assert!(k + WIDTH <= self.length);
@@ -93,7 +93,7 @@ impl<'a, const N: usize> StripMut<'a, N> {
     }
 }
 
-/// A piece of a column, or eight numbers that repeat all along it.
+/// A piece of a column, or eight numbers that repeat along the whole of it.
 #[derive(Clone, Copy, Debug)]
 pub struct RepeatStrip<'a> {
     start: *const f64,
@@ -108,19 +108,19 @@ impl<'a> RepeatStrip<'a> {
     pub fn new(column: &'a [f64], start: usize, length: usize) -> Self {
         RepeatStrip { start: column[start..start + length].as_ptr(), step: 1, length, borrow: PhantomData }
     }
-    /// The same eight numbers all along.
+    /// The same eight numbers throughout.
     #[inline(always)]
     pub fn repeated(numbers: &'a [f64; WIDTH], length: usize) -> Self {
         RepeatStrip { start: numbers.as_ptr(), step: 0, length, borrow: PhantomData }
     }
-    /// Eight numbers from place `k` on.
+    /// Eight numbers from index `k` on.
     #[inline(always)]
     pub fn load<P: Pack>(&self, k: usize) -> P {
         assert!(k + WIDTH <= self.length);
         // SAFETY: see the head of the file; with step zero the first eight numbers are read.
         unsafe { P::read(self.start.add(k * self.step)) }
     }
-    /// One part of the eight numbers from place `k` on.
+    /// One part of the eight numbers from index `k` on.
     #[inline(always)]
     pub fn load_part<P: Pack>(&self, k: usize, part: usize) -> P::Part {
         assert!(k + WIDTH <= self.length && part < P::PARTS);

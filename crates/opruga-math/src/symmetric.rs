@@ -1,11 +1,11 @@
-//! Symmetric matrices over lanes: eigenvalues by Jacobi rotations, and what is left without the negative ones.
+//! Symmetric matrices over lanes: eigenvalues by Jacobi rotations, and the matrix without the negative ones.
 
 use crate::lane::Lane;
 
-/// The most sweeps; seven bring a 4×4 matrix to rounding.
+/// The largest number of sweeps; seven bring a 4×4 matrix to rounding.
 const MOST_SWEEPS: usize = 12;
 
-/// An entry off the diagonal below this fraction of its diagonal neighbours is zero.
+/// An off-diagonal entry below this fraction of the diagonal entries of its row and column counts as zero.
 const ZERO: f64 = 1e-17;
 
 /// Eigenvalues, and eigenvectors in columns, of a symmetric matrix (cyclic Jacobi rotations).
@@ -34,10 +34,10 @@ pub fn eigen<S: Lane, const N: usize>(matrix: &[[S; N]; N]) -> ([S; N], [[S; N];
     (values, vectors)
 }
 
-/// The matrix without its negative eigenvalues: Σ max(λ, 0) v vᵀ; the matrix itself where it has none.
+/// The matrix without its negative eigenvalues: Σ max(λ, 0) v vᵀ; the matrix itself if it has none.
 #[inline(always)]
 pub fn positive_part<S: Lane, const N: usize>(matrix: &[[S; N]; N]) -> [[S; N]; N] {
-    // It is positive definite where Gauss's elimination meets positive pivots alone.
+    // It is positive definite if all pivots of Gaussian elimination are positive.
     let mut left = *matrix;
     let mut open = S::zero();
     for k in 0..N {
@@ -73,7 +73,7 @@ pub fn positive_part<S: Lane, const N: usize>(matrix: &[[S; N]; N]) -> [[S; N]; 
     out
 }
 
-/// One rotation that makes the entry (p, q) zero; whether any number needed it.
+/// One rotation that makes the entry (p, q) zero; returns whether any matrix needed it.
 #[inline(always)]
 fn rotate<S: Lane, const N: usize>(a: &mut [[S; N]; N], vectors: &mut [[S; N]; N], p: usize, q: usize) -> bool {
     let off = a[p][q];
@@ -100,7 +100,7 @@ fn rotate<S: Lane, const N: usize>(a: &mut [[S; N]; N], vectors: &mut [[S; N]; N
         vectors[k][p] = c * x - s * y;
         vectors[k][q] = s * x + c * y;
     }
-    // What rounding leaves would be turned for ever.
+    // Otherwise rounding errors would be rotated for ever.
     a[p][q] = S::select(open, S::zero(), a[p][q]);
     a[q][p] = S::select(open, S::zero(), a[q][p]);
     true

@@ -1,40 +1,41 @@
-//! Threads that work on pieces side by side and wait for the next pieces awake: handing them out costs less than a
-//! microsecond, where a thread that sleeps takes fifty to wake.
+//! Threads that work on pieces in parallel and stay awake while they wait for more. Distributing pieces costs less than a
+//! microsecond; waking a sleeping thread takes fifty.
 //!
-//! The one that hands out, the *leader*, works along. It waits for pieces that somebody has taken, never for somebody to
-//! come: members that are late, or never come, only leave more to the others.
+//! The thread that distributes pieces, the *leader*, works too. It waits for pieces that a member has taken, but never for
+//! members to arrive: members that are late, or never arrive, only leave more work to the others.
 //!
-//! A piece belongs to a member as long as that one is not late: the same memory then meets the same processor again.
+//! Each piece is assigned to a member, and others take it only if that member is late, so the same memory is used by the same
+//! processor again.
 
 use core::cell::UnsafeCell;
 use core::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 
-/// How often a waiting thread looks before it lets others run: some twenty microseconds.
+/// How often a waiting thread checks before it yields: some twenty microseconds.
 const LOOKS: u32 = 2_000;
 
-/// The largest number of pieces that are handed out by themselves; more are handed out several at a time.
+/// The largest number of pieces that are distributed one by one; if there are more, several are distributed at a time.
 const MOST_PIECES: usize = u16::MAX as usize;
 
-/// What is done with a piece of this number.
+/// The work on the piece with this number.
 type Work<'a> = dyn Fn(usize) + Sync + 'a;
 
-/// Threads that work on pieces side by side.
+/// Threads that work on pieces in parallel.
 #[derive(Debug)]
 pub struct Team {
     members: Box<[Member]>,
-    /// What is to be done; valid while a piece is taken and not done.
+    /// The work; valid while a piece is taken and not done.
     work: Task,
     done: Apart<AtomicUsize>,
-    /// Whether the leader is handing out already: a piece that hands out does it all by itself.
+    /// Whether the leader is already distributing pieces. A piece that distributes work itself does all of it alone.
     busy: AtomicBool,
     failed: AtomicBool,
     closed: AtomicBool,
 }
 
-/// The pieces that are left for a member: the first in the lower sixteen bits, the end in the next.
+/// The remaining pieces of a member: the first in the lower sixteen bits, the end in the next.
 type Member = Apart<AtomicU64>;
 
-/// On cache lines of its own.
+/// A value on its own cache lines.
 #[derive(Debug, Default)]
 #[repr(align(128))]
 struct Apart<T>(T);
@@ -47,18 +48,18 @@ impl core::fmt::Debug for Task {
     }
 }
 
-// SAFETY: the leader alone writes it, while no piece is taken; others read it while they have one. Taking a piece comes after
-// the writing, and doing it before the next, by the orders of the atomics in `take` and `hand_out`.
+// SAFETY: only the leader writes it, while no piece is taken; others read it while they have a piece. Taking a piece happens
+// after the write, and completing it happens before the next one, by the orderings of the atomics in `take` and `hand_out`.
 #[allow(unsafe_code)]
 unsafe impl Sync for Task {}
-// SAFETY: what it refers to can be called from every thread.
+// SAFETY: the work it refers to can be called from every thread.
 #[allow(unsafe_code)]
 unsafe impl Send for Task {}
 
-/// The start of a slice whose parts go to several threads.
+/// The start of a slice whose parts are given to several threads.
 struct Start<T>(*mut T);
 
-// SAFETY: every part is handed to one thread alone, and what it holds may go to another thread.
+// SAFETY: every part is given to only one thread, and its content may be sent to another thread.
 #[allow(unsafe_code)]
 unsafe impl<T: Send> Sync for Start<T> {}
 
@@ -66,16 +67,16 @@ impl<T> Start<T> {
     /// A part of the slice.
     ///
     /// # Safety
-    /// It must lie within the slice, and nobody else may have a part of it.
+    /// The part must be within the slice, and nobody else may have any of it.
     #[allow(unsafe_code, clippy::mut_from_ref)]
     unsafe fn part(&self, first: usize, length: usize) -> &mut [T] {
-        // SAFETY: as the caller promises.
+        // SAFETY: guaranteed by the caller.
         unsafe { core::slice::from_raw_parts_mut(self.0.add(first), length) }
     }
 }
 
 impl Team {
-    /// A team of so many members, the leader among them.
+    /// A team with this many members, including the leader.
     pub fn new(members: usize) -> Team {
         Team {
             members: (0..members.max(1)).map(|_| Member::default()).collect(),
@@ -86,12 +87,12 @@ impl Team {
             closed: AtomicBool::new(false),
         }
     }
-    /// How many members it has.
+    /// The number of members.
     pub fn members(&self) -> usize {
         self.members.len()
     }
 
-    /// Works as the member of this number, of which the leader is 0, until the team is closed.
+    /// Works as the member with this number (the leader is 0) until the team is closed.
     pub fn serve(&self, own: usize) {
         let mut looks = 0;
         while !self.closed.load(Ordering::Acquire) {
@@ -100,7 +101,7 @@ impl Team {
             pause(looks);
         }
     }
-    /// Sends the members home.
+    /// Releases the members.
     pub fn close(&self) {
         self.closed.store(true, Ordering::Release);
     }
@@ -109,14 +110,14 @@ impl Team {
     pub fn each<T: Send>(&self, pieces: &mut [T], work: impl Fn(&mut T) + Sync) {
         let start = Start(pieces.as_mut_ptr());
         self.hand_out(pieces.len(), &|number| {
-            // SAFETY: every number below the length comes once.
+            // SAFETY: every number below the length occurs once.
             #[allow(unsafe_code)]
             let piece = unsafe { start.part(number, 1) };
             work(&mut piece[0]);
         });
     }
 
-    /// Does the work on every piece with its part of a slice, `length` entries each; the last may have less.
+    /// Does the work on every piece with its part of a slice, `length` entries each; the last may have fewer.
     pub fn each_with<T: Send, U: Send>(
         &self,
         pieces: &mut [T],
@@ -126,7 +127,7 @@ impl Team {
     ) {
         let (start, parts, end) = (Start(pieces.as_mut_ptr()), Start(slice.as_mut_ptr()), slice.len());
         self.hand_out(pieces.len().min(end.div_ceil(length)), &|number| {
-            // SAFETY: every number below the length comes once, and its part begins before the end of the slice.
+            // SAFETY: every number below the length occurs once, and its part begins before the end of the slice.
             #[allow(unsafe_code)]
             let (piece, part) = unsafe {
                 let first = number * length;
@@ -136,8 +137,8 @@ impl Team {
         });
     }
 
-    /// Does the work on blocks of some slices, of `length` entries from the same place on in each; the last may have less. All
-    /// slices end with the shortest. The work is told where its block begins.
+    /// Does the work on blocks of some slices, with `length` entries from the same index on in each; the last may have fewer. All
+    /// slices end with the shortest one. The work receives the start of its block.
     pub fn each_block<T: Send, const N: usize>(
         &self,
         slices: [&mut [T]; N],
@@ -148,34 +149,34 @@ impl Team {
         let starts = slices.map(|slice| Start(slice.as_mut_ptr()));
         self.hand_out(end.div_ceil(length), &|number| {
             let first = number * length;
-            // SAFETY: every number comes once, and its block begins before the end of every slice.
+            // SAFETY: every number occurs once, and its block begins before the end of every slice.
             #[allow(unsafe_code)]
             let blocks = starts.each_ref().map(|start| unsafe { start.part(first, length.min(end - first)) });
             work(first, blocks);
         });
     }
 
-    /// Does the work on parts of a slice that begin at the given places, the first of which is 0.
+    /// Does the work on parts of a slice that begin at the given indices, the first of which is 0.
     ///
     /// # Panics
-    /// Where the places do not rise or lie behind the end.
+    /// If the indices do not increase or are beyond the end.
     pub fn each_part<T: Send>(&self, slice: &mut [T], starts: &[usize], work: impl Fn(usize, &mut [T]) + Sync) {
         let (parts, end) = (Start(slice.as_mut_ptr()), slice.len());
         assert!(starts.is_sorted() && starts.last().is_none_or(|last| *last <= end), "parts follow one another");
         self.hand_out(starts.len(), &|number| {
             let first = starts[number];
             let length = starts.get(number + 1).copied().unwrap_or(end) - first;
-            // SAFETY: starts rise to the end of the slice at most, and every number comes once.
+            // SAFETY: starts increase up to the end of the slice at most, and every number occurs once.
             #[allow(unsafe_code)]
             let part = unsafe { parts.part(first, length) };
             work(number, part);
         });
     }
 
-    /// Calls the work once for every number below `count`, in no order.
+    /// Calls the work once for every number below `count`, in no particular order.
     ///
     /// # Panics
-    /// Where the work does.
+    /// If the work panics.
     pub fn hand_out(&self, count: usize, work: &Work<'_>) {
         if count < 2 || self.members() < 2 || self.busy.swap(true, Ordering::Acquire) {
             return (0..count).for_each(work);
@@ -185,8 +186,8 @@ impl Team {
         let some: &Work<'_> = if together == 1 { work } else { &some };
         let pieces = count.div_ceil(together);
         self.done.0.store(0, Ordering::Relaxed);
-        // SAFETY: nobody has a piece, so nobody reads it; and it is not called once this function has returned, because every
-        // piece is done then.
+        // SAFETY: nobody has a piece, so nobody reads it. It is not called after this function has returned, because every piece
+        // is done then.
         #[allow(unsafe_code)]
         unsafe {
             *self.work.0.get() = Some(core::mem::transmute::<*const Work<'_>, *const Work<'static>>(some));
@@ -205,15 +206,15 @@ impl Team {
         assert!(!self.failed.swap(false, Ordering::Relaxed), "a thread of the team has panicked");
     }
 
-    /// Does what is left of the own pieces, then of those of the others; says how many.
+    /// Does the remaining pieces of this member, then those of the others; returns how many.
     fn help(&self, own: usize) -> usize {
         let mut did = 0;
         for k in 0..self.members() {
             while let Some(piece) = self.take((own + k) % self.members()) {
-                // SAFETY: a piece was taken, so the work is there until that piece counts as done.
+                // SAFETY: a piece was taken, so the work exists until that piece counts as done.
                 #[allow(unsafe_code)]
                 let work = unsafe { (*self.work.0.get()).map(|work| &*work) };
-                // Who waits for this piece would wait for ever for a thread that has gone.
+                // Otherwise a thread that waits for this piece would wait for ever for a thread that has ended.
                 let outcome = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| work.map(|work| work(piece))));
                 if outcome.is_err() {
                     self.failed.store(true, Ordering::Relaxed);
@@ -235,12 +236,12 @@ impl Team {
     }
 }
 
-/// Whether pieces are left of those of a member.
+/// Whether a member has remaining pieces.
 fn is_left(pieces: u64) -> bool {
     pieces & 0xffff < pieces >> 16
 }
 
-/// Waits a moment: awake at first, then so that other threads may run.
+/// Waits a moment: first busily, then yielding to other threads.
 fn pause(looks: u32) {
     match looks {
         0 => {}
@@ -253,7 +254,7 @@ fn pause(looks: u32) {
 mod tests {
     use super::Team;
 
-    /// Runs the work with a team of so many threads.
+    /// Runs the work with a team of this many threads.
     fn with(members: usize, work: impl FnOnce(&Team)) {
         let team = Team::new(members);
         std::thread::scope(|scope| {

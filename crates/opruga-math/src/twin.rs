@@ -1,9 +1,9 @@
-//! Two lanes side by side, for what waits for roots and divisions most of its time: while one waits, the other computes.
+//! Two lanes side by side, for computations that mostly wait for roots and divisions: while one waits, the other computes.
 
 use crate::lane::Lane;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-/// Two lanes of one kind; every number is computed as it would be alone.
+/// Two lanes of the same type; every number is computed as it would be alone.
 #[derive(Clone, Copy, Debug)]
 pub struct Twin<S>(pub S, pub S);
 
@@ -104,7 +104,7 @@ mod tests {
     #[test]
     fn each_of_the_two_has_the_bits_that_it_has_alone() {
         let one = [[1.0, 0.2, -0.3], [0.1, 0.9, 0.4], [-0.2, 0.3, 1.1]];
-        // Orthogonal already: done before the other.
+        // Already orthogonal, so it is done before the other.
         let other = [[0.0, -2.0, 0.0], [3.0, 0.0, 0.0], [0.0, 0.0, 0.5]];
         let mut both = [[Twin::<f64>::zero(); 3]; 3];
         for i in 0..3 {

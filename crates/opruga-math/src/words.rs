@@ -1,14 +1,14 @@
-//! How messages say numbers and counts: one way in all crates.
+//! How messages write numbers and counts, in the same way in all crates.
 
-/// A number for people: six significant digits at most, no zeros behind them; an exponent below 10⁻⁴ and from 10⁷ up.
+/// Writes a number for people: at most six significant digits without trailing zeros, and an exponent below 10⁻⁴ and from 10⁷ up.
 ///
-/// Tables and JSON have all digits; sentences need as many as a person reads.
+/// Tables and JSON contain all digits; sentences need only as many as a person reads.
 #[must_use]
 pub fn number(x: f64) -> String {
     rounded(x, 6)
 }
 
-/// The same with so many significant digits.
+/// The same with this many significant digits.
 #[must_use]
 pub fn rounded(x: f64, digits: usize) -> String {
     if !x.is_finite() {
@@ -17,7 +17,7 @@ pub fn rounded(x: f64, digits: usize) -> String {
     if x == 0.0 {
         return "0".into();
     }
-    // Rounded once: the second rounding finds nothing left to do.
+    // Rounded once; the second formatting does not round again.
     let rounded = format!("{x:.*e}", digits.clamp(1, 15) - 1);
     let x: f64 = rounded.parse().unwrap_or(x);
     let (mantissa, exponent) = rounded.split_once('e').unwrap_or((&rounded, "0"));

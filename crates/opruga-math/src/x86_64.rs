@@ -3,9 +3,9 @@
 //! Their operations are the basic ones of IEEE 754, so all give the same bits.
 //!
 //! # Safety
-//! The instructions of AVX2 and AVX-512 exist only on processors that have them. The types are private to this
-//! crate and values of them are made inside `Simd::run` alone, after the processor was asked. `read` and `write` hand
-//! the promise of their caller on to the load and store instructions.
+//! The instructions of AVX2 and AVX-512 exist only on processors that have them. The types are private to this crate, and their
+//! values are created only in `Simd::run`, after the processor has been tested. `read` and `write` pass the guarantees of their
+//! caller on to the load and store instructions.
 #![allow(unsafe_code, unused_unsafe)] // not every operation of every register is unsafe
 
 use crate::lane::{Lane, ROW, Register};
@@ -88,7 +88,7 @@ macro_rules! register {
                     <$type as Lane>::zero(),
                     <$type as Lane>::one(),
                 );
-                // What is not positive and normal is rare and goes the long way.
+                // Numbers that are not positive and normal are rare and take the slow path.
                 if <$type as Lane>::any(<$type as Lane>::zero().less(special)) {
                     return self.each_number(<f64 as Lane>::ln);
                 }
@@ -99,7 +99,7 @@ macro_rules! register {
             fn exp(self) -> Self { self.each_number(<f64 as Lane>::exp) }
         }
         impl $type {
-            /// A function of one number, for each.
+            /// Applies a function of one number to each.
             #[inline(always)]
             fn each_number(self, function: fn(f64) -> f64) -> Self {
                 let mut numbers = [0.0; $count];
@@ -143,22 +143,23 @@ macro_rules! register {
     };
 }
 
-/// The bits of √½, rounded down to 32 bits, and how far they lie below those of 1: where numbers are split for the logarithm.
+/// The bits of √½, rounded down to 32 bits, and their difference from those of 1: numbers are split there for the logarithm.
 const ROOT_OF_HALF: i64 = 0x3fe6_a09e << 32;
 const SHIFT: i64 = (0x3ff0_0000 - 0x3fe6_a09e) << 32;
 /// The bits of the fraction.
 const FRACTION: i64 = (1 << 52) - 1;
-/// The bits of 2⁵², in whose last places a small whole number becomes a floating one; with the bias of the exponent.
+/// The bits of 2⁵², in whose last places a small whole number becomes a floating-point number; including the bias of the
+/// exponent.
 const WHOLE: i64 = 0x4330_0000_0000_0000;
 const BIAS: f64 = 4_503_599_627_370_496.0 + 1023.0;
 
-/// A count as a number, eight at most: only small signed integers are converted by one instruction everywhere.
+/// Converts a count of eight at most: only small signed integers are converted by one instruction everywhere.
 #[inline(always)]
 fn few(count: usize) -> f64 {
     f64::from(count.min(8) as i32)
 }
 
-/// 0, 1, 2, 3: compared with a count, they give the mask of its first lanes.
+/// 0, 1, 2, 3: a comparison with a count gives the mask of its first lanes.
 const LANE_INDICES: [f64; 4] = [0.0, 1.0, 2.0, 3.0];
 
 register! {
@@ -226,7 +227,7 @@ register! {
     split |x| split_avx512(x), rows |at| rows_avx512(at), to_rows |a, b, c, d, to| to_rows_avx512(a, b, c, d, to)
 }
 
-/// A mask of the first lanes. A function: what is longer than a call is not inlined as a closure.
+/// A mask of the first lanes. This is a function, because a closure longer than one call is not inlined.
 ///
 /// # Safety
 /// The processor must have AVX2.
@@ -252,7 +253,7 @@ unsafe fn split_avx2(x: __m256d) -> (__m256d, __m256d) {
     (_mm256_castsi256_pd(mantissa), _mm256_sub_pd(_mm256_castsi256_pd(exponent), _mm256_set1_pd(BIAS)))
 }
 
-/// The same of eight numbers.
+/// The same for eight numbers.
 ///
 /// # Safety
 /// The processor must have AVX-512.
@@ -273,7 +274,7 @@ unsafe fn split_avx512(x: __m512d) -> (__m512d, __m512d) {
 #[inline]
 #[target_feature(enable = "avx,avx2")]
 unsafe fn rows_avx2(at: [*const f64; 4]) -> [__m256d; ROW] {
-    // SAFETY: the caller promises four numbers at every address.
+    // SAFETY: the caller guarantees four numbers at every address.
     let (a, b, c, d) =
         unsafe { (_mm256_loadu_pd(at[0]), _mm256_loadu_pd(at[1]), _mm256_loadu_pd(at[2]), _mm256_loadu_pd(at[3])) };
     // Numbers 0 and 2 of two rows each, numbers 1 and 3.
@@ -294,7 +295,7 @@ unsafe fn rows_avx2(at: [*const f64; 4]) -> [__m256d; ROW] {
 #[inline]
 #[target_feature(enable = "avx,avx2,avx512f,avx512dq,avx512vl")]
 unsafe fn rows_avx512(at: [*const f64; 8]) -> [__m512d; ROW] {
-    // SAFETY: the caller promises four numbers at every address.
+    // SAFETY: the caller guarantees four numbers at every address.
     let (a, b, c, d) = unsafe {
         (
             _mm512_insertf64x4::<1>(_mm512_castpd256_pd512(_mm256_loadu_pd(at[0])), _mm256_loadu_pd(at[4])),
@@ -319,14 +320,14 @@ unsafe fn rows_avx512(at: [*const f64; 8]) -> [__m512d; ROW] {
 /// Four registers as four rows of four numbers.
 ///
 /// # Safety
-/// The processor must have AVX2, and there must be room for sixteen numbers.
+/// The processor must have AVX2, and there must be space for sixteen numbers.
 #[inline]
 #[target_feature(enable = "avx,avx2")]
 unsafe fn to_rows_avx2(a: __m256d, b: __m256d, c: __m256d, d: __m256d, to: *mut f64) {
     // First and second half of rows 0 and 2, and of rows 1 and 3.
     let (even, odd) = (_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b));
     let (even_end, odd_end) = (_mm256_unpacklo_pd(c, d), _mm256_unpackhi_pd(c, d));
-    // SAFETY: the caller promises room for sixteen numbers.
+    // SAFETY: the caller guarantees space for sixteen numbers.
     unsafe {
         _mm256_storeu_pd(to, _mm256_permute2f128_pd::<0x20>(even, even_end));
         _mm256_storeu_pd(to.add(4), _mm256_permute2f128_pd::<0x20>(odd, odd_end));
@@ -338,7 +339,7 @@ unsafe fn to_rows_avx2(a: __m256d, b: __m256d, c: __m256d, d: __m256d, to: *mut 
 /// Four registers as eight rows of four numbers.
 ///
 /// # Safety
-/// The processor must have AVX-512, and there must be room for 32 numbers.
+/// The processor must have AVX-512, and there must be space for 32 numbers.
 #[inline]
 #[target_feature(enable = "avx,avx2,avx512f,avx512dq,avx512vl")]
 unsafe fn to_rows_avx512(a: __m512d, b: __m512d, c: __m512d, d: __m512d, to: *mut f64) {
@@ -351,7 +352,7 @@ unsafe fn to_rows_avx512(a: __m512d, b: __m512d, c: __m512d, d: __m512d, to: *mu
     let (rows_02, rows_46) =
         (_mm512_permutex2var_pd(even, low, even_end), _mm512_permutex2var_pd(even, high, even_end));
     let (rows_13, rows_57) = (_mm512_permutex2var_pd(odd, low, odd_end), _mm512_permutex2var_pd(odd, high, odd_end));
-    // SAFETY: the caller promises room for 32 numbers.
+    // SAFETY: the caller guarantees space for 32 numbers.
     unsafe {
         for (k, (even, odd)) in [(rows_02, rows_13), (rows_46, rows_57)].into_iter().enumerate() {
             let to = to.add(16 * k);
@@ -363,7 +364,7 @@ unsafe fn to_rows_avx512(a: __m512d, b: __m512d, c: __m512d, d: __m512d, to: *mu
     }
 }
 
-/// Eight numbers from eight indices of a slice.
+/// The numbers at eight indices of a slice.
 ///
 /// # Safety
 /// The processor must have AVX-512.
@@ -371,7 +372,7 @@ unsafe fn to_rows_avx512(a: __m512d, b: __m512d, c: __m512d, d: __m512d, to: *mu
 #[target_feature(enable = "avx,avx2,avx512f,avx512dq,avx512vl")]
 unsafe fn gather_avx512(from: &[f64], indices: &[u32]) -> __m512d {
     assert!(from.len() <= i32::MAX as usize && indices.len() == 8);
-    // SAFETY: eight indices were given, and all of them lie in the slice.
+    // SAFETY: eight indices are given, and all of them are within the slice.
     unsafe {
         let index = _mm256_loadu_si256(indices.as_ptr().cast());
         let inside = _mm256_cmplt_epu32_mask(index, _mm256_set1_epi32(from.len() as i32));
