@@ -1,4 +1,4 @@
-//! Dense parts beside a sparse matrix, as they were delivered, and what factors both.
+//! Dense parts next to a sparse matrix, as delivered, and their factors.
 
 use crate::blocks::{Block, times};
 use crate::rank_one::RankOne;
@@ -6,7 +6,7 @@ use opruga_core::dense::Dense;
 use opruga_core::potential::{DensePart, Following, RankOnePart};
 use std::sync::Arc;
 
-/// A dense part on some nodes, between projectors where directions are held.
+/// A dense part on some nodes, between projectors if directions are held.
 #[derive(Clone, Debug)]
 pub(crate) struct Beside<const D: usize> {
     pub(crate) factor: f64,
@@ -14,7 +14,7 @@ pub(crate) struct Beside<const D: usize> {
     pub(crate) indices: Vec<u32>,
     pub(crate) matrix: Arc<Dense>,
     pub(crate) following: Option<Following>,
-    /// By the numbers of nodes in the list.
+    /// The projectors, by the numbers of nodes in the list.
     pub(crate) pinned: Vec<(u32, Block<D>)>,
 }
 
@@ -42,7 +42,7 @@ impl<const D: usize> Beside<D> {
     pub(crate) fn size_at(&self, number: usize) -> f64 {
         self.factor * (0..D).map(|d| self.matrix.at(number * D + d, number * D + d).abs()).sum::<f64>() / D as f64
     }
-    /// The diagonal block of a node in its list, without what is held.
+    /// The diagonal block of a node in its list, without the held directions.
     pub(crate) fn diagonal_block(&self, number: usize) -> Block<D> {
         self.part().block(number, number)
     }
@@ -52,7 +52,7 @@ impl<const D: usize> Beside<D> {
         for (number, projector) in &self.pinned {
             free[*number as usize] = times(projector, &free[*number as usize]);
         }
-        // The list is in the order of the matrix, which a part reads by indices.
+        // The list is in the order of the matrix, while a part is read by indices.
         let order: Vec<u32> = (0..self.indices.len() as u32).collect();
         let mut out = DensePart { indices: &order, ..self.part() }.product(|number| free[number]);
         for (number, projector) in &self.pinned {
@@ -62,7 +62,7 @@ impl<const D: usize> Beside<D> {
             (0..D).for_each(|d| y[*index as usize][d] += value[d]);
         }
     }
-    /// What a frame that follows adds, as parts of rank one.
+    /// The terms of a frame that follows, as rank-one terms.
     pub(crate) fn parts_of_rank_one(&self) -> Vec<RankOne<D>> {
         let part = |(factor, entries): RankOnePart<D>| {
             let entries = entries.into_iter().map(|(index, entry)| (index as u32, entry)).collect();
@@ -70,8 +70,8 @@ impl<const D: usize> Beside<D> {
         };
         self.part().parts_of_rank_one().into_iter().map(part).collect()
     }
-    /// Holds directions: those of nodes that are not free, by their projectors. The frame of a body that is held follows by parts of rank
-    /// one, which are given.
+    /// Holds the directions of nodes that are not free, by their projectors. If any is held, the frame follows through rank-one
+    /// terms, which are returned.
     pub(crate) fn constrain(&mut self, free: &[bool], projectors: &[Block<D>]) -> Vec<RankOne<D>> {
         self.pinned.clear();
         for (number, index) in self.indices.iter().enumerate().filter(|(_, index)| !free[**index as usize]) {
@@ -86,7 +86,7 @@ impl<const D: usize> Beside<D> {
     }
     /// The number of a node in its list.
     pub(crate) fn number_of(&self, node: usize) -> Option<usize> {
-        // Bodies by themselves list their nodes in order.
+        // A body by itself lists its nodes in order.
         if self.indices.get(node) == Some(&(node as u32)) {
             return Some(node);
         }

@@ -1,4 +1,4 @@
-//! Small square matrices: one node's part of a large one.
+//! Small square matrices: the part of one node in a large one.
 
 /// A square block.
 pub type Block<const D: usize> = [[f64; D]; D];
@@ -63,7 +63,7 @@ pub fn subtract_product_transposed<const D: usize>(c: &mut Block<D>, a: &Block<D
     }
 }
 
-/// The lower triangle L with L Lᵀ = A; none where A is not positive definite.
+/// The lower triangle L with L Lᵀ = A; `None` if A is not positive definite.
 #[inline]
 pub fn lower<const D: usize>(a: &Block<D>) -> Option<Block<D>> {
     let mut l = [[0.0; D]; D];
@@ -103,7 +103,7 @@ pub fn inverse_of_lower<const D: usize>(l: &Block<D>) -> Block<D> {
     out
 }
 
-/// The inverse of a block; none where it is not positive definite.
+/// The inverse of a block; `None` if it is not positive definite.
 #[inline]
 pub fn inverse_of_positive<const D: usize>(a: &Block<D>) -> Option<Block<D>> {
     let l = inverse_of_lower(&lower(a)?);
@@ -118,7 +118,7 @@ pub fn inverse_of_positive<const D: usize>(a: &Block<D>) -> Option<Block<D>> {
     Some(out)
 }
 
-/// A block without the constrained directions, and with what is as large as its diagonal in these: P A P + (1 − P) s.
+/// A block without the constrained directions, which get a diagonal of the same size: P A P + (1 − P) s.
 #[inline]
 pub fn constrained_block<const D: usize>(a: &Block<D>, projector: &Block<D>) -> Block<D> {
     let mut size = 0.0;
@@ -136,13 +136,13 @@ pub fn constrained_block<const D: usize>(a: &Block<D>, projector: &Block<D>) -> 
     out
 }
 
-/// The vectors of the nodes that a long vector is made of.
+/// A long vector as the vectors of its nodes.
 #[inline(always)]
 pub fn nodes<const D: usize>(x: &[f64]) -> &[[f64; D]] {
     x.as_chunks::<D>().0
 }
 
-/// The same to be written.
+/// The same, mutable.
 #[inline(always)]
 pub fn nodes_mut<const D: usize>(x: &mut [f64]) -> &mut [[f64; D]] {
     x.as_chunks_mut::<D>().0

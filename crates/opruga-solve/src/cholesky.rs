@@ -1,4 +1,4 @@
-//! The sparse Cholesky factor, by faer; parts of rank one by Woodbury's formula.
+//! The sparse Cholesky factor, by faer; rank-one terms by the Woodbury formula.
 
 use crate::Indefinite;
 use crate::matrix::BlockMatrix;
@@ -13,19 +13,19 @@ use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
 use std::sync::{Mutex, PoisonError};
 
-/// A factored matrix S + Σ c u uᵀ, whose symbolic part and memory are kept while the pattern stays.
+/// A factored matrix S + Σ c u uᵀ, whose symbolic factorisation and memory are kept as long as the pattern does not change.
 ///
-/// Results are the same bits on processors of one class only.
+/// Results have the same bits only on processors of one class.
 #[derive(Default)]
 pub struct Cholesky {
     scalars: Scalars,
     symbolic: Option<SymbolicCholesky<usize>>,
     values: Vec<f64>,
     factored: bool,
-    /// Memory that the library works in.
+    /// The working memory of the library.
     stack: Mutex<Option<MemBuffer>>,
     parts: Woodbury,
-    /// What factors a matrix with dense parts, where there are some.
+    /// The factor of a matrix with dense parts, if there are any.
     turned: TurnedFactor,
     is_turned: bool,
 }
@@ -40,12 +40,12 @@ impl Cholesky {
     /// Factors a matrix.
     ///
     /// # Errors
-    /// [`Indefinite`] where it is not positive definite, or not without its parts of rank one.
+    /// [`Indefinite`] if it is not positive definite, with or without its rank-one terms.
     pub fn update<const D: usize>(&mut self, matrix: &BlockMatrix<D>) -> Result<(), Indefinite> {
         self.take(matrix, None)
     }
 
-    /// Factors a matrix and solves A x = b in place: one way through a large factor serves b and the parts of rank one.
+    /// Factors a matrix and solves A x = b in place: one pass through a large factor serves b and the rank-one terms.
     ///
     /// # Errors
     /// As [`Cholesky::update`].
@@ -86,7 +86,7 @@ impl Cholesky {
         Ok(())
     }
 
-    /// The factor of the scalars, of no dimension of its own: compiled here, once.
+    /// Computes the factor of the scalars, which does not depend on the dimension, so that it is compiled once, here.
     fn factor(&mut self, anew: bool) -> Result<(), Indefinite> {
         let size = self.scalars.size();
         let pattern = SymbolicSparseColMatRef::new_checked(size, size, &self.scalars.start, None, &self.scalars.row);
@@ -127,7 +127,7 @@ impl Cholesky {
         self.solve_all(x, 1);
     }
 
-    /// Solves A x = b in place for so many right-hand sides, which stand one after the other.
+    /// Solves A x = b in place for `count` consecutive right-hand sides.
     pub fn solve_all(&self, x: &mut [f64], count: usize) {
         if !self.factored || x.is_empty() {
             return;
@@ -142,7 +142,7 @@ impl Cholesky {
     }
 }
 
-/// Right-hand sides that one pass through the factor serves: those of the axes of a point.
+/// The number of right-hand sides per pass through the factor: those of the axes of a point.
 const AT_ONCE: usize = 3;
 
 fn solve(

@@ -2,7 +2,7 @@
 
 use crate::{Indefinite, Preconditioner, dot};
 
-/// Room for the vectors of the method.
+/// Memory for the vectors of the method.
 #[derive(Clone, Debug, Default)]
 pub struct Directions {
     residual: Vec<f64>,
@@ -14,19 +14,19 @@ pub struct Directions {
 /// How it ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ended {
-    /// Products with the matrix.
+    /// The number of products with the matrix.
     pub iterations: u32,
     /// |b − A x| relative to |b|, in the norm of the preconditioner.
     pub residual: f64,
 }
 
-/// Solves A x = b for a symmetric positive definite A, of which only the product is known, from x = 0.
+/// Solves A x = b for a symmetric positive definite A, given only its product, starting from x = 0.
 ///
-/// It ends where the residual in the norm of the preconditioner is `tolerance` times that of b, after `most` products, or
-/// where rounding lets it fall no further. Sums have one order, so the bits are the same everywhere.
+/// It ends when the residual in the norm of the preconditioner is `tolerance` times that of b, after `most` products, or when
+/// rounding prevents further progress. Sums have a fixed order, so the bits are the same everywhere.
 ///
 /// # Errors
-/// [`Indefinite`] where a direction of no or of negative curvature is met; x is then what was found until there.
+/// [`Indefinite`] if a direction has zero or negative curvature; x is then the solution so far.
 ///
 /// # Source
 /// Hestenes and Stiefel 1952; Shewchuk, *An introduction to the conjugate gradient method without the agonizing pain*,

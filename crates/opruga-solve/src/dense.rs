@@ -1,6 +1,6 @@
 //! Small dense matrices, row by row.
 
-/// Eigenvalues, rising, and the eigenvectors as rows, of a symmetric matrix of n rows (cyclic Jacobi rotations).
+/// Eigenvalues, ascending, and the eigenvectors as rows, of a symmetric matrix with n rows (cyclic Jacobi rotations).
 pub fn symmetric_eigen(matrix: &[f64], n: usize) -> (Vec<f64>, Vec<Vec<f64>>) {
     let mut a = matrix.to_vec();
     let mut vectors = vec![0.0; n * n];
@@ -53,13 +53,13 @@ fn rotate(a: &mut [f64], vectors: &mut [f64], n: usize, p: usize, q: usize) {
     }
 }
 
-/// Whether a symmetric matrix has so many positive eigenvalues, and no others but negative ones.
+/// Whether a symmetric matrix has this many positive eigenvalues and all others are negative.
 pub fn has_positive(matrix: &[f64], n: usize, positive: usize) -> bool {
     let (values, _) = symmetric_eigen(matrix, n);
     values.iter().filter(|value| **value > 0.0).count() == positive && values.iter().all(|value| *value != 0.0)
 }
 
-/// The inverse by elimination with pivots; none of a singular matrix.
+/// The inverse by elimination with pivots; `None` for a singular matrix.
 pub fn inverse(matrix: &[f64], n: usize) -> Option<Vec<f64>> {
     let mut a = matrix.to_vec();
     let mut out = vec![0.0; n * n];

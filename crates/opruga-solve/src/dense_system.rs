@@ -1,4 +1,4 @@
-//! Large dense systems, by the library faer. Results have the same bits on processors of one class only.
+//! Large dense systems, by the library faer. Results have the same bits only on processors of one class.
 
 use crate::Indefinite;
 use faer::dyn_stack::{MemBuffer, MemStack};
@@ -8,7 +8,7 @@ use faer::perm::PermRef;
 use faer::{Conj, MatMut, MatRef, Par, Side};
 use opruga_core::dense::Dense;
 
-/// The factors of a square matrix, with pivots, in its memory.
+/// The factors of a square matrix, with pivots, stored in the memory of the matrix.
 pub struct DenseFactors {
     size: usize,
     numbers: Vec<f64>,
@@ -26,7 +26,7 @@ impl DenseFactors {
     /// Factors a matrix of `size` rows, given column by column.
     ///
     /// # Errors
-    /// [`Indefinite`] where it is singular or has an entry that is not finite.
+    /// [`Indefinite`] if it is singular or has an entry that is not finite.
     pub fn new(size: usize, mut numbers: Vec<f64>) -> Result<DenseFactors, Indefinite> {
         let (mut rows, mut inverse) = (vec![0; size], vec![0; size]);
         let mut memory =
@@ -36,7 +36,7 @@ impl DenseFactors {
         let regular = (0..size).all(|k| numbers[k * size + k] != 0.0 && numbers[k * size + k].is_finite());
         if regular { Ok(DenseFactors { size, numbers, rows, inverse }) } else { Err(Indefinite) }
     }
-    /// Replaces right-hand sides, given one after the other, by the solutions.
+    /// Replaces consecutive right-hand sides by the solutions.
     pub fn solve(&self, sides: &mut [f64]) {
         self.solve_any(sides, false);
     }
@@ -79,7 +79,7 @@ impl DenseCholesky {
     /// Factors a matrix of `size` rows, whose lower half is given column by column.
     ///
     /// # Errors
-    /// [`Indefinite`] where it is not positive definite.
+    /// [`Indefinite`] if it is not positive definite.
     pub fn new(size: usize, mut numbers: Vec<f64>) -> Result<DenseCholesky, Indefinite> {
         let scratch = llt::factor::cholesky_in_place_scratch::<f64>(size, Par::Seq, Default::default());
         let mut memory = MemBuffer::new(scratch);
@@ -90,7 +90,7 @@ impl DenseCholesky {
         let regular = (0..size).all(|k| numbers[k * size + k].is_finite());
         if regular { Ok(DenseCholesky { size, numbers }) } else { Err(Indefinite) }
     }
-    /// Replaces right-hand sides, given one after the other, by the solutions.
+    /// Replaces consecutive right-hand sides by the solutions.
     pub fn solve(&self, sides: &mut [f64]) {
         let size = self.size;
         if size == 0 {
@@ -114,11 +114,11 @@ impl DenseCholesky {
     }
 }
 
-/// Takes the negative eigenvalues out of a symmetric matrix of `size` rows, given column by column; gives the norm of what was taken
-/// out as a part of that of the matrix. Eigenvalues that are rounding, below 1e-12 of the largest, stay.
+/// Removes the negative eigenvalues from a symmetric matrix of `size` rows, given column by column; returns the norm of the
+/// removed part relative to that of the matrix. Eigenvalues that are rounding, below 1e-12 of the largest, stay.
 ///
 /// # Errors
-/// [`Indefinite`] where an entry is not finite.
+/// [`Indefinite`] if an entry is not finite.
 pub fn clamp(size: usize, numbers: &mut [f64]) -> Result<f64, Indefinite> {
     let matrix = MatRef::from_column_major_slice(numbers, size, size);
     let found = matrix.self_adjoint_eigen(Side::Lower).map_err(|_| Indefinite)?;

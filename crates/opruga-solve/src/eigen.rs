@@ -1,15 +1,16 @@
 //! The lowest natural frequencies: K φ = ω² M φ.
 //!
-//! Both methods look for the largest eigenvalues θ = 1/(ω² + s) of A = (K + s M)⁻¹ M, which belong to the lowest frequencies.
-//! The shift s > 0 lets K be singular, as that of a free body is.
+//! Both methods find the largest eigenvalues θ = 1/(ω² + s) of A = (K + s M)⁻¹ M, which belong to the lowest frequencies. With
+//! the shift s > 0, K may be singular, as for a free body.
 //!
-//! * *Few modes*: a block Lanczos recurrence. A block of several vectors finds frequencies that occur more than once, as those
-//!   of round bodies do; every block is made orthogonal to all before it (twice), so no frequency is found again. The projection
-//!   T = Qᵀ M A Q follows from the products that make a block orthogonal, and is taken apart only when the basis has grown by a
-//!   part of its size.
+//! * *Few modes*: a block Lanczos recurrence. A block of several vectors finds multiple frequencies, such as those of round
+//!   bodies. Every block is orthogonalised against all previous ones (twice), so no frequency is found again. The projection T =
+//!   Qᵀ M A Q follows from the products of the orthogonalisation, and is decomposed only when the basis has grown by a fraction
+//!   of its size.
 //! * *Many modes*: with M = R Rᵀ, all eigenvectors of the dense symmetric matrix Rᵀ (K + s M)⁻¹ R.
 //!
-//! Products of dense matrices and their eigenvectors come from faer, so results have the same bits on processors of one class only.
+//! Products of dense matrices and their eigenvectors come from faer, so results have the same bits only on processors of one
+//! class.
 //!
 //! Source: Grimes, Lewis, Simon 1994; Parlett, *The symmetric eigenvalue problem*, 13.
 
@@ -20,7 +21,7 @@ use faer::{Accum, Mat, MatMut, MatRef, Par, Side};
 /// One natural frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mode {
-    /// ω² [1/s²]; negative where the state is unstable.
+    /// ω² [1/s²]; negative if the state is unstable.
     pub square: f64,
     /// The shape φ with φᵀMφ = 1.
     pub shape: Vec<f64>,
@@ -28,15 +29,15 @@ pub struct Mode {
     pub residual: f64,
 }
 
-/// The matrices K and M of a body, by what they do to vectors of all its coordinates.
+/// The matrices K and M of a body, as functions of vectors of all its coordinates.
 pub struct Pencil<'a> {
-    /// Lumped masses, zero where a coordinate is held: residuals are measured by them.
+    /// Lumped masses, zero for pinned coordinates; residuals are measured with them.
     pub mass: &'a [f64],
     /// The shift s, with which K + s M is positive definite [1/s²].
     pub shift: f64,
-    /// M-orthonormal shapes that are known already and are left out.
+    /// M-orthonormal shapes that are already known and are left out.
     pub known: &'a [Vec<f64>],
-    /// Writes M x; M has neither rows nor columns of what is held.
+    /// Writes M x; M has no rows and columns of pinned coordinates.
     pub weigh: &'a dyn Fn(&[f64], &mut [f64]),
     /// Replaces b by (K + s M)⁻¹ b.
     pub solve: &'a dyn Fn(&mut [f64]),
@@ -44,35 +45,35 @@ pub struct Pencil<'a> {
     pub stiffness: &'a dyn Fn(&[f64], &mut [f64]),
 }
 
-/// Vectors of a block.
+/// The number of vectors of a block.
 const BLOCK: usize = 6;
 
-/// A Ritz pair whose residual is below this part of θ is as good as rounding lets it be.
+/// A Ritz pair whose residual is below this fraction of θ is as accurate as rounding permits.
 const CONVERGED: f64 = 1e-12;
 
-/// The basis is taken apart first when it has twice as many vectors as modes are wanted (fewer have never sufficed), and again when it
-/// has grown by this part of its size: each time costs the cube of the size.
+/// The basis is first decomposed when it has twice as many vectors as the requested modes (fewer have never been enough), and
+/// again when it has grown by this fraction of its size: each time costs the cube of the size.
 const GROWTH: f64 = 0.1;
 
-/// Bodies with up to this many free coordinates are taken apart whole: the dense matrix takes milliseconds.
+/// Bodies with up to this many free coordinates are decomposed as a whole: the dense matrix takes milliseconds.
 const SMALL: f64 = 240.0;
 
-/// Where more than this part of all modes is asked for, the dense matrix costs less than a basis of twice as many vectors.
+/// If more than this fraction of all modes is requested, the dense matrix costs less than a basis of twice as many vectors.
 const MANY: f64 = 0.2;
 
-/// A vector of which less than this part is left by making it orthogonal to others lies in their space.
+/// If less than this fraction of a vector remains after orthogonalisation against others, it is in their space.
 const SPENT: f64 = 1e-10;
 
-/// A vector of which less than this part is left within its block is made orthogonal to the whole basis once more.
+/// If less than this fraction of a vector remains within its block, it is orthogonalised against the whole basis once more.
 const CANCELLED: f64 = 1e-2;
 
-/// Vectors that are tried in place of a spent one.
+/// The number of vectors that are tried in place of a spent one.
 const ATTEMPTS: usize = 4;
 
-/// What the search for so many modes of a body with so many free coordinates takes at most [bytes].
+/// The largest memory of the search for `count` modes of a body with `free` free coordinates [bytes].
 pub fn memory(count: usize, free: usize) -> f64 {
     let (count, free) = (count.min(free) as f64, free as f64);
-    // The dense matrix, its eigenvectors and what finds them; or a basis that grows by reallocation, and its projection.
+    // The dense matrix, its eigenvectors and their computation; or a basis that grows by reallocation, and its projection.
     let vectors = if is_dense(count, free) { 5.0 * free * free } else { 3.0 * count * (2.0 * free + 12.0 * count) };
     8.0 * (vectors + 3.0 * count * free)
 }
@@ -82,10 +83,10 @@ fn is_dense(count: f64, free: f64) -> bool {
     free <= SMALL || count > MANY * free
 }
 
-/// The lowest `count` modes, rising; fewer where the body has fewer.
+/// The lowest `count` modes, ascending; fewer if the body has fewer.
 ///
 /// # Errors
-/// [`Indefinite`] where the matrices have no natural frequencies in numbers: an entry that is not finite.
+/// [`Indefinite`] if the matrices have an entry that is not finite, and so no natural frequencies.
 pub fn lowest_modes(count: usize, pencil: &Pencil) -> Result<Vec<Mode>, Indefinite> {
     let free = pencil.mass.iter().filter(|m| **m > 0.0).count();
     let freedom = free.saturating_sub(pencil.known.len());
@@ -100,7 +101,7 @@ pub fn lowest_modes(count: usize, pencil: &Pencil) -> Result<Vec<Mode>, Indefini
     Ok(modes)
 }
 
-/// A mode with its Rayleigh quotient, which does not lose the digits that 1/θ − s would.
+/// A mode with its Rayleigh quotient, which keeps the digits that 1/θ − s would lose.
 fn mode_of(shape: Vec<f64>, pencil: &Pencil) -> Mode {
     let mut force = vec![0.0; shape.len()];
     (pencil.stiffness)(&shape, &mut force);
@@ -117,7 +118,7 @@ fn mode_of(shape: Vec<f64>, pencil: &Pencil) -> Mode {
     Mode { square, shape, residual: residual.sqrt() }
 }
 
-/// Vectors of one length side by side: a matrix by columns.
+/// Vectors of equal length side by side: a matrix by columns.
 struct Vectors {
     rows: usize,
     entries: Vec<f64>,
@@ -155,7 +156,7 @@ impl Vectors {
         matmul(&mut out, Accum::Replace, self.matrix().transpose(), other.matrix(), 1.0, Par::Seq);
         out
     }
-    /// Subtracts A C of another set A of vectors.
+    /// Subtracts A C, for another set A of vectors.
     fn subtract(&mut self, others: &Vectors, weights: &Mat<f64>) {
         matmul(self.matrix_mut(), Accum::Add, others.matrix(), weights, -1.0, Par::Seq);
     }
@@ -174,7 +175,7 @@ impl Vectors {
     }
 }
 
-/// Eigenvalues, rising, and eigenvectors as columns.
+/// Eigenvalues, ascending, and eigenvectors as columns.
 fn eigen(matrix: &Mat<f64>) -> Result<(Vec<f64>, Mat<f64>), Indefinite> {
     let found = matrix.self_adjoint_eigen(Side::Lower).map_err(|_| Indefinite)?;
     let values: Vec<f64> = found.S().column_vector().iter().copied().collect();
@@ -192,7 +193,7 @@ fn lanczos(count: usize, freedom: usize, pencil: &Pencil) -> Result<Vec<Vec<f64>
         known.push(shape);
     }
     let mut basis = Vectors::new(rows);
-    // The columns of T from the top to below the diagonal; what is above follows from symmetry.
+    // The columns of T from the top to below the diagonal; the rest follows from symmetry.
     let mut projected: Vec<Vec<f64>> = Vec::new();
     let mut seed = 0;
     let mut block = Vectors::new(rows);
@@ -201,11 +202,11 @@ fn lanczos(count: usize, freedom: usize, pencil: &Pencil) -> Result<Vec<Vec<f64>
         seed += 1;
     }
     let mut looked = 0;
-    // The first block has nothing before it: every vector counts whole.
+    // Nothing precedes the first block, so every vector counts in full.
     orthogonalise(&mut block, &known, &basis, pencil);
     let mut lengths = vec![0.0; BLOCK];
     loop {
-        // A block that is orthonormal within itself; what is spent is replaced.
+        // A block that is orthonormal within itself; spent vectors are replaced.
         let fresh = basis.len();
         for k in 0..block.len().min(freedom - fresh) {
             let mut vector = block.at(k).to_vec();
@@ -223,7 +224,7 @@ fn lanczos(count: usize, freedom: usize, pencil: &Pencil) -> Result<Vec<Vec<f64>
             }
         }
         let size = basis.len();
-        // Its images A q, their part in the basis, and what is left for the next block.
+        // Its images A q, their components in the basis, and the remainder for the next block.
         block = Vectors::new(rows);
         for k in fresh..size {
             let mut image = vec![0.0; rows];
@@ -247,7 +248,7 @@ fn lanczos(count: usize, freedom: usize, pencil: &Pencil) -> Result<Vec<Vec<f64>
             continue;
         }
         looked = size;
-        // The part (i, j) stands in the later one of both columns.
+        // The entry (i, j) is in the later of the two columns.
         let t = Mat::from_fn(size, size, |i, j| if i <= j { projected[j][i] } else { projected[i][j] });
         let (theta, vectors) = eigen(&t)?;
         let left = block.products(&block.weighed(pencil));
@@ -270,7 +271,7 @@ fn lanczos(count: usize, freedom: usize, pencil: &Pencil) -> Result<Vec<Vec<f64>
     }
 }
 
-/// Subtracts from vectors their parts in two M-orthonormal sets, twice; gives the parts in the second.
+/// Subtracts from vectors their components in two M-orthonormal sets, twice; returns the components in the second set.
 fn orthogonalise(block: &mut Vectors, known: &Vectors, basis: &Vectors, pencil: &Pencil) -> Mat<f64> {
     let mut parts = Mat::zeros(basis.len(), block.len());
     for _ in 0..2 {
@@ -295,8 +296,8 @@ fn length(vector: &[f64], pencil: &Pencil) -> f64 {
     dot(vector, &momentum).sqrt()
 }
 
-/// Gives a vector that is orthogonal to the basis before `fresh` length one, and makes it orthogonal to the rest of the basis; false if
-/// nothing is left of it, by the length that it had before.
+/// Normalises a vector that is orthogonal to the basis before `fresh`, and makes it orthogonal to the rest of the basis; returns
+/// false if nothing remains of it, compared with its length `before`.
 fn orthonormalise_among(
     vector: &mut [f64],
     before: f64,
@@ -323,14 +324,14 @@ fn orthonormalise_among(
         return false;
     }
     if after < CANCELLED {
-        // The rounding that was left of the basis before it has grown.
+        // The rounding error in the directions of the earlier basis has been amplified.
         return orthonormalise(vector, known, basis, pencil);
     }
     vector.iter_mut().for_each(|v| *v /= after);
     true
 }
 
-/// Makes one vector orthogonal to others and of length one in the scalar product of M; false if nothing is left of it.
+/// Makes one vector orthogonal to others and of length one in the scalar product of M; returns false if nothing remains of it.
 fn orthonormalise(vector: &mut [f64], known: &Vectors, basis: &Vectors, pencil: &Pencil) -> bool {
     let before = length(vector, pencil);
     if !(before > 0.0 && before.is_finite()) {
@@ -348,7 +349,7 @@ fn orthonormalise(vector: &mut [f64], known: &Vectors, basis: &Vectors, pencil: 
     true
 }
 
-/// The shapes of the lowest modes out of all.
+/// The shapes of the lowest modes, from all modes.
 fn dense(count: usize, pencil: &Pencil) -> Result<Vec<Vec<f64>>, Indefinite> {
     let rows = pencil.mass.len();
     let free: Vec<usize> = (0..rows).filter(|k| pencil.mass[*k] > 0.0).collect();
@@ -374,7 +375,7 @@ fn dense(count: usize, pencil: &Pencil) -> Result<Vec<Vec<f64>>, Indefinite> {
             (h[(i, j)], h[(j, i)]) = (mean, mean);
         }
     }
-    // What is known becomes the end of the spectrum: H ← (1 − Q Qᵀ) H (1 − Q Qᵀ) with Q = Rᵀ · known.
+    // Known modes are moved to the end of the spectrum: H ← (1 − Q Qᵀ) H (1 − Q Qᵀ) with Q = Rᵀ · known.
     if !pencil.known.is_empty() {
         let mut known = Vectors::zeros(n, pencil.known.len());
         for (k, shape) in pencil.known.iter().enumerate() {

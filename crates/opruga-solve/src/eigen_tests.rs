@@ -3,11 +3,11 @@ use crate::{BlockMatrix, Cholesky};
 use core::cell::Cell;
 use opruga_core::potential::Sink;
 
-/// Points on an edge of the membrane below.
+/// The number of points on an edge of the membrane below.
 const EDGE: usize = 21;
 
-/// ω² of a square membrane of springs that is held all around: 4 sin²(iπ/2n) + 4 sin²(jπ/2n) with n = EDGE + 1, rising. Pairs (i, j) and
-/// (j, i) have the same frequency.
+/// ω² of a square membrane of springs with a fixed boundary: 4 sin²(iπ/2n) + 4 sin²(jπ/2n) with n = EDGE + 1, ascending. Pairs
+/// (i, j) and (j, i) have the same frequency.
 fn membrane() -> Vec<f64> {
     let part = |i: usize| {
         let sine = libm::sin(core::f64::consts::PI * i as f64 / (2 * (EDGE + 1)) as f64);
@@ -33,7 +33,7 @@ fn stiffness_of_membrane(shift: f64) -> BlockMatrix<1> {
     matrix
 }
 
-/// The lowest modes of the membrane, how many equations were solved for them, and what they are worth.
+/// Finds the lowest modes of the membrane and checks their accuracy; returns the number of solved equations.
 fn check(count: usize, coupled: bool) -> usize {
     let n = EDGE * EDGE;
     let (stiffness, shifted) = (stiffness_of_membrane(0.0), stiffness_of_membrane(1e-5));
@@ -76,7 +76,7 @@ fn check(count: usize, coupled: bool) -> usize {
     solves.get()
 }
 
-/// Each vector of a basis takes one solution of the equations; no frequency is left out, those that occur twice neither.
+/// Each vector of a basis takes one solution of the equations; no frequency is missed, not even double ones.
 #[test]
 fn few_modes_take_a_basis_that_grows_with_their_number() {
     for count in [1, 30, 60] {

@@ -1,4 +1,4 @@
-//! The complete Cholesky factor in arithmetic of one order, for matrices that conjugate gradients make little of.
+//! The complete Cholesky factor with a fixed order of arithmetic, for matrices on which conjugate gradients converge slowly.
 
 use crate::Indefinite;
 use crate::matrix::BlockMatrix;
@@ -7,30 +7,30 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::amd;
 
-/// A factor L Lᵀ = A with all blocks that it has, nodes in the order of least degree.
+/// A factor L Lᵀ = A with all its blocks, with nodes in minimum-degree order.
 ///
-/// It takes several times as long as [`crate::Cholesky`], and gives the same bits on every processor: the order is found by whole numbers,
-/// and sums have one order. Parts of rank one are left out. A nearly incompressible solid takes an incomplete factor as many products as
-/// the matrix has rows; this one takes a few.
+/// It takes several times as long as [`crate::Cholesky`], and gives the same bits on every processor: the order is computed with
+/// whole numbers, and sums have a fixed order. Rank-one terms are left out. For a nearly incompressible solid, an incomplete
+/// factor needs as many products as the matrix has rows; this one needs a few.
 #[derive(Clone, Debug, Default)]
 pub struct FilledCholesky<const D: usize> {
     generation: Option<u64>,
-    /// The node that comes k-th; none where there would be too many blocks.
+    /// The k-th node in the order; empty if there would be too many blocks.
     order: Vec<usize>,
     factor: IncompleteCholesky<D>,
 }
 
-/// Numbers of a factor at most: a hundred megabytes.
+/// The largest number of values in a factor: a hundred megabytes.
 const MOST_NUMBERS: usize = 12_000_000;
 
 /// No node.
 const NONE: usize = usize::MAX;
 
 impl<const D: usize> FilledCholesky<D> {
-    /// Factors a matrix without its parts of rank one.
+    /// Factors a matrix without its rank-one terms.
     ///
     /// # Errors
-    /// [`Indefinite`] where it is not positive definite, and where the factor would have too many blocks.
+    /// [`Indefinite`] if it is not positive definite, or if the factor would have too many blocks.
     pub fn update(&mut self, matrix: &BlockMatrix<D>) -> Result<(), Indefinite> {
         if self.generation != Some(matrix.generation) || self.factor.rows() != matrix.rows() {
             *self = FilledCholesky { generation: Some(matrix.generation), ..FilledCholesky::default() };
@@ -59,7 +59,7 @@ impl<const D: usize> Preconditioner for FilledCholesky<D> {
     }
 }
 
-/// The order of nodes by approximate least degree; none where it cannot be found.
+/// The approximate minimum-degree order of nodes; `None` if it cannot be found.
 fn order<const D: usize>(matrix: &BlockMatrix<D>) -> Option<Vec<usize>> {
     let nodes = matrix.rows();
     let (mut start, mut above) = (vec![0], Vec::new());
@@ -74,8 +74,8 @@ fn order<const D: usize>(matrix: &BlockMatrix<D>) -> Option<Vec<usize>> {
     Some(order)
 }
 
-/// The columns of each row of the factor below the diagonal, rising, by the tree of eliminations (Liu 1990); none where they are more than
-/// `most` altogether, or where there is no order.
+/// The columns of each row of the factor below the diagonal, ascending, by the elimination tree (Liu 1990); `None` if there are
+/// more than `most` in total, or if there is no order.
 fn pattern<const D: usize>(matrix: &BlockMatrix<D>, order: &[usize], most: usize) -> Option<Vec<Vec<u32>>> {
     if order.len() != matrix.rows() {
         return None;
@@ -116,7 +116,7 @@ mod tests {
     use crate::{Directions, conjugate_gradients};
     use opruga_core::potential::Sink;
 
-    /// A lattice of springs in the plane, held at a corner, all of it soft in one direction.
+    /// A lattice of springs in the plane, pinned at a corner, soft in one direction.
     fn lattice(count: usize, soft: f64) -> BlockMatrix<2> {
         let mut matrix = BlockMatrix::<2>::default();
         matrix.assemble(count * count, 0, |matrix| {
@@ -137,7 +137,7 @@ mod tests {
         matrix
     }
 
-    /// The complete factor solves at once what an incomplete one takes many products for, and to the same end.
+    /// The complete factor solves at once a system for which an incomplete one needs many products, with the same result.
     #[test]
     fn the_complete_factor_solves_at_once() {
         let matrix = lattice(20, 0.05);
@@ -161,7 +161,7 @@ mod tests {
         let ((many, rough), (few, fine)) = (solve(&incomplete), solve(&filled));
         assert!(few <= 2 && fine < 1e-7, "{few} products, {fine}");
         assert!(many > 20 && rough < 1e-5, "{many} products, {rough}");
-        // Less than nothing on the diagonal is refused.
+        // A negative diagonal is refused.
         let mut indefinite = lattice(20, 0.05);
         indefinite.add_diagonal(210, -10.0);
         assert_eq!(FilledCholesky::<2>::default().update(&indefinite), Err(Indefinite));

@@ -1,17 +1,17 @@
-//! Solutions of a matrix whose frame follows its nodes, by those of the matrix in a frame that stays.
+//! Solutions for a matrix whose frame follows its nodes, from those for the matrix in a fixed frame.
 //!
 //! A = Tᵀ K T + M + J Qᵀ + Q Jᵀ with T = 1 − V Jᵀ ([`Following`]) and S = K + M, whose inverse is known. With the spin θ = Jᵀ d, the strain
 //! e = d − V θ and P = M V + Q, A d = r is
 //!
 //! S e = r + J ν − P θ,  Jᵀ e = (1 − JᵀV) θ,  (1 − VᵀJ) ν + Pᵀ e + (VᵀP + QᵀV) θ = Vᵀ r,
 //!
-//! where ν stands for VᵀK e − Qᵀ d. Eliminating e leaves 2 (in the plane) or 6 equations, and K is not needed.
+//! where ν denotes VᵀK e − Qᵀ d. Eliminating e leaves 2 equations in the plane or 6 in space, and K is not needed.
 
 use crate::{Indefinite, dense, dot};
 use opruga_core::potential::{Following, mixed};
 use std::sync::Arc;
 
-/// S⁻¹ applied to what a frame follows but for what changes with the state ([`Following::base`]).
+/// S⁻¹ applied to the vectors that a frame follows, except for the part that changes with the state ([`Following::base`]).
 pub(crate) struct SolvedBase {
     base: Arc<Vec<f64>>,
     solved: Vec<f64>,
@@ -28,10 +28,10 @@ impl SolvedBase {
     }
 }
 
-/// What leads from S⁻¹ r to A⁻¹ r. Vectors stand one after the other, one for each axis.
+/// The data that lead from S⁻¹ r to A⁻¹ r. Vectors are consecutive, one for each axis.
 pub(crate) struct FollowingFrame {
     length: usize,
-    /// J and P, and what S⁻¹ makes of them.
+    /// J and P, and the products of S⁻¹ with them.
     follows: Vec<f64>,
     forces: Vec<f64>,
     solved_follows: Vec<f64>,
@@ -43,11 +43,11 @@ pub(crate) struct FollowingFrame {
 }
 
 impl FollowingFrame {
-    /// For a factor of Q and the masses M, one for each row. S has to be positive definite; `right` is another right-hand side, which
-    /// becomes A⁻¹ of it.
+    /// From a factor of Q and the masses M, one for each row. S has to be positive definite; `right` is an additional right-hand
+    /// side, which is replaced by its solution with A⁻¹.
     ///
     /// # Errors
-    /// [`Indefinite`] where A is not positive definite.
+    /// [`Indefinite`] if A is not positive definite.
     pub(crate) fn new(
         following: &Following,
         factor: f64,
@@ -99,7 +99,7 @@ impl FollowingFrame {
                 core[(axes + k) * n + axes + l] = own[at] - inner[at] - loads[at];
             }
         }
-        // S is positive: A is where as many eigenvalues of this matrix are positive as negative.
+        // S is positive. A is too if this matrix has as many positive eigenvalues as negative ones.
         if !dense::has_positive(&core, n, axes) {
             return Err(Indefinite);
         }
@@ -142,7 +142,7 @@ mod tests {
     const NODES: usize = 12;
     const SIZE: usize = 3 * NODES;
 
-    /// Numbers between −1 and 1 that look like chance.
+    /// Pseudo-random numbers between −1 and 1.
     fn number(k: usize) -> f64 {
         libm::sin(1.7 * k as f64 * k as f64 + 0.3 * k as f64)
     }
@@ -186,7 +186,7 @@ mod tests {
         }
     }
 
-    /// What arrives, entry by entry.
+    /// The delivered entries.
     struct Entries(Vec<f64>);
 
     impl Sink<3> for Entries {

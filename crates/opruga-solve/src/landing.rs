@@ -1,27 +1,27 @@
-//! Where matrices of stencils land in a matrix.
+//! Adds matrices of stencils to a matrix.
 //!
-//! Stencils come side by side in the lanes, and a block of the matrix is D² numbers in a row. Turning eight blocks at a time
-//! from the one order into the other in registers takes a quarter longer than reading them number by number.
+//! Stencils are side by side in the lanes, while a block of the matrix is D² consecutive numbers. Transposing eight blocks at a
+//! time in registers takes a quarter longer than reading them number by number.
 
 use crate::blocks::Block;
 use opruga_core::potential::StencilPack;
 use opruga_math::{Pack, Simd, WIDTH, Work};
 
-/// Whether packs of stencils of so many nodes are known here.
+/// Whether packs of stencils with this many nodes are supported here.
 pub(crate) fn is_known(nodes: usize) -> bool {
     matches!(nodes, 3 | 4 | 6 | 8 | 10)
 }
 
-/// The blocks of some rows; what belongs to other rows is left to others.
+/// The blocks of some rows; blocks of other rows are left to others.
 pub(crate) struct Landing<'a, const D: usize> {
     pub(crate) values: &'a mut [Block<D>],
-    /// The index of the first of them in the matrix.
+    /// The index of the first block in the matrix.
     pub(crate) first: usize,
     pub(crate) factor: f64,
 }
 
 impl<const D: usize> Landing<'_, D> {
-    /// Adds the blocks of a pack of stencils at the indices that are known, `[lane][a][b]`.
+    /// Adds the blocks of a pack of stencils at the given indices, `[lane][a][b]`.
     pub(crate) fn add(&mut self, simd: Simd, pack: &StencilPack<'_>, slots: &[u32]) {
         let Landing { values, first, factor } = self;
         let landing = Landing { values, first: *first, factor: *factor };
@@ -48,7 +48,7 @@ impl<const D: usize, const N: usize> Work for Add<'_, '_, D, N> {
     fn run<P: Pack>(self) {
         let Add { landing: Landing { values, first, factor }, pack, slots } = self;
         let blocks = &pack.blocks[..N * N * D * D * WIDTH];
-        // Stencil by stencil, as blocks that come by themselves.
+        // Stencil by stencil, in the same way as separate blocks.
         for (lane, slots) in slots.as_chunks::<N>().0.chunks_exact(N).enumerate() {
             for a in 0..N {
                 for b in a..N {

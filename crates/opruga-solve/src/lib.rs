@@ -1,8 +1,9 @@
-//! Sparse linear systems and eigenvalues of Opruga: what implicit rules, equilibria and natural frequencies need.
+//! Sparse linear systems and eigenvalues of Opruga, for implicit integrators, equilibria and natural frequencies.
 //!
-//! A [`BlockMatrix`] collects the second derivatives that models deliver. It is solved by [`conjugate_gradients`], whose
-//! sums have one order, so that it gives the same bits on every processor ([`Packed`]: in vector instructions and on threads), or by [`Cholesky`] and [`Factors`] (the library
-//! faer), which choose their instructions by the class of the processor. [`eigen`] finds the lowest natural frequencies.
+//! A [`BlockMatrix`] collects the second derivatives that models deliver. It is solved by [`conjugate_gradients`], which gives
+//! the same bits on every processor because its sums have a fixed order ([`Packed`]: with vector instructions and threads), or by
+//! [`Cholesky`] and [`Factors`] (the library faer), which choose their instructions by the class of the processor. [`eigen`]
+//! finds the lowest natural frequencies.
 
 mod beside;
 pub mod blocks;
@@ -34,11 +35,11 @@ pub use preconditioner::{BlockJacobi, IncompleteCholesky, Preconditioner};
 
 use opruga_math::{WIDTH, sum_in_fixed_order};
 
-/// The matrix is not positive definite, or not regular: what was asked for does not exist.
+/// The matrix is not positive definite, or singular, so the requested result does not exist.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Indefinite;
 
-/// The scalar product, in eight partial sums: the same bits everywhere.
+/// The scalar product, in eight partial sums, with the same bits everywhere.
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; WIDTH];
     let (packs, rest) = a.as_chunks::<WIDTH>();

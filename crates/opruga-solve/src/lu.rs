@@ -1,4 +1,4 @@
-//! The sparse factors of a matrix that need be neither definite nor symmetric, by faer.
+//! The sparse factors of a matrix that may be indefinite or unsymmetric, by faer.
 
 use crate::Indefinite;
 use crate::matrix::BlockMatrix;
@@ -10,16 +10,16 @@ use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 
-/// A factored matrix S + Σ c u uᵀ that may be indefinite: partial pivoting.
+/// A factored matrix S + Σ c u uᵀ that may be indefinite, with partial pivoting.
 #[derive(Default)]
 pub struct Factors {
     scalars: Scalars,
     symbolic: Option<SymbolicLu<usize>>,
     factors: Option<Lu<usize, f64>>,
-    /// Whether the rows of the matrix are its columns.
+    /// Whether the matrix is symmetric.
     is_symmetric: bool,
     parts: Woodbury,
-    /// What factors a matrix with dense parts, where there are some.
+    /// The factor of a matrix with dense parts, if there are any.
     turned: Option<TurnedFactor>,
 }
 
@@ -29,7 +29,7 @@ impl core::fmt::Debug for Factors {
     }
 }
 
-/// The rows of a matrix were taken for its columns: one that is not symmetric has the factors of its transpose.
+/// The rows of the matrix were passed as columns, so the factors of an unsymmetric matrix are those of its transpose.
 fn solve(factors: &Lu<usize, f64>, is_symmetric: bool, x: &mut [f64]) {
     let rows = x.len();
     let x = MatMut::from_column_major_slice_mut(x, rows, 1);
@@ -40,15 +40,15 @@ impl Factors {
     /// Factors a matrix.
     ///
     /// # Errors
-    /// [`Indefinite`] where it is singular.
+    /// [`Indefinite`] if it is singular.
     pub fn update<const D: usize>(&mut self, matrix: &BlockMatrix<D>) -> Result<(), Indefinite> {
         self.update_any(matrix, true)
     }
 
-    /// Factors a matrix that may differ from its transpose; its parts of rank one are symmetric.
+    /// Factors a matrix that may differ from its transpose; its rank-one terms are symmetric.
     ///
     /// # Errors
-    /// [`Indefinite`] where it is singular.
+    /// [`Indefinite`] if it is singular.
     pub fn update_any<const D: usize>(
         &mut self,
         matrix: &BlockMatrix<D>,
@@ -73,7 +73,7 @@ impl Factors {
         Ok(())
     }
 
-    /// The factors of the scalars, of no dimension of their own: compiled here, once.
+    /// Computes the factors of the scalars, which do not depend on the dimension, so that this is compiled once, here.
     fn factored(&mut self, anew: bool) -> Result<Lu<usize, f64>, Indefinite> {
         let size = self.scalars.size();
         let pattern = SymbolicSparseColMatRef::new_checked(size, size, &self.scalars.start, None, &self.scalars.row);
@@ -86,7 +86,7 @@ impl Factors {
         Lu::try_new_with_symbolic(symbolic, values).map_err(|_| Indefinite)
     }
 
-    /// Solves A x = b in place; says whether every number that comes out is finite.
+    /// Solves A x = b in place; returns whether the whole solution is finite.
     pub fn solve(&self, x: &mut [f64]) -> bool {
         if let Some(turned) = &self.turned {
             turned.solve(x);

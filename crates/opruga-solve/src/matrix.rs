@@ -1,4 +1,4 @@
-//! A sparse symmetric matrix of blocks, one row and column of blocks for each node, and parts of rank one.
+//! A sparse symmetric matrix of blocks, with one row and column of blocks for each node, and rank-one terms.
 
 use crate::blocks::{Block, isotropic, nodes, nodes_mut, product, times};
 
@@ -9,20 +9,20 @@ use opruga_core::potential::{DensePart, Sink, StencilPack, StencilPacks};
 use opruga_core::threads::each_part;
 use opruga_math::{Simd, WIDTH};
 
-/// Compressed rows of blocks, filled by what models deliver as a [`Sink`].
+/// Compressed rows of blocks, filled by models through [`Sink`].
 ///
-/// The pattern is found once. From then on the k-th call of a model lands where it landed before, without a search; a call
-/// for another block is looked up, and a block that is not there yet makes the pattern grow.
+/// The pattern is determined once. From then on the k-th call of a model goes to the same block as before, without a search; a
+/// call for another block is looked up, and a missing block extends the pattern.
 #[derive(Clone, Debug, Default)]
 pub struct BlockMatrix<const D: usize> {
-    /// Where the blocks of each row begin, and where the last ends.
+    /// The start of the blocks of each row, and the end of the last.
     pub(crate) start: Vec<u32>,
-    /// The column of each block, rising within a row.
+    /// The column of each block, ascending within a row.
     pub(crate) column: Vec<u32>,
     /// The index of the diagonal block of each row.
     pub(crate) diagonal: Vec<u32>,
     pub(crate) values: Vec<Block<D>>,
-    /// How often the pattern has changed.
+    /// The number of changes of the pattern.
     pub(crate) generation: u64,
     scripts: [Script; SCRIPTS],
     script: usize,
@@ -36,20 +36,20 @@ pub struct BlockMatrix<const D: usize> {
     beside: Vec<Beside<D>>,
 }
 
-/// How many orders of calls are remembered.
+/// The number of orders of calls that are remembered.
 const SCRIPTS: usize = 2;
 
-/// An order of calls, and where each lands.
+/// An order of calls, and the block of each.
 #[derive(Clone, Debug, Default)]
 struct Script {
     calls: Vec<(u32, u32)>,
     slots: Vec<u32>,
-    /// Nodes of packs of stencils as they were delivered, and where their blocks land.
+    /// The nodes of packs of stencils as they were delivered, and the indices of their blocks.
     pack_indices: Vec<u32>,
     pack_slots: Vec<u32>,
 }
 
-/// How far packs of stencils have come in their script.
+/// The position of packs of stencils in their script.
 #[derive(Clone, Copy, Debug, Default)]
 struct Cursor {
     indices: usize,
@@ -72,7 +72,7 @@ impl Script {
     }
 }
 
-/// How far ahead a call is looked for that comes out of turn.
+/// How far ahead a call that is out of order is searched for.
 const LOOK_AHEAD: usize = 64;
 
 impl<const D: usize> BlockMatrix<D> {
@@ -84,7 +84,7 @@ impl<const D: usize> BlockMatrix<D> {
     pub fn blocks(&self) -> usize {
         self.column.len()
     }
-    /// The number of parts of rank one.
+    /// The number of rank-one terms.
     pub fn parts(&self) -> usize {
         self.rank_one.len()
     }
@@ -94,8 +94,8 @@ impl<const D: usize> BlockMatrix<D> {
         self.values.capacity() * size_of::<Block<D>>() + (self.column.capacity() + self.start.capacity()) * 4 + scripts
     }
 
-    /// Fills the matrix anew: `deliver` is called once, or more often while the pattern is being found. `script` numbers
-    /// the order of calls, for those who deliver in one order or in another.
+    /// Fills the matrix again: `deliver` is called once, or more often while the pattern is being determined. `script` is the
+    /// number of the order of calls, for models that deliver in different orders.
     pub fn assemble(&mut self, nodes: usize, script: usize, mut deliver: impl FnMut(&mut BlockMatrix<D>)) {
         if self.rows() != nodes {
             *self = BlockMatrix { generation: self.generation + 1, ..BlockMatrix::default() };
@@ -123,11 +123,11 @@ impl<const D: usize> BlockMatrix<D> {
         self.recording = false;
         self.rank_one.truncate(self.ranks);
     }
-    /// What is delivered from now on is multiplied by this.
+    /// Sets the factor of everything that is delivered from now on.
     pub fn scale(&mut self, factor: f64) {
         self.factor = factor;
     }
-    /// Adds a multiple of the unit matrix to the block of a node; the scale does not matter.
+    /// Adds a multiple of the unit matrix to the block of a node, regardless of the scale.
     pub fn add_diagonal(&mut self, node: usize, value: f64) {
         let block = &mut self.values[self.diagonal[node] as usize];
         for d in 0..D {
@@ -182,7 +182,7 @@ impl<const D: usize> BlockMatrix<D> {
         Some(at)
     }
 
-    /// The index of a block, by search.
+    /// Searches for the index of a block.
     fn look_up(&self, key: (u32, u32)) -> Option<usize> {
         let row = self.row(key.0 as usize);
         self.column[row.clone()].binary_search(&key.1).ok().map(|at| row.start + at)
@@ -198,7 +198,7 @@ impl<const D: usize> BlockMatrix<D> {
         }
     }
 
-    /// Notes where the blocks of a pack of stencils land.
+    /// Records the indices of the blocks of a pack of stencils.
     fn record(&mut self, pack: &StencilPack<'_>) {
         self.scripts[self.script].pack_indices.extend_from_slice(pack.indices);
         for lane in 0..pack.count {
@@ -214,7 +214,7 @@ impl<const D: usize> BlockMatrix<D> {
         }
     }
 
-    /// Adds the blocks of a pack of stencils of so many nodes where they landed before; gives the number of these slots.
+    /// Adds the blocks of a pack of stencils at the same indices as before; returns the number of these indices.
     fn replay(&mut self, pack: &StencilPack<'_>) -> usize {
         let count = pack.count * pack.nodes * pack.nodes;
         let slots = &self.scripts[self.script].pack_slots[self.packs.slots..][..count];
@@ -223,7 +223,7 @@ impl<const D: usize> BlockMatrix<D> {
         count
     }
 
-    /// Adds packs of stencils on several threads, each of which looks after some rows; false where they come out of turn.
+    /// Adds packs of stencils on several threads, each of which handles some rows; returns false if they are out of order.
     fn replay_in_rows(&mut self, threads: usize, packs: &dyn StencilPacks<D>) -> bool {
         let (nodes, stencils) = (packs.nodes(), packs.stencils());
         let (index_count, slots) = (stencils.div_ceil(WIDTH) * WIDTH * nodes, stencils * nodes * nodes);
@@ -237,7 +237,7 @@ impl<const D: usize> BlockMatrix<D> {
         if !packs.are_at(known) {
             return false;
         }
-        // Rows with about as many blocks each.
+        // Ranges of rows with about equally many blocks.
         let share = self.values.len().div_ceil(threads);
         let mut rows: Vec<usize> =
             (0..threads).map(|k| self.start.partition_point(|start| (*start as usize) < k * share)).collect();
@@ -258,7 +258,7 @@ impl<const D: usize> BlockMatrix<D> {
         true
     }
 
-    /// y = A x, over all rows in the order of columns: the same bits everywhere.
+    /// y = A x, over all rows in the order of columns, with the same bits everywhere.
     pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
         let by_node = nodes::<D>(x);
         for (row, out) in nodes_mut::<D>(y).iter_mut().enumerate() {
@@ -288,8 +288,8 @@ impl<const D: usize> BlockMatrix<D> {
         out
     }
 
-    /// Takes directions out of the matrix: A ← P A P + (1 − P) s, where P of every node that is not `free` is its
-    /// projector, and s the size of its diagonal.
+    /// Removes directions from the matrix: A ← P A P + (1 − P) s, where P is the projector of every node that is not `free`, and
+    /// s is the size of its diagonal.
     pub fn constrain(&mut self, free: &[bool], projectors: &[Block<D>]) {
         for row in 0..self.rows() {
             for at in self.start[row] as usize..self.start[row + 1] as usize {
@@ -327,7 +327,7 @@ impl<const D: usize> BlockMatrix<D> {
         }
     }
 
-    /// Becomes a copy of another matrix, in memory that is there already; orders of calls are not copied.
+    /// Copies another matrix, reusing memory; orders of calls are not copied.
     pub fn copy_from(&mut self, other: &BlockMatrix<D>) {
         if self.generation != other.generation || self.rows() != other.rows() {
             self.start.clone_from(&other.start);
@@ -344,7 +344,7 @@ impl<const D: usize> BlockMatrix<D> {
         self.ranks = other.ranks;
         self.beside.clone_from(&other.beside);
     }
-    /// The block of a node with itself.
+    /// The diagonal block of a node.
     pub fn diagonal_block(&self, node: usize) -> &Block<D> {
         &self.values[self.diagonal[node] as usize]
     }
@@ -405,7 +405,7 @@ impl<const D: usize> Sink<D> for BlockMatrix<D> {
             let script = &self.scripts[self.script];
             let expected = script.pack_indices.get(self.packs.indices..self.packs.indices + index_count);
             if expected != Some(pack.indices) || script.pack_slots.len() < self.packs.slots + slots {
-                // Out of turn.
+                // Out of order.
                 return self.block_by_block(pack);
             }
         }

@@ -1,4 +1,4 @@
-//! Assembly against a dense matrix, and all solvers against one another.
+//! Assembly, compared with a dense matrix, and all solvers compared with one another.
 
 use super::*;
 use crate::{
@@ -39,7 +39,7 @@ fn matrix(nodes: usize) -> BlockMatrix<2> {
     matrix
 }
 
-/// The matrix as a dense one, by its products.
+/// The matrix as a dense one, from its products.
 fn dense(matrix: &BlockMatrix<2>) -> Vec<Vec<f64>> {
     let size = 2 * matrix.rows();
     (0..size)
@@ -66,11 +66,11 @@ fn assembly_is_the_same_first_replayed_reversed_and_out_of_turn() {
     assert_eq!(dense(&again), expected);
     again.assemble(9, 1, |sink| deliver(9, true, sink));
     again.assemble(9, 1, |sink| deliver(9, true, sink));
-    // The order of additions is another one: rounding.
+    // The order of additions is different: rounding.
     let close =
         |a: &[Vec<f64>], b: &[Vec<f64>]| a.iter().flatten().zip(b.iter().flatten()).all(|(a, b)| (a - b).abs() < 1e-13);
     assert!(close(&dense(&again), &expected));
-    // A script that is not kept to.
+    // An order of calls that differs from the script.
     again.assemble(9, 0, |sink| deliver(9, true, sink));
     assert!(close(&dense(&again), &expected));
     // New blocks.
@@ -117,13 +117,13 @@ fn every_solver_finds_the_same_solution() {
             check(&x, "conjugate gradients");
             counts.push(ended.iterations);
         }
-        // The same with entries that are of single precision, as packs keep them.
+        // The same with entries in single precision, as packs store them.
         let mut matrix = matrix;
         for entry in matrix.values.iter_mut().flatten().flatten() {
             *entry = f64::from(*entry as f32);
         }
         matrix.multiply(&wanted, &mut b);
-        // In packs: with every set of instructions and number of threads the same bits, and the solution.
+        // In packs: the same bits with every set of instructions and number of threads, and the solution.
         let mut bits = Vec::new();
         for simd in Simd::available() {
             for threads in [1, 2, 3] {
@@ -135,7 +135,7 @@ fn every_solver_finds_the_same_solution() {
                     let size = packed.begin(simd, threads, &b);
                     let reached = packed.solve(simd, threads, 1e-13 * size, 1000, &mut x).unwrap();
                     check(&x, "packed");
-                    // The same method with sums in another order, which tells once vectors are no longer conjugate.
+                    // The same method with sums in another order, which shows as soon as vectors are no longer conjugate.
                     assert!(reached.iterations.abs_diff(counts[0]) <= counts[0] / 10, "{reached:?}");
                     bits.push(x.iter().map(|x| x.to_bits()).collect::<Vec<_>>());
                     let (mut whole, mut product) = (vec![0.0; 2 * nodes], vec![0.0; 2 * nodes]);
@@ -146,7 +146,7 @@ fn every_solver_finds_the_same_solution() {
             }
         }
         assert!(bits.iter().all(|x| *x == bits[0]));
-        // A chain is factored exactly: only the two parts of rank one are left.
+        // A chain is factored exactly: only the two rank-one terms remain.
         assert!(counts[1] <= 4, "{counts:?}");
     }
 }
@@ -162,7 +162,7 @@ fn an_indefinite_matrix_is_reported() {
     assert!(BlockJacobi::default().update((0..2).map(|node| matrix.diagonal_block(node))).is_err());
     assert!(IncompleteCholesky::default().update(&matrix).is_err());
     assert!(Factors::default().update(&matrix).is_ok());
-    // Positive but for a part of rank one that softens: 1 − 2.
+    // Positive except for a negative rank-one term: 1 − 2.
     matrix.assemble(2, 0, |sink| {
         sink.block(0, 0, [[1.0, 0.0], [0.0, 1.0]]);
         sink.block(1, 1, [[1.0, 0.0], [0.0, 1.0]]);
@@ -189,7 +189,7 @@ fn directions_that_are_taken_out_stay_out() {
     let mut free = [true; 9];
     let mut projectors = [isotropic(1.0); 9];
     (free[0], projectors[0]) = (false, isotropic(0.0));
-    // Node 4 slides along the diagonal only.
+    // Node 4 slides only along the diagonal.
     (free[4], projectors[4]) = (false, [[0.5, 0.5], [0.5, 0.5]]);
     matrix.constrain(&free, &projectors);
     let mut cholesky = Cholesky::default();
@@ -201,7 +201,7 @@ fn directions_that_are_taken_out_stay_out() {
     let b = x.clone();
     cholesky.solve(&mut x);
     assert!(x[0].abs() < 1e-14 && x[1].abs() < 1e-14 && ((x[8] - x[9]) * s).abs() < 1e-13);
-    // The free rows are satisfied by the matrix as it was.
+    // The free rows satisfy the original matrix.
     for row in (0..18).filter(|row| ![0, 1, 8, 9].contains(row)) {
         let product: f64 = (0..18).map(|column| full[row][column] * x[column]).sum();
         assert!((product - b[row]).abs() < 1e-11);
@@ -253,7 +253,7 @@ fn modes_of_a_free_ring_come_in_pairs() {
     }
 }
 
-/// A matrix that is not its transpose: the factors solve with it and not with the transpose.
+/// An unsymmetric matrix: the factors solve with it and not with its transpose.
 #[test]
 fn factors_of_an_unsymmetric_matrix_solve_with_it() {
     let deliver = |sink: &mut dyn Sink<2>| {

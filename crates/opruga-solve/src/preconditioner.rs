@@ -1,4 +1,4 @@
-//! What makes conjugate gradients fast: an inverse that is roughly right.
+//! Preconditioners, which make conjugate gradients fast: approximate inverses.
 
 use crate::Indefinite;
 use crate::blocks::{
@@ -13,7 +13,7 @@ pub trait Preconditioner {
     fn apply(&self, r: &[f64], z: &mut [f64]);
 }
 
-/// The inverse of every node's own block.
+/// The inverse of the diagonal block of every node.
 #[derive(Clone, Debug, Default)]
 pub struct BlockJacobi<const D: usize> {
     inverse: Vec<Block<D>>,
@@ -23,7 +23,7 @@ impl<const D: usize> BlockJacobi<D> {
     /// Takes the diagonal blocks of a matrix.
     ///
     /// # Errors
-    /// [`Indefinite`] where a block is not positive definite.
+    /// [`Indefinite`] if a block is not positive definite.
     pub fn update<'a>(&mut self, blocks: impl ExactSizeIterator<Item = &'a Block<D>>) -> Result<(), Indefinite> {
         self.inverse.resize(blocks.len(), [[0.0; D]; D]);
         for (inverse, block) in self.inverse.iter_mut().zip(blocks) {
@@ -43,8 +43,8 @@ impl<const D: usize> Preconditioner for BlockJacobi<D> {
 
 /// The incomplete Cholesky factor: L Lᵀ ≈ A, with blocks of L only where A has some.
 ///
-/// Chains are factored exactly. Where the factor breaks down, the diagonal is raised by a thousandth, and then by ten
-/// times as much until it does not (Manteuffel 1980).
+/// Chains are factored exactly. If the factorisation breaks down, the diagonal is raised by a thousandth, and then by ten times
+/// as much until it succeeds (Manteuffel 1980).
 ///
 /// # Source
 /// Meijerink and van der Vorst 1977.
@@ -53,7 +53,7 @@ pub struct IncompleteCholesky<const D: usize> {
     generation: u64,
     start: Vec<u32>,
     column: Vec<u32>,
-    /// For each block below the diagonal its index in the matrix, or [`FILL`]; and for each on the diagonal.
+    /// For each block below the diagonal its index in the matrix, or [`FILL`]; and for each block on the diagonal.
     source: Vec<u32>,
     diagonal: Vec<u32>,
     below: Vec<Block<D>>,
@@ -61,7 +61,7 @@ pub struct IncompleteCholesky<const D: usize> {
     inverse: Vec<Block<D>>,
 }
 
-/// No index in the matrix: a block that only the factor has.
+/// No index in the matrix: a block that exists only in the factor.
 const FILL: u32 = u32::MAX;
 
 impl<const D: usize> IncompleteCholesky<D> {
@@ -93,7 +93,7 @@ impl<const D: usize> IncompleteCholesky<D> {
     /// Factors a matrix.
     ///
     /// # Errors
-    /// [`Indefinite`] where the diagonal would have to be raised by more than itself.
+    /// [`Indefinite`] if the diagonal would have to be raised by more than itself.
     pub fn update(&mut self, matrix: &BlockMatrix<D>) -> Result<(), Indefinite> {
         if self.generation != matrix.generation || self.start.len() != matrix.rows() + 1 {
             self.take_pattern(matrix);

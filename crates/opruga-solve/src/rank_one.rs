@@ -1,4 +1,4 @@
-//! Parts of rank one, as they were delivered.
+//! Rank-one terms, as delivered.
 
 use crate::blocks::nodes_mut;
 

@@ -8,12 +8,12 @@ pub(crate) struct Scalars {
     pub(crate) start: Vec<usize>,
     pub(crate) row: Vec<usize>,
     pub(crate) values: Vec<f64>,
-    /// Which matrix the pattern belongs to: changes of pattern, rows.
+    /// The matrix of the pattern: number of changes of the pattern, and number of rows.
     pattern: (u64, usize),
 }
 
 impl Scalars {
-    /// Takes a matrix, whole or the lower triangle of it; says whether the pattern is new.
+    /// Takes a matrix, the whole or its lower triangle; returns whether the pattern is new.
     pub(crate) fn take<const D: usize>(&mut self, matrix: &BlockMatrix<D>, lower: bool) -> bool {
         let pattern = (matrix.generation, matrix.rows());
         let anew = self.pattern != pattern || self.start.is_empty();

@@ -1,4 +1,4 @@
-//! Factors of matrices with dense parts that turn with their body, in the frame of the body.
+//! Factors of matrices with dense parts that rotate with their body, in the frame of the body.
 
 use crate::Indefinite;
 use crate::blocks::{Block, nodes, nodes_mut, product};
@@ -11,10 +11,10 @@ use opruga_core::dense::Dense;
 use opruga_math::Simd;
 use std::sync::Arc;
 
-/// The factor of a matrix with dense parts, in the frame of the body where there is one such part.
+/// The factor of a matrix with dense parts, in the frame of the body if there is one such part.
 ///
-/// Where all that stands beside the dense part is the same in every frame (masses, nodes that are held whole), the factor does not
-/// depend on the frame, and is kept while the body turns and moves.
+/// If everything next to the dense part is the same in every frame (masses, nodes with all axes pinned), the factor does not
+/// depend on the frame, and is kept while the body rotates and moves.
 #[derive(Default)]
 pub(crate) struct TurnedFactor {
     size: usize,
@@ -22,16 +22,17 @@ pub(crate) struct TurnedFactor {
     /// The rotation, row by row.
     frame: Vec<f64>,
     solver: Option<Solver>,
-    /// What the factor was made of, where that does not turn; and the matrix itself, which keeps its address.
+    /// The data from which the factor was made, if they do not rotate; and the matrix itself, which keeps its address.
     made_of: Vec<u64>,
     matrix: Option<Arc<Dense>>,
-    /// What a frame that follows its nodes adds, and the solutions for what it follows at rest, which are kept with the inverse.
+    /// The terms of a frame that follows its nodes, and the solutions for the vectors that it follows at rest, which are kept
+    /// with the inverse.
     following: Option<FollowingFrame>,
     solved_base: Option<SolvedBase>,
 }
 
 enum Solver {
-    /// The inverse of a matrix that stays: a product with it reads half of what a solution with the factor does.
+    /// The inverse of a matrix that does not change: a product with it reads half as much as a solution with the factor.
     Inverse(Dense),
     Positive(DenseCholesky),
     Any(DenseFactors),
@@ -44,7 +45,7 @@ impl core::fmt::Debug for TurnedFactor {
 }
 
 impl TurnedFactor {
-    /// Factors a matrix without its parts of rank one.
+    /// Factors a matrix without its rank-one terms.
     pub(crate) fn update<const D: usize>(&mut self, matrix: &BlockMatrix<D>, positive: bool) -> Result<(), Indefinite> {
         let parts = matrix.beside();
         let mut frame = [[0.0; D]; D];
@@ -73,8 +74,8 @@ impl TurnedFactor {
         self.made_of = made_of.unwrap_or_default();
         Ok(())
     }
-    /// Takes a frame that follows its nodes, where the inverse is at hand and nothing else is of rank one; says whether it did.
-    /// `right` becomes the solution.
+    /// Takes a frame that follows its nodes, if the inverse exists and there are no other rank-one terms; returns whether it did.
+    /// `right` is replaced by the solution.
     pub(crate) fn follow<const D: usize>(
         &mut self,
         matrix: &BlockMatrix<D>,
@@ -109,7 +110,7 @@ impl TurnedFactor {
         (self.following, self.solved_base) = (Some(frame), Some(base));
         Ok(true)
     }
-    /// Takes all parts of rank one: those of a frame that follows, and others.
+    /// Takes all rank-one terms: those of a frame that follows, and others.
     pub(crate) fn update_parts<const D: usize>(
         &self,
         parts: &mut Woodbury,
@@ -121,7 +122,7 @@ impl TurnedFactor {
         let all = matrix.rank_one().iter().chain(&of_frames);
         parts.update(matrix.rows() * D, all, positive, right, |sides| self.solve_all(&mut sides.collect::<Vec<_>>()))
     }
-    /// Replaces a right-hand side by the solution: with a frame that follows, and without parts of rank one.
+    /// Replaces a right-hand side by the solution, with a frame that follows but without rank-one terms.
     pub(crate) fn solve(&self, side: &mut [f64]) {
         let (Some(following), Some(Solver::Inverse(inverse))) = (&self.following, &self.solver) else {
             return self.solve_all(&mut [side]);
@@ -134,7 +135,7 @@ impl TurnedFactor {
         side.copy_from_slice(&solved[..side.len()]);
         self.turn(side, true);
     }
-    /// Replaces right-hand sides by the solutions without parts of rank one.
+    /// Replaces right-hand sides by the solutions without rank-one terms.
     fn solve_all(&self, sides: &mut [&mut [f64]]) {
         let inverse = if let Some(Solver::Inverse(inverse)) = &self.solver { Some(inverse) } else { None };
         let length = inverse.map_or(self.size, Dense::padded);
@@ -153,14 +154,14 @@ impl TurnedFactor {
             self.turn(side, true);
         }
     }
-    /// A vector in the frame, filled up to a length.
+    /// A vector in the frame, padded to a length.
     fn in_frame(&self, side: &[f64], length: usize) -> Vec<f64> {
         let mut out = vec![0.0; length];
         out[..side.len()].copy_from_slice(side);
         self.turn(&mut out[..side.len()], false);
         out
     }
-    /// Into the frame, or back.
+    /// Rotates into the frame, or back.
     fn turn(&self, b: &mut [f64], back: bool) {
         let (n, frame) = (self.dimensions, &self.frame);
         for node in b.chunks_exact_mut(n) {
@@ -178,7 +179,7 @@ fn is_isotropic<const D: usize>(block: &Block<D>) -> bool {
     (0..D).all(|i| (0..D).all(|j| block[i][j] == if i == j { block[0][0] } else { 0.0 }))
 }
 
-/// The bits of all that the factor is made of, where that is the same in every frame.
+/// The bits of all data from which the factor is made, if they are the same in every frame.
 fn unturned<const D: usize>(matrix: &BlockMatrix<D>, positive: bool) -> Option<Vec<u64>> {
     let [only] = matrix.beside() else { return None };
     let mut out = vec![u64::from(positive), only.factor.to_bits()];
@@ -203,12 +204,13 @@ fn unturned<const D: usize>(matrix: &BlockMatrix<D>, positive: bool) -> Option<V
     Some(out)
 }
 
-/// 𝓡ᵀ A 𝓡 column by column, without parts of rank one.
+/// 𝓡ᵀ A 𝓡 column by column, without rank-one terms.
 fn in_frame<const D: usize>(matrix: &BlockMatrix<D>, frame: &Block<D>) -> Vec<f64> {
     let size = matrix.rows() * D;
     let mut out = vec![0.0; size * size];
     let transposed: Block<D> = core::array::from_fn(|i| core::array::from_fn(|j| frame[j][i]));
-    // What is the same in every frame stays so to the bit: a factor that is kept while the body turns is the one that would be made anew.
+    // Blocks that are the same in every frame do not change in any bit, so a factor that is kept while the body rotates is equal
+    // to a new one.
     let turned = |block: &Block<D>| {
         if is_isotropic(block) { *block } else { product(&transposed, &product(block, frame)) }
     };
@@ -254,11 +256,11 @@ fn in_frame<const D: usize>(matrix: &BlockMatrix<D>, frame: &Block<D>) -> Vec<f6
 }
 
 impl<const D: usize> BlockMatrix<D> {
-    /// Whether there are dense parts beside the blocks.
+    /// Whether there are dense parts next to the blocks.
     pub fn has_dense(&self) -> bool {
         !self.beside().is_empty()
     }
-    /// The mean size of the diagonal entries of a node, dense parts included.
+    /// The mean size of the diagonal entries of a node, including dense parts.
     pub fn diagonal_size(&self, node: usize) -> f64 {
         let block = self.diagonal_block(node);
         let mut size = (0..D).map(|d| block[d][d].abs()).sum::<f64>() / D as f64;
@@ -269,7 +271,7 @@ impl<const D: usize> BlockMatrix<D> {
         }
         size
     }
-    /// The diagonal blocks of all nodes, dense parts included.
+    /// The diagonal blocks of all nodes, including dense parts.
     pub fn diagonal_blocks(&self) -> Vec<Block<D>> {
         let mut out: Vec<Block<D>> = (0..self.rows()).map(|node| *self.diagonal_block(node)).collect();
         for part in self.beside() {

@@ -1,4 +1,4 @@
-//! Parts of rank one beside a factored matrix.
+//! Rank-one terms next to a factored matrix.
 
 use crate::rank_one::RankOne;
 use crate::{Indefinite, dense, dot};
@@ -6,7 +6,7 @@ use crate::{Indefinite, dense, dot};
 /// (S + U C Uᵀ)⁻¹ b = S⁻¹ b − S⁻¹ U (C⁻¹ + Uᵀ S⁻¹ U)⁻¹ Uᵀ S⁻¹ b (Woodbury 1950).
 #[derive(Debug, Default)]
 pub(crate) struct Woodbury {
-    /// The u of each part, and S⁻¹ u.
+    /// The u of each term, and S⁻¹ u.
     directions: Vec<Vec<f64>>,
     solved: Vec<Vec<f64>>,
     /// The inverse of C⁻¹ + Uᵀ S⁻¹ U, row by row.
@@ -14,8 +14,8 @@ pub(crate) struct Woodbury {
 }
 
 impl Woodbury {
-    /// Takes the parts of rank one of a matrix of `size` rows whose S is factored. `right` is another right-hand side, which S⁻¹ is applied
-    /// to as well.
+    /// Takes the rank-one terms of a matrix of `size` rows whose S is factored. `right` is an additional right-hand side, to
+    /// which S⁻¹ is applied as well.
     pub(crate) fn update<'a, const D: usize>(
         &mut self,
         size: usize,
@@ -41,14 +41,14 @@ impl Woodbury {
                 core[i * n + j] = own + dot(&self.directions[i], &self.solved[j]);
             }
         }
-        // Where S and all C are positive, the sum is; else the signs of this small matrix tell.
+        // If S and all C are positive, so is the sum; otherwise the signs of this small matrix decide.
         if positive && !dense::has_positive(&core, n, parts.iter().filter(|part| part.factor > 0.0).count()) {
             return Err(Indefinite);
         }
         self.core = dense::inverse(&core, n).ok_or(Indefinite)?;
         Ok(())
     }
-    /// From S⁻¹ b to the solution.
+    /// Turns S⁻¹ b into the solution.
     pub(crate) fn correct(&self, x: &mut [f64]) {
         let n = self.directions.len();
         let along: Vec<f64> = self.directions.iter().map(|u| dot(u, x)).collect();

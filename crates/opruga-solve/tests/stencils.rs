@@ -1,4 +1,4 @@
-//! Matrices of stencils that arrive eight at a time land where their blocks would land one by one.
+//! Matrices of stencils that are delivered eight at a time have the same result as their blocks one by one.
 
 use opruga_core::potential::{Sink, StencilPack};
 use opruga_math::WIDTH;
@@ -11,7 +11,7 @@ fn random(seed: &mut u64) -> f64 {
     (*seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
 }
 
-/// Packs of stencils of `n` nodes in D dimensions; the last is not full.
+/// Packs of stencils with `n` nodes in D dimensions; the last one is not full.
 struct Packs {
     n: usize,
     indices: Vec<Vec<u32>>,
@@ -25,7 +25,7 @@ impl Packs {
         let mut out = Packs { n, indices: Vec::new(), blocks: Vec::new(), counts: Vec::new() };
         for pack in 0..packs {
             let first: Vec<usize> = (0..WIDTH).map(|l| (7 * pack + 3 * l) % NODES).collect();
-            // Nodes of a stencil differ: 23 is a prime.
+            // The nodes of a stencil differ, because 23 is prime.
             out.indices.push((0..n * WIDTH).map(|k| ((first[k % WIDTH] + 5 * (k / WIDTH)) % NODES) as u32).collect());
             let mut blocks = vec![f64::NAN; n * n * D * D * WIDTH];
             for a in 0..n {

@@ -5,14 +5,14 @@ use crate::Indefinite;
 use opruga_core::threads::{each, each_with};
 use opruga_math::{Column, Lane, Pack, ROW, Register, Simd, WIDTH, Work};
 
-/// How conjugate gradients ended.
+/// The outcome of conjugate gradients.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reached {
-    /// Products with the matrix.
+    /// The number of products with the matrix.
     pub iterations: u32,
-    /// What is left of the residual, in the norm of the preconditioner.
+    /// The remaining residual, in the norm of the preconditioner.
     pub size: f64,
-    /// Whether a direction without positive curvature ended it; the solution is what was found until there.
+    /// Whether a direction without positive curvature ended it; the solution is then the one so far.
     pub indefinite: bool,
 }
 
@@ -94,7 +94,7 @@ impl<const D: usize> Work for Advance<'_, D> {
     }
 }
 
-/// p ← z + t p, also by seat for the products.
+/// p ← z + t p, also by seat for products.
 struct Turn<'a, const D: usize> {
     direction: &'a mut Column,
     improved: &'a [f64],
@@ -125,7 +125,7 @@ impl<const D: usize> Work for Turn<'_, D> {
 }
 
 impl<const D: usize> Packed<D> {
-    /// The sum of what the pieces have, in their order.
+    /// The sum over the pieces, in their order.
     fn sum(&self) -> f64 {
         self.pieces.iter().map(|piece| piece.sum).sum()
     }
@@ -178,7 +178,7 @@ impl<const D: usize> Packed<D> {
         });
     }
 
-    /// Takes a right-hand side; gives its size √(b·B b) in the norm of the preconditioner.
+    /// Takes a right-hand side; returns its size √(b·B b) in the norm of the preconditioner.
     pub fn begin(&mut self, simd: Simd, threads: usize, b: &[f64]) -> f64 {
         let nodes = &self.node;
         each(threads, &mut self.pieces, |piece| {
@@ -190,11 +190,11 @@ impl<const D: usize> Packed<D> {
         self.size.sqrt()
     }
 
-    /// Solves A x = b for the right-hand side that was taken last, until the residual in the norm of the preconditioner is
-    /// at most `goal`, or after `most` products. Every number of threads and every set of instructions gives the same bits.
+    /// Solves A x = b for the last right-hand side, until the residual in the norm of the preconditioner is at most `goal`, or
+    /// after `most` products. Every number of threads and every set of instructions gives the same bits.
     ///
     /// # Errors
-    /// [`Indefinite`] where b is not finite or the first direction has no positive curvature.
+    /// [`Indefinite`] if b is not finite or the first direction has no positive curvature.
     ///
     /// # Source
     /// Hestenes and Stiefel 1952; ended at a direction of negative curvature: Steihaug 1983.
@@ -212,7 +212,7 @@ impl<const D: usize> Packed<D> {
         }
         let mut reached = Reached { iterations: 0, size: 0.0, indefinite: false };
         let mut turn = 0.0;
-        // What earlier systems left must not come in: 0 · ∞ is no number.
+        // Data of earlier systems must not enter: 0 · ∞ is NaN.
         each(threads, &mut self.pieces, |piece| piece.direction.fill(0.0));
         while rho > goal * goal && reached.iterations < most {
             self.turn(simd, threads, turn);

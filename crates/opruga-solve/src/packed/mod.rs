@@ -1,12 +1,12 @@
-//! A matrix of blocks laid out for vector instructions and threads.
+//! A matrix of blocks in a layout for vector instructions and threads.
 //!
 //! ```text
 //! rows of about the same length ─→ packs of eight ─→ pieces of 32 packs, one thread each
 //!                     k-th blocks of the eight rows side by side: D² packs of numbers
 //! ```
 //!
-//! Rows are sorted by length within windows, so that little is filled up; a node's number in that order is its *seat*.
-//! Pieces and the order of their sums depend on the matrix alone: every number of threads gives the same bits.
+//! Rows are sorted by length within windows, so that there is little padding; the number of a node in that order is its *seat*.
+//! Pieces and the order of their sums depend only on the matrix, so every number of threads gives the same bits.
 
 mod gradients;
 
@@ -18,34 +18,34 @@ use opruga_math::{Column, ROW, Simd, WIDTH};
 
 pub use gradients::Reached;
 
-/// Packs of rows in a piece.
+/// The number of packs of rows in a piece.
 const PACKS: usize = 32;
 
-/// Rows that are sorted by length among themselves.
+/// The number of rows that are sorted by length among themselves.
 const WINDOW: usize = 512;
 
-/// Where a lane of a pack has no block.
+/// Marks lanes of a pack without a block.
 const NONE: u32 = u32::MAX;
 
 /// A matrix in packs, and conjugate gradients on it with the inverses of the diagonal blocks.
 ///
-/// Its entries are rounded to single precision (parts of rank one and sums are not): it is for corrections whose balance is
-/// looked at afterwards.
+/// Its entries are rounded to single precision (rank-one terms and sums are not), because it is meant for corrections whose
+/// balance is checked afterwards.
 #[derive(Debug, Default)]
 pub struct Packed<const D: usize> {
     generation: u64,
-    /// The node of each seat; seats behind the last node fill a pack up.
+    /// The node of each seat; seats after the last node fill up a pack.
     node: Vec<u32>,
     /// The seat of each node.
     seat: Vec<u32>,
     pieces: Vec<Piece<D>>,
-    /// Vectors of the direction by seat, [`ROW`] numbers each, as products gather them.
+    /// Direction vectors by seat, [`ROW`] numbers each, as products gather them.
     rows: Column,
     rank_one: Vec<Part<D>>,
     ranks: usize,
     /// The sum over the nodes of the mean diagonal of their blocks.
     stiffness: f64,
-    /// The square of the size of the right-hand side in the norm of the preconditioner.
+    /// The squared size of the right-hand side in the norm of the preconditioner.
     size: f64,
 }
 
@@ -56,36 +56,36 @@ struct Part<const D: usize> {
     entries: Vec<(u32, [f64; D])>,
 }
 
-/// Some packs of rows: the matrix and what conjugate gradients keep of the vectors, in packs as well.
+/// Some packs of rows: the matrix and the vectors of conjugate gradients, in packs as well.
 #[derive(Debug, Default)]
 struct Piece<const D: usize> {
-    /// Where the blocks of each pack begin, and where the last ends.
+    /// The start of the blocks of each pack, and the end of the last.
     start: Vec<u32>,
     /// Eight seats of columns for every eight blocks.
     column: Vec<u32>,
     /// Their indices in the matrix.
     source: Vec<u32>,
-    /// In single precision: half the memory to pass over, and [`Packed`] solves for corrections.
+    /// In single precision: only half the memory has to be read, and [`Packed`] solves for corrections.
     values: Vec<f32>,
-    /// The approximate inverse of the diagonal blocks: D² packs each, the held directions taken out.
+    /// The approximate inverse of the diagonal blocks: D² packs each, without the held directions.
     inverse: Column,
     residual: Column,
     improved: Column,
     direction: Column,
     product: Column,
     solution: Column,
-    /// The part of a scalar product.
+    /// Its part of a scalar product.
     sum: f64,
     /// The number of its first pack.
     first: usize,
-    /// The part of the stiffness.
+    /// Its part of the stiffness.
     stiffness: f64,
     /// Whether all of its diagonal blocks have an inverse.
     definite: bool,
 }
 
 impl<const D: usize> Packed<D> {
-    /// Takes the values of a matrix, and its pattern where that is new.
+    /// Takes the values of a matrix, and its pattern if that is new.
     pub fn take(&mut self, matrix: &BlockMatrix<D>, threads: usize) {
         if self.generation != matrix.generation || self.seat.len() != matrix.rows() || self.pieces.is_empty() {
             self.take_pattern(matrix);
@@ -160,11 +160,11 @@ impl<const D: usize> Packed<D> {
         }
     }
 
-    /// Takes out the directions that are not free, and inverts the diagonal blocks of what is left; `matrix` is the one
-    /// whose values were taken.
+    /// Removes the directions that are not free, and inverts the remaining diagonal blocks; `matrix` is the one whose values were
+    /// taken.
     ///
     /// # Errors
-    /// [`Indefinite`] where a block is not positive definite.
+    /// [`Indefinite`] if a block is not positive definite.
     pub fn hold(
         &mut self,
         threads: usize,
@@ -204,12 +204,12 @@ impl<const D: usize> Packed<D> {
         if self.pieces.iter().all(|piece| piece.definite) { Ok(()) } else { Err(Indefinite) }
     }
 
-    /// The sum over the nodes of the mean diagonal of their blocks, held directions included.
+    /// The sum over the nodes of the mean diagonal of their blocks, including held directions.
     pub fn stiffness(&self) -> f64 {
         self.stiffness
     }
 
-    /// y = A x of the rounded entries, with nothing taken out.
+    /// y = A x with the rounded entries of the whole matrix.
     pub fn multiply(&mut self, simd: Simd, threads: usize, x: &[f64], y: &mut [f64]) {
         let nodes = &self.node;
         each(threads, &mut self.pieces, |piece| load::<D>(nodes, piece.first, x, &mut piece.direction));
@@ -218,7 +218,7 @@ impl<const D: usize> Packed<D> {
         self.unload(threads, y, |piece| &piece.product);
     }
 
-    /// Packs into a vector of the nodes.
+    /// Copies packs into a vector of the nodes.
     fn unload(&self, threads: usize, to: &mut [f64], from: impl Fn(&Piece<D>) -> &Column + Sync) {
         each_block(threads, D, [to], |first, [to]| {
             for (seat, to) in self.seat[first / D..].iter().zip(to.as_chunks_mut::<D>().0) {
@@ -241,7 +241,7 @@ impl<const D: usize> Packed<D> {
     }
 }
 
-/// A vector of the nodes into the packs of the piece that begins with this one.
+/// Copies a vector of the nodes into the packs of the piece that begins with `first`.
 fn load<const D: usize>(nodes: &[u32], first: usize, from: &[f64], to: &mut Column) {
     for (nodes, to) in nodes[first * WIDTH..].chunks(WIDTH).zip(to.chunks_exact_mut(D * WIDTH)) {
         for (lane, node) in nodes.iter().enumerate() {
