@@ -1,4 +1,4 @@
-//! Time per node of the pass over one collider: `cargo bench -p opruga-collide`.
+//! Measures the time per node of the pass over one collider: `cargo bench -p opruga-collide`.
 #![allow(missing_docs)]
 
 #[path = "../tests/all/common/mod.rs"]
@@ -24,7 +24,7 @@ fn time(simd: Simd, list: &[Values], height: f64, v: [f64; 2]) -> f64 {
     let mass = Parameter::uniform(1.0);
     let none = vec![0.0; TILE + WIDTH];
     let mut best = f64::INFINITY;
-    // What touches is pushed out by the first pass.
+    // The first pass pushes touching nodes out.
     let passes = if height < 0.0 { 1 } else { 8 };
     for _ in 0..50 {
         let repeats = 200;

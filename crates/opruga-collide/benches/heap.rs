@@ -1,4 +1,5 @@
-//! Time of contact in a heap of gas balls in a box, beside that of their free motion: `cargo bench -p opruga-collide --bench heap`.
+//! Measures the time of contact in a heap of gas balls in a box, next to that of their free motion: `cargo bench -p
+//! opruga-collide --bench heap`.
 #![allow(missing_docs)]
 
 mod common;
@@ -15,7 +16,7 @@ const STIFFNESS: f64 = 1600.0;
 const DAMPING: f64 = 0.6;
 const GAS: f64 = 55.0;
 const MASS: f64 = 1.0 / VERTICES as f64;
-/// The substep, and how many make a frame.
+/// The substep, and the number of substeps per frame.
 const H: f64 = 1.0 / 60.0 / SUBSTEPS as f64;
 const SUBSTEPS: usize = 32;
 

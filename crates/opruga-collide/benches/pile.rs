@@ -1,4 +1,5 @@
-//! Time of contact in a pile of elastic cubes in a walled box, beside that of their free motion: `cargo bench -p opruga-collide --bench pile`.
+//! Measures the time of contact in a pile of elastic cubes in a walled box, next to that of their free motion: `cargo bench -p
+//! opruga-collide --bench pile`.
 #![allow(missing_docs)]
 
 mod common;
@@ -8,13 +9,13 @@ use opruga_core::contacts::Touch;
 use opruga_mesh::Mesh;
 use std::time::Instant;
 
-/// Nodes along an edge of a cube, and their distance at rest [m].
+/// The number of nodes along an edge of a cube, and their distance at rest [m].
 const NODES: usize = 5;
 const SPACING: f64 = 0.2;
 const MASS: f64 = 0.8;
 const STIFFNESS: f64 = 8e3;
 const DAMPING: f64 = 2.0;
-/// The substep, and how many make a frame.
+/// The substep, and the number of substeps per frame.
 const H: f64 = 1.0 / 60.0 / SUBSTEPS as f64;
 const SUBSTEPS: usize = 20;
 
@@ -24,7 +25,7 @@ struct Pile {
     v: Vec<[f64; 3]>,
     /// Two nodes and their distance at rest.
     springs: Vec<([u32; 2], f64)>,
-    /// The node of every point that touches.
+    /// The node of every touching point.
     nodes: Vec<u32>,
     force: Vec<[f64; 3]>,
     width: f64,

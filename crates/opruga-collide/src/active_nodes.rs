@@ -1,23 +1,23 @@
-//! At which nodes of a tile a contact is active, and what a node meets.
+//! The nodes of a tile at which a contact is active, and what a node meets.
 
 use crate::entries::numbers;
 use opruga_core::tile::TILE;
 use opruga_math::{Register, WIDTH};
 
-/// What a node meets in a look at a collider.
+/// What a node meets when a collider is processed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Meets {
-    /// A surface on which it lay at the beginning of the step.
+    /// A surface on which it was at the start of the step.
     WhatItLiesOn,
-    /// Whatever it is in.
+    /// Everything that it is in.
     Everything,
 }
 
-/// At which nodes of a tile a contact has been active in this step: a bit each.
+/// The nodes of a tile at which a contact has been active in this step, one bit each.
 pub(crate) struct ActiveNodes(pub(crate) [u8; TILE / WIDTH]);
 
 impl ActiveNodes {
-    /// The nodes from `k` and so many more on, until the end of the pack at `k`: 1 if active, else 0.
+    /// The nodes from index `k + offset` to the end of the pack at `k`: 1 if active, otherwise 0.
     #[inline(always)]
     pub(crate) fn numbers(&self, k: usize, offset: usize) -> [f64; WIDTH] {
         let bits = self.0.get(k / WIDTH).copied().unwrap_or(0) >> offset;
@@ -27,7 +27,7 @@ impl ActiveNodes {
         }
         out
     }
-    /// Notes the nodes, from `k` and so many more on, for which `hit` is above 0.
+    /// Records the nodes from index `k + offset` on for which `hit` is above 0.
     #[inline(always)]
     pub(crate) fn note<R: Register>(&mut self, k: usize, offset: usize, hit: R) {
         let hit = numbers(hit);

@@ -4,20 +4,21 @@
 //! B = Σ κ m b(g),   b(g) = −(g − r)² ln(g/r) for g < r, else 0
 //! ```
 //!
-//! g [m] is the distance of a vertex and a facet, or of two edges, less their thickness, and r the reach. b has two continuous derivatives and
-//! grows without bound as g falls to zero. m fades pairs of nearly parallel edges out, whose closest points jump. κ [N/m] is the stiffness of
-//! the bodies themselves at the pair, so nobody is asked for one.
+//! g [m] is the distance of a vertex and a facet, or of two edges, minus their thickness, and r is the reach. b has two
+//! continuous derivatives and grows without bound as g falls to zero. m fades out pairs of nearly parallel edges, whose closest
+//! points jump. κ [N/m] is the stiffness of the bodies at the pair, so the user need not give one.
 //!
-//! Second derivatives are those of b alone, κ m b″ ∇g ∇gᵀ: they have no negative eigenvalues, and what bends the distance is left to the next
-//! iteration.
+//! Only the second derivatives of b are used, κ m b″ ∇g ∇gᵀ: they have no negative eigenvalues, and the next iteration accounts
+//! for the curvature of the distance.
 //!
-//! Friction of a pair that presses with N = −κ m b′ belongs to its slip s in the step, across the normal:
+//! The friction of a pair with the normal force N = −κ m b′ depends on its slip s in the step, across the normal:
 //!
 //! ```text
 //! t = λ + k s,   D = |t|²/(2 k) where |t| ≤ µ N, else µ N |t|/k − (µ N)²/(2 k)
 //! ```
 //!
-//! Its force −∂D/∂s is at most µ N. λ is found by repetition, λ ← the force: so what sticks does not slip (method of multipliers).
+//! Its force −∂D/∂s is at most µ N. λ is found by iteration, λ ← the force, so that sticking pairs do not slip (method of
+//! multipliers).
 //!
 //! Sources: M. Li and others, Incremental potential contact, ACM Trans. Graph. 39 (2020), equations 6 and 24; M. Li, D. M. Kaufman, C. Jiang,
 //! Codimensional incremental potential contact (2021), for the thickness; P. Alart, A. Curnier, A mixed formulation for frictional contact
@@ -36,22 +37,22 @@ use crate::touching::{Touching, Trouble};
 use crate::vector::{add, dot, length, scaled, subtract};
 use opruga_math::Lane;
 
-/// The part of its gap that a pair keeps in one iteration, at least: the value of the source (2020, section 5).
+/// The smallest fraction of its gap that a pair keeps in one iteration: the value of the source (2020, section 5).
 const KEPT: f64 = 0.1;
 
-/// How nearly parallel edges fade out: the square of the sine of their angle, as in the source (2020, section 5.3).
+/// The fade-out of nearly parallel edges: the squared sine of their angle, as in the source (2020, section 5.3).
 const PARALLEL: f64 = 1e-3;
 
-/// Stiffness of sticking, relative to that of the pair. The rounds that multipliers take go by its ratio to how bodies answer; with 1000 in its place the search
-/// of a stack of five blocks goes to and fro between sticking and sliding.
+/// The stiffness of sticking, relative to that of the pair. The number of rounds for the multipliers depends on its ratio to the
+/// response of the bodies; with 1000 instead, the search for a stack of five blocks alternates between sticking and sliding.
 const STICKING: f64 = 10.0;
 
 /// A pair within reach of the barrier.
 #[derive(Clone, Copy, Debug)]
 pub struct Pressed<const D: usize> {
-    /// Its features: pairs ascend by it.
+    /// Its features; pairs are sorted by it.
     pub id: u64,
-    /// Its points; those that are none repeat the first.
+    /// Its points; unused entries repeat the first.
     pub points: [u32; 4],
     /// ∇g = wᵢ n of its points.
     pub weights: [f64; 4],
@@ -65,7 +66,7 @@ pub struct Pressed<const D: usize> {
     pub force: f64,
     /// See `force`.
     pub curvature: f64,
-    /// κ b ∂m/∂x of its points [N]: zero but for nearly parallel edges.
+    /// κ b ∂m/∂x of its points [N]: zero except for nearly parallel edges.
     pub fading: [[f64; D]; 4],
     /// κ [N/m].
     pub stiffness: f64,
@@ -73,7 +74,7 @@ pub struct Pressed<const D: usize> {
     pub friction: f64,
 }
 
-/// Friction of a pair.
+/// The friction of a pair.
 #[derive(Clone, Copy, Debug)]
 pub struct Rubbing<const D: usize> {
     /// The pair: its features, points, weights and normal.
@@ -104,7 +105,7 @@ impl<const D: usize> Pressed<D> {
 }
 
 impl<const D: usize> Rubbing<D> {
-    /// The slip of the displacements of the points since the start of the step [m].
+    /// The slip from the displacements of the points since the start of the step [m].
     pub fn slip(&self, moved: &[[f64; D]]) -> [f64; D] {
         let mut sum = [0.0; D];
         for (p, w) in self.points.iter().zip(&self.weights) {
@@ -128,7 +129,7 @@ impl<const D: usize> Rubbing<D> {
         let (pull, size) = self.pull(slip);
         scaled(&pull, -if size > self.most { self.most / size } else { 1.0 })
     }
-    /// ∂²D/∂s² as what it is along t and across t and the normal [N/m], with the direction of t.
+    /// ∂²D/∂s² as its values along t, and across t and the normal [N/m], with the direction of t.
     fn curvature(&self, slip: &[f64; D]) -> ([f64; D], [f64; 2]) {
         let (pull, size) = self.pull(slip);
         if size <= self.most {
@@ -144,37 +145,39 @@ impl<const D: usize> Rubbing<D> {
     }
 }
 
-/// The barrier of the surfaces of a scene.
+/// The barrier between the surfaces of a scene.
 #[derive(Clone, Debug, Default)]
 pub struct Barrier<const D: usize> {
     /// The reach r [m].
     reach: f64,
-    /// How much every point gives way: 1/k of its body there [m/N]; 0 where it is led.
+    /// The compliance of every point, 1/k of its body there [m/N]; 0 if the point is pinned.
     pub softness: Vec<f64>,
     candidates: Candidates<D>,
-    /// Around the points on their paths, and where they may be with the candidates at hand; empty where there are none.
+    /// Boxes around the paths of the points, and the boxes for which the present candidates are valid; empty if there are none.
     boxes: Vec<[[f64; D]; 2]>,
     searched: Vec<[[f64; D]; 2]>,
-    /// The pairs that come within reach on the paths that were looked at last: features, and whether they are a vertex and a facet.
+    /// The pairs that come within reach on the last paths: features, and whether they are a vertex and a facet.
     close: Vec<([u32; 2], bool)>,
 }
 
-/// The margin around the paths of points within which candidates stay, as a part of the longest path: corrections become shorter from one to the next.
-/// Without it, a search comes with every correction. What is found within reach does not depend on it.
+/// The margin around the paths of points within which candidates remain valid, as a fraction of the longest path: corrections
+/// become shorter from one to the next. Without it, every correction needs a search. The pairs found within reach do not depend
+/// on it.
 const MARGIN: f64 = 0.25;
 
 impl<const D: usize> Barrier<D> {
-    /// A barrier of a reach [m].
+    /// Makes a barrier with a reach [m].
     pub fn new(reach: f64) -> Barrier<D> {
         Barrier { reach, ..Barrier::default() }
     }
 
-    /// Forgets which pairs may come within reach: the surface may be another one.
+    /// Discards the pairs that may come within reach, because the surface may be another one.
     pub fn forget(&mut self) {
         self.searched.clear();
     }
 
-    /// Looks for all pairs that may come within reach while the points go straight from x to y [m], unless those at hand are among the candidates.
+    /// Finds all pairs that may come within reach while the points move straight from x to y [m]; searches only if the present
+    /// candidates do not cover the motion.
     ///
     /// # Errors
     /// [`Trouble::TooMany`] above a limit.
@@ -208,7 +211,8 @@ impl<const D: usize> Barrier<D> {
         Ok(())
     }
 
-    /// Looks for the pairs that come within distances [m] while the points stay in their boxes, and within a margin [m] of these.
+    /// Searches for the pairs that come within distances [m] while the points stay in their boxes, and within a margin [m] of
+    /// these.
     fn search(
         &mut self,
         surface: &Surface<D>,
@@ -217,7 +221,7 @@ impl<const D: usize> Barrier<D> {
         margin: f64,
         most: usize,
     ) -> Result<(), Trouble> {
-        // Where a margin finds too many, none may find few enough.
+        // If a margin finds too many pairs, no margin may find few enough.
         for margin in [margin, 0.0] {
             let wider = |[low, high]: &[[f64; D]; 2]| [low.map(|low| low - margin), high.map(|high| high + margin)];
             self.searched.clear();
@@ -230,7 +234,7 @@ impl<const D: usize> Barrier<D> {
         Err(Trouble::TooMany { found: self.candidates.len() })
     }
 
-    /// Whether the boxes of a pair come within reach on the paths that were looked at last: what a margin adds does not.
+    /// Whether the boxes of a pair come within reach on the last paths; pairs that only the margin adds do not.
     fn comes_close(&self, surface: &Surface<D>, distances: [f64; 2], [a, b]: [u32; 2], with_facet: bool) -> bool {
         let at = |p: u32| self.boxes[p as usize];
         let (first, second, points) = if with_facet {
@@ -244,7 +248,7 @@ impl<const D: usize> Barrier<D> {
         (0..D).all(|d| first[0][d] <= second[1][d] + distance && second[0][d] - distance <= first[1][d])
     }
 
-    /// The pairs that were found: features, and whether they are a vertex and a facet.
+    /// The pairs found: features, and whether they are a vertex and a facet.
     fn pairs(&self) -> impl Iterator<Item = ([u32; 2], bool)> + '_ {
         let Candidates { vertex_facet, edge_edge, .. } = &self.candidates;
         vertex_facet.iter().map(|pair| (*pair, true)).chain(edge_edge.iter().map(|pair| (*pair, false)))
@@ -278,10 +282,10 @@ impl<const D: usize> Barrier<D> {
         [pair.points[0], pair.points[if with_facet { 1 } else { 2 }]].map(|p| surface.body[p as usize])
     }
 
-    /// The pairs within reach with the points at x [m], on the paths that were looked at last.
+    /// Returns the pairs within reach with the points at x [m], on the last paths.
     ///
     /// # Errors
-    /// [`Trouble::Meet`] where a pair is not apart.
+    /// [`Trouble::Meet`] if a pair is not apart.
     pub fn press(
         &self,
         surface: &Surface<D>,
@@ -303,7 +307,7 @@ impl<const D: usize> Barrier<D> {
             let gap = distance - law.thickness;
             let stiffness = self.stiffness(&pair.points, with_facet);
             if stiffness == 0.0 {
-                // Pins lead both.
+                // Pins move both.
                 continue;
             }
             if gap <= 0.0 || gap.is_nan() {
@@ -331,7 +335,7 @@ impl<const D: usize> Barrier<D> {
         Ok(())
     }
 
-    /// κ of a pair: both features one behind the other, each as soft as its points in the mean.
+    /// κ of a pair: both features in series, each with the mean compliance of its points.
     fn stiffness(&self, points: &[u32; 4], with_facet: bool) -> f64 {
         let mean =
             |points: &[u32]| points.iter().map(|p| self.softness[*p as usize]).sum::<f64>() / points.len() as f64;
@@ -340,7 +344,8 @@ impl<const D: usize> Barrier<D> {
         if softness > 0.0 { 1.0 / softness } else { 0.0 }
     }
 
-    /// The part of the paths from x to y, which were looked at last, that all pairs may go, each keeping a tenth of its gap; 1 where nothing is in their path.
+    /// The fraction of the paths from x to y, the last ones examined, that all pairs may take while each keeps a tenth of its
+    /// gap; 1 if nothing is in their path.
     pub fn free_part(&self, surface: &Surface<D>, laws: &Laws, [x, y]: [&[[f64; D]]; 2]) -> f64 {
         let mut part: f64 = 1.0;
         for (features, with_facet) in self.close.iter().copied() {
@@ -360,8 +365,8 @@ impl<const D: usize> Barrier<D> {
 }
 
 impl<const D: usize> Touching<D> {
-    /// Takes what the barrier did in a step of h [s], for those who ask for contacts: pairs and their friction, both ascending, where the points end. Friction
-    /// goes by the normal forces of the round before, so it may act where nothing presses any more.
+    /// Records the contacts of the barrier in a step of h [s] for reports: pairs and their friction, both ascending, with the
+    /// points at the end. Friction uses the normal forces of the previous round, so it may act on pairs that no longer press.
     pub fn take_pressed(&mut self, h: f64, pressed: &[Pressed<D>], rubbing: &[Rubbing<D>], moved: &[[f64; D]]) {
         self.rows.clear();
         self.spread.clear();
@@ -398,12 +403,12 @@ struct Pair<const D: usize> {
     between: [f64; D],
 }
 
-/// m of two edges, and its derivatives by their points where they are nearly parallel.
+/// m of two edges, and its derivatives by their points if they are nearly parallel.
 fn fading<const D: usize>(x: &[[f64; D]], points: &[u32; 4]) -> (f64, Option<[[f64; D]; 4]>) {
     let at = points.map(|p| x[p as usize]);
     let (u, v) = (subtract(&at[1], &at[0]), subtract(&at[3], &at[2]));
     let (uu, vv, uv) = (dot(&u, &u), dot(&v, &v), dot(&u, &v));
-    // sin² of their angle, which knows no lengths.
+    // sin² of their angle, independent of their lengths.
     let sine = (uu * vv - uv * uv) / (uu * vv);
     if sine >= PARALLEL {
         return (1.0, None);

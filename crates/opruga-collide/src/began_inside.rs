@@ -1,4 +1,5 @@
-//! Points that begin a frame inside another body: those of bodies that begin inside one another, and have not come out yet.
+//! Points that are inside another body at the start of a frame: those of bodies that began inside one another and have not come
+//! out yet.
 
 use crate::closest::facet_normal;
 use crate::gap::Gap;
@@ -8,15 +9,16 @@ use core::ops::Range;
 use opruga_math::Lane;
 use opruga_mesh::winding_number;
 
-/// The cosine of the angle between the normals of a surface and of a facet below which they face one another. The corner of a cube and a facet that it meets
-/// have −0.58, a side that begins beside a flat face has 0, and deformation changes both. Without it, points near an edge of the other body
-/// leave sideways, and others do not: `cubes_that_begin_inside_one_another_part` ends with cubes locked in one another.
+/// The cosine of the angle between the normals of a surface and of a facet below which they face each other. The corner of a cube
+/// and a facet that it meets have −0.58, a side that begins next to a flat face has 0, and deformation changes both. Without this
+/// limit, points near an edge of the other body leave sideways while others do not: `cubes_that_begin_inside_one_another_part`
+/// ends with interlocked cubes.
 const FACING: f64 = -0.3;
 
 impl<const D: usize> Touching<D> {
-    /// Finds the points that lie inside the closed boundary of another body. Pairs of a step are those that may come to touch in it, and a point deep
-    /// inside touches nothing. Points are asked about that lie behind the nearest of their candidates, which reach as far as a margin: deeper points
-    /// are not found. A nearer facet may be no candidate, so the whole boundary decides.
+    /// Finds the points inside the closed boundary of another body. The pairs of a step are those that may touch in it, and a
+    /// point deep inside touches nothing. Only points behind the nearest of their candidates are examined; candidates extend only
+    /// to a margin, so deeper points are not found. A nearer facet may not be a candidate, so the whole boundary decides.
     pub(crate) fn find_began_inside(&mut self) {
         self.began_inside.clear();
         self.entangled.clear();
@@ -76,15 +78,15 @@ impl<const D: usize> Touching<D> {
         self.entangled.dedup();
     }
 
-    /// Whether points of one of two bodies have begun the frame inside the other one. Edges of such bodies are no pairs: they cross already, and
-    /// contact that holds them would lock the bodies in one another.
+    /// Whether points of one of two bodies were inside the other one at the start of the frame. Edges of such bodies do not form
+    /// pairs: they cross already, and contact between them would lock the bodies together.
     pub(crate) fn are_entangled(&self, [a, b]: [u32; 2]) -> bool {
         let pair = if a < b { [a, b] } else { [b, a] };
         self.entangled.binary_search(&pair).is_ok()
     }
 
-    /// Takes the gap through which a vertex leaves each body inside which it has begun: that of the nearest facet, among some candidates of the vertex,
-    /// that faces the surface at the vertex. Where none does, the nearest one counts.
+    /// Takes the gap through which a vertex leaves each body in which it began: that of the nearest facet, among some candidates
+    /// of the vertex, that faces the surface at the vertex. If none does, the nearest facet counts.
     pub(crate) fn take_exit(&mut self, candidates: Range<usize>, h: f64) {
         let x = &self.before[0];
         let normal = |facet: u32| {

@@ -1,4 +1,4 @@
-//! The room through which the nodes of a tile moved in a step.
+//! The space through which the nodes of a tile moved in a step.
 
 use opruga_core::contacts::Moved;
 use opruga_math::{Lane, Pack, Strip, WIDTH, Work, lanes};
@@ -20,7 +20,7 @@ impl<const D: usize> Work for Bounds<'_, '_, D> {
         }
         let x = Strip::<D>::new(&x, self.moved.range.start, length);
         let before = Strip::<D>::new(&self.moved.before, 0, length);
-        // Positions before and after, of even and of odd packs, do not wait for one another.
+        // Positions before and after, of even and of odd packs, are independent, so that they do not wait for one another.
         let mut ranges = [Range::<P, D>::empty(), Range::empty(), Range::empty(), Range::empty()];
         let mut k = 0;
         while k + 2 * WIDTH <= self.used {
@@ -31,7 +31,7 @@ impl<const D: usize> Work for Bounds<'_, '_, D> {
             k += 2 * WIDTH;
         }
         while k < self.used {
-            // Padding takes the place of the first node of the pack.
+            // Padding is replaced by the first node of the pack.
             let nodes = P::first(self.used - k);
             for (range, column) in [(0, &x), (1, &before)] {
                 ranges[range].include(&lanes!(P, d => {
@@ -55,7 +55,7 @@ impl<const D: usize> Work for Bounds<'_, '_, D> {
     }
 }
 
-/// The least and greatest coordinates.
+/// The smallest and largest coordinates.
 struct Range<P, const D: usize> {
     low: [P; D],
     high: [P; D],

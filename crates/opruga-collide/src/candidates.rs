@@ -7,28 +7,28 @@ use opruga_math::Lane;
 
 type Bounds<const D: usize> = [[f64; D]; 2];
 
-/// Pairs of a vertex and a facet, and in 3D of two edges, whose boxes come closer than a distance; ascending, each once.
+/// Pairs of a vertex and a facet, and in 3D of two edges, whose boxes are closer than a distance; ascending, each once.
 ///
-/// What is found depends on the boxes alone, not on how they are sorted.
+/// The result depends only on the boxes, not on how they are sorted.
 #[derive(Clone, Debug, Default)]
 pub struct Candidates<const D: usize> {
     /// Vertex and facet.
     pub vertex_facet: Vec<[u32; 2]>,
-    /// Two edges, the lower number first; empty in 2D.
+    /// Two edges, the one with the lower number first; empty in 2D.
     pub edge_edge: Vec<[u32; 2]>,
-    /// Pairs that a search adds, and both together.
+    /// Pairs that a search adds, and the merged list.
     fresh: Vec<[u32; 2]>,
     merged: Vec<[u32; 2]>,
     grid: Grid<D>,
     found: Vec<u32>,
-    /// Around the points of every body.
+    /// The boxes around the points of every body.
     bodies: Vec<Bounds<D>>,
     close_bodies: Vec<[u32; 2]>,
     first: Vec<(u32, Bounds<D>)>,
     second: Vec<(u32, Bounds<D>)>,
 }
 
-/// A box, larger by a distance [m] on all sides.
+/// A box, enlarged by a distance [m] on all sides.
 fn wider<const D: usize>([mut low, mut high]: Bounds<D>, distance: f64) -> Bounds<D> {
     for d in 0..D {
         low[d] -= distance;
@@ -41,9 +41,9 @@ fn meet_boxes<const D: usize>(a: &Bounds<D>, b: &Bounds<D>) -> bool {
     (0..D).all(|d| a[0][d] <= b[1][d] && b[0][d] <= a[1][d])
 }
 
-/// Adds pairs to others, which are ascending.
+/// Merges new pairs into others, which are ascending.
 fn merge(pairs: &mut Vec<[u32; 2]>, fresh: &mut [[u32; 2]], merged: &mut Vec<[u32; 2]>) {
-    // One number each, which is compared faster than two.
+    // One number per pair, which is compared faster than two.
     let key = |[a, b]: &[u32; 2]| u64::from(*a) << 32 | u64::from(*b);
     fresh.sort_unstable_by_key(key);
     merged.clear();
@@ -58,17 +58,17 @@ fn merge(pairs: &mut Vec<[u32; 2]>, fresh: &mut [[u32; 2]], merged: &mut Vec<[u3
     std::mem::swap(pairs, merged);
 }
 
-/// Products of counts up to which all pairs of features of two bodies are compared: sorting them into cells costs as much as some
+/// Up to this product of counts, all pairs of features of two bodies are compared: sorting them into cells costs as much as some
 /// thousand comparisons.
 const FEW: usize = 4096;
 
 impl<const D: usize> Candidates<D> {
-    /// Looks for all pairs of features with boxes closer than a distance [m] along every axis, given the boxes of the points [m]: the first
-    /// distance for pairs of bodies, the second one for those with obstacles.
+    /// Finds all pairs of features with boxes closer than a distance [m] along every axis, given the boxes of the points [m]. The
+    /// first distance is for pairs of bodies, the second for pairs with obstacles.
     ///
-    /// `meet` says of two bodies whether they may touch, of a body with itself whether it may touch itself. Features that share a point
-    /// or a node that carries a point of both are no pair, and neither are facets of obstacles with vertices of bodies whose nodes obstacles hold. False where there are more than `most` pairs: then the
-    /// search ends.
+    /// `meet` tells whether two bodies, or a body and itself, may touch. Features that share a point, or a node that carries a
+    /// point of both, do not form a pair; nor do facets of obstacles and vertices of bodies whose nodes obstacles hold. Returns
+    /// false if there are more than `most` pairs; the search then ends.
     pub fn find(
         &mut self,
         surface: &Surface<D>,
@@ -81,8 +81,8 @@ impl<const D: usize> Candidates<D> {
         self.refresh(surface, boxes, own, distances, most, meet, |_, _| true)
     }
 
-    /// The same for those pairs of bodies, and bodies with themselves, of which `stale` says that their pairs at hand are not all; those of others
-    /// stay. `own` gives the boxes of points for pairs of one body.
+    /// The same for those pairs of bodies, and bodies with themselves, for which `stale` says that their present pairs are
+    /// incomplete; the pairs of others are kept. `own` gives the boxes of points for pairs within one body.
     #[allow(clippy::too_many_arguments)]
     pub(crate) fn refresh(
         &mut self,
@@ -156,7 +156,8 @@ impl<const D: usize> Candidates<D> {
         complete
     }
 
-    /// Lists the bodies whose boxes come closer than their distance [m], each pair both ways, and bodies that touch themselves.
+    /// Lists the bodies whose boxes are closer than their distance [m], each pair in both orders, and bodies that touch
+    /// themselves.
     fn find_close_bodies(
         &mut self,
         surface: &Surface<D>,
@@ -195,7 +196,7 @@ impl<const D: usize> Candidates<D> {
         }
     }
 
-    /// Puts the features of a body whose boxes come closer than a distance [m] to another body into the first list.
+    /// Collects the features of a body whose boxes are closer than a distance [m] to another body in the first list.
     fn choose(
         &mut self,
         features: core::ops::Range<usize>,
@@ -209,7 +210,7 @@ impl<const D: usize> Candidates<D> {
         self.first.extend(own.filter(|(_, own)| meet_boxes(own, &region)));
     }
 
-    /// Calls back with the features of both lists whose boxes meet.
+    /// Calls `visit` with the features of both lists whose boxes overlap.
     fn join(&mut self, mut visit: impl FnMut(u32, u32)) {
         if self.first.len() * self.second.len() <= FEW {
             for (a, box_a) in &self.first {

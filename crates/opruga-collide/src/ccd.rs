@@ -1,30 +1,30 @@
 //! Continuous collision detection: whether, and when, moving features come closer than a distance.
 //!
-//! Additive steps: features at distance d that approach at most at the speed l (in units of the step) cannot meet before
-//! (d − ξ)/l. The time moves on by nine tenths of that, again and again, until the distance above ξ is a billionth of what it was at
-//! the start. No root of a polynomial is sought, so nothing is lost to rounding: what meets is found, always; what passes by at
-//! less than a billionth of the distance that it had counts as meeting too.
+//! Additive steps: features at distance d that approach at a speed of at most l (per step) cannot meet before (d − ξ)/l. The time
+//! advances by nine tenths of that repeatedly, until the distance above ξ is a billionth of its initial value. No polynomial root
+//! is computed, so rounding cannot hide anything: features that meet are always found; features that pass at less than a
+//! billionth of their initial distance count as meeting too.
 
 use crate::closest::{closest_of_segments, closest_on_facet, mean};
 use crate::vector::{dot, subtract};
 use opruga_math::Lane;
 
-/// The part of every bound by which the time moves on: the value of the source.
+/// The fraction of every bound by which the time advances: the value of the source.
 const PART: f64 = 0.9;
 
-/// What is left of the distance where features count as meeting, relative to that at the start. The source takes a tenth, so that
-/// the features stay apart; here the distance ξ does that, and a tenth would hold back what only passes by: of the queries in the tests, 79
-/// instead of 10 (a millionth 14).
+/// The fraction of the initial distance at which features count as meeting. The source uses a tenth, so that the features stay
+/// apart; here the distance ξ does that, and a tenth would stop features that only pass: in the test queries, 79 instead of 10
+/// (14 with a millionth).
 const LEFT: f64 = 1e-9;
 
-/// Steps after which features count as meeting. Features that approach straight take two or three, those that turn about one another
-/// at a constant distance the most: each moves on by at least d/l.
+/// The number of steps after which features count as meeting. Features that approach in a straight line take two or three; those
+/// that rotate about one another at a constant distance take the most, since each step advances by at least d/l.
 const MOST_STEPS: usize = 1000;
 
-/// The part of a step after which a vertex comes closer to a facet than `distance` [m], at the latest a little before it does; none
-/// where it does not. All points move in straight lines from `[0]` to `[1]`.
+/// Returns the fraction of the step at which a vertex comes closer to a facet than `distance` [m], or a slightly earlier one;
+/// none if it does not. All points move in straight lines from `[0]` to `[1]`.
 ///
-/// There are no false negatives. Features that are as close at the start meet at 0.
+/// There are no false negatives. Features that are this close at the start meet at 0.
 ///
 /// # Source
 /// M. Li, D. M. Kaufman, C. Jiang, Codimensional Incremental Potential Contact, ACM Trans. Graph. 40, 170 (2021), algorithm 1.
@@ -42,7 +42,7 @@ pub fn vertex_meets_facet<const D: usize>(
     })
 }
 
-/// The part of a step after which two edges come closer than `distance` [m]: as [`vertex_meets_facet`].
+/// Returns the fraction of the step at which two edges come closer than `distance` [m], as [`vertex_meets_facet`].
 pub fn edge_meets_edge<const D: usize>(a: &[[[f64; D]; 2]; 2], b: &[[[f64; D]; 2]; 2], distance: f64) -> Option<f64> {
     let moves = |e: &[[[f64; D]; 2]; 2]| core::array::from_fn::<_, 2, _>(|k| subtract(&e[1][k], &e[0][k]));
     additive(&a[0], &b[0], moves(a), moves(b), distance, |a, b| {
@@ -60,7 +60,7 @@ fn additive<const D: usize, const M: usize, const N: usize>(
     distance: f64,
     square: impl Fn(&[[f64; D]; M], &[[f64; D]; N]) -> f64,
 ) -> Option<f64> {
-    // What all points do together brings none closer.
+    // The common motion of all points does not bring any closer.
     let mut common = [0.0; D];
     for motion in moves_a.iter().chain(&moves_b) {
         for d in 0..D {
@@ -76,13 +76,13 @@ fn additive<const D: usize, const M: usize, const N: usize>(
         most.sqrt()
     };
     let speed = farthest(&mut moves_a) + farthest(&mut moves_b);
-    // (d² − ξ²)/(d + ξ) = d − ξ, without the cancellation where d is close to ξ.
+    // (d² − ξ²)/(d + ξ) = d − ξ, without cancellation if d is close to ξ.
     let above = |square: f64| {
         let d = square.sqrt();
         if d > 0.0 { (square - distance * distance) / (d + distance) } else { -distance }
     };
     let start = above(square(a, b));
-    // What is no number meets.
+    // NaN counts as meeting.
     if start <= 0.0 || !(start + speed).is_finite() {
         return Some(0.0);
     }

@@ -1,4 +1,4 @@
-//! Lower bounds of the distances of candidates, by which most of them need no look in a step.
+//! Lower bounds of the distances of candidates, with which most candidates need not be examined in a step.
 
 use crate::candidates::Candidates;
 use crate::reach::{MOST_WIDTHS, beyond};
@@ -6,38 +6,39 @@ use crate::surface::Surface;
 use crate::vector::{add, length, scaled, subtract};
 use opruga_math::Lane;
 
-/// What is known of the distances of candidates.
+/// Known bounds of the distances of candidates.
 ///
 /// ```text
 /// d(t) ≥ d(t₀) − (s_a(t) − s_a(t₀)) − (s_b(t) − s_b(t₀))
 /// ```
 ///
-/// s is the path of a body: the largest displacement of its points, summed over the steps. It is relative to the mean displacement of all points, or of
-/// the points of the body where both features are its own. So bodies that fall together, or turn little, keep their distances.
+/// s is the path of a body: the largest displacement of its points, summed over the steps. It is relative to the mean
+/// displacement of all points, or to that of the points of the body if both features belong to it. So bodies that fall together,
+/// or rotate little, keep their distances.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Clearance<const D: usize> {
-    /// The positions at which the paths end [m].
+    /// The positions at the end of the paths [m].
     x: Vec<[f64; D]>,
-    /// How the bodies move, and the mean displacement of all points in the step before [m].
+    /// The motions of the bodies, and the mean displacement of all points in the previous step [m].
     motions: Vec<Motion<D>>,
     whole: Option<[f64; D]>,
-    /// The paths of every body [m]: relative to all, and to itself.
+    /// The paths of every body [m]: relative to all bodies, and to itself.
     paths: Vec<[f64; 2]>,
-    /// How far contact may push a point of every body in this step [m], at most.
+    /// The largest distance that contact may push a point of every body in this step [m].
     push: Vec<f64>,
-    /// Both paths of every body to the end of this step [m], wherever contact pushes its points.
+    /// Both paths of every body at the end of this step [m], wherever contact pushes its points.
     ends: Vec<[f64; 2]>,
-    /// Of every body the path up to which pairs of its own were looked for, and how far beyond its points [m].
+    /// For every body, the path up to which its own pairs were searched, and the distance around its points [m].
     own: Vec<[f64; 2]>,
-    /// Of every body whether pairs of its own are looked for in this search.
+    /// For every body, whether this search includes its own pairs.
     due: Vec<bool>,
     /// Pairs of a vertex and a facet, and of two edges, in the order of the candidates.
     pairs: [Vec<Known>; 2],
     merged: Vec<Known>,
 }
 
-/// How a body moves in a step: the sum and the number of the displacements of its points, their mean in the step before, and the square of the
-/// largest one relative to that mean; the largest of the step before [m].
+/// The motion of a body in a step: the sum and the number of the displacements of its points, their mean in the previous step,
+/// and the square of the largest one relative to that mean; the largest of the previous step [m].
 #[derive(Clone, Copy, Debug)]
 struct Motion<const D: usize> {
     sum: [f64; D],
@@ -47,29 +48,29 @@ struct Motion<const D: usize> {
     largest: f64,
 }
 
-/// What is known of a pair.
+/// The known bound of a pair.
 #[derive(Clone, Copy, Debug)]
 struct Known {
     features: [u32; 2],
     bodies: [u32; 2],
-    /// Its distance when it was last taken, and the paths of both bodies up to then [m].
+    /// Its last known distance, plus the paths of both bodies up to then [m].
     until: f64,
 }
 
-/// The sum of the paths of two bodies relative to all, or of both features of one body relative to that.
+/// The sum of the paths of two bodies relative to all; for both features of one body, relative to that body.
 #[inline(always)]
 fn of_both(paths: &[[f64; 2]], [a, b]: &[u32; 2]) -> f64 {
     let own = usize::from(a == b);
     paths[*a as usize][own] + paths[*b as usize][own]
 }
 
-/// Of a body for which none were.
+/// For a body without a search.
 const NEVER: [f64; 2] = [0.0, f64::NEG_INFINITY];
 
-/// Paths are counted anew beyond so many margins: what is added to them there is rounded to 1e-12 of a margin.
+/// Paths restart at zero beyond this many margins: up to there, additions to them are rounded to 1e-12 of a margin.
 const LONG: f64 = 1e4;
 
-/// Puts pairs, ascending, in place of those that were known.
+/// Replaces the known pairs by new ones, ascending.
 fn take_list(
     known: &mut Vec<Known>,
     merged: &mut Vec<Known>,
@@ -88,11 +89,11 @@ fn take_list(
     std::mem::swap(known, merged);
 }
 
-/// Distances below this part of themselves are rounding.
+/// Distances below this fraction of themselves are rounding.
 const ROUNDING: f64 = 1e-9;
 
 impl<const D: usize> Clearance<D> {
-    /// Goes on to the positions at the start of a step [m].
+    /// Advances to the positions at the start of a step [m].
     pub(crate) fn follow(&mut self, surface: &Surface<D>, x: &[[f64; D]]) {
         if self.x.len() != x.len() {
             self.x = x.to_vec();
@@ -105,7 +106,8 @@ impl<const D: usize> Clearance<D> {
             self.pairs.iter_mut().for_each(Vec::clear);
             return;
         }
-        // Relative to the mean displacements of the step before: what these are changes the bounds, not that they hold.
+        // Relative to the mean displacements of the previous step: their values affect how tight the bounds are, not their
+        // validity.
         for ((from, to), body) in self.x.iter_mut().zip(x).zip(&surface.body) {
             let Motion { sum, points, mean, square, .. } = &mut self.motions[*body as usize];
             let mut own = 0.0;
@@ -131,20 +133,21 @@ impl<const D: usize> Clearance<D> {
         self.whole = Some(scaled(&sum, 1.0 / points.larger(1.0)));
     }
 
-    /// Takes the pairs that bodies have with themselves for none.
+    /// Discards the pairs of bodies with themselves.
     pub(crate) fn forget_own(&mut self) {
         self.own.fill(NEVER);
     }
 
-    /// How far points of a body may go relative to its mean in this step, and pairs beyond that may be asked for [m].
+    /// How far points of a body may move relative to its mean in this step, plus the distance beyond that at which pairs may be
+    /// requested [m].
     fn wanted(&self, body: usize, margin: f64) -> f64 {
         2.0 * self.push[body] + 0.125 * margin
     }
 
-    /// Whether all pairs that a body may have with itself in this step are at hand.
+    /// Whether all pairs that a body may have with itself in this step are known.
     pub(crate) fn covers(&self, body: usize, margin: f64) -> bool {
         let ([path, width], wanted) = (self.own[body], self.wanted(body, margin));
-        // After an impact, a body at rest would keep the pairs of its flight.
+        // Otherwise a body at rest would keep the pairs of its flight after an impact.
         self.paths[body][1] - path + wanted <= width && width <= MOST_WIDTHS * (wanted + 0.5 * margin)
     }
 
@@ -153,12 +156,13 @@ impl<const D: usize> Clearance<D> {
         (0..self.own.len()).all(|body| self.covers(body, margin))
     }
 
-    /// Sets how far around the points of bodies pairs of their own are looked for, where that is due: as far [`beyond`] this step as the body moves
-    /// relative to itself in so many more, by a margin [m].
+    /// Sets, for each body whose search is due, the distance around its points within which its own pairs are searched. It
+    /// reaches [`beyond`] this step by the motion of the body relative to itself in `steps` more steps, limited by `margin` [m].
     pub(crate) fn widen(&mut self, margin: f64, steps: f64) {
         self.due.clear();
         for body in 0..self.own.len() {
-            // What is used up by half is used up soon: one search for many bodies.
+            // A range of which half is used will soon be used up; such bodies are included, so that one search serves many
+            // bodies.
             let due = !self.covers(body, 3.0 * margin);
             self.due.push(due);
             if due {
@@ -168,18 +172,18 @@ impl<const D: usize> Clearance<D> {
         }
     }
 
-    /// Whether pairs of a body with itself are looked for.
+    /// Whether the pairs of a body with itself are searched.
     pub(crate) fn is_due(&self, body: u32) -> bool {
         self.due[body as usize]
     }
 
-    /// The box of a point in which pairs of its own body are looked for [m].
+    /// The box of a point in which pairs of its own body are searched [m].
     pub(crate) fn own_box(&self, surface: &Surface<D>, point: u32) -> [[f64; D]; 2] {
         let width = self.own[surface.body[point as usize] as usize][1];
         [-width, width].map(|side| self.x[point as usize].map(|c| c + side))
     }
 
-    /// Takes in the pairs of a search, both lists ascending; of those that it knows it knows what it knew.
+    /// Takes the pairs of a search, both lists ascending; the bounds of known pairs are kept.
     pub(crate) fn take(&mut self, surface: &Surface<D>, candidates: &Candidates<D>, margin: f64) {
         let body = |point: u32| surface.body[point as usize];
         let of_facet = |[p, f]: [u32; 2]| [body(p), body(surface.facets[f as usize][0])];
@@ -193,7 +197,7 @@ impl<const D: usize> Clearance<D> {
         take_list(&mut self.pairs[1], &mut self.merged, &candidates.edge_edge, of_edges);
     }
 
-    /// Takes in how far contact may push a point of every body at most [m].
+    /// Sets how far contact may push a point of every body at most [m].
     pub(crate) fn set_push(&mut self, push: &[f64]) {
         self.push.copy_from_slice(push);
         self.ends.clear();
@@ -205,14 +209,14 @@ impl<const D: usize> Clearance<D> {
         self.pairs[list][pair].bodies
     }
 
-    /// Whether a pair does not come closer than a distance [m] within the step, whatever contact does.
+    /// Whether a pair stays farther apart than a distance [m] within the step, whatever contact does.
     #[inline(always)]
     pub(crate) fn is_clear(&self, list: usize, pair: usize, distance: f64) -> bool {
         let Known { bodies, until, .. } = &self.pairs[list][pair];
         *until > of_both(&self.ends, bodies) + distance
     }
 
-    /// Takes note that a pair is at least so far apart at the start of the step [m].
+    /// Records that a pair is at least this far apart at the start of the step [m].
     #[inline]
     pub(crate) fn note(&mut self, list: usize, pair: usize, distance: f64) {
         let known = &mut self.pairs[list][pair];

@@ -1,11 +1,11 @@
-//! Closest points of the features that touch: a point and a facet, two edges.
+//! Closest points of touching features: a point and a facet, two edges.
 
 use crate::vector::{dot, subtract};
 use opruga_math::Lane;
 
-/// The weights of the corners of a facet whose mean is its point closest to `p`; they are at least 0 and add up to 1.
+/// The weights of the corners of a facet at its point closest to `p`; they are not negative and sum to 1.
 ///
-/// In 2D a facet is an edge (two corners), in 3D a triangle (three). A triangle without area is taken as its three sides.
+/// In 2D a facet is an edge (two corners), in 3D a triangle (three). A triangle without area is treated as its three sides.
 ///
 /// # Source
 /// C. Ericson, Real-Time Collision Detection (2005), §5.1.2 and §5.1.5.
@@ -83,14 +83,14 @@ fn closest_on_sides<const D: usize>(p: &[f64; D], corners: &[[f64; D]; D]) -> [f
     best
 }
 
-/// Where on the segment from `a` (0) to `b` (1) the point closest to `p` lies.
+/// The position of the point closest to `p` on the segment from `a` (0) to `b` (1).
 pub fn closest_on_segment<const D: usize>(p: &[f64; D], a: &[f64; D], b: &[f64; D]) -> f64 {
     let ab = subtract(b, a);
     let square = dot(&ab, &ab);
     if square > 0.0 { (dot(&subtract(p, a), &ab) / square).larger(0.0).smaller(1.0) } else { 0.0 }
 }
 
-/// Where on two segments, each from 0 to 1, their closest points lie. For parallel ones it is one pair of several.
+/// The positions of the closest points on two segments, each from 0 to 1. For parallel segments this is one of several pairs.
 ///
 /// # Source
 /// C. Ericson, Real-Time Collision Detection (2005), §5.1.9.
@@ -108,7 +108,7 @@ pub fn closest_of_segments<const D: usize>(a: &[[f64; D]; 2], b: &[[f64; D]; 2])
     }
     let bb = dot(&d1, &d2);
     let denominator = aa * ee - bb * bb;
-    // Nearly parallel: any point of the common part is as good.
+    // Nearly parallel: any point of the common part is equally good.
     let mut s = if denominator > PARALLEL * aa * ee { unit((bb * f - c * ee) / denominator) } else { 0.0 };
     let mut t = (bb * s + f) / ee;
     if t < 0.0 {
@@ -119,7 +119,7 @@ pub fn closest_of_segments<const D: usize>(a: &[[f64; D]; 2], b: &[[f64; D]; 2])
     [s, t]
 }
 
-/// The square of the sine below which two edges count as parallel: the rounding of the products, 1e-16, a hundred times.
+/// The squared sine below which two edges count as parallel: a hundred times the rounding of the products, 1e-16.
 pub(crate) const PARALLEL: f64 = 1e-14;
 
 /// Σ wᵢ xᵢ.

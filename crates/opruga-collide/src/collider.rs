@@ -1,4 +1,4 @@
-//! A collider: a shape, how it moves, and how it answers to touch.
+//! A collider: a shape, its motion, and its contact law.
 
 use crate::facets::{Facets, Flaw};
 use crate::motion::{Frame, Motion};
@@ -9,16 +9,16 @@ use opruga_core::error::BuildError;
 use opruga_core::spec::{Value, Values};
 use opruga_math::Lane;
 
-/// How a collider answers to touch.
+/// The contact law of a collider.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Law {
     /// Ratio of normal speeds after and before an impact.
     pub(crate) restitution: f64,
     /// Coulomb's coefficient.
     pub(crate) friction: f64,
-    /// Normal speed up to which nothing bounces [m/s].
+    /// The normal speed up to which there is no bounce [m/s].
     pub(crate) rest_speed: f64,
-    /// Distance that nodes keep [m].
+    /// The distance that nodes keep [m].
     pub(crate) thickness: f64,
     /// The size of the coordinates of the shape [m], against which rounding is measured.
     pub(crate) extent: f64,
@@ -35,7 +35,7 @@ pub(crate) enum Part<const D: usize> {
 }
 
 impl<const D: usize> Form<D> {
-    /// Whether it has faces between corners, in the plane lines.
+    /// Whether it has faces between corners; in the plane, lines.
     pub(crate) fn has_faces(&self) -> bool {
         match self {
             Form::Box { inside, .. } => !inside,
@@ -56,7 +56,7 @@ impl<const D: usize> Part<D> {
     }
 }
 
-/// The shape as it was described, for drawing.
+/// The shape as described, for drawing.
 #[derive(Clone, Debug)]
 pub(crate) enum Form<const D: usize> {
     HalfSpace { point: [f64; D], normal: [f64; D] },
@@ -68,12 +68,12 @@ pub(crate) enum Form<const D: usize> {
     Triangles { points: Vec<[f64; D]>, triangles: Vec<[u32; 3]>, solid: bool },
 }
 
-/// A shape, how it moves, and how it answers to touch.
+/// A shape, its motion, and its contact law.
 #[derive(Clone, Debug)]
 pub(crate) struct Collider<const D: usize> {
     pub(crate) law: Law,
     pub(crate) motion: Motion<D>,
-    /// Where it is in every step, if it stands still.
+    /// Its frame in every step, if it is at rest.
     pub(crate) still: Option<Frame<D>>,
     pub(crate) form: Form<D>,
     pub(crate) parts: Vec<Part<D>>,
@@ -81,12 +81,12 @@ pub(crate) struct Collider<const D: usize> {
     bounds: Option<[[f64; D]; 2]>,
 }
 
-/// How far a collider may be from its placement within an interval of time.
+/// How far a collider may move from its placement within an interval of time.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reach<const D: usize> {
-    /// Least and greatest displacement along each axis [m].
+    /// The smallest and largest displacement along each axis [m].
     pub(crate) shifts: [[f64; D]; 2],
-    /// How far a straight line in the turning frame may leave the straight line in space [m].
+    /// How far a straight line in the rotating frame may deviate from the straight line in space [m].
     pub(crate) bend: f64,
 }
 
@@ -95,7 +95,7 @@ fn refused(values: &Values, refusal: Refusal) -> BuildError {
     BuildError::of(values.kind(), refusal)
 }
 
-/// The value of a field, as it stands in the scene.
+/// The value of a field, as written in the scene.
 fn shown(values: &Values, field: &str) -> String {
     values.get(field).map_or("absent".to_string(), Value::to_string)
 }
@@ -150,27 +150,27 @@ impl<const D: usize> Collider<D> {
         let still = motion.is_still().then(|| Frame::new(&motion, 0.0, 0.0));
         Ok(Collider { law, motion, still, form, parts, bounds })
     }
-    /// The distance that nodes keep from it for the sake of rounding alone [m].
+    /// The distance that nodes keep from it because of rounding [m].
     pub(crate) fn margin_of_rounding(&self) -> f64 {
         let margin = |part: &Part<D>| if let Part::Facets(facets) = part { facets.skin() } else { 0.0 };
         self.parts.iter().map(margin).fold(0.0, |most, margin| margin.larger(most))
     }
-    /// Whether it has faces between corners, in the plane lines.
+    /// Whether it has faces between corners; in the plane, lines.
     pub(crate) fn has_faces(&self) -> bool {
         self.form.has_faces()
     }
-    /// Whether it stands still.
+    /// Whether it is at rest.
     pub(crate) fn is_static(&self) -> bool {
         self.still.is_some()
     }
-    /// Where it may be within an interval of time.
+    /// The positions that it may take within an interval of time.
     pub(crate) fn reach(&self, from: f64, to: f64) -> Reach<D> {
         Reach { shifts: if self.is_static() { [[0.0; D]; 2] } else { self.motion.shifts(from, to) }, bend: 0.0 }
     }
-    /// Where it may be within a step that ends at `time`, seen by nodes that move within a box of space.
+    /// The positions that it may take within a step that ends at `time`, relative to nodes that move within a box.
     ///
-    /// Nodes are followed on straight lines in the turning frame. Against T(s) ((1 − s) a + s b) the straight line in
-    /// space (1 − s) T(0) a + s T(1) b is off by at most φ |b − a|/4 + φ² r/8 for an angle φ and radius r.
+    /// The paths of nodes are straight lines in the rotating frame. The straight line in space, (1 − s) T(0) a + s T(1) b,
+    /// deviates from T(s) ((1 − s) a + s b) by at most φ |b − a|/4 + φ² r/8 for an angle φ and radius r.
     pub(crate) fn sweep(&self, time: f64, h: f64, space: &[[f64; D]; 2]) -> Reach<D> {
         let mut reach = self.reach(time - h, time);
         if self.motion.turns {
@@ -193,16 +193,17 @@ impl<const D: usize> Collider<D> {
         }
         length(&arm)
     }
-    /// Whether a part may touch something within a box of space; never no where it does.
+    /// Whether a part may touch something within a box. It may return true for parts that do not touch, but never false for parts
+    /// that do.
     pub(crate) fn may_touch(&self, part: &Part<D>, reach: &Reach<D>, low: &[f64; D], high: &[f64; D]) -> bool {
         let slack = 1e-9 * (self.law.extent + magnitude(low) + magnitude(high));
         let margin = self.law.thickness + reach.bend + slack;
         let [least, most] = &reach.shifts;
         match part {
-            // A plane that turns gets anywhere.
+            // A rotating plane may be anywhere.
             Part::HalfSpace(_) if self.motion.turns => true,
             Part::HalfSpace(plane) => {
-                // The plane moves along its normal at most so far.
+                // The largest motion of the plane along its normal.
                 let mut ahead = 0.0;
                 for d in 0..D {
                     ahead += (least[d] * plane.normal[d]).larger(most[d] * plane.normal[d]);
@@ -210,7 +211,7 @@ impl<const D: usize> Collider<D> {
                 let clear = plane.least_gap(low, high) - ahead >= margin;
                 !clear
             }
-            // A hollow that turns about a point beside its centre gets anywhere.
+            // A hollow that rotates about a point other than its centre may be anywhere.
             Part::Ball(ball) if ball.sign < 0.0 => {
                 let mut far = [0.0; D];
                 for d in 0..D {
@@ -245,7 +246,7 @@ impl<const D: usize> Collider<D> {
 }
 
 impl<const D: usize> Part<D> {
-    /// The box around it; none if it has no end.
+    /// The bounding box; none if the shape is unbounded.
     fn bounds(&self) -> Option<[[f64; D]; 2]> {
         let (center, half) = match self {
             Part::HalfSpace(_) => return None,
@@ -273,7 +274,7 @@ impl<const D: usize> Part<D> {
     }
 }
 
-/// Vectors shorter than this have lost digits of their direction: squares of their numbers are no normal floating-point numbers.
+/// Vectors shorter than this have lost digits of their direction, because the squares of their components are subnormal.
 const SHORTEST: f64 = 1e-150;
 
 /// Form, parts and centre of a shape.
@@ -284,7 +285,7 @@ fn half_space<const D: usize>(values: &Values) -> Result<Built<D>, BuildError> {
     let mut unit = normal;
     let mut size = length(&unit);
     if !size.is_finite() {
-        // The squares of such numbers have no place, their direction has.
+        // The squares of such numbers may overflow or underflow, but they have a direction.
         let most = normal.iter().fold(0.0, |most: f64, n| if n.abs() > most { n.abs() } else { most });
         unit = normal.map(|n| n / most);
         size = length(&unit);
@@ -320,12 +321,12 @@ fn cuboid<const D: usize>(values: &Values) -> Result<Built<D>, BuildError> {
             },
         ));
     }
-    // The rows of the transpose are the turned unit vectors.
+    // The rows of the transpose are the rotated unit vectors.
     let turn = rotation::<D>(&turning(&spin(values, "rotation")), -1.0);
     let shape = Cuboid { center, axes: if given("rotation") { turn } else { identity() }, half };
     let inside = values.flag("inside");
     let parts = if inside {
-        // A container is the half-spaces behind its walls: so a node in a corner meets each of them.
+        // A container is the half-spaces behind its walls, so that a node in a corner meets each of them.
         let mut walls = Vec::with_capacity(2 * D);
         for d in 0..D {
             for side in [-1.0, 1.0] {
@@ -355,7 +356,7 @@ fn capsule<const D: usize>(values: &Values) -> Result<Built<D>, BuildError> {
     if !(square > 1e-280 && square.is_finite()) {
         return Err(refused(values, Refusal::NoAxis { a: shown(values, "a"), b: shown(values, "b") }));
     }
-    // Of the coordinate axes the one that is most at a right angle, made fully so.
+    // The coordinate axis that is closest to perpendicular, made exactly so.
     let mut least = 0;
     for d in 1..D {
         if along[d].abs() < along[least].abs() {
@@ -369,7 +370,7 @@ fn capsule<const D: usize>(values: &Values) -> Result<Built<D>, BuildError> {
     Ok((Form::Capsule { a, b, radius }, vec![Part::Capsule(capsule)], add(&a, &scaled(&along, 0.5))))
 }
 
-/// The points of a field, and the middle of the box around them.
+/// The points of a field, and the centre of their bounding box.
 fn points<const D: usize>(values: &Values) -> Result<(Vec<[f64; D]>, [f64; D]), BuildError> {
     let (mut low, mut high) = ([f64::INFINITY; D], [f64::NEG_INFINITY; D]);
     let mut points = Vec::new();
@@ -397,7 +398,7 @@ fn convex<const D: usize>(values: &Values) -> Result<Built<D>, BuildError> {
     let flat = || if D == 2 { Refusal::NoArea { count } } else { Refusal::NoVolume { count } };
     let (facets, faces) = Facets::convex(&points).map_err(|_| refused(values, flat()))?;
     let form = if D == 2 {
-        // Faces run clockwise one after the other; their second corners are the polygon counterclockwise.
+        // Faces are in clockwise order; their second corners are the polygon counterclockwise.
         Form::Polygon { points: faces.iter().map(|f| points[f[1]]).collect() }
     } else {
         Form::Triangles {
@@ -461,7 +462,7 @@ fn triangle_mesh<const D: usize>(values: &Values) -> Result<Built<D>, BuildError
     Ok((Form::Triangles { points, triangles, solid: false }, vec![Part::Facets(facets)], center))
 }
 
-/// The number (2D) or vector (3D) of a turn; zeros where there is none.
+/// The number (2D) or vector (3D) of a rotation; zeros if there is none.
 fn spin(values: &Values, field: &str) -> [f64; 3] {
     match values.number(field) {
         Some(number) => [number, 0.0, 0.0],

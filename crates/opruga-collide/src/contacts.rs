@@ -16,7 +16,7 @@ use opruga_core::tile::TILE;
 use opruga_math::{Lane, Simd, WIDTH};
 use std::sync::Arc;
 
-// Never copied into other crates, with which all passes would be compiled then.
+// Never inlined into other crates, which would then compile all passes again.
 #[inline(never)]
 fn of_the_plane(colliders: Arc<Colliders<2>>) -> Arc<dyn Contacts<2>> {
     colliders
@@ -30,7 +30,7 @@ fn of_space(colliders: Arc<Colliders<3>>) -> Arc<dyn Contacts<3>> {
 #[derive(Clone, Debug)]
 pub struct Colliders<const D: usize> {
     all: Arc<[Collider<D>]>,
-    /// Whether those with faces hold no nodes: bodies meet their faces as those of other bodies.
+    /// Whether colliders with faces do not hold nodes: bodies then meet their faces like those of other bodies.
     without_faces: bool,
 }
 
@@ -38,9 +38,9 @@ impl<const D: usize> Colliders<D> {
     /// Builds colliders from their parameters, in order; the kind of each is that of its [`Values`].
     ///
     /// # Errors
-    /// [`Refused`] with the index of the collider, the offending value and what is allowed: a normal or capsule without
-    /// direction, an empty box, a flat hull, a facet without extent, a number of a point that does not exist, a thickness
-    /// that leaves no room.
+    /// [`Refused`] with the index of the collider, the offending value and the allowed values: a normal or capsule without
+    /// direction, an empty box, a flat hull, a degenerate facet, the number of a point that does not exist, a thickness that
+    /// leaves no space.
     pub fn build(values: &[Values]) -> Result<Colliders<D>, Refused> {
         let mut colliders = Vec::with_capacity(values.len());
         for (index, values) in values.iter().enumerate() {
@@ -48,7 +48,7 @@ impl<const D: usize> Colliders<D> {
         }
         Ok(Colliders { all: colliders.into(), without_faces: false })
     }
-    /// The same colliders, of which those with faces hold no nodes. Surfaces keep their numbers.
+    /// The same colliders, but those with faces do not hold nodes. Surfaces keep their numbers.
     pub fn without_faces(&self) -> Colliders<D> {
         Colliders { all: Arc::clone(&self.all), without_faces: true }
     }
@@ -56,9 +56,9 @@ impl<const D: usize> Colliders<D> {
     fn holds(&self, collider: &Collider<D>) -> bool {
         !(self.without_faces && collider.has_faces())
     }
-    /// The colliders as what a system collides with.
+    /// The colliders as the contacts of a system.
     pub fn into_contacts(self: Arc<Self>) -> Arc<dyn Contacts<D>> {
-        // Through functions that are not generic: the passes are compiled once, with this crate.
+        // Through functions that are not generic, so that the passes are compiled once, with this crate.
         let any: Arc<dyn Any + Send + Sync> = self.clone();
         let contacts: Option<Box<dyn Any>> = match any.downcast::<Colliders<2>>() {
             Ok(plane) => Some(Box::new(of_the_plane(plane))),
@@ -81,12 +81,12 @@ impl<const D: usize> Colliders<D> {
     pub fn any_moves(&self) -> bool {
         self.all.iter().any(|collider| !collider.is_static())
     }
-    /// Whether any of them may touch something that stays between the corners `min` and `max` [m] of a box of space
-    /// from `time0` to `time1` [s]. Never no where one does; it may be yes where none does.
+    /// Whether any of them may touch something that stays within the box with the corners `min` and `max` [m] from `time0` to
+    /// `time1` [s]. It may return true if none does, but never false if one does.
     pub fn reach(&self, time0: f64, time1: f64, min: &[f64; D], max: &[f64; D]) -> bool {
         (0..self.len()).any(|collider| self.one_reaches(collider, time0, time1, min, max))
     }
-    /// The same of one of them.
+    /// The same for one of them.
     pub fn one_reaches(&self, collider: usize, time0: f64, time1: f64, min: &[f64; D], max: &[f64; D]) -> bool {
         let collider = &self.all[collider];
         let reach = collider.reach(time0, time1);
@@ -105,16 +105,16 @@ impl<const D: usize> Colliders<D> {
     pub(crate) fn collider(&self, number: usize) -> &Collider<D> {
         &self.all[number]
     }
-    /// Where the colliders are at a time [s], in order.
+    /// The colliders at a time [s], in order, for drawing.
     pub fn pictures(&self, time: f64) -> Vec<Picture<D>> {
         self.all.iter().map(|collider| picture(collider, time)).collect()
     }
-    /// Whether there are solids with edges, beside which there is something else.
+    /// Whether there are solids with edges next to something else.
     fn has_seams(&self) -> bool {
         let parts = || self.all.iter().filter(|collider| self.holds(collider)).flat_map(|collider| &collider.parts);
         parts().nth(1).is_some() && parts().any(Part::has_edges)
     }
-    /// Whether they are so near to the nodes of a tile that these may go from one to the other.
+    /// Whether they are so close to the nodes of a tile that these may move from one to another.
     fn has_seams_in(&self, moved: &Moved<D>, space: &[[f64; D]; 2]) -> bool {
         let (mut count, mut edges) = (0, false);
         for collider in self.all.iter().filter(|collider| self.holds(collider)) {
@@ -126,7 +126,7 @@ impl<const D: usize> Colliders<D> {
         }
         count > 1 && edges
     }
-    /// One plane or ball has no corners: then one look at every node is enough, and no bounds are needed first.
+    /// One plane or ball has no corners: then one pass over all nodes is enough, and no bounds are needed first.
     fn is_simple(&self) -> bool {
         matches!(&*self.all, [one] if matches!(&*one.parts, [Part::HalfSpace(_)]))
     }
@@ -163,12 +163,13 @@ impl<const D: usize> Contacts<D> for Colliders<D> {
         if used == 0 {
             return 0;
         }
-        // The box around the nodes, by which colliders far away are passed over.
+        // The box around the nodes, with which distant colliders are skipped.
         let simple = self.is_simple();
         let mut space = if simple { None } else { Some(simd.run(Bounds { moved, used })) };
         let (mut active, mut ever) = (ActiveNodes([0; TILE / WIDTH]), false);
-        // First what nodes lay on: a node that slides from one solid onto another is held by the first one until it is on the
-        // second, and does not run into the side of that. Then more than once, since one collider may push a node into another.
+        // First the surfaces on which nodes were: a node that slides from one solid onto another is held by the first one until
+        // it is on the second, and does not hit the side of the second. Then more than once, since one collider may push a node
+        // into another.
         let seams = self.has_seams() && space.as_ref().is_some_and(|space| self.has_seams_in(moved, space));
         let first = seams.then_some(Meets::WhatItLiesOn);
         for meets in first.into_iter().chain([Meets::Everything; ROUNDS]) {
@@ -203,10 +204,10 @@ impl<const D: usize> Contacts<D> for Colliders<D> {
     }
 }
 
-/// How often the colliders act at most in a step.
+/// The largest number of rounds of the colliders in a step.
 const ROUNDS: usize = 4;
 
-/// Lets one part of a collider hold back the nodes of a tile; says whether it touched any.
+/// Applies one part of a collider to the nodes of a tile; returns whether it touched any.
 #[allow(clippy::too_many_arguments)]
 fn hold_back<const D: usize>(
     simd: Simd,
@@ -223,7 +224,7 @@ fn hold_back<const D: usize>(
         Part::HalfSpace(shape) => {
             simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, active, used, meets })
         }
-        // What is round pushes nowhere but away.
+        // Round shapes only push nodes away.
         Part::Ball(_) | Part::Capsule(_) if meets == Meets::WhatItLiesOn => false,
         Part::Ball(shape) => simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, active, used, meets }),
         Part::Capsule(shape) => {

@@ -1,43 +1,45 @@
-//! Bodies whose points answer impulses together: those of integrators that solve for the end of a step.
+//! Bodies whose points respond to impulses together: those of integrators that solve for the end of a step.
 //!
-//! An impulse on one point moves all of them, Δv = Y p. Columns of Y are asked for where contacts need them, and kept as long as the body answers by
-//! the same matrix.
+//! An impulse on one point moves all of them, Δv = Y p. Columns of Y are requested when contacts need them, and are kept as long
+//! as the body responds with the same matrix.
 
 use crate::spread::Weighted;
 use crate::vector::scaled;
 use core::ops::Range;
 
-/// What says how the points of a body answer impulses.
+/// The response of the points of a body to impulses.
 pub trait Respond<const D: usize> {
-    /// The number of the matrix by which a body answers now: as long as it is the same, so are its answers. None where it does not answer.
+    /// The number of the matrix with which a body responds now: the same number means the same responses. `None` if it cannot
+    /// respond.
     fn matrix(&mut self, body: usize) -> Option<u64>;
-    /// The mean velocities over the step that unit impulses along every axis at a point give all points of its body [1/kg]: of point q along
-    /// axis i by an impulse along axis d, `out[q][d][i]`. Bodies and their points are counted in the order in which they were added. Says
-    /// whether that is known.
+    /// Computes the mean velocities over the step of all points of the body due to unit impulses along every axis at one point
+    /// [1/kg]: of point q along axis i due to an impulse along axis d, `out[q][d][i]`. Bodies and their points are numbered in
+    /// the order in which they were added. Returns whether this is known.
     fn respond(&mut self, body: usize, point: usize, out: &mut [[[f64; D]; D]]) -> bool;
 }
 
-/// Such bodies, and the columns that are known.
+/// Such bodies, and their known columns.
 #[derive(Clone, Debug, Default)]
 pub struct Coupled<const D: usize> {
     bodies: Vec<Body<D>>,
-    /// The body of every point; `NONE` where it answers by itself.
+    /// The body of every point; `NONE` if the point responds by itself.
     of_point: Vec<u32>,
-    /// Whether all points answer by themselves in this step, as the balance of forces and contact do not agree.
+    /// Whether all points respond by themselves in this step, because the balance of forces and contact disagree.
     pub(crate) apart: bool,
 }
 
 #[derive(Clone, Debug)]
 struct Body<const D: usize> {
     points: Range<usize>,
-    /// The matrix by which it answers, once it was asked in this solution; and the one whose columns are at hand.
+    /// The matrix with which it responds, once determined in this solution; and the matrix of the present columns.
     matrix: Option<u64>,
     matrix_of_columns: Option<u64>,
-    /// Which column belongs to a point; `NONE` where it is not at hand.
+    /// The column of each point; `NONE` if it is not known.
     column: Vec<u32>,
     /// The columns, one after the other.
     values: Vec<[[f64; D]; D]>,
-    /// The points on which contacts act, in the order in which they were asked for, and the impulses on them [N s]; where each point stands in it.
+    /// The points on which contacts act, in the order of requests, and the impulses on them [N s]; the index of each point in
+    /// this list.
     known: Vec<u32>,
     impulses: Vec<[f64; D]>,
     number: Vec<u32>,
@@ -62,34 +64,34 @@ impl<const D: usize> Coupled<D> {
         });
     }
 
-    /// The number of such bodies.
+    /// The number of these bodies.
     pub fn count(&self) -> usize {
         self.bodies.len()
     }
 
-    /// The points of one.
+    /// The points of one of them.
     pub fn points_of(&self, body: usize) -> Range<usize> {
         self.bodies[body].points.clone()
     }
 
-    /// The body that a point belongs to.
+    /// The body of a point.
     #[inline]
     pub(crate) fn body_of(&self, point: u32) -> Option<usize> {
         let body = if self.apart { NONE } else { self.of_point.get(point as usize).copied().unwrap_or(NONE) };
         (body != NONE).then_some(body as usize)
     }
 
-    /// Whether a point belongs to such a body, whatever it does in this step.
+    /// Whether a point belongs to such a body, however it responds in this step.
     pub(crate) fn has(&self, point: u32) -> bool {
         self.of_point.get(point as usize).is_some_and(|body| *body != NONE)
     }
 
-    /// Whether a row has any point that answers together with others.
+    /// Whether a row has any point that responds together with others.
     pub(crate) fn holds(&self, (points, weights): Weighted<'_>) -> bool {
         !self.bodies.is_empty() && (0..points.len()).any(|k| weights[k] != 0.0 && self.body_of(points[k]).is_some())
     }
 
-    /// Begins to add up impulses.
+    /// Starts the accumulation of impulses.
     pub(crate) fn begin(&mut self) {
         for body in &mut self.bodies {
             body.matrix = None;
@@ -98,7 +100,7 @@ impl<const D: usize> Coupled<D> {
         }
     }
 
-    /// Takes the points of a row in, and asks for the columns of those that are not at hand; says whether the body answers.
+    /// Adds the points of a row, and requests their missing columns; returns whether the body responds.
     pub(crate) fn need(&mut self, (points, weights): Weighted<'_>, respond: &mut dyn Respond<D>) -> bool {
         for k in (0..points.len()).filter(|k| weights[*k] != 0.0) {
             let Some(number) = self.body_of(points[k]) else { continue };
@@ -134,14 +136,14 @@ impl<const D: usize> Coupled<D> {
         true
     }
 
-    /// The answer of point q to an impulse at point p of the same body, whose column is known.
+    /// The response of point q to an impulse at point p of the same body, whose column is known.
     fn entry(&self, body: usize, p: u32, q: u32) -> &[[f64; D]; D] {
         let body = &self.bodies[body];
         let column = body.column[p as usize - body.points.start] as usize;
         &body.values[column * body.points.len() + q as usize - body.points.start]
     }
 
-    /// Σ wₖ wₗ Yₖₗ over the points of a row: the velocity of its gap by a unit impulse along every axis.
+    /// Σ wₖ wₗ Yₖₗ over the points of a row: the velocity of its gap due to a unit impulse along every axis.
     pub(crate) fn mobility(&self, (points, weights): Weighted<'_>, inverse_mass: &[[f64; D]]) -> [[f64; D]; D] {
         let mut out = [[0.0; D]; D];
         for k in (0..points.len()).filter(|k| weights[*k] != 0.0) {
@@ -164,7 +166,7 @@ impl<const D: usize> Coupled<D> {
         out
     }
 
-    /// Gives the points of a row an impulse [N s]: the velocities of all points whose columns are known follow.
+    /// Applies an impulse to the points of a row [N s]: updates the velocities of all points whose columns are known.
     pub(crate) fn give(
         &mut self,
         weighted: Weighted<'_>,
@@ -182,7 +184,7 @@ impl<const D: usize> Coupled<D> {
         }
     }
 
-    /// Adds the velocities that an impulse on the points of a row gives, without taking note of it.
+    /// Adds the velocities due to an impulse on the points of a row, without recording it.
     pub(crate) fn add_answer(
         &self,
         (points, weights): Weighted<'_>,
@@ -212,13 +214,13 @@ impl<const D: usize> Coupled<D> {
         }
     }
 
-    /// Sets to zero what [`Coupled::add_answer`] adds to.
+    /// Sets to zero the entries to which [`Coupled::add_answer`] adds.
     pub(crate) fn clear_answer(&self, weighted: Weighted<'_>, v: &mut [[f64; D]]) {
         weighted.0.iter().for_each(|p| v[*p as usize] = [0.0; D]);
         self.followers(weighted, |p| v[p as usize] = [0.0; D]);
     }
 
-    /// The points on which contacts act that follow those of a row, beside these.
+    /// Visits the other points with contacts that respond together with those of a row.
     pub(crate) fn followers(&self, (points, weights): Weighted<'_>, mut visit: impl FnMut(u32)) {
         for k in (0..points.len()).filter(|k| weights[*k] != 0.0) {
             if let Some(body) = self.body_of(points[k]) {
@@ -227,7 +229,7 @@ impl<const D: usize> Coupled<D> {
         }
     }
 
-    /// Lets the points whose columns are not known follow the impulses: `v` becomes what these make of the free velocities.
+    /// Updates all points of the bodies according to the impulses: `v` becomes the free velocities plus the responses.
     pub(crate) fn finish(&self, free: &[[f64; D]], v: &mut [[f64; D]], touched: &mut [bool]) {
         for body in self.bodies.iter().filter(|_| !self.apart) {
             if body.impulses.iter().all(|impulse| *impulse == [0.0; D]) {
@@ -250,7 +252,7 @@ impl<const D: usize> Coupled<D> {
         }
     }
 
-    /// The impulses on the points of a body [N s], where any is not zero.
+    /// The nonzero impulses on the points of a body [N s].
     pub fn impulses_on(&self, body: usize) -> impl Iterator<Item = (usize, [f64; D])> + '_ {
         let Body { known, impulses, points, .. } = &self.bodies[body];
         let on = known.iter().zip(impulses).filter(|(_, impulse)| !self.apart && **impulse != [0.0; D]);

@@ -1,25 +1,26 @@
-//! Where the surface of an obstacle has corners and edges. A surface of facets is flat in most places, whatever lines cut it into facets.
+//! The corners and edges of the surface of an obstacle. A surface of facets is flat in most places, whatever lines divide it into
+//! facets.
 
 use crate::vector::{add, dot, scaled, subtract};
 use core::array::from_fn;
 use opruga_mesh::Mesh;
 
-/// The angle, in radians, by which two facets must turn at an edge.
+/// The smallest angle between the normals of two facets at an edge, in radians.
 const FLAT: f64 = 1e-9;
 
-/// A surface whose points within plane faces come first.
+/// A surface in which the points within plane faces come first.
 pub(crate) struct Creases<const D: usize> {
     pub(crate) mesh: Mesh<D>,
     pub(crate) within_faces: usize,
-    /// In space the edges at which the surface turns or ends, ascending.
+    /// In space, the edges at which the surface bends or ends, ascending.
     pub(crate) edges: Vec<[u32; 2]>,
 }
 
 impl<const D: usize> Creases<D> {
-    /// Finds them. A body that lies on a plane face is held there by its nodes: lines and points within the face would hold it once more, along
-    /// a normal that rounding has turned.
+    /// Finds the corners and edges. The nodes of a body that lies on a plane face already hold it there: lines and points within
+    /// the face would hold it again, along a normal that rounding has rotated.
     pub(crate) fn of(mut mesh: Mesh<D>) -> Creases<D> {
-        // Of every facet and wire, its sides and the corner opposite to each: in the plane sides are points.
+        // The sides of every facet and wire, and the corner opposite to each; in the plane sides are points.
         let mut sides: Vec<([u32; 2], u32)> = Vec::new();
         let facets = mesh.facets.iter().map(|facet| &facet[..]).chain(mesh.sheets.iter().map(|facet| &facet[..]));
         for facet in facets.chain(mesh.wires.iter().map(|wire| &wire[..])) {
@@ -49,7 +50,7 @@ impl<const D: usize> Creases<D> {
                 is_corner[b as usize] = true;
             }
         }
-        // Points of nothing are left out.
+        // Unused points are left out.
         let mut is_used = is_corner.clone();
         sides.iter().for_each(|(side, _)| side.iter().for_each(|p| is_used[*p as usize] = true));
         let mut order: Vec<u32> = (0..mesh.positions.len() as u32).filter(|p| is_used[*p as usize]).collect();
@@ -87,7 +88,7 @@ mod tests {
 
     #[test]
     fn a_plate_cut_into_triangles_has_corners_and_edges_at_its_border_alone() {
-        // Nine points of a square, the fifth within it; triangles turned either way.
+        // Nine points of a square, the fifth of them inside; triangles with either orientation.
         let positions = (0..9).map(|k| [f64::from(k % 3), 0.3 * f64::from(k % 3), f64::from(k / 3)]).collect();
         let cells = [0, 1, 3, 4].into_iter();
         let sheets = cells.flat_map(|k: u32| [[k, k + 1, k + 4], [k, k + 3, k + 4]]).collect();

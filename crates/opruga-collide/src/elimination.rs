@@ -2,8 +2,9 @@
 
 use opruga_math::{Pack, WIDTH, Work};
 
-/// Lines that take a block of columns away in one pass: each number of the block is loaded once for all of them. A pack has two registers of AVX2: four
-/// lines, the block and a factor fit into its sixteen. Results do not depend on it (`solutions_satisfy_their_equations_at_every_size` covers what is left over).
+/// The number of rows from which a block of columns is subtracted in one pass: each number of the block is loaded once for all of
+/// them. A pack has two registers of AVX2, so four rows, the block and a factor fit into its sixteen registers. Results do not
+/// depend on it (`solutions_satisfy_their_equations_at_every_size` covers remaining rows).
 const LINES: usize = 4;
 
 /// to += factor from, for whole packs.
@@ -21,7 +22,7 @@ impl Work for Add<'_> {
     }
 }
 
-/// A loop by numbers, because adapters of iterators are compiled without the vector instructions of their caller.
+/// A loop over indices, because iterator adapters are compiled without the vector instructions of their caller.
 #[inline(always)]
 fn add_rows<P: Pack>(from: &[f64], factor: f64, to: &mut [f64]) {
     let (factor, from, to) = (P::splat(factor), from.as_chunks::<WIDTH>().0, to.as_chunks_mut::<WIDTH>().0);
@@ -33,9 +34,9 @@ fn add_rows<P: Pack>(from: &[f64], factor: f64, to: &mut [f64]) {
     }
 }
 
-/// Replaces the last column by the solution, by elimination with the largest pivot of each column; says whether there is one.
+/// Replaces the last column by the solution, by elimination with the largest pivot of each column; returns whether there is one.
 ///
-/// Every entry takes away its products in the order of columns, as if columns were eliminated one by one.
+/// The products are subtracted from every entry in the order of columns, as if columns were eliminated one by one.
 pub(crate) struct Eliminate<'a> {
     /// Rows of `stride` numbers, a multiple of eight: `size` columns and the right-hand side.
     pub(crate) matrix: &'a mut [f64],
@@ -77,8 +78,8 @@ impl Work for Eliminate<'_> {
     }
 }
 
-/// Eliminates some columns in all rows below, within the pack of these columns; the factors of rows stand in place of what they remove. Says
-/// whether every column has a pivot.
+/// Eliminates some columns in all rows below, within the pack of these columns; the factors of rows replace the entries that they
+/// eliminate. Returns whether every column has a pivot.
 #[inline(always)]
 fn factor_columns(matrix: &mut [f64], columns: core::ops::Range<usize>, size: usize, stride: usize) -> bool {
     let first = columns.start;
@@ -112,7 +113,7 @@ fn factor_columns(matrix: &mut [f64], columns: core::ops::Range<usize>, size: us
     true
 }
 
-/// Takes the rows of a block away from one another, right of the block.
+/// Subtracts the rows of a block from one another, right of the block.
 #[inline(always)]
 fn finish_block<P: Pack>(block: &mut [f64], first: usize, next: usize, stride: usize) {
     let rows = block.len() / stride;
@@ -125,7 +126,7 @@ fn finish_block<P: Pack>(block: &mut [f64], first: usize, next: usize, stride: u
     }
 }
 
-/// Takes the rows of a block away from all rows below, right of the block.
+/// Subtracts the rows of a block from all rows below, right of the block.
 #[inline(always)]
 fn take_away<P: Pack>(block: &[f64], lower: &mut [f64], first: usize, next: usize, stride: usize) {
     let (count, packs) = (lower.len() / stride, (stride - next) / WIDTH);
@@ -187,7 +188,7 @@ mod tests {
     use super::*;
     use opruga_math::{Lane, Simd};
 
-    /// Numbers between −1 and 1 in no order.
+    /// Random numbers between −1 and 1.
     fn numbers(count: usize) -> Vec<f64> {
         let mut state = 1u64;
         let mut next = || {
@@ -215,7 +216,7 @@ mod tests {
     #[test]
     fn columns_without_a_pivot_have_no_solution() {
         let (size, stride) = (12, 16);
-        // All columns are the same.
+        // All columns are equal.
         let mut matrix = vec![1.0; size * stride];
         assert!(!Simd::best().run(Eliminate { matrix: &mut matrix, size, stride }));
     }

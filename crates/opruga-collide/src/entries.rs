@@ -1,4 +1,4 @@
-//! Nodes of a register that are looked at one by one: by which face they came in, and what they lay on.
+//! Nodes of a register that are processed one by one: the face through which they entered, and the surface on which they were.
 
 use crate::shape::{Shape, entry, is_on_edge, support};
 use opruga_math::{Register, WIDTH, lanes};
@@ -18,7 +18,7 @@ impl<const D: usize> Found<D> {
     }
 }
 
-/// The numbers of a register, and zeros.
+/// The numbers of a register, followed by zeros.
 #[inline(always)]
 pub(crate) fn numbers<R: Register>(register: R) -> [f64; WIDTH] {
     let mut out = [0.0; WIDTH];
@@ -26,7 +26,7 @@ pub(crate) fn numbers<R: Register>(register: R) -> [f64; WIDTH] {
     out
 }
 
-/// The numbers of registers, and zeros.
+/// The numbers of several registers, followed by zeros.
 #[inline(always)]
 pub(crate) fn arrays<R: Register, const D: usize>(registers: &[R; D]) -> [[f64; WIDTH]; D] {
     let mut out = [[0.0; WIDTH]; D];
@@ -38,12 +38,12 @@ pub(crate) fn arrays<R: Register, const D: usize>(registers: &[R; D]) -> [[f64; 
 
 /// The paths of the nodes of a register.
 pub(crate) struct NodePaths<const D: usize> {
-    /// Where they began, carried along with the shape, and where they are [m].
+    /// Their start, carried along with the shape, and their end [m].
     pub(crate) ends: [[[f64; WIDTH]; D]; 2],
-    /// Whether a node is looked at, and whether another contact is already active at it in this step: above 0.
+    /// Whether a node is to be processed, and whether another contact is already active at it in this step: above 0.
     pub(crate) asked: [f64; WIDTH],
     pub(crate) active: [f64; WIDTH],
-    /// What counts as rounding there [m].
+    /// The size below which distances there are rounding [m].
     pub(crate) small: [f64; WIDTH],
 }
 
@@ -53,13 +53,13 @@ impl<const D: usize> NodePaths<D> {
         self.ends.each_ref().map(|end| lanes!(f64, d => end[d][lane]))
     }
 
-    /// Finds whether nodes came into a shape on their paths, and where; what is found of the others stays.
+    /// Finds whether and where nodes entered a shape on their paths; the results of other nodes do not change.
     #[inline(never)]
     pub(crate) fn look_for_entries<T: Shape<D>>(&self, shape: &T, margin: f64, found: &mut Found<D>) {
         for l in (0..WIDTH).filter(|l| self.asked[*l] != 0.0) {
             let [a, b] = self.of(l);
-            // What something else keeps on the surface passes edges, on which no face is in its way. What lies exactly where
-            // two solids meet, and is kept by nothing, is in both of them.
+            // A node that another contact keeps on the surface passes edges, where no face is in its way. A node exactly at the
+            // junction of two solids that no contact keeps is in both of them.
             let kept = T::FACES && self.active[l] > 0.0 && found.gap[l] >= -self.small[l];
             if kept && is_on_edge(shape, margin, &b) {
                 found.set(l, (f64::INFINITY, [0.0; D]));
@@ -69,7 +69,7 @@ impl<const D: usize> NodePaths<D> {
         }
     }
 
-    /// Finds whether nodes lay on a shape and go into it. Others are far away.
+    /// Finds whether nodes were on a shape and enter it. Other nodes count as far away.
     #[inline(never)]
     pub(crate) fn look_for_supports<T: Shape<D>>(&self, shape: &T, margin: f64, found: &mut Found<D>) {
         for l in 0..WIDTH {

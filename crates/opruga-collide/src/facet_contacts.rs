@@ -1,4 +1,4 @@
-//! Nodes against obstacles of many facets: one node after the other, by a tree.
+//! Nodes against obstacles of many facets: one node after the other, with a tree.
 
 use crate::active_nodes::{ActiveNodes, Meets};
 use crate::collider::Law;
@@ -10,7 +10,7 @@ use crate::vector::{dot, subtract};
 use opruga_core::contacts::Moved;
 use opruga_math::{Lane, WIDTH, lanes};
 
-/// Facets where they are at the end of the step.
+/// Facets in their positions at the end of the step.
 pub(crate) struct Placed<'a, const D: usize> {
     pub(crate) facets: &'a Facets<D>,
     pub(crate) pose: &'a Pose<D>,
@@ -49,7 +49,7 @@ pub(crate) fn hold_back_by_facets<const D: usize>(
         let mass = moved.mass.at(index);
         let (lane, bit) = (index % WIDTH, 1u8 << (k % WIDTH));
         let is_active = |active: &ActiveNodes| active.0.get(k / WIDTH).is_some_and(|bits| bits & bit != 0);
-        // What one facet of a thin surface pushes out may be pushed through another one, which pushes then.
+        // A node that one facet of a thin surface pushes out may be pushed through another facet, which then pushes it.
         let mut through = false;
         for _ in 0..if surface.facets.solid { 1 } else { PUSHES } {
             let (x, v) = (moved.x.at(index), moved.v.at(index));
@@ -70,8 +70,8 @@ pub(crate) fn hold_back_by_facets<const D: usize>(
                 break;
             }
             let obstacle = surface.pose.velocity_at(&x);
-            // As of other solids: what something else keeps on the surface passes edges, and what lies exactly where two solids
-            // meet, and is kept by nothing, is in both of them.
+            // As for other solids: a node that another contact keeps on the surface passes edges, and a node exactly at the
+            // junction of two solids that no contact keeps is in both of them.
             if surface.facets.solid && !lies && gap.abs() <= surface.facets.grain().larger(rounding(law, &x)) {
                 if !is_active(active) {
                     if let Some((behind, face)) = entry(surface.facets, surface.margin, &from, &to) {
@@ -119,7 +119,7 @@ pub(crate) fn hold_back_by_facets<const D: usize>(
                 break;
             }
         }
-        // Where facets leave no way out, the node stays where it was, and goes with the obstacle.
+        // If facets leave no way out, the node stays where it was, and moves with the obstacle.
         if through {
             let (x, v, obstacle) = (moved.x.at(index), moved.v.at(index), surface.pose.velocity_at(&before));
             let stopped = subtract(&v, &obstacle);
@@ -133,5 +133,5 @@ pub(crate) fn hold_back_by_facets<const D: usize>(
     touched
 }
 
-/// How often facets of one surface push a node within a pass.
+/// The largest number of times that facets of one surface push a node within a pass.
 const PUSHES: usize = 8;

@@ -1,6 +1,6 @@
-//! Shapes made of flat facets: thin surfaces that hold on both sides, and convex hulls.
+//! Shapes of flat facets: thin surfaces that act on both sides, and convex hulls.
 //!
-//! The bounding-volume tree and the nearest point of a facet come from parry; its types stay in this file.
+//! The bounding-volume tree and the nearest point of a facet come from parry, whose types are used only in this file.
 
 use crate::hull;
 use crate::shape::{Shape, entry};
@@ -11,13 +11,13 @@ use std::sync::Arc;
 
 /// Finds facets in space.
 trait Tree<const D: usize>: Send + Sync + Debug {
-    /// The nearest point among all facets nearer than `within` [m]: the point and the facet.
+    /// The nearest point on all facets nearer than `within` [m]: the point and the facet.
     fn nearest(&self, x: &[f64; D], within: f64) -> Option<([f64; D], usize)>;
-    /// Calls back with every facet whose bounds meet a box.
+    /// Calls `call` with every facet whose bounding box overlaps a box.
     fn visit(&self, low: &[f64; D], high: &[f64; D], call: &mut dyn FnMut(usize));
 }
 
-/// Writes a tree over one of parry's two crates.
+/// Implements a tree with one of parry's two crates.
 macro_rules! tree {
     ($name:ident, $parry:ident, $facet:ident, $($corner:literal)*, $($axis:literal)*) => {
         #[derive(Debug)]
@@ -80,24 +80,24 @@ struct Facet<const D: usize> {
 pub(crate) struct Facets<const D: usize> {
     tree: Arc<dyn Tree<D>>,
     facets: Vec<Facet<D>>,
-    /// Whether the inside is solid: then the facets are the faces of a convex body.
+    /// Whether the inside is solid; the facets are then the faces of a convex body.
     pub(crate) solid: bool,
-    /// The least coordinates.
+    /// The smallest coordinates.
     pub(crate) low: [f64; D],
-    /// The greatest coordinates.
+    /// The largest coordinates.
     pub(crate) high: [f64; D],
     half_width: f64,
-    /// A distance from the surface whose direction is nothing but rounding [m]: nearer nodes are on it.
+    /// The distance from the surface below which its direction is rounding [m]: nearer nodes are on the surface.
     grain: f64,
 }
 
-/// What a node finds: nothing within reach, or a gap and a normal.
+/// The result of a node if nothing is within reach; otherwise a gap and a normal.
 const NOTHING: f64 = f64::INFINITY;
 
 /// Why facets could not be made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Flaw {
-    /// A facet without extent.
+    /// A degenerate facet.
     Degenerate(usize),
     /// The hull has no volume.
     Flat,
@@ -143,7 +143,7 @@ impl<const D: usize> Facets<D> {
         out.grain = 0.01 * out.resolved();
         Ok(out)
     }
-    /// A distance whose direction is no rounding [m].
+    /// A distance whose direction is not rounding [m].
     fn resolved(&self) -> f64 {
         let mut far = 0.0;
         for d in 0..D {
@@ -151,15 +151,15 @@ impl<const D: usize> Facets<D> {
         }
         1e-8 * length(&subtract(&self.high, &self.low)) + 1e-12 * far
     }
-    /// The least distance that nodes keep, so that rounding never puts them on the other side [m].
+    /// The smallest distance that nodes keep, so that rounding never puts them on the other side [m].
     pub(crate) fn skin(&self) -> f64 {
         if self.solid { 0.0 } else { self.resolved() }
     }
-    /// The distance below which a node lies on a facet [m].
+    /// The distance below which a node is on a facet [m].
     pub(crate) fn grain(&self) -> f64 {
         self.grain
     }
-    /// Whether a segment passes the bounds, widened by a margin. The coordinates must be finite.
+    /// Whether a segment passes through the bounding box, enlarged by a margin. The coordinates must be finite.
     pub(crate) fn passes_bounds(&self, a: &[f64; D], b: &[f64; D], margin: f64) -> bool {
         for d in 0..D {
             if a[d].smaller(b[d]) > self.high[d] + margin || a[d].larger(b[d]) < self.low[d] - margin {
@@ -168,7 +168,7 @@ impl<const D: usize> Facets<D> {
         }
         true
     }
-    /// The gap to a node that moved from `before` to `x`, and the normal; a gap of infinity where it is above `reach`.
+    /// The gap to a node that moved from `before` to `x`, and the normal; the gap is infinite if it is above `reach`.
     ///
     /// Nodes keep the distance `margin` from the surface.
     pub(crate) fn touch(&self, x: &[f64; D], before: &[f64; D], margin: f64, reach: f64) -> (f64, [f64; D]) {
@@ -182,13 +182,13 @@ impl<const D: usize> Facets<D> {
         let displacement = subtract(x, before);
         let far = 0.5 * self.half_width;
         let (gap, normal) = self.gap_and_normal(x);
-        // The face by which it came in, which need not be the nearest one.
+        // The face through which it entered, which need not be the nearest one.
         if (gap - margin < -self.grain || dot(&displacement, &displacement) > far * far)
             && let Some(found) = entry(self, margin, before, x)
         {
             return found;
         }
-        // From a node on the surface no direction leads to it.
+        // For a node on the surface, no direction leads to it.
         if gap <= self.grain || gap >= margin + reach {
             return (gap - margin, normal);
         }
@@ -207,7 +207,7 @@ impl<const D: usize> Facets<D> {
         };
         let away = subtract(x, &point);
         let distance = length(&away);
-        // On the surface itself its normal counts, towards where the node was.
+        // On the surface itself its normal is used, towards the previous position of the node.
         if distance <= self.grain {
             let facet = &self.facets[facet];
             let side = dot(&subtract(before, &facet.corner), &facet.normal);
@@ -216,7 +216,7 @@ impl<const D: usize> Facets<D> {
         }
         (distance - margin, scaled(&away, 1.0 / distance))
     }
-    /// The first facet that a segment crosses: how far the end lies behind it, and its normal towards the start.
+    /// The first facet that a segment crosses: how far the end is behind it, and its normal towards the start.
     pub(crate) fn crossed(&self, a: &[f64; D], b: &[f64; D]) -> Option<(f64, [f64; D])> {
         let low: [f64; D] = lanes!(f64, d => a[d].smaller(b[d]));
         let high: [f64; D] = lanes!(f64, d => a[d].larger(b[d]));
@@ -235,7 +235,7 @@ impl<const D: usize> Facets<D> {
     }
 }
 
-/// The convex solid as the cut of the half-spaces behind its faces: exact inside, a lower bound outside.
+/// The convex solid as the intersection of the half-spaces behind its faces: exact inside, a lower bound outside.
 impl<const D: usize> Shape<D> for Facets<D> {
     const FACES: bool = true;
     fn visit_faces(&self, x: &[f64; D], grain: f64, visit: &mut dyn FnMut(f64, [f64; D])) {
@@ -266,7 +266,7 @@ impl<const D: usize> Shape<D> for Facets<D> {
 }
 
 impl<const D: usize> Facet<D> {
-    /// None where the corners have no extent.
+    /// None if the facet is degenerate.
     fn new(corners: &[[f64; D]; D]) -> Option<Facet<D>> {
         let mut weights = [[0.0; D]; D];
         let mut normal = [0.0; D];
@@ -282,7 +282,7 @@ impl<const D: usize> Facet<D> {
                 normal[d] = e[(d + 1) % D] * f[(d + 2) % D] - e[(d + 2) % D] * f[(d + 1) % D];
             }
             let determinant = dot(&normal, &normal);
-            // Triangles of less height than a hundred-millionth of their length have no normal worth the name.
+            // Triangles whose height is less than a hundred-millionth of their length have no useful normal.
             let is_proper = determinant > 1e-16 * ee * ff;
             if !is_proper {
                 return None;
@@ -296,9 +296,9 @@ impl<const D: usize> Facet<D> {
         }
         Some(Facet { corner: corners[0], normal: scaled(&normal, 1.0 / size), weights })
     }
-    /// Where along a segment (0 … 1) it crosses the facet, and how far its end lies behind: above zero if it came from
-    /// the side of the normal, else below. What begins nearer than `grain` to the facet begins on it, and comes from the
-    /// side of the normal.
+    /// The position along a segment (0 … 1) at which it crosses the facet, and how far its end is behind the facet: positive if
+    /// it came from the side of the normal, otherwise negative. A segment that begins closer than `grain` to the facet begins on
+    /// it, and comes from the side of the normal.
     fn crossed(&self, a: &[f64; D], b: &[f64; D], grain: f64) -> Option<(f64, f64)> {
         let from = dot(&subtract(a, &self.corner), &self.normal);
         let from = if from.abs() <= grain { 0.0 } else { from };
@@ -309,14 +309,14 @@ impl<const D: usize> Facet<D> {
         }
         let s = from / (from - to);
         let arm: [f64; D] = lanes!(f64, d => (a[d] - self.corner[d]) + s * (b[d] - a[d]));
-        // A little beyond the edge counts, so that no node slips between two facets.
+        // Points slightly beyond the edge count too, so that no node slips between two facets.
         let (mut sum, mut inside) = (0.0, true);
         for weight in &self.weights[..D - 1] {
             let w = dot(weight, &arm);
             inside &= w >= -1e-9;
             sum += w;
         }
-        // A depth of exactly zero keeps the side in its sign.
+        // If the depth is exactly zero, its sign still gives the side.
         let least = f64::MIN_POSITIVE;
         let depth = if from >= 0.0 { (-to).larger(least) } else { (-to).smaller(-least) };
         (inside && sum <= 1.0 + 1e-9).then_some((s, depth))

@@ -1,4 +1,4 @@
-//! How far two features are apart, and which direction leads out.
+//! The distance of two features, and the direction out.
 
 use crate::closest::{PARALLEL, closest_of_segments, closest_on_facet, facet_normal, mean};
 use crate::surface::Surface;
@@ -7,29 +7,29 @@ use opruga_math::Lane;
 
 /// Two features at their closest points.
 ///
-/// The gap changes by Σ wᵢ n·Δxᵢ when the points move: the weights of the one feature add up to 1, those of the other to −1. So
-/// impulses wᵢ n λ on the points change no momentum.
+/// When the points move, the gap changes by Σ wᵢ n·Δxᵢ. The weights of one feature sum to 1, those of the other to −1, so
+/// impulses wᵢ n λ on the points conserve momentum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gap<const D: usize> {
-    /// The points; those beyond the features have the weight 0 and repeat the first.
+    /// The points; unused ones have the weight 0 and repeat the first.
     pub points: [u32; 4],
     /// Their weights.
     pub weights: [f64; 4],
-    /// The distance, negative where the first feature is on the inner side of the second [m].
+    /// The distance, negative if the first feature is on the inner side of the second [m].
     pub gap: f64,
     /// The unit normal, from the second feature to the first.
     pub normal: [f64; D],
 }
 
-/// The distance, relative to the coordinates, below which the vector from one feature to the other is all rounding.
+/// The distance, relative to the coordinates, below which the vector from one feature to the other is only rounding.
 const ROUNDING: f64 = 1e-13;
 
 impl<const D: usize> Gap<D> {
     /// The gap of a vertex and a facet with the points at `x` [m].
     ///
-    /// A facet of a closed boundary has an inner side, where the gap is negative: by its own normal where the closest point lies within
-    /// it, else by those of all facets around the edge or corner where it lies, each weighted by its angle there. Others hold on
-    /// both sides.
+    /// A facet of a closed boundary has an inner side, where the gap is negative. The side follows from its own normal if the
+    /// closest point is inside the facet; otherwise from the normals of all facets around the edge or corner of the closest
+    /// point, each weighted by its angle there. Other facets act on both sides.
     ///
     /// # Source
     /// J. A. Bærentzen, H. Aanæs, Signed distance computation using the angle weighted pseudonormal, IEEE TVCG 11 (2005) 243–253.
@@ -48,15 +48,15 @@ impl<const D: usize> Gap<D> {
         let outward = || {
             if within { unit(&facet_normal(&at)) } else { normal_around(surface, x, &corners, &weights) }
         };
-        // Mostly, the point lies outside of all facets around: then their angles do not matter.
+        // Usually the point is outside of all facets around; then their angles do not matter.
         let may_be_inside = surface.closed[facet as usize]
             && (within || !lies_outside_of_all(surface, x, (&corners, &weights), &between));
         out.point_along(&between, may_be_inside, &p, outward);
         out
     }
 
-    /// The gap of two edges with the points at `x` [m]; none where their closest points are not within both, or where they are parallel:
-    /// then pairs of a vertex and a facet say it all.
+    /// The gap of two edges with the points at `x` [m]; none if their closest points are not inside both, or if they are
+    /// parallel: pairs of a vertex and a facet are then sufficient.
     pub fn of_edges(surface: &Surface<D>, x: &[[f64; D]], a: u32, b: u32) -> Option<Gap<D>> {
         let (ea, eb) = (surface.edges[a as usize], surface.edges[b as usize]);
         let (xa, xb) = (ea.map(|p| x[p as usize]), eb.map(|p| x[p as usize]));
@@ -76,7 +76,7 @@ impl<const D: usize> Gap<D> {
         let between = subtract(&mean(&[1.0 - s, s], &xa), &mean(&[1.0 - t, t], &xb));
         let sides = |edge: u32| surface.sides[edge as usize];
         let closed = [a, b].iter().all(|e| sides(*e) != [u32::MAX; 2]);
-        // Outward of the second body, and into the first.
+        // Out of the second body, and into the first.
         let outward = || {
             let mut sum = [0.0; D];
             for (edge, sign) in [(a, -1.0), (b, 1.0)] {
@@ -87,7 +87,7 @@ impl<const D: usize> Gap<D> {
                     }
                 }
             }
-            // Perpendicular to both edges, where the vector between them has no direction.
+            // Perpendicular to both edges, if the vector between them has no direction.
             let mut cross = [0.0; D];
             for d in 0..D {
                 let (i, j) = ((d + 1) % D, (d + 2) % D);
@@ -140,7 +140,7 @@ impl<const D: usize> Gap<D> {
     }
 }
 
-/// A vector of length 1; one that has none points upwards.
+/// A vector of length 1; upwards for a zero vector.
 fn unit<const D: usize>(a: &[f64; D]) -> [f64; D] {
     let l = length(a);
     if l > 0.0 && l.is_finite() {
@@ -151,7 +151,7 @@ fn unit<const D: usize>(a: &[f64; D]) -> [f64; D] {
     out
 }
 
-/// Whether a vector from the corner or edge where the weights are not zero points to the outer side of all facets around.
+/// Whether a vector from the corner or edge with nonzero weights points to the outer side of all facets around.
 fn lies_outside_of_all<const D: usize>(
     surface: &Surface<D>,
     x: &[[f64; D]],
@@ -162,7 +162,7 @@ fn lies_outside_of_all<const D: usize>(
         .all(|facet| dot(&facet_normal(&facet.map(|p| x[p as usize])), vector) > 0.0)
 }
 
-/// The facets around the corner or edge where the weights are not zero.
+/// The facets around the corner or edge with nonzero weights.
 fn facets_around<'a, const D: usize>(
     surface: &'a Surface<D>,
     corners: &'a [u32; D],
@@ -174,7 +174,7 @@ fn facets_around<'a, const D: usize>(
     around.filter(move |facet| (0..D).filter(on).all(|k| facet.contains(&corners[k])))
 }
 
-/// The normals of all facets around the corner or edge where the weights are not zero, each by its angle there.
+/// The sum of the normals of all facets around the corner or edge with nonzero weights, each weighted by its angle there.
 fn normal_around<const D: usize>(
     surface: &Surface<D>,
     x: &[[f64; D]],

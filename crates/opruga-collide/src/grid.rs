@@ -1,10 +1,10 @@
-//! Boxes found by a grid with several sizes of cells.
+//! Search for boxes in a grid with several sizes of cells.
 
 use opruga_math::Lane;
 
-/// Boxes sorted into the cell of their lowest corner, which is at least as large as they are: the smallest cells have the mean extent of
-/// the boxes, each level above it twice that. So a box reaches at most into the next cell of every axis, however different the sizes are,
-/// and none is found twice.
+/// Boxes are sorted into the cell of their lowest corner, which is at least as large as the box: the smallest cells have the mean
+/// extent of the boxes, and each further level has cells twice as large. So a box extends at most into the next cell along every
+/// axis, however different the sizes are, and no box is found twice.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Grid<const D: usize> {
     boxes: Vec<[[f64; D]; 2]>,
@@ -12,7 +12,7 @@ pub(crate) struct Grid<const D: usize> {
     /// The level of every box.
     level_of: Vec<u8>,
     origin: [f64; 3],
-    /// How many queries there were since the boxes were sorted.
+    /// The number of queries since the boxes were sorted.
     queries: u32,
 }
 
@@ -20,18 +20,19 @@ pub(crate) struct Grid<const D: usize> {
 struct Level<const D: usize> {
     /// One over the extent of a cell [1/m].
     per_metre: f64,
-    /// Where the boxes of every bucket begin among `entries`, and the query that has looked into it last. A bucket holds the cells of one
-    /// hash.
+    /// The start of the boxes of every bucket in `entries`, and the last query that has examined it. A bucket holds the cells
+    /// with one hash.
     buckets: Vec<[u32; 2]>,
-    /// Boxes with their numbers, bucket by bucket.
+    /// Boxes with their numbers, one bucket after the other.
     entries: Vec<([[f64; D]; 2], u32)>,
     count: usize,
 }
 
-/// The last cell along an axis: whatever is beyond lies in it. The number of a cell is exact up to there, and overflows beyond (`boxes_far_beyond_all_others_are_found`).
+/// The last cell along an axis, which contains everything beyond. The number of a cell is exact up to there, and overflows beyond
+/// (`boxes_far_beyond_all_others_are_found`).
 const FARTHEST: f64 = 1e15;
 
-/// The most levels: cells of the last one hold whatever is left.
+/// The largest number of levels; the last one contains all larger boxes.
 const LEVELS: usize = 24;
 
 impl<const D: usize> Level<D> {
@@ -44,7 +45,7 @@ impl<const D: usize> Level<D> {
         (hash as usize) & (self.buckets.len() - 2)
     }
     fn cell_of(&self, origin: &[f64; 3], x: &[f64; D]) -> [i64; D] {
-        // Rounded towards zero and corrected: rounding down is a call of a function.
+        // Rounded towards zero and corrected, because rounding down is a function call.
         core::array::from_fn(|d| {
             let at = ((x[d] - origin[d]) * self.per_metre).larger(-FARTHEST).smaller(FARTHEST);
             let cell = at as i64;
@@ -53,7 +54,7 @@ impl<const D: usize> Level<D> {
     }
 }
 
-/// Calls back with every cell from one to another.
+/// Calls `visit` with every cell from one to another.
 fn cells_between<const D: usize>(from: [i64; D], to: [i64; D], mut visit: impl FnMut([i64; D])) {
     let mut cell = from;
     loop {
@@ -112,7 +113,7 @@ impl<const D: usize> Grid<D> {
             level.buckets.resize((2 * level.count).next_power_of_two() + 1, [0; 2]);
             level.entries.clear();
         }
-        // Counted, summed up, and entered from behind, so that a bucket is in the order of the boxes.
+        // Counting sort from the back, so that a bucket is in the order of the boxes.
         for (number, [low, _]) in self.boxes.iter().enumerate() {
             let level = &mut self.levels[self.level_of[number] as usize];
             let bucket = level.bucket(&level.cell_of(&self.origin, low));
@@ -135,7 +136,7 @@ impl<const D: usize> Grid<D> {
         }
     }
 
-    /// Collects the numbers of all boxes that one touches, each once, in an order that depends on the boxes alone.
+    /// Collects the numbers of all boxes that touch a box, each once, in an order that depends only on the boxes.
     pub(crate) fn touching(&mut self, [low, high]: &[[f64; D]; 2], found: &mut Vec<u32>) {
         found.clear();
         let meets = |other: &[[f64; D]; 2]| {
@@ -153,7 +154,7 @@ impl<const D: usize> Grid<D> {
                 from[d] -= 1;
                 cells *= (to[d] - from[d]) as f64 + 1.0;
             }
-            // A box over more cells than there are boxes.
+            // A box that covers more cells than there are boxes.
             if cells > level.entries.len() as f64 {
                 found.extend(level.entries.iter().filter(|(other, _)| meets(other)).map(|(_, number)| *number));
                 continue;

@@ -1,9 +1,9 @@
-//! Convex hulls of points in the plane and in space. Points on a face (within rounding) do not split it.
+//! Convex hulls of points in the plane and in space. Points on a face (within rounding) do not divide it.
 
 use crate::vector::{dot, length, scaled, subtract};
 
-/// The faces of the convex hull, by numbers of points, normals outward (2D: points counterclockwise with the normal to
-/// the *left* of each face's direction, so faces run clockwise). None where the hull has no area or volume.
+/// The faces of the convex hull as indices of points, with outward normals (2D: points counterclockwise, with the normal to the
+/// *left* of the direction of each face, so faces run clockwise). None if the hull has no area or volume.
 pub(crate) fn faces<const D: usize>(points: &[[f64; D]]) -> Option<Vec<[usize; D]>> {
     let faces = if D == 2 { polygon(points)? } else { polyhedron(points)? };
     Some(
@@ -33,7 +33,7 @@ fn polygon<const D: usize>(points: &[[f64; D]]) -> Option<Vec<[usize; 3]>> {
     order.sort_by(|&a, &b| {
         points[a][0].total_cmp(&points[b][0]).then(points[a][1].total_cmp(&points[b][1])).then(a.cmp(&b))
     });
-    // Whether b lies to the right of the line from a to c by more than rounding: then it is a corner.
+    // Whether b is to the right of the line from a to c by more than rounding, and so is a corner.
     let is_corner = |a: usize, b: usize, c: usize| {
         let (u, w) = (subtract(&points[c], &points[a]), subtract(&points[b], &points[a]));
         u[1] * w[0] - u[0] * w[1] > tolerance * length(&u)
@@ -66,7 +66,7 @@ struct Face<const D: usize> {
     alive: bool,
 }
 
-/// The incremental hull: every point outside replaces the faces that it sees by faces to their rim.
+/// The incremental hull: every point outside replaces the faces that are visible from it by faces to their rim.
 fn polyhedron<const D: usize>(points: &[[f64; D]]) -> Option<Vec<[usize; 3]>> {
     let tolerance = 1e-10 * size(points);
     let farthest = |score: &dyn Fn(&[f64; D]) -> f64| {
@@ -79,7 +79,7 @@ fn polyhedron<const D: usize>(points: &[[f64; D]]) -> Option<Vec<[usize; 3]>> {
         }
         best
     };
-    // A tetrahedron of points far apart.
+    // A tetrahedron of distant points.
     let (a, _) = farthest(&|p| -p[0]);
     let (b, far) = farthest(&|p| length(&subtract(p, &points[a])));
     if far.is_nan() || far <= 0.0 {
@@ -107,7 +107,7 @@ fn polyhedron<const D: usize>(points: &[[f64; D]]) -> Option<Vec<[usize; 3]>> {
     for (k, point) in points.iter().enumerate() {
         let sees = |f: &Face<D>| f.alive && dot(point, &f.normal) - f.offset > tolerance;
         let seen: Vec<usize> = (0..faces.len()).filter(|&f| sees(&faces[f])).collect();
-        // The rim: edges of seen faces whose other side is not seen.
+        // The rim: edges between a visible and an invisible face.
         let mut rim = Vec::new();
         for &f in &seen {
             let [a, b, c] = faces[f].corners;
@@ -129,7 +129,8 @@ fn polyhedron<const D: usize>(points: &[[f64; D]]) -> Option<Vec<[usize; 3]>> {
         }
         faces.retain(|f| f.alive);
     }
-    // What rounding may have spoiled is refused: every edge has two faces, every point lies behind every face.
+    // Results that rounding may have spoiled are refused: every edge must have two faces, and every point must be behind every
+    // face.
     let allowed = 10.0 * tolerance;
     let edges: Vec<[usize; 2]> = faces
         .iter()
@@ -142,7 +143,7 @@ fn polyhedron<const D: usize>(points: &[[f64; D]]) -> Option<Vec<[usize; 3]>> {
     (closed && holds).then(|| faces.iter().map(|f| f.corners).collect())
 }
 
-/// A face through three points, normal by the right-hand rule; None where they lie on a line.
+/// A face through three points, with the normal by the right-hand rule; `None` if they are collinear.
 fn face<const D: usize>(points: &[[f64; D]], corners: [usize; 3]) -> Option<Face<D>> {
     let [a, b, c] = corners.map(|p| points[p]);
     let (e, f) = (subtract(&b, &a), subtract(&c, &a));

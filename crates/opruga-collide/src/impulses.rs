@@ -10,62 +10,66 @@ use crate::working_set;
 use core::any::Any;
 use opruga_math::Lane;
 
-/// What is left of the velocities of contacts, relative to the mean approach of bodies that hang together, where the sweeps end: at rest, where that is
-/// h g, a contact then creeps by less than a hundredth of what one step of free fall would make. Impulses of the next step start from there and
-/// every contact gets a turn in it, so what is left of a step does not add up; at the beginning of a frame alone all starts anew. A
-/// thousandth needs two to three times the turns, for kinetic energies of a heap that differ by less than a thousandth.
+/// The sweeps end when the remaining contact velocities are below this fraction of the mean approach velocity of the connected
+/// bodies. At rest, where that is h g, a contact then creeps by less than a hundredth of one step of free fall. The next step
+/// starts from these impulses and processes every contact, so the remainders do not accumulate; only at the beginning of a frame
+/// everything starts anew. A thousandth needs two to three times as many turns and changes the kinetic energy of a heap by less
+/// than a thousandth.
 const TOLERANCE: f64 = 1e-2;
 
-/// The most sweeps of a step. A sweep carries an impulse through all contacts in its direction, so a column of bodies converges with the
-/// number of its contacts that hang together within one step of the elastic wave: a few.
+/// The largest number of sweeps in a step. A sweep passes an impulse through all contacts in its direction, so a column of bodies
+/// converges with the number of its contacts that are connected within one step of the elastic wave: a few.
 const MOST_SWEEPS: usize = 60;
 
-/// The same of contacts of bodies that solve for the end of a step. Forces balance what is left, so it shows in the force: with 1e-5 the pressure
-/// on a patch is wrong by 2e-4 (the rows `contact-patch-…` ask for 1e-6).
+/// The same for contacts of bodies that solve for the end of a step. Forces balance the remainder, so it affects the force: with
+/// 1e-5 the pressure on a patch is wrong by 2e-4 (the rows `contact-patch-…` require 1e-6).
 const COUPLED_TOLERANCE: f64 = 1e-9;
 
-/// The same of bodies at rest, relative to the approach of the correction at hand: the next one solves for what is left, whose approach is smaller. A tenth
-/// takes half as many corrections again.
+/// The same for bodies at rest, relative to the approach in the present correction: the next one solves for the remainder, whose
+/// approach is smaller. With a tenth, one and a half times as many corrections are needed.
 const TOLERANCE_AT_REST: f64 = 1e-3;
 
-/// The most sweeps of them. Contacts without friction take up to 30; those that stick and slide in turn have no end, and with 300 sweeps no test
-/// or row comes nearer.
+/// The largest number of their sweeps. Contacts without friction take up to 30; those that alternate between sticking and sliding
+/// never end, and with 300 sweeps no test or row becomes more accurate.
 const MOST_COUPLED_SWEEPS: usize = 100;
 
-/// Sweeps before each step in the subspace of the contacts that act: one to, one fro.
+/// The number of sweeps before each step in the subspace of the active contacts: one forward, one backward.
 const SWEEPS_BETWEEN: usize = 2;
 
-/// After so many of these steps that did not halve what a sweep changes, sweeps go on alone: with friction, contacts may stick and slide in turn.
+/// After this many steps that did not halve the change of a sweep, only sweeps continue: with friction, contacts may alternate
+/// between sticking and sliding.
 const MOST_FAILURES: usize = 16;
 
-/// After so many of them sweeps of bodies at rest end: the next correction goes on from there.
+/// After this many of them the sweeps of bodies at rest end; the next correction continues from there.
 const MOST_FAILURES_AT_REST: usize = 2;
 
-/// When rows were solved for, and when what they hold has changed, counted in turns of rows: beside the rows, which are large.
+/// When rows were solved, and when their velocities have changed, counted in turns of rows. Stored separately from the rows,
+/// which are large.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Turns<const D: usize> {
-    /// When the velocity of a point changed last.
+    /// The last change of the velocity of each point.
     stamps: Vec<u64>,
     /// The points of the rows, and their last turns; 0 before the first.
     heads: Vec<([u32; 4], u64)>,
     now: u64,
-    /// Another point that is joined by rows, or the point itself.
+    /// Another point that rows connect to each, or the point itself.
     parent: Vec<u32>,
-    /// The number of those that a point is joined to, by its root; and where their rows begin, in the order in which they are met.
+    /// The number of the set to which a point is connected, by its root; and the start of the rows of each set, in the order in
+    /// which they are found.
     number: Vec<u32>,
     starts: Vec<u32>,
     joined: Vec<u32>,
-    /// Where every row of the sorted ones stood in the order of features.
+    /// The position of every sorted row in the order of features.
     order: Vec<u32>,
     sorted: Vec<Row<D>>,
     approach: Approach,
 }
 
-/// The mean approach of the contacts of bodies that hang together by contacts [m/s]: where one pair crashes, others may lie at rest. What bodies
-/// do that these do not touch changes nothing.
+/// The mean approach velocity of the contacts of connected bodies [m/s]: where one pair crashes, others may be at rest. Bodies
+/// that are not connected to them have no influence.
 #[derive(Clone, Debug, Default)]
 struct Approach {
-    /// Another body that hangs together with each, or the body itself.
+    /// Another body that is connected to each, or the body itself.
     parent: Vec<u32>,
     /// By the root of the bodies: the sum and the number of contacts, then the mean.
     mean: Vec<(f64, u32)>,
@@ -108,7 +112,7 @@ impl<const D: usize> Turns<D> {
 
     fn root(&mut self, mut point: u32) -> u32 {
         while self.parent[point as usize] != point {
-            // Half of the way is cut off for whoever comes next.
+            // Path halving, for later searches.
             self.parent[point as usize] = self.parent[self.parent[point as usize] as usize];
             point = self.parent[point as usize];
         }
@@ -121,17 +125,17 @@ impl<const D: usize> Turns<D> {
         self.parent[high as usize] = low;
     }
 
-    /// Where the rows of those that points join begin, and where the last ones end.
+    /// The start of the rows of each connected set, and the end of the last.
     pub(crate) fn starts(&self) -> &[u32] {
         &self.starts
     }
 
-    /// Where every row stood in the order of features.
+    /// The position of every row in the order of features.
     pub(crate) fn order(&self) -> &[u32] {
         &self.order
     }
 
-    /// The velocity that sweeps leave of a row, at most [m/s].
+    /// The largest velocity that sweeps may leave in a row [m/s].
     pub(crate) fn enough(
         &self,
         row: &Row<D>,
@@ -145,7 +149,8 @@ impl<const D: usize> Turns<D> {
         first.map_or(0.0, |p| tolerance * self.approach.mean[self.approach.root(body[p as usize]) as usize].0)
     }
 
-    /// Finds the mean approaches of rows, given the bodies of all points, how many there are, and the velocities before contact [m/s].
+    /// Computes the mean approach velocities of rows, given the body of every point, the number of bodies, and the velocities
+    /// before contact [m/s].
     pub(crate) fn find_approach(
         &mut self,
         rows: &[Row<D>],
@@ -177,12 +182,12 @@ impl<const D: usize> Turns<D> {
         }
     }
 
-    /// Sorts rows into those that points join, each in the order of features: what is solved together lies together.
+    /// Sorts rows into connected sets, each in the order of features, so that rows that are solved together are stored together.
     fn join(&mut self, rows: &mut Vec<Row<D>>, spread: &Spread, inverse_mass: &[[f64; D]], coupled: &Coupled<D>) {
         if !rows.is_sorted_by_key(|row| row.id) {
             rows.sort_by_key(|row| row.id);
         }
-        // What cannot move passes nothing on.
+        // Points that cannot move do not connect rows.
         for row in rows.iter() {
             let mut begin = |p: u32| {
                 self.parent[p as usize] = p;
@@ -203,7 +208,7 @@ impl<const D: usize> Turns<D> {
                 coupled.followers(row.on(spread), |p| self.join_points(first, p));
             }
         }
-        // Counted, summed up, and entered from behind.
+        // Counting sort from the back.
         self.starts.clear();
         self.joined.clear();
         for row in rows.iter() {
@@ -245,7 +250,7 @@ impl<const D: usize> Turns<D> {
     }
 }
 
-/// What is solved for.
+/// The problem to solve.
 pub(crate) struct Problem<'a, const D: usize> {
     pub(crate) rows: &'a mut Vec<Row<D>>,
     pub(crate) spread: &'a Spread,
@@ -253,16 +258,16 @@ pub(crate) struct Problem<'a, const D: usize> {
     pub(crate) coupled: &'a mut Coupled<D>,
     pub(crate) v: &'a mut Vec<[f64; D]>,
     pub(crate) turns: &'a mut Turns<D>,
-    /// Of bodies at rest the approach in a whole thickness [m/s]: their sweeps end with the tolerance of it, too.
+    /// For bodies at rest, the approach velocity over a whole thickness [m/s]: their sweeps also end with the tolerance of that.
     pub(crate) at_rest: Option<f64>,
-    /// Whether bodies that follow as a whole have a budget.
+    /// Whether coupled bodies have a budget.
     pub(crate) has_budget: bool,
     /// The body of every point.
     pub(crate) body: &'a [u32],
 }
 
 impl<const D: usize> Problem<'_, D> {
-    /// The same problem where it is one of so many dimensions.
+    /// The same problem, if it has this many dimensions.
     fn of<const E: usize>(&mut self) -> Option<Problem<'_, E>> {
         fn cast<A: Any, B: Any>(one: &mut A) -> Option<&mut B> {
             (one as &mut dyn Any).downcast_mut()
@@ -280,9 +285,10 @@ impl<const D: usize> Problem<'_, D> {
         })
     }
 
-    /// Sweeps over the rows, to and fro, until the velocities stay: separately over rows that no point joins. Gives how many turns rows had.
+    /// Sweeps over the rows, forward and backward, until the velocities no longer change, separately for rows that no point
+    /// connects. Returns the number of turns.
     ///
-    /// Not generic behind this call: the sweeps are compiled once, with this crate.
+    /// The code behind this call is not generic, so that the sweeps are compiled once, with this crate.
     pub(crate) fn solve(mut self) -> usize {
         if let Some(plane) = self.of::<2>() {
             return solve_in_plane(plane);
@@ -301,8 +307,8 @@ fn solve_in_space(problem: Problem<'_, 3>) -> usize {
     solve(problem)
 }
 
-/// A row is passed over while nothing that it holds has changed since its last turn by more than the tolerance: so sweeps cost what is still
-/// on the move.
+/// A row is skipped as long as none of its velocities has changed by more than the tolerance since its last turn, so sweeps cost
+/// only what is still changing.
 fn solve<const D: usize>(problem: Problem<'_, D>) -> usize {
     let Problem { rows, spread, inverse_mass, coupled, v, turns, at_rest, has_budget, body } = problem;
     turns.join(rows, spread, inverse_mass, coupled);
@@ -371,8 +377,8 @@ fn solve<const D: usize>(problem: Problem<'_, D>) -> usize {
     (*now - begin) as usize
 }
 
-/// Displacements that take overlapping pairs apart by at most `most` [m], without bringing others into overlap: the same sweeps, on positions.
-/// `wanted` is what every row is to gain [m], and `masses` what its points weigh where each moves by itself [kg].
+/// Displacements that separate overlapping pairs by at most `most` [m] without causing other overlaps: the same sweeps, on
+/// positions. `wanted` is the gain of every row [m], and `masses` is the mass of its points if each moves by itself [kg].
 pub(crate) fn part<const D: usize>(
     rows: &[Row<D>],
     spread: &Spread,

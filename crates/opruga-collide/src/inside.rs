@@ -1,21 +1,21 @@
-//! Bodies that begin inside an obstacle: how deep, and what would free them.
+//! Bodies that begin inside an obstacle: how deep they are, and a shift that would free them.
 
 use crate::contacts::Colliders;
 use crate::vector::{add, scaled};
 use opruga_core::contacts::{Contacts, Touch};
 
-/// A body of which nodes lie inside an obstacle.
+/// A body with nodes inside an obstacle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Buried<const D: usize> {
-    /// The obstacle, by its number.
+    /// The number of the obstacle.
     pub collider: usize,
-    /// The deepest node, by its place among the points.
+    /// The index of the deepest node among the points.
     pub point: usize,
-    /// How many nodes lie inside.
+    /// The number of nodes inside.
     pub count: usize,
-    /// How deep it lies, its margin counted [m].
+    /// The depth of that node, including its margin [m].
     pub depth: f64,
-    /// A shift after which no node lies inside any obstacle [m]; none where none was found.
+    /// A shift after which no node is inside any obstacle [m]; none if none was found.
     pub shift: Option<[f64; D]>,
 }
 
@@ -28,7 +28,7 @@ const DOUBLINGS: usize = 12;
 const HALVINGS: usize = 20;
 
 impl<const D: usize> Colliders<D> {
-    /// The obstacle in which nodes of a body lie deepest at the start, by more than `slack` [m]; none where none lies so deep.
+    /// The obstacle in which nodes of a body are deepest at the start, by more than `slack` [m]; none if no node is that deep.
     pub fn buried(&self, points: &[[f64; D]], slack: f64) -> Option<Buried<D>> {
         let (point, deepest, count) = self.deepest(points, &[0.0; D], slack)?;
         let collider = self.collider_of(deepest.surface);
@@ -36,7 +36,7 @@ impl<const D: usize> Colliders<D> {
         Some(Buried { collider, point, count, depth: -deepest.gap, shift })
     }
 
-    /// The deepest of all points, moved by a shift, and how many lie deeper than `slack`.
+    /// The deepest of all points, moved by a shift, and the number of points deeper than `slack`.
     fn deepest(&self, points: &[[f64; D]], shift: &[f64; D], slack: f64) -> Option<(usize, Touch<D>, usize)> {
         let mut deepest: Option<(usize, Touch<D>)> = None;
         let mut count = 0;
@@ -44,7 +44,7 @@ impl<const D: usize> Colliders<D> {
             let x = add(point, shift);
             let mut inside = false;
             self.touch(&x, &x, 0.0, INSTANT, -slack, &mut |touch| {
-                // A node on a thin surface lies within the margin that keeps rounding from putting it on the other side, and that
+                // A node on a thin surface is within the margin that keeps rounding from putting it on the other side, and that
                 // grows with the distance from the origin.
                 if -touch.gap <= 1.001 * self.collider(self.collider_of(touch.surface)).margin_of_rounding() {
                     return;
@@ -59,7 +59,7 @@ impl<const D: usize> Colliders<D> {
         deepest.map(|(number, touch)| (number, touch, count))
     }
 
-    /// The body moved out along the normal of its deepest node, again and again.
+    /// The body moved out repeatedly along the normal of its deepest node.
     fn pushed_out(&self, points: &[[f64; D]], slack: f64) -> Option<[f64; D]> {
         let mut shift = [0.0; D];
         for _ in 0..PUSHES {

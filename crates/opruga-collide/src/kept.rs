@@ -1,4 +1,4 @@
-//! Impulses of pairs by the numbers that features have within their bodies: for those who keep them while clusters change.
+//! Impulses of pairs by the numbers of features within their bodies, for callers that keep them while clusters change.
 
 use crate::row::OBSTACLE_BIT;
 use crate::rows::key;
@@ -10,8 +10,8 @@ const EDGES: u32 = 1;
 const OF_OBSTACLE: u32 = 2;
 
 impl<const D: usize> Touching<D> {
-    /// What a pair is, by its number: its kind, then body and feature of the first and of the second one. An obstacle that holds nodes is no body,
-    /// and has the number of a surface.
+    /// The features of a pair from its number: its kind, then body and feature of the first and of the second one. An obstacle
+    /// that holds nodes is not a body, and has the number of a surface.
     pub fn features_of(&self, id: u64) -> [u32; 5] {
         let part = |shift: u32| ((id >> shift) & ((1 << 31) - 1)) as u32;
         let (a, b) = (part(31), part(0));
@@ -33,7 +33,7 @@ impl<const D: usize> Touching<D> {
         [kind, first[0], first[1], second[0], second[1]]
     }
 
-    /// The number of a pair; none where a body has no such feature.
+    /// The number of a pair; none if a body has no such feature.
     pub fn id_of(&self, [kind, first, own, second, other]: [u32; 5]) -> Option<u64> {
         let at = |range: core::ops::Range<usize>, local: u32| {
             let number = range.start + local as usize;
@@ -53,14 +53,15 @@ impl<const D: usize> Touching<D> {
         }
     }
 
-    /// Calls back with the pairs that press, by [`Touching::features_of`], and the impulses of the last step along and across their normals [N s].
+    /// Calls `visit` with the pressing pairs, by [`Touching::features_of`], and the impulses of the last step along and across
+    /// their normals [N s].
     pub fn visit_kept(&self, mut visit: impl FnMut([u32; 5], f64, [f64; D])) {
         for (id, along, across) in &self.last {
             visit(self.features_of(*id), *along, *across);
         }
     }
 
-    /// Lets the next step begin with these impulses, given by the numbers of pairs, ascending.
+    /// Starts the next step from these impulses, given by the numbers of pairs, ascending.
     pub fn keep(&mut self, pairs: impl Iterator<Item = (u64, f64, [f64; D])>) {
         self.last.clear();
         self.last.extend(pairs);

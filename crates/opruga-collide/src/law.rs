@@ -1,6 +1,6 @@
-//! How deformable bodies answer to touch: which pairs do, and by what numbers.
+//! The contact laws of deformable bodies: which pairs touch, and with what parameters.
 
-/// What a pair of bodies does where it touches.
+/// The contact law of a pair of bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PairLaw {
     /// Whether they touch at all.
@@ -20,18 +20,18 @@ pub struct Laws {
     pub class: Vec<u32>,
     /// The number of classes.
     pub classes: usize,
-    /// How many of them, the last ones, are obstacles.
+    /// The number of these, the last ones, that are obstacles.
     pub obstacles: usize,
     /// The law of every pair of classes, row by row.
     pub table: Vec<PairLaw>,
     /// Whether bodies of a class touch themselves.
     pub itself: Vec<bool>,
-    /// Approach up to which nothing bounces [m/s].
+    /// The approach velocity up to which there is no bounce [m/s].
     pub rest_speed: f64,
-    /// Speed at which bodies that overlap are moved apart [m/s].
+    /// The speed at which overlapping bodies are separated [m/s].
     pub recovery_speed: f64,
-    /// The largest distance that surfaces of other bodies of the scene keep in contact [m], and where obstacles are among them: so bodies
-    /// do the same whoever else is there.
+    /// The largest distance that surfaces of other bodies of the scene keep in contact [m], and the same with obstacles: so
+    /// bodies behave the same whichever other bodies exist.
     pub thickest_elsewhere: [f64; 2],
 }
 
@@ -41,7 +41,7 @@ impl Laws {
     pub fn of(&self, a: u32, b: u32) -> &PairLaw {
         &self.table[self.class[a as usize] as usize * self.classes + self.class[b as usize] as usize]
     }
-    /// Whether two bodies touch, or a body itself.
+    /// Whether two bodies may touch, or a body itself.
     #[inline]
     pub fn meet(&self, a: u32, b: u32) -> bool {
         if a == b { self.itself[self.class[a as usize] as usize] } else { self.of(a, b).touch }
@@ -51,7 +51,7 @@ impl Laws {
         let bodies = self.class.len() as u32;
         (0..bodies).any(|a| (a..bodies).any(|b| self.meet(a, b)))
     }
-    /// The largest distance that surfaces keep in contact [m]: of bodies, and where obstacles are among them.
+    /// The largest distance that surfaces keep in contact [m]: between bodies, and with obstacles.
     pub fn largest_thickness(&self) -> [f64; 2] {
         let bodies = self.classes - self.obstacles;
         let mut most = self.thickest_elsewhere;
@@ -81,7 +81,8 @@ impl Laws {
         }
     }
 
-    /// Adds an obstacle: all bodies touch it by its law, at half of their own distance more, and no obstacle touches another one.
+    /// Adds an obstacle: all bodies touch it with its law, at half of their own distance more; obstacles do not touch one
+    /// another.
     pub fn add_obstacle(&mut self, law: PairLaw) {
         let (before, bodies) = (self.classes, self.classes - self.obstacles);
         let apart = PairLaw { touch: false, ..law };

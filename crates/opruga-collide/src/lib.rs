@@ -1,8 +1,8 @@
 //! # Obstacles
 //!
-//! Rigid bodies that stand still or move as prescribed, against the nodes of deformable bodies: one pass per substep over
-//! the nodes that were just moved freely. For a node at x with velocity v, a collider with signed distance g and normal
-//! n at the end of the step, and the collider's own velocity v_c there:
+//! Contact of rigid bodies, at rest or with a prescribed motion, with the nodes of deformable bodies: one pass per substep over
+//! the nodes after their free motion. For a node at x with velocity v, a collider with signed distance g and normal n at the end
+//! of the step, and the velocity v_c of the collider there:
 //!
 //! ```text
 //! contact          g(x) < thickness
@@ -12,50 +12,51 @@
 //! position         onto the surface
 //! ```
 //!
-//! **Rest.** An approach is an impact where the node was off the surface at the start of the step (its whole normal speed
-//! would otherwise have been given to it within the step, by weight or by the body behind it) and comes faster than
-//! `rest_speed`. All other contacts do not bounce. With `rest_speed = 0` every crossing is an impact, also that of a
-//! node that lies on the floor: this is the rule v = −e v of the thesis.
+//! **Rest.** An approach is an impact if the node was off the surface at the start of the step and is faster than `rest_speed`.
+//! (If it was on the surface, its whole normal speed comes from the step itself, from weight or from the body behind it.) All
+//! other contacts do not bounce. With `rest_speed = 0` every crossing is an impact, even that of a node that lies on the floor:
+//! this is the rule v = −e v of the thesis.
 //!
-//! **Speed of an impact.** The force goes on for the whole step, but the surface is met within it: s² = u² + 2 a g with the
-//! approach u and the gap g at the start of the step and the acceleration a towards the surface, and s lies between the
-//! approaches at both ends of the step. So an impact gives back e² of what came in, and no force makes energy there. With
-//! `rest_speed = 0`, the rule of the thesis, s is the approach at the end of the step.
+//! **Speed of an impact.** The force acts for the whole step, but the node meets the surface within it: s² = u² + 2 a g with the
+//! approach u and the gap g at the start of the step and the acceleration a towards the surface, and s is between the approaches
+//! at both ends of the step. So an impact returns e² of the incoming energy, and forces do not create energy. With `rest_speed =
+//! 0`, the rule of the thesis, s is the approach at the end of the step.
 //!
-//! **Position.** Without friction the node is moved along the normal onto the surface and its tangential motion is left
-//! alone, to the bit. With friction a node that does not bounce goes from where it was (carried along by the collider)
-//! with its new tangential velocity, and then onto the surface; so what sticks does not creep by h² g sin θ per step.
+//! **Position.** Without friction the node is moved along the normal onto the surface, and its tangential motion does not change
+//! in any bit. With friction a node that does not bounce moves from its previous position (carried along by the collider) with
+//! its new tangential velocity, and then onto the surface, so sticking nodes do not creep by h² g sin θ per step.
 //!
 //! **Energy.** With v₀ before the step, v₁ after it, v̄ = ½ (v₀ + v₁) and the impulse J of the obstacle, the kinetic energy
 //! changes by (J + hF)·v̄. J·v̄ is work_colliders − loss_contact − loss_friction, J·v_c and −J·(v̄ − v_c) along the normal and
-//! the surface: ½ m (u_n² − u_n'²) and ½ m (u_t² − u_t'²) where no force acts. What is left of the potential energy,
-//! F·(h v̄ − x₁ + x₀), is work_correction: what putting the node back on the surface did. A node that lies still takes and gives
-//! nothing. F is the mean force of the step, m (v − v₀)/h with the velocity v before contact.
+//! the surface: ½ m (u_n² − u_n'²) and ½ m (u_t² − u_t'²) if no force acts. The rest of the potential energy, F·(h v̄ − x₁ + x₀),
+//! is work_correction: the effect of moving the node back to the surface. A node at rest exchanges no energy. F is the mean force
+//! of the step, m (v − v₀)/h with the velocity v before contact.
 //!
-//! **Walking.** On a slope whose angle of friction is only a little steeper, a soft body that vibrates goes down: where it presses less it
-//! lets go, and gravity feeds what damping takes. That is no error of the step: a block of 1 m × 0.5 m on a slope of tan θ = ½ with
-//! µ = 0.6, put down at once, walks at 0.0682, 0.0683, 0.0683 and 0.0683 m/s with steps of 1/3840 s to 1/30720 s, at 0.0681 by
-//! velocity Verlet and Runge–Kutta, at 0.0654 with cells of half the size; with µ = 0.65 it comes to rest. Once at rest it stays, with
-//! any damping.
+//! **Walking.** On a slope only a little less steep than the angle of friction, a vibrating soft body creeps down: where it
+//! presses less it slips, and gravity supplies the energy that damping dissipates. This is not an error of the step: a block of 1
+//! m × 0.5 m on a slope of tan θ = ½ with µ = 0.6, placed on the slope suddenly, walks at 0.0682, 0.0683, 0.0683 and 0.0683 m/s
+//! with steps of 1/3840 s to 1/30720 s, at 0.0681 by velocity Verlet and Runge–Kutta, at 0.0654 with cells of half the size; with
+//! µ = 0.65 it comes to rest. Once at rest it stays at rest, with any damping.
 //!
-//! **Fast nodes.** A half-space has no far side. A node that could cross a ball, box, capsule or convex body within a
-//! step is stopped where it came in. Polylines and triangle meshes are thin and hold on both sides: the segment from
-//! where the node was (in the frame of the collider) to where it is, is cut with them, and a node that would
-//! nevertheless end on the other side (in a narrow groove) stays where it was.
+//! **Fast nodes.** A half-space has no far side. A node that could cross a ball, box, capsule or convex body within a step is
+//! stopped where it entered. Polylines and triangle meshes are thin and act on both sides: the segment from the previous to the
+//! present position of the node (in the frame of the collider) is intersected with them, and a node that would still end on the
+//! other side (in a narrow groove) stays where it was.
 //!
-//! **Order.** Colliders act in the order of the scene, up to four times, so that a node in a corner obeys all of its walls.
-//! What a node does depends on nothing but the node: not on the tile, the layout or the vector instructions.
+//! **Order.** Colliders act in the order of the scene, up to four times, so that a node in a corner satisfies all of its walls.
+//! The result for a node depends only on the node: not on the tile, the layout or the vector instructions.
 //!
-//! **Deformable bodies.** [`Surface`] holds what touches of bodies that meet one another, [`Candidates`] the pairs that may,
-//! [`Gap`] how far a pair is apart, and [`vertex_meets_facet`] and [`edge_meets_edge`] whether and when it meets within a step.
+//! **Deformable bodies.** [`Surface`] holds the features of bodies that touch one another, [`Candidates`] holds the pairs that
+//! may touch, [`Gap`] is the distance of a pair, and [`vertex_meets_facet`] and [`edge_meets_edge`] tell whether and when a pair
+//! meets within a step.
 //!
-//! **Whole obstacles.** Where bodies meet one another, corners and edges of obstacles ([`Outline`]) are part of the surfaces, with no inverse
-//! mass, and meet the facets and edges of bodies as those of another body do. Nodes meet obstacles as above.
+//! **Whole obstacles.** If bodies meet one another, corners and edges of obstacles ([`Outline`]) are part of the surfaces, with
+//! zero inverse mass, and meet the facets and edges of bodies as those of another body do. Nodes meet obstacles as above.
 //!
-//! **Limits.** Elsewhere nodes alone meet colliders: an obstacle finer than the mesh can poke through between two nodes. The tilted or
-//! curved surface is taken at the end of the step: first order in h.
+//! **Limits.** Otherwise only nodes meet colliders, so an obstacle finer than the mesh can pass between two nodes. A tilted or
+//! curved surface is evaluated at the end of the step, which is first order in h.
 
-// Units stand in brackets, [m], which rustdoc takes for links.
+// Units are in brackets, [m], which rustdoc takes for links.
 #![allow(rustdoc::broken_intra_doc_links)]
 
 mod active_nodes;

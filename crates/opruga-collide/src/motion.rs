@@ -1,4 +1,4 @@
-//! How a collider moves: displaced along a path, turning about a pivot at a constant rate.
+//! The motion of a collider: displaced along a path, and rotating about a pivot at a constant rate.
 
 use crate::vector::{add, identity, product, rotation, subtract, turned, turned_back};
 use opruga_core::system::along_path;
@@ -11,22 +11,22 @@ pub(crate) struct Motion<const D: usize> {
     pub(crate) path: Vec<Vec<f64>>,
     /// The matrix Ω of the angular velocity [rad/s].
     pub(crate) omega: [[f64; D]; D],
-    /// Whether it turns at all.
+    /// Whether it rotates.
     pub(crate) turns: bool,
-    /// The point about which it turns [m].
+    /// The centre of rotation [m].
     pub(crate) pivot: [f64; D],
 }
 
-/// Where a collider is at a time: x = R (X − pivot) + centre.
+/// The pose of a collider at a time: x = R (X − pivot) + centre.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pose<const D: usize> {
     /// The rotation R, by its rows.
     pub(crate) turn: [[f64; D]; D],
     /// Whether R is the unit matrix.
     pub(crate) upright: bool,
-    /// Where the pivot lies at rest [m].
+    /// The position of the pivot at rest [m].
     pub(crate) pivot: [f64; D],
-    /// Where the pivot is [m].
+    /// The position of the pivot [m].
     pub(crate) center: [f64; D],
     /// Displacement of the pivot [m].
     pub(crate) shift: [f64; D],
@@ -36,7 +36,7 @@ pub(crate) struct Pose<const D: usize> {
     pub(crate) omega: [[f64; D]; D],
 }
 
-/// How a point that is fixed to a collider moves during a step.
+/// The motion of a point that is fixed to a collider during a step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Carry<const D: usize> {
     turn: [[f64; D]; D],
@@ -45,7 +45,7 @@ pub(crate) struct Carry<const D: usize> {
     to: [f64; D],
 }
 
-/// Where a collider is at the end of a step and how it got there.
+/// The pose of a collider at the end of a step, and its motion to there.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame<const D: usize> {
     pub(crate) pose: Pose<D>,
@@ -61,11 +61,11 @@ impl<const D: usize> Frame<D> {
 }
 
 impl<const D: usize> Motion<D> {
-    /// Whether there is none.
+    /// Whether there is no motion.
     pub(crate) fn is_still(&self) -> bool {
         self.path.is_empty() && !self.turns
     }
-    /// Where the collider is at a time.
+    /// The pose of the collider at a time.
     pub(crate) fn pose(&self, time: f64) -> Pose<D> {
         let (shift, velocity) = along_path::<D>(&self.path, time);
         Pose {
@@ -78,7 +78,7 @@ impl<const D: usize> Motion<D> {
             omega: self.omega,
         }
     }
-    /// The least and greatest displacement along each axis within an interval of time.
+    /// The smallest and largest displacement along each axis within an interval of time.
     pub(crate) fn shifts(&self, from: f64, to: f64) -> [[f64; D]; 2] {
         let (first, _) = along_path::<D>(&self.path, from);
         let mut range = [first, first];
@@ -97,7 +97,7 @@ impl<const D: usize> Motion<D> {
 }
 
 impl<const D: usize> Pose<D> {
-    /// A point of the shape at rest, where it is now.
+    /// The present position of a point of the shape at rest.
     pub(crate) fn transform(&self, x: &[f64; D]) -> [f64; D] {
         if self.upright {
             add(x, &self.shift)
@@ -105,7 +105,7 @@ impl<const D: usize> Pose<D> {
             add(&turned(&self.turn, &subtract(x, &self.pivot)), &self.center)
         }
     }
-    /// A direction of the shape at rest, as it is now.
+    /// The present direction of a direction of the shape at rest.
     pub(crate) fn direct(&self, n: &[f64; D]) -> [f64; D] {
         if self.upright { *n } else { turned(&self.turn, n) }
     }
@@ -117,7 +117,7 @@ impl<const D: usize> Pose<D> {
             add(&turned_back(&self.turn, &subtract(x, &self.center)), &self.pivot)
         }
     }
-    /// The collider's velocity at a point [m/s].
+    /// The velocity of the collider at a point [m/s].
     #[inline(always)]
     pub(crate) fn velocity_at<S: Lane>(&self, x: &[S; D]) -> [S; D] {
         if self.upright {
@@ -127,7 +127,7 @@ impl<const D: usize> Pose<D> {
         let swirl = turned(&self.omega, &arm);
         lanes!(S, d => S::splat(self.velocity[d]) + swirl[d])
     }
-    /// The way from one pose to a later one.
+    /// The motion from one pose to a later one.
     pub(crate) fn carry_to(&self, later: &Pose<D>) -> Carry<D> {
         if self.upright {
             return Carry { turn: self.turn, turns: false, from: self.center, to: later.center };
@@ -143,7 +143,7 @@ impl<const D: usize> Pose<D> {
 }
 
 impl<const D: usize> Carry<D> {
-    /// Where a point gets.
+    /// The position to which a point moves.
     #[inline(always)]
     pub(crate) fn along<S: Lane>(&self, x: &[S; D]) -> [S; D] {
         if self.turns {

@@ -1,4 +1,4 @@
-//! Impulses of contacts of bodies that answer as a whole, all at once: a semismooth Newton method.
+//! Impulses of contacts of coupled bodies, all at once: a semismooth Newton method.
 //!
 //! ```text
 //! motion    u = free + W λ                         W = G Y Gᵀ, the velocities of gaps by impulses
@@ -6,10 +6,11 @@
 //! friction  F = the point of the disc |F| ≤ µ max(0, a) that is nearest to b = F − r uₜ
 //! ```
 //!
-//! A contact that is apart (a ≤ 0) has no impulse, one that sticks (|b| ≤ µ a) does not move, one that slides has the whole friction along b.
-//! What they miss is linear but at the borders between these cases, so Newton's method converges where sweeps let contacts stick and slide in
-//! turn. Contacts are redundant, and W has no inverse: a part of its diagonal, on the change of the impulses, makes the solution unique (a
-//! proximal point). What that holds back, the next attempt gives, with a smaller part where this one has ended and with a larger one where not.
+//! A contact that is apart (a ≤ 0) has no impulse, one that sticks (|b| ≤ µ a) does not move, and one that slides has the full
+//! friction along b. The residuals of these laws are linear except at the borders between the cases, so Newton's method converges
+//! where sweeps let contacts alternate between sticking and sliding. Contacts are redundant, and W has no inverse: adding a
+//! fraction of its diagonal, on the change of the impulses, makes the solution unique (a proximal point). The next attempt
+//! removes the error of this term, with a smaller fraction if the present attempt has converged and with a larger one if not.
 //!
 //! Source: P. Alart, A. Curnier, A mixed formulation for frictional contact problems prone to Newton like solution methods, Computer Methods in
 //! Applied Mechanics and Engineering 92 (1991) 353–375; V. Acary, M. Brémond, O. Huber, On solving contact problems with Coulomb friction:
@@ -22,48 +23,51 @@ use crate::spread::Spread;
 use crate::vector::{across, add, dot, scaled, subtract};
 use opruga_math::{Lane, Simd, WIDTH};
 
-/// The most unknowns. An elimination takes ⅓ n³ products: 0.2 · 10⁹ for so many, as much as a hundred sweeps take over bodies of so many points.
+/// The largest number of unknowns. An elimination takes ⅓ n³ products: 0.2 · 10⁹ for this many, as much as a hundred sweeps over
+/// bodies with as many points.
 pub(crate) const MOST_UNKNOWNS: usize = 900;
 
-/// The part of the diagonal of W that holds changes of impulses back: at the beginning and at least, and at most. It is larger where Newton's method
-/// did not end, which then finds it easier, and smaller where it did, as the next impulses are to come nearer. With a fixed part,
-/// `a_cube_of_space_comes_to_its_balance_on_a_slab` has no end.
+/// The fraction of the diagonal of W that restrains changes of impulses: initially and at least, and at most. It is increased if
+/// Newton's method did not converge, which makes the problem easier, and decreased if it did, so that the next impulses are
+/// closer to the solution. With a constant fraction, `a_cube_of_space_comes_to_its_balance_on_a_slab` does not converge.
 const LEAST_PROXIMAL: f64 = 1e-7;
 const MOST_PROXIMAL: f64 = 1.0;
 const FIRMER: f64 = 10.0;
 const LOOSER: f64 = 0.03;
 
-/// Sweeps between attempts with Newton's method. They choose which contacts stick and slide; one by one they do not converge.
+/// The number of sweeps between attempts with Newton's method. They determine which contacts stick and slide; by themselves they
+/// do not converge.
 const SWEEPS: usize = 10;
 
-/// The most attempts in a row that do not halve what a sweep changes.
+/// The largest number of consecutive attempts that do not halve the change of a sweep.
 const MOST_IN_VAIN: usize = 10;
 
-/// The most iterations of one attempt, and the most of them after which more is missed.
+/// The largest number of iterations of one attempt, and the largest number of those that increase the residual.
 const MOST_ITERATIONS: usize = 30;
 const MOST_UPHILL: usize = 1;
 
-/// How often a correction is halved. Where nothing helps, a tenth of it is taken: cases change then, and what is missed may rise on the way.
+/// The largest number of halvings of a correction. If nothing helps, a tenth of it is taken: cases then change, and the residual
+/// may rise temporarily.
 const MOST_HALVINGS: usize = 12;
 const UPHILL: f64 = 0.1;
 
-/// The part of the tolerance to which Newton's method goes: the sweep that follows finds nothing to change. And the part of the squares of what is
-/// missed at the beginning below which the rest is rounding.
+/// The fraction of the tolerance to which Newton's method solves, so that the following sweep finds nothing to change. And the
+/// fraction of the initial squared residual below which the rest is rounding.
 const ENOUGH: f64 = 0.1;
 const ROUNDING: f64 = 1e-12;
 
-/// A contact and its unknowns: the impulse along its normal, and where it has friction those across it.
+/// A contact and its unknowns: the impulse along its normal and, if it has friction, those across it.
 struct Contact<const D: usize> {
     row: usize,
     axes: [[f64; D]; D],
     first: usize,
     count: usize,
     friction: f64,
-    /// Inverses of the mobilities along and across [kg].
+    /// The inverses of the mobilities along and across the normal [kg].
     mass: [f64; 2],
 }
 
-/// What a contact does at a trial.
+/// The case of a contact at a trial.
 enum Case<const D: usize> {
     Apart,
     Sticks,
@@ -73,27 +77,27 @@ enum Case<const D: usize> {
 
 struct Equations<const D: usize> {
     contacts: Vec<Contact<D>>,
-    /// W by unknowns, row by row of `stride` numbers.
+    /// W by unknowns, in rows of `stride` numbers.
     mobility: Vec<f64>,
     stride: usize,
-    /// Velocities without impulses, less the targets [m/s].
+    /// Velocities without impulses, relative to the targets [m/s].
     free: Vec<f64>,
-    /// The impulses that changes are counted from [N s]; of the diagonal of W [1/kg] the part that holds changes back.
+    /// The impulses from which changes are counted [N s]; the restraining fraction of the diagonal of W [1/kg].
     center: Vec<f64>,
     diagonal: Vec<f64>,
     proximal: f64,
 }
 
-/// Impulses, what they give, and what they miss.
+/// Impulses, their velocities, and the residuals.
 struct Trial {
     impulses: Vec<f64>,
-    /// Velocities, less the targets and with what holds changes of impulses back [m/s].
+    /// Velocities relative to the targets, including the restraining term [m/s].
     velocities: Vec<f64>,
-    /// What the laws of the contacts miss [m/s].
+    /// The residuals of the laws of the contacts [m/s].
     missed: Vec<f64>,
 }
 
-/// The unknowns of a contact.
+/// The number of unknowns of a contact.
 pub(crate) fn count_of<const D: usize>(row: &Row<D>) -> usize {
     match row.mass[0] > 0.0 {
         true if row.friction > 0.0 => D,
@@ -101,18 +105,19 @@ pub(crate) fn count_of<const D: usize>(row: &Row<D>) -> usize {
     }
 }
 
-/// How near to its end a solution comes.
+/// The required accuracy of a solution.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Aim {
-    /// By how much a turn of a contact may change its velocity at the end [m/s].
+    /// The largest change of its velocity by a turn of a contact at the end [m/s].
     pub(crate) enough: f64,
-    /// Whether sweeps go on alone, so many at most, where they have not ended at once; else Newton's method leads to the end.
+    /// Whether only sweeps continue if they have not converged at once, and how many at most; otherwise Newton's method completes
+    /// the solution.
     pub(crate) sweeps: Option<usize>,
 }
 
-/// Goes to the impulses at which all contacts obey their laws: sweeps over all contacts, and Newton's method where these have not ended. Ends where
-/// no turn of a contact changes its velocity by more than `enough` [m/s], or where many attempts in a row have hardly changed that. Gives the
-/// number of turns.
+/// Finds the impulses with which all contacts obey their laws: sweeps over all contacts, and Newton's method if these have not
+/// converged. Ends when no turn of a contact changes its velocity by more than `enough` [m/s], or when many consecutive attempts
+/// have hardly changed that. Returns the number of turns.
 pub(crate) fn solve<const D: usize>(
     rows: &mut [Row<D>],
     spread: &Spread,
@@ -147,7 +152,7 @@ pub(crate) fn solve<const D: usize>(
             }
             break;
         }
-        // Where Newton's method has ended, sweeps would only disturb what it has found.
+        // If Newton's method has converged, sweeps would only disturb its result.
         for sweep in 1..if ended { 1 } else { SWEEPS } {
             turns += equations.contacts.len();
             equations.sweep(&mut impulses, &mut velocities, sweep % 2 == 1);
@@ -206,8 +211,8 @@ impl<const D: usize> Equations<D> {
         equations
     }
 
-    /// One turn of every contact: the normal impulse that its bound needs, then the friction that this allows. Velocities are those without what holds
-    /// changes back. Gives by how much one of them changed, at most [m/s].
+    /// One turn of every contact: the normal impulse that its bound needs, then the friction that this allows. Velocities do not
+    /// include the restraining term. Returns the largest change of a velocity [m/s].
     fn sweep(&self, impulses: &mut [f64], u: &mut [f64], back: bool) -> f64 {
         let change = |k: usize, by: f64, impulses: &mut [f64], u: &mut [f64]| {
             if by != 0.0 {
@@ -243,7 +248,8 @@ impl<const D: usize> Equations<D> {
         largest
     }
 
-    /// Newton's method with changes counted from some impulses, which become those that miss least. Says whether it ended.
+    /// Newton's method with changes counted from some impulses, which are replaced by those with the smallest residual. Returns
+    /// whether it converged.
     fn improve(&mut self, impulses: &mut Vec<f64>, enough: f64) -> bool {
         self.center.clone_from(impulses);
         let mut trial = self.trial(impulses.clone(), self.velocities(impulses));
@@ -269,7 +275,7 @@ impl<const D: usize> Equations<D> {
         false
     }
 
-    /// W λ, by symmetry, filled up to whole packs.
+    /// W λ, using symmetry, padded to whole packs.
     fn by_impulses(&self, impulses: &[f64]) -> Vec<f64> {
         let mut out = vec![0.0; self.stride];
         for (line, impulse) in self.mobility.chunks_exact(self.stride).zip(impulses).filter(|(_, x)| **x != 0.0) {
@@ -278,7 +284,7 @@ impl<const D: usize> Equations<D> {
         out
     }
 
-    /// The velocities at impulses, less the targets and with what holds changes back [m/s].
+    /// The velocities due to impulses, relative to the targets and including the restraining term [m/s].
     fn velocities(&self, impulses: &[f64]) -> Vec<f64> {
         let mut out = self.by_changes(impulses);
         for (at, (u, free)) in out.iter_mut().zip(&self.free).enumerate() {
@@ -287,7 +293,7 @@ impl<const D: usize> Equations<D> {
         out
     }
 
-    /// How velocities change with impulses, what holds changes back included.
+    /// The change of velocities with impulses, including the restraining term.
     fn by_changes(&self, impulses: &[f64]) -> Vec<f64> {
         let mut out = self.by_impulses(impulses);
         out.iter_mut()
@@ -297,7 +303,7 @@ impl<const D: usize> Equations<D> {
         out
     }
 
-    /// What a contact does, and what it misses [m/s].
+    /// The case of a contact, and its residual [m/s].
     fn case(&self, contact: &Contact<D>, impulses: &[f64], u: &[f64]) -> (Case<D>, [f64; D]) {
         let range = contact.first..contact.first + contact.count;
         let (own, u) = (&impulses[range.clone()], &u[range]);
@@ -335,13 +341,13 @@ impl<const D: usize> Equations<D> {
         Trial { impulses, velocities, missed: out }
     }
 
-    /// Newton's correction of the impulses; none where its equations have no solution.
+    /// Newton's correction of the impulses; none if its equations have no solution.
     fn correction(&self, Trial { impulses, velocities: u, missed }: &Trial) -> Option<Vec<f64>> {
         let mut out = vec![0.0; impulses.len()];
         let mut present = Vec::new();
         for contact in &self.contacts {
             match self.case(contact, impulses, u).0 {
-                // What is apart loses its impulse.
+                // A contact that is apart loses its impulse.
                 Case::Apart => {
                     for k in contact.first..contact.first + contact.count {
                         out[k] = -impulses[k];
@@ -358,7 +364,7 @@ impl<const D: usize> Equations<D> {
         let mut matrix = vec![0.0; size * stride];
         let mut lines = matrix.chunks_exact_mut(stride);
         for (contact, case) in &present {
-            // Rows of W, with what holds changes back, and the velocity that is lost at the end.
+            // Rows of W including the restraining term, and the velocity that is lost at the end.
             let line_of = |k: usize, line: &mut [f64]| {
                 let from = &self.mobility[(contact.first + k) * self.stride..][..self.stride];
                 line.iter_mut().zip(&unknowns).for_each(|(to, column)| *to = from[*column]);
@@ -406,7 +412,8 @@ impl<const D: usize> Equations<D> {
         out.iter().all(|x| x.is_finite()).then_some(out)
     }
 
-    /// The impulses along a correction that miss less, halving it; where none does, a tenth of it, and what they miss rises.
+    /// The impulses along a correction with a smaller residual, with halving; if none has, a tenth of the correction, with a
+    /// larger residual.
     fn search(&self, from: &Trial, correction: &[f64]) -> (Trial, bool) {
         let change = self.by_changes(correction);
         let along = |x: &[f64], c: &[f64], part: f64| x.iter().zip(c).map(|(x, c)| x + part * c).collect();
@@ -454,8 +461,8 @@ mod tests {
         row
     }
 
-    /// Points of 1 kg one above the other on one that is held, with two equal contacts between each two: what each of them carries has no
-    /// unique answer.
+    /// A column of points of 1 kg on a pinned one, with two equal contacts between neighbours: the distribution between these is
+    /// not unique.
     fn column(points: usize, friction: f64) -> (Vec<Row<3>>, Vec<[f64; 3]>) {
         let mut inverse_mass = vec![[1.0; 3]; points];
         inverse_mass[0] = [0.0; 3];
@@ -493,7 +500,7 @@ mod tests {
         let (mut rows, inverse_mass) = column(2, 0.3);
         let mut v = vec![[0.0; 3], [3.0, 4.0, -1.0]];
         solved(&mut rows, &inverse_mass, &mut v);
-        // 2 N s were there, and 1 N s stops the fall: 0.3 · 3 N s slow the point down along its motion.
+        // The initial impulse is 2 N s, and 1 N s stops the fall: 0.3 · 3 N s slow the point down along its motion.
         let speed = 5.0 - 0.9;
         let expected = [0.6 * speed, 0.8 * speed, 0.0];
         assert!(v[1].iter().zip(expected).all(|(v, e)| (v - e).abs() < 1e-9), "{v:?}");
@@ -505,7 +512,7 @@ mod tests {
         let mut v = vec![[0.0; 3], [1.0, 0.0, 5.0]];
         solved(&mut rows, &inverse_mass, &mut v);
         assert!(rows.iter().all(|row| row.impulse() == [0.0; 3]), "{rows:?}");
-        // What the two impulses gave is taken back.
+        // The effect of the two impulses is taken back.
         assert!((v[1][2] - 3.0).abs() < 1e-12 && v[1][0] == 1.0, "{v:?}");
     }
 }

@@ -1,4 +1,4 @@
-//! The corners and edges of obstacles, which bodies touch with their facets and edges.
+//! The corners and edges of obstacles, which facets and edges of bodies touch.
 
 use crate::closest::facet_normal;
 use crate::collider::Form;
@@ -10,19 +10,19 @@ use opruga_mesh::Mesh;
 
 /// The corners and edges of an obstacle.
 ///
-/// A ball is a corner and a capsule an edge, which keep their radius as a distance. What is hollow or a half-space has no corners that
+/// A ball is a corner and a capsule is an edge, with the radius as a distance. Hollow shapes and half-spaces have no corners that
 /// could pass between the nodes of a body.
 #[derive(Clone, Debug)]
 pub struct Outline<const D: usize> {
     /// The number of the collider.
     pub collider: usize,
-    /// Corners, edges and faces where they are at time 0 without any motion [m]. Its first points are no corners.
+    /// Corners, edges and faces in their positions at time 0 without any motion [m]. The first points are not corners.
     pub mesh: Mesh<D>,
-    /// How many points lie within plane faces, in the plane within straight lines: these belong to faces alone.
+    /// The number of points inside plane faces; in the plane, inside straight lines. These belong only to faces.
     pub within_faces: usize,
-    /// In space the edges, ascending, but those between two faces of one plane.
+    /// In space the edges, ascending, except those between two coplanar faces.
     pub edges: Vec<[u32; 2]>,
-    /// How they answer to touch.
+    /// Their contact law.
     pub law: PairLaw,
 }
 
@@ -41,7 +41,7 @@ impl<const D: usize> Colliders<D> {
         out
     }
 
-    /// Where points of a collider are at a time [s], and how fast they move [m/s].
+    /// Computes the positions [m] and velocities [m/s] of points of a collider at a time [s].
     pub fn move_points(&self, collider: usize, time: f64, points: &[[f64; D]], [x, v]: [&mut [[f64; D]]; 2]) {
         let pose = self.collider(collider).motion.pose(time);
         for ((point, x), v) in points.iter().zip(x).zip(v) {
@@ -51,7 +51,7 @@ impl<const D: usize> Colliders<D> {
     }
 }
 
-/// Corners, edges and faces of a form, and the distance that these keep.
+/// The corners, edges and faces of a form, and their contact distance.
 fn outline_of<const D: usize>(form: &Form<D>) -> Option<(Mesh<D>, f64)> {
     let mesh = |positions: Vec<[f64; D]>| Mesh { positions, ..Mesh::default() };
     let facet = |corners: &[u32]| core::array::from_fn(|k| corners[k]);
@@ -61,7 +61,7 @@ fn outline_of<const D: usize>(form: &Form<D>) -> Option<(Mesh<D>, f64)> {
             let mut out = mesh((0..1 << D).map(|bits| shape.corner(bits)).collect());
             for d in 0..D {
                 for side in 0..2 {
-                    // The corners of a face, along its two other axes where there are two.
+                    // The corners of a face, along its other axes.
                     let (i, j) = (1u32 << ((d + 1) % D), 1u32 << ((d + 2) % D));
                     let first = side << d;
                     if D == 2 {
@@ -108,7 +108,7 @@ fn outline_of<const D: usize>(form: &Form<D>) -> Option<(Mesh<D>, f64)> {
     })
 }
 
-/// Turns the faces of a convex solid so that their normals point out of it.
+/// Orients the faces of a convex solid with outward normals.
 fn turn_outward<const D: usize>(mesh: &mut Mesh<D>) {
     let share = 1.0 / mesh.positions.len() as f64;
     let center = mesh.positions.iter().fold([0.0; D], |sum, x| add(&sum, &scaled(x, share)));

@@ -72,12 +72,12 @@ impl<T: Shape<D>, const D: usize> Work for Pass<'_, '_, T, D> {
             force: Strip::new(force, 0, length),
             mass: mass.strip(start, length),
         };
-        // A node that moves so far in a step could come out on the far side of the shape.
+        // A node that moves this far in a step could come out on the far side of the shape.
         let far = 0.5 * shape.half_width();
         let has_far_side = far < f64::INFINITY;
         let far = far * far;
 
-        // One look at all nodes; mostly that is all. Four packs at once, which need not wait for the four before.
+        // One check of all nodes is usually enough. It takes four packs at once, which need not wait for the previous four.
         let look = Look {
             shape,
             carry: self.carry,
@@ -87,7 +87,7 @@ impl<T: Shape<D>, const D: usize> Work for Pass<'_, '_, T, D> {
         };
         let lies = self.meets == Meets::WhatItLiesOn;
         let mut k = 0;
-        // Who lay on the surface may be beside it now.
+        // A node that was on the surface may be next to it now.
         let mut has_candidates = lies;
         while k + 4 * WIDTH <= used && !has_candidates {
             has_candidates = look.any_candidate::<4>(&tile, k, P::first(WIDTH));
@@ -101,7 +101,7 @@ impl<T: Shape<D>, const D: usize> Work for Pass<'_, '_, T, D> {
             return false;
         }
 
-        // The few candidates, register by register: more values at a time than there are registers.
+        // The few candidates, register by register: this needs more values at a time than there are registers.
         let second = SecondLook { shape, law, pose: self.pose, carry: self.carry, h: *h, far, has_far_side, lies };
         let mut taken = Taken { loss_contact, loss_friction, work: work_colliders, correction: work_correction };
         let mut touched = false;
@@ -114,7 +114,7 @@ impl<T: Shape<D>, const D: usize> Work for Pass<'_, '_, T, D> {
     }
 }
 
-/// The first look at the nodes of a tile.
+/// The first check of the nodes of a tile.
 struct Look<'a, P, T, const D: usize> {
     shape: &'a T,
     carry: &'a Carry<D>,
@@ -125,7 +125,7 @@ struct Look<'a, P, T, const D: usize> {
 }
 
 impl<P: Pack, T: Shape<D>, const D: usize> Look<'_, P, T, D> {
-    /// Whether any node of `N` packs is a candidate, which deserves a second look: close to the shape, or fast.
+    /// Whether any node of `N` packs is a candidate for a second check: close to the shape, or fast.
     #[inline(always)]
     fn any_candidate<const N: usize>(&self, tile: &Tile<D>, start: usize, nodes: P::Mask) -> bool {
         let (mut least, mut most) = (P::splat(f64::INFINITY), P::zero());
@@ -143,7 +143,7 @@ impl<P: Pack, T: Shape<D>, const D: usize> Look<'_, P, T, D> {
     }
 }
 
-/// What the contacts of a tile have taken and given, for each place in a pack [J].
+/// The energies that the contacts of a tile have taken and given, for each lane of a pack [J].
 struct Taken<'a> {
     loss_contact: &'a mut [f64; WIDTH],
     loss_friction: &'a mut [f64; WIDTH],
@@ -158,7 +158,7 @@ fn add_to<R: Register>(sums: &mut [f64; WIDTH], offset: usize, more: R) {
     (R::load(sums) + more).store(sums);
 }
 
-/// The look at nodes that may be touched, and what the touch does to them.
+/// The check of nodes that may touch, and the effect of the contact on them.
 struct SecondLook<'a, T, const D: usize> {
     shape: &'a T,
     law: &'a Law,
@@ -166,16 +166,16 @@ struct SecondLook<'a, T, const D: usize> {
     carry: &'a Carry<D>,
     /// The substep [s].
     h: f64,
-    /// The square of how far a node may go without a look at its path [m²], and whether there is such a limit.
+    /// The square of the distance that a node may move without a check of its path [m²], and whether there is such a limit.
     far: f64,
     has_far_side: bool,
-    /// Whether only what lay on the shape is met.
+    /// Whether only nodes that were on the shape are processed.
     lies: bool,
 }
 
 impl<T: Shape<D>, const D: usize> SecondLook<'_, T, D> {
-    /// Holds back the nodes of one register, the part of the pack at `k` of which `count` places are used; says whether it
-    /// touched any.
+    /// Applies the shape to the nodes of one register, the part of the pack at `k` of which `count` lanes are used; returns
+    /// whether it touched any.
     #[inline(always)]
     fn hold_back<P: Pack<Part = R>, R: Register>(
         &self,
@@ -196,7 +196,7 @@ impl<T: Shape<D>, const D: usize> SecondLook<'_, T, D> {
         let from = lanes!(R, d => tile.before.load_part::<P>(d, k, part));
         let before = self.carry.along(&from);
         let displacement = subtract(&x, &before);
-        // Who goes far may come out elsewhere, and who came in by a face may be nearer to another one.
+        // A node that moves far may come out elsewhere, and a node that entered through one face may be closer to another one.
         let fast = R::both(R::splat(self.far).less(dot(&displacement, &displacement)), nodes);
         let mut asked = R::select(fast, R::one(), R::zero());
         if lies {

@@ -1,4 +1,4 @@
-//! Pairs that would pass through one another within a step, whatever was solved for: found on the final motion.
+//! Pairs that would pass through one another within a step whatever was solved for, found on the final motion.
 
 use crate::gap::Gap;
 use crate::row::Row;
@@ -9,10 +9,10 @@ use crate::zones::{Led, PointsOfPair, ROUNDING, Zone};
 use opruga_math::Lane;
 
 impl<const D: usize> Touching<D> {
-    /// Looks at the motion to the end of the step, h [s] long: lists the pairs that pass through one another beside those that were listed
-    /// before. Says whether there are new ones.
+    /// Checks the motion to the end of the step of h [s]: adds the pairs that pass through one another to those listed before.
+    /// Returns whether there are new ones.
     ///
-    /// A vertex that starts inside a body may leave it. Pairs that move as one do not pass.
+    /// A vertex that starts inside a body may leave it. Pairs that move rigidly together do not pass.
     pub(crate) fn find_passages(&mut self, h: f64) -> bool {
         self.fresh.clear();
         let mut found = false;
@@ -43,7 +43,7 @@ impl<const D: usize> Touching<D> {
         [low, high]
     }
 
-    /// Looks at one pair.
+    /// Checks one pair.
     fn look(&mut self, pair: [u32; 2], with_facet: bool, h: f64) -> bool {
         let x0 = &self.before[0];
         let ends = [&x0[..], &self.end];
@@ -61,7 +61,7 @@ impl<const D: usize> Touching<D> {
             return false;
         }
         let Some(gap) = impact(&self.surface, ends, &mut self.impact, time, pair, with_facet) else { return false };
-        // Who touches at the start passes where the end lies behind.
+        // A pair that touches at the start passes if the end is behind.
         if time == 0.0 && gap.along(&self.end) >= -ROUNDING * h * (1.0 + gap.gap.abs()) {
             return false;
         }
@@ -101,7 +101,7 @@ impl<const D: usize> Touching<D> {
         points.map(|p| self.surface.body[p as usize])
     }
 
-    /// Puts the rows of passing pairs in place of those of the same features.
+    /// Replaces the rows of passing pairs by rows with their gaps.
     pub(crate) fn put_passing(&mut self, h: f64) {
         if self.passing.is_empty() {
             return;
@@ -126,10 +126,11 @@ impl<const D: usize> Touching<D> {
         self.rows.sort_by_key(|row| row.id);
     }
 
-    /// Lets what still passes move as one: x = x₀ + h (c + ω × r), in which no two features pass, with the momenta that the points have.
+    /// Makes the points of pairs that still pass move rigidly together: x = x₀ + h (c + ω × r), in which no two features pass,
+    /// with the momenta of the points.
     ///
     /// # Errors
-    /// [`Trouble::LedThrough`] where pins and obstacles do not let them.
+    /// [`Trouble::LedThrough`] if pins and obstacles prevent that.
     ///
     /// # Source
     /// X. Provot, Collision and self-collision handling in cloth model dedicated to design garments (1997);
@@ -159,7 +160,8 @@ impl<const D: usize> Touching<D> {
         }
     }
 
-    /// How the points of a zone move as one: as pins and obstacles lead them, else with their momentum and angular momentum.
+    /// The rigid motion of the points of a zone: prescribed by pins and obstacles, otherwise with their momentum and angular
+    /// momentum.
     fn motion_of(&self, points: &[u32], h: f64) -> Option<Zone<D>> {
         let mut led = Led::default();
         for p in points {
@@ -176,7 +178,7 @@ impl<const D: usize> Touching<D> {
                 dot(&relative, &row.normal) < row.target - ROUNDING * (1.0 + row.target.abs())
             })
         };
-        // An obstacle in the way leads them.
+        // An obstacle in the way determines the motion.
         if let Some(row) = against(&motion) {
             for d in 0..D {
                 led.lead(d, row.carry[d])?;

@@ -1,4 +1,4 @@
-//! Where the colliders are, as plain data for drawing.
+//! The colliders at a time, as plain data for drawing.
 
 use crate::collider::{Collider, Form};
 
@@ -14,7 +14,7 @@ pub enum Picture<const D: usize> {
     },
     /// A box, solid or as a container.
     Box {
-        /// The 2^D corners [m]; bit d of the number says on which side of axis d.
+        /// The 2^D corners [m]; bit d of the index gives the side along axis d.
         corners: Vec<[f64; D]>,
         /// Whether bodies are kept inside.
         inside: bool,
@@ -28,7 +28,7 @@ pub enum Picture<const D: usize> {
         /// Whether bodies are kept inside.
         inside: bool,
     },
-    /// All points nearer to a segment than a radius.
+    /// All points closer to a segment than a radius.
     Capsule {
         /// One end of the segment [m].
         a: [f64; D],
@@ -61,7 +61,7 @@ pub enum Picture<const D: usize> {
 }
 
 impl<const D: usize> Picture<D> {
-    /// The same in space; z is 0 where it lies in the plane.
+    /// The same in space, with z = 0 for shapes of the plane.
     pub fn in_space(self) -> Picture<3> {
         let three = |p: [f64; D]| core::array::from_fn(|d| p.get(d).copied().unwrap_or(0.0));
         let all = |points: Vec<[f64; D]>| points.into_iter().map(three).collect();

@@ -1,45 +1,49 @@
-//! How far points may get within a step, and whether the candidates at hand are all that meet there.
+//! How far points may move within a step, and whether the present candidates include all pairs that meet there.
 
 use crate::vector::{dot, subtract};
 use opruga_math::Lane;
 
 type Bounds<const D: usize> = [[f64; D]; 2];
 
-/// For every point the box that it does not leave within the step, whatever contact does; and the box for which candidates were looked for.
+/// For every point, the box that it does not leave within the step, whatever contact does; and the box for which candidates were
+/// searched.
 ///
-/// Every point has a box of its own: one fast point does not make candidates of all the others.
+/// Every point has its own box, so one fast point does not turn all the others into candidates.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Reach<const D: usize> {
-    /// What contact may add to the free motion of every point [m].
+    /// The displacement that contact may add to the free motion of every point [m].
     push: Vec<f64>,
-    /// Where every point may be within the step [m].
+    /// The box of every point within the step [m].
     pub(crate) swept: Vec<Bounds<D>>,
-    /// Where points may be while the candidates at hand are all [m]; nowhere where there are none.
+    /// The box of every point for which the present candidates are complete [m]; empty if there are none.
     pub(crate) found_in: Vec<Bounds<D>>,
-    /// The largest of these of every body.
+    /// The largest of these displacements for every body.
     body_push: Vec<f64>,
-    /// By the bodies: whether boxes of the step do not lie within those, with a quarter of a margin to spare, or those are for a faster motion.
+    /// For every body, whether boxes of the step are not inside those for which candidates were searched, with a quarter of a
+    /// margin to spare, or whether those are for a faster motion.
     stale: Vec<bool>,
-    /// By the bodies: whether they are soon stale. A search looks for the candidates of all of these at once.
+    /// For every body, whether it will soon be stale. A search then covers all of these at once.
     due: Vec<bool>,
 }
 
-/// Boxes that are so many times as wide as they would be now are found anew: after an impact, bodies at rest would keep the candidates of their flight
-/// (`candidates_of_a_flight_are_dropped_at_rest`). Points that go straight ahead have twice the width behind them.
+/// Boxes this many times as wide as they would be now are computed anew: otherwise bodies at rest would keep the candidates of
+/// their flight after an impact (`candidates_of_a_flight_are_dropped_at_rest`). Points that move straight ahead have twice the
+/// width behind them.
 pub(crate) const MOST_WIDTHS: f64 = 4.0;
 
-/// How far beyond a step candidates are looked for of what moves by so much in it [m]: as far as it goes in so many more steps, but half a margin at
-/// least and a whole one at most. Long steps of fast bodies would make candidates of all that is around (of eight falling cubes, ten times as many).
+/// The distance beyond a step within which candidates are searched for something that moves by `moves` in it [m]: as far as it
+/// moves in `steps` more steps, but at least half a margin and at most a whole one. Otherwise long steps of fast bodies would
+/// make everything around them a candidate (ten times as many for eight falling cubes).
 pub(crate) fn beyond(moves: f64, steps: f64, margin: f64) -> f64 {
     (0.5 * margin).larger((steps * moves).smaller(margin))
 }
 
-/// A box in which nothing lies.
+/// An empty box.
 const NOWHERE: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
 
 impl<const D: usize> Reach<D> {
-    /// Begins a step from the positions before and after the free motion [m] of points, whose bodies are given: contact may push every point as far
-    /// as it goes by itself, and by what takes overlapping bodies apart.
+    /// Begins a step from the positions of points before and after the free motion [m] and their bodies. Contact may push every
+    /// point as far as it moves by itself, plus the distance for separating overlapping bodies.
     pub(crate) fn begin(&mut self, body: &[u32], [from, to]: [&[[f64; D]]; 2], recovery: f64, margin: f64, steps: f64) {
         self.push.resize(from.len(), 0.0);
         self.swept.resize(from.len(), [[0.0; D]; 2]);
@@ -69,7 +73,7 @@ impl<const D: usize> Reach<D> {
                 most = below.larger(above).larger(most);
             }
             let wide = beyond(*push, steps, margin);
-            // Numbers that are none are covered by nothing.
+            // NaN is never covered.
             let covered = least >= spare && most <= MOST_WIDTHS * wide;
             let lasting = least >= spare + 0.5 * (wide - spare);
             self.stale[body] |= !covered;
@@ -77,8 +81,8 @@ impl<const D: usize> Reach<D> {
         }
     }
 
-    /// Whether all boxes lie within those for which candidates were looked for, with a quarter of a margin to spare: pairs that are
-    /// asked for beyond the step are at hand then, whenever they were looked for.
+    /// Whether all boxes are inside those for which candidates were searched, with a quarter of a margin to spare. Pairs that are
+    /// needed beyond the step are then known, whenever they were searched.
     pub(crate) fn is_covered(&self) -> bool {
         !self.stale.contains(&true)
     }
@@ -88,13 +92,13 @@ impl<const D: usize> Reach<D> {
         self.stale[body as usize]
     }
 
-    /// Takes bodies that are due for stale.
+    /// Makes bodies that are due stale.
     pub(crate) fn take_due(&mut self) {
         self.stale.iter_mut().zip(&self.due).for_each(|(stale, due)| *stale |= due);
     }
 
-    /// Sets the boxes of stale bodies for which candidates are looked for: those of the step, and as far [`beyond`] as points go in so many more
-    /// steps, by a margin [m].
+    /// Sets the boxes of stale bodies for which candidates are searched: those of the step, extended [`beyond`] it by the motion
+    /// of the points in `steps` more steps, limited by `margin` [m].
     pub(crate) fn widen(&mut self, body: &[u32], margin: f64, steps: f64) {
         let own = self.swept.iter().zip(&self.push).zip(body);
         for (found, ((swept, push), body)) in self.found_in.iter_mut().zip(own) {
@@ -110,23 +114,23 @@ impl<const D: usize> Reach<D> {
         }
     }
 
-    /// Takes the candidates for none of any body.
+    /// Discards the candidates of all bodies.
     pub(crate) fn forget(&mut self) {
         self.found_in.clear();
         self.stale.fill(true);
     }
 
-    /// Forgets nothing, but looks for the candidates of all bodies.
+    /// Keeps everything, but searches for the candidates of all bodies.
     pub(crate) fn look_at_all(&mut self) {
         self.stale.fill(true);
     }
 
-    /// Takes note that candidates were found.
+    /// Records that candidates were found.
     pub(crate) fn found(&mut self) {
         self.stale.fill(false);
     }
 
-    /// Widens the boxes of touched points that contact pushes beyond them; says whether there are any.
+    /// Widens the boxes of touched points that contact pushes beyond them; returns whether there are any.
     pub(crate) fn grow(&mut self, body: &[u32], touched: &[bool], [free, end]: [&[[f64; D]]; 2], margin: f64) -> bool {
         let (mut any, spare) = (false, 0.25 * margin);
         for p in (0..touched.len()).filter(|p| touched[*p]) {
@@ -151,18 +155,19 @@ impl<const D: usize> Reach<D> {
         any
     }
 
-    /// What contact may add to the motion of any point of every body [m], at most.
+    /// The largest displacement that contact may add to the motion of any point of every body [m].
     pub(crate) fn body_push(&self) -> &[f64] {
         &self.body_push
     }
 
-    /// What contact may add to the motion of a point [m].
+    /// The displacement that contact may add to the motion of a point [m].
     #[inline]
     pub(crate) fn push_of(&self, point: u32) -> f64 {
         self.push[point as usize]
     }
 
-    /// How far the boxes of two features within the step are apart, along the axis where that is most [m]; negative where they overlap.
+    /// The distance between the boxes of two features within the step, along the axis where it is largest [m]; negative if they
+    /// overlap.
     #[inline]
     pub(crate) fn apart<const M: usize, const N: usize>(&self, a: &[u32; M], b: &[u32; N]) -> f64 {
         let of = |p: u32| self.swept[p as usize];

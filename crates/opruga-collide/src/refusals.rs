@@ -17,13 +17,13 @@ messages! {
     /// Why the parameters of an obstacle are refused.
     #[derive(Clone, Debug, PartialEq)]
     pub enum Refusal {
-        /// A kind of another dimension.
+        /// A kind of collider of another dimension.
         "collider.kind" #[error("there is no such collider in {dimension}D")]
         Kind { dimension: usize },
-        /// A hollow ball that its thickness fills.
+        /// A hollow ball that is filled by its thickness.
         "collider.no_room" #[error("`thickness` is {thickness}")] #[parameters("thickness")] #[allowed("less than the radius {radius}")]
         FilledBall { thickness: f64, radius: f64 },
-        /// A hollow box that its thickness fills.
+        /// A hollow box that is filled by its thickness.
         "collider.no_room" #[error("`thickness` is {thickness}")] #[parameters("thickness")] #[allowed("less than half of every side, {half}")]
         FilledBox { thickness: f64, half: f64 },
         /// A normal without a direction.
@@ -35,16 +35,16 @@ messages! {
         /// A box that is given twice or not at all.
         "collider.box_fields" #[error("needs either `min` and `max`, or `center` and `size`")] #[parameters("min", "max", "center", "size")]
         BoxFields {},
-        /// A box whose corners are the wrong way round.
+        /// A box with exchanged corners.
         "collider.empty_box" #[error("`max` is {max} and `min` is {min}")] #[parameters("max", "min")] #[allowed("every coordinate of `max` above that of `min`")]
         EmptyCorners { max: String, min: String },
         /// A box without a size.
         "collider.empty_box" #[error("`size` is {size}")] #[parameters("size")] #[allowed("lengths above 0")]
         EmptySize { size: String },
-        /// Points that are too far apart, or none.
+        /// Points that are too far apart, or no points.
         "collider.points" #[error("`points` has {count} points from {low} to {high}")] #[parameters("points")] #[allowed("at least one, within 1e100 m of each other")]
         FarPoints { count: usize, low: String, high: String },
-        /// A curve of too few points.
+        /// A curve with too few points.
         "collider.points" #[error("`points` has {count} points")] #[parameters("points")] #[allowed("at least {least}")]
         FewPoints { count: usize, least: usize },
         /// Points without an extent.
@@ -62,10 +62,10 @@ messages! {
         /// A triangle without an area.
         "collider.degenerate_facet" #[error("triangle {triangle} with points {points} has no area")] #[allowed("triangles with an area")]
         FlatTriangle { triangle: usize, points: String },
-        /// Numbers that make no triangles.
+        /// A list of numbers that does not form triangles.
         "collider.triangles" #[error("`triangles` has {count} numbers")] #[parameters("triangles")] #[allowed("three per triangle, at least one triangle")]
         Triangles { count: usize },
-        /// A point that is not there.
+        /// A point that does not exist.
         "collider.triangles" #[error("`triangles` names point {point}")] #[parameters("triangles")] #[allowed("0 to {last}")]
         NoPoint { point: u32, last: usize },
     }

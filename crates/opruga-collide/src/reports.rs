@@ -1,16 +1,16 @@
-//! What contact did to bodies, pair by pair: for programs that ask.
+//! The effects of contact on bodies, pair by pair, for programs that request them.
 
 use crate::row::Row;
 use crate::surface::Surface;
 
-/// What contact did to two bodies, or to a body and itself, summed over substeps.
+/// The effect of contact on two bodies, or on a body and itself, summed over substeps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Report<const D: usize> {
     /// The bodies, the lower one first.
     pub bodies: [u32; 2],
-    /// The impulse that the first one got [N s].
+    /// The impulse on the first body [N s].
     pub impulse: [f64; D],
-    /// Σ λₙ: the normal impulses of all contacts, by their sizes [N s].
+    /// Σ λₙ: the sum of the normal impulses of all contacts [N s].
     pub pressed: f64,
     /// Σ λₙ n, from the second body to the first [N s].
     pub normal: [f64; D],
@@ -18,7 +18,8 @@ pub struct Report<const D: usize> {
     pub moment: [f64; D],
 }
 
-/// Adds the impulses of a step to the reports, in the order of its contacts: so the sums are the same for every number of threads.
+/// Adds the impulses of a step to the reports, in the order of its contacts, so that the sums do not depend on the number of
+/// threads.
 pub(crate) fn add<const D: usize>(
     reports: &mut Vec<Report<D>>,
     rows: &[Row<D>],
@@ -26,7 +27,7 @@ pub(crate) fn add<const D: usize>(
     end: &[[f64; D]],
 ) {
     for row in rows.iter().filter(|row| row.normal_impulse > 0.0 && !row.of_obstacle) {
-        // The points of the first feature have weights above 0, those of the second below.
+        // The points of the first feature have positive weights, those of the second negative ones.
         let (mut first, mut second, mut position) = (None, None, None);
         for k in (0..=D).filter(|k| row.weights[*k] != 0.0) {
             let (p, weight) = (row.points[k] as usize, row.weights[k]);

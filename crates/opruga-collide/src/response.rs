@@ -1,17 +1,17 @@
-//! What a contact does to a node: non-penetration, restitution, Coulomb friction.
+//! The effect of a contact on a node: non-penetration, restitution, Coulomb friction.
 
 use crate::collider::Law;
 use crate::vector::{add, choose, dot, length, scaled, subtract};
 use opruga_math::{Lane, lanes};
 
-/// Anything with a surface that can say how far away a node is.
+/// A surface from which the distance of a node can be computed.
 pub(crate) trait Surface<S: Lane, const D: usize> {
-    /// The gap less the thickness [m], and the normal, of a node that came from `before`; gaps above `reach` need not
-    /// be known and are infinite then.
+    /// The gap minus the thickness [m], and the normal, of a node that came from `before`; gaps above `reach` may be given as
+    /// infinite.
     fn find(&self, x: &[S; D], before: &[S; D], reach: S) -> (S, [S; D]);
 }
 
-/// The plane in which a flat face lies: what a node on it goes along, beyond the edges too.
+/// The plane of a flat face: a node on it moves along the plane, even beyond the edges.
 pub(crate) struct Face<S, const D: usize> {
     pub(crate) x: [S; D],
     /// The gap at `x`.
@@ -34,13 +34,13 @@ pub(crate) struct Meeting<S, const D: usize> {
     pub(crate) v: [S; D],
     /// Position before it, carried along with the collider [m].
     pub(crate) before: [S; D],
-    /// Position before it, where the node was [m].
+    /// Position before it [m].
     pub(crate) from: [S; D],
     /// Mean force of the step on it [N].
     pub(crate) force: [S; D],
     /// Mass [kg].
     pub(crate) mass: S,
-    /// The gap, below zero where there is contact [m].
+    /// The gap, negative in contact [m].
     pub(crate) gap: S,
     /// The normal out of the collider.
     pub(crate) normal: [S; D],
@@ -52,30 +52,30 @@ pub(crate) struct Meeting<S, const D: usize> {
     pub(crate) h: S,
 }
 
-/// The node afterwards, and what became of its energy.
+/// The node after contact, and its energy balance.
 ///
-/// The obstacle gives an impulse J, the force F has given hF. With v₀ before the step, v₁ after it and v̄ = ½(v₀ + v₁) the
-/// kinetic energy changes by (J + hF)·v̄, exactly; J·v̄ is the work of the obstacle's own motion less the two losses. The
-/// potential energy changes by −F·(x₁ − x₀), of which hF·v̄ has gone into motion: the rest is what putting the node back on
-/// the surface did. So a node that lies still takes and gives nothing, however large the step.
+/// The obstacle gives an impulse J, and the force F has given hF. With v₀ before the step, v₁ after it and v̄ = ½(v₀ + v₁), the
+/// kinetic energy changes by exactly (J + hF)·v̄; J·v̄ is the work of the motion of the obstacle minus the two losses. The
+/// potential energy changes by −F·(x₁ − x₀), of which hF·v̄ has become kinetic energy; the rest is the effect of moving the node
+/// back to the surface. So a node at rest exchanges no energy, however large the step.
 pub(crate) struct Parting<S, const D: usize> {
     /// Position [m].
     pub(crate) x: [S; D],
     /// Velocity [m/s].
     pub(crate) v: [S; D],
-    /// Taken out along the normal [J].
+    /// Energy taken along the normal [J].
     pub(crate) loss_contact: S,
-    /// Taken out by friction [J].
+    /// Energy taken by friction [J].
     pub(crate) loss_friction: S,
-    /// Work of a collider that moves [J].
+    /// Work of a moving collider [J].
     pub(crate) work: S,
-    /// Given by putting the node back on the surface [J].
+    /// Energy from moving the node back to the surface [J].
     pub(crate) correction: S,
 }
 
-/// The distance [m] below which a gap is nothing but rounding.
+/// The distance [m] below which a gap is only rounding.
 ///
-/// It has an upper bound that does not depend on the node, so that a whole tile can be passed over by one comparison.
+/// It has an upper bound that does not depend on the node, so that a whole tile can be skipped with one comparison.
 #[inline(always)]
 pub(crate) fn rounding<S: Lane, const D: usize>(law: &Law, x: &[S; D]) -> S {
     if law.rest_speed == 0.0 {
@@ -93,20 +93,20 @@ pub(crate) fn largest_rounding(law: &Law) -> f64 {
     if law.rest_speed == 0.0 { 0.0 } else { 1e-6 * (law.extent + 1.0) }
 }
 
-/// Where there is contact: the node is inside, or on the surface and coming, in both cases by more than rounding.
+/// Whether there is contact: the node is inside, or on the surface and approaching, in both cases by more than rounding.
 ///
-/// So a node that reaches the surface exactly meets it in this step and not as one at rest in the next.
+/// So a node that reaches the surface exactly meets it in this step, and not as a resting node in the next.
 #[inline(always)]
 pub(crate) fn meets<S: Lane, const D: usize>(law: &Law, node: &Meeting<S, D>) -> S::Mask {
-    // At the origin a node has the rounding of where it came from.
+    // At the origin a node has the rounding of its previous position.
     let small = rounding(law, &node.x).larger(rounding(law, &node.before));
     let coming = -dot(&subtract(&node.v, &node.obstacle), &node.normal) * node.h;
     let inside = node.gap.less(S::select(small.less(coming), small, -small));
-    // A node so far away that its distance overflows has no place on the surface.
+    // A node so far away that its distance overflows has no contact.
     S::both(inside, S::splat(-f64::MAX).less_or_equal(node.gap))
 }
 
-/// Holds back a node where `hit` holds (what comes out elsewhere has no meaning but is finite if what comes in is).
+/// Applies the contact to a node where `hit` is true (elsewhere the result is meaningless, but finite if the input is).
 #[inline(always)]
 pub(crate) fn respond<S: Lane, T: Surface<S, D>, const D: usize>(
     surface: &T,
@@ -120,17 +120,17 @@ pub(crate) fn respond<S: Lane, T: Surface<S, D>, const D: usize>(
     let closing = S::both(hit, un.less(zero));
     let speed = S::select(closing, -un, zero);
 
-    // A fraction e of the speed returns at an impact. A node that began the step on the surface, or comes slower than
-    // the speed of rest, is no impact: what it has was given to it within the step, by weight or by the body behind it.
+    // An impact returns a fraction e of the speed. If a node began the step on the surface, or is slower than the rest speed, it
+    // is not an impact: its speed comes from the step itself, from weight or from the body behind it.
     let small = rounding(law, &node.before);
-    // Where another contact has acted before in this step, that has counted what the force has given.
+    // If another contact has already acted in this step, it has accounted for the effect of the force.
     let weighs = S::both(zero.less(node.mass), node.active.less_or_equal(zero));
     let (mut e, mut met) = (zero, speed);
     if law.restitution > 0.0 {
         let mut bounces = S::splat(law.rest_speed).less(speed);
         if law.rest_speed > 0.0 {
-            // The force has gone on for the whole step, but the surface is met within it: an obstacle gives back no more
-            // than came in, u² + 2 a g with the speed u and the gap g before the step.
+            // The force acts for the whole step, but the node meets the surface within it: an obstacle returns no more than came
+            // in, u² + 2 a g with the speed u and the gap g before the step.
             let pull = S::select(weighs, -dot(&node.force, &node.normal) / node.mass, zero);
             let came = speed - pull * node.h;
             let reach = node.h * came.larger(speed).larger(zero) + (small + small);
@@ -144,14 +144,14 @@ pub(crate) fn respond<S: Lane, T: Surface<S, D>, const D: usize>(
     let back = e * met;
     let change = back + speed;
 
-    // Out along the normal; without friction the motion along the surface is left as it is, to the bit.
+    // Out along the normal; without friction the motion along the surface does not change in any bit.
     let mut x = choose(hit, &subtract(&node.x, &scaled(&node.normal, node.gap)), &node.x);
     let mut v = add(&node.v, &scaled(&node.normal, change));
-    // Half of the velocity that the force has given.
+    // Half of the velocity due to the force.
     let given = scaled(&node.force, S::select(weighs, half * node.h / node.mass, zero));
     let mut loss_friction = zero;
     if law.friction > 0.0 {
-        // Coulomb: the tangential change is at most µ times the normal one, and stops the sliding at most.
+        // Coulomb: the tangential change is at most µ times the normal one, and at most stops the sliding.
         let slide = lanes!(S, d => u[d] - un * node.normal[d]);
         let pace = length(&slide);
         let most = S::splat(law.friction) * change;
@@ -161,9 +161,9 @@ pub(crate) fn respond<S: Lane, T: Surface<S, D>, const D: usize>(
         let mean = half * (S::one() + keep) * pace * pace - dot(&given, &slide);
         loss_friction = S::select(closing, node.mass * (S::one() - keep) * mean, zero);
 
-        // A node that rests or slides goes where the new velocity takes it from where it was, and then onto the surface:
-        // the tangential part of the free step is undone, so that what sticks does not creep. If another contact has put
-        // the node where it is, only what this one takes from the velocity is undone.
+        // A node that rests or slides moves from its previous position with the new velocity, and then onto the surface: the
+        // tangential part of the free step is undone, so that sticking nodes do not creep. If another contact has moved the node,
+        // only the part of the velocity that this contact takes is undone.
         let stopped = scaled(&subtract(&slide_after, &slide), node.h);
         let fresh = add(&node.before, &scaled(&slide_after, node.h));
         let path = choose(zero.less(node.active), &add(&x, &stopped), &fresh);

@@ -7,40 +7,41 @@ use crate::surface::Surface;
 use crate::vector::{dot, length, scaled, subtract};
 use opruga_math::Lane;
 
-/// The bit in the number of a row of a point and an obstacle that holds it.
+/// The bit in the number of a row for a point and an obstacle that holds it.
 pub(crate) const OBSTACLE_BIT: u64 = 1 << 63;
 
 /// One contact: a lower bound of its normal velocity, and Coulomb friction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Row<const D: usize> {
-    /// Its features: rows ascend by it, and impulses of the last substep are found by it.
+    /// Its features; rows are sorted by it, and it identifies the impulses of the last substep.
     pub(crate) id: u64,
     pub(crate) points: [u32; 4],
     pub(crate) weights: [f64; 4],
-    /// Where the nodes that carry its points stand in [`Spread`], and how many; none where it acts on its points.
+    /// The position in [`Spread`] of the nodes that carry its points, and their number; none if it acts on its points.
     pub(crate) spread: [u32; 2],
     pub(crate) normal: [f64; D],
-    /// The gap at the beginning of the step, less the thickness [m].
+    /// The gap at the start of the step, minus the thickness [m].
     pub(crate) gap: f64,
-    /// The normal velocity that it must have at least at the end [m/s].
+    /// The smallest normal velocity that it must have at the end [m/s].
     pub(crate) target: f64,
     /// The velocity of an obstacle [m/s]; zero between bodies.
     pub(crate) carry: [f64; D],
     pub(crate) friction: f64,
-    /// Inverse of the inverse mass along the normal, and the least across it [kg]; 0 where nothing can move.
+    /// The inverse of the inverse mass along the normal, and the smallest one across it [kg]; 0 if nothing can move.
     pub(crate) mass: [f64; 2],
     /// Multipliers: the impulse along the normal and that across it [N s].
     pub(crate) normal_impulse: f64,
     pub(crate) friction_impulse: [f64; D],
     /// Whether the second feature is an obstacle.
     pub(crate) of_obstacle: bool,
-    /// Whether points of a body follow one another ([`Coupled`]).
+    /// Whether its points belong to a coupled body ([`Coupled`]).
     pub(crate) coupled: bool,
 }
 
-/// The part of the mobility of its own points below which a pair cannot move. Obstacles that hold all of its points leave about 1e-16, which is rounding; a stiff
-/// body of a million nodes moves as one, with 1e-6. Half-spaces and round obstacles hold nodes of
-/// implicit bodies in this way. Corners of polylines, for which it was made, are pairs of their own now, and no test of contact notices it at 0.
+/// The fraction of the mobility of its own points below which a pair cannot move. If obstacles hold all of its points, about
+/// 1e-16 remains, which is rounding; a stiff body of a million nodes moves as a whole, with 1e-6. Half-spaces and round obstacles
+/// hold nodes of implicit bodies in this way. It was made for corners of polylines, which are pairs of their own now, and no test
+/// of contact changes if it is 0.
 const IMMOBILE: f64 = 1e-12;
 
 impl<const D: usize> Row<D> {
@@ -63,7 +64,7 @@ impl<const D: usize> Row<D> {
         }
     }
 
-    /// What its points weigh along the normal where each moves by itself [kg]; 0 where nothing moves.
+    /// The mass of its points along the normal if each moves by itself [kg]; 0 if nothing moves.
     pub(crate) fn mass_apart(&self, spread: &Spread, inverse_mass: &[[f64; D]]) -> f64 {
         if !self.coupled || self.mass[0] == 0.0 {
             return self.mass[0];
@@ -73,7 +74,7 @@ impl<const D: usize> Row<D> {
         apart.mass[0]
     }
 
-    /// Works out what it weighs.
+    /// Computes its masses.
     pub(crate) fn weigh(&mut self, spread: &Spread, inverse_mass: &[[f64; D]]) {
         let (points, weights) = self.on(spread);
         let (mut along, mut across) = (0.0, 0.0);
@@ -90,18 +91,18 @@ impl<const D: usize> Row<D> {
         self.mass = [inverse(along), inverse(across)];
     }
 
-    /// Works out what it weighs where points follow one another.
+    /// Computes its masses if its points are coupled.
     pub(crate) fn weigh_coupled(&mut self, spread: &Spread, coupled: &Coupled<D>, inverse_mass: &[[f64; D]]) {
         let mobility = coupled.mobility(self.on(spread), inverse_mass);
         self.weigh(spread, inverse_mass);
         let free = self.mass.map(|mass| if mass > 0.0 { 1.0 / mass } else { 0.0 });
-        // Across the normal the largest row sum is at least what any direction has.
+        // Across the normal, the largest row sum bounds the mobility in any direction.
         let (mut along, mut across) = (0.0, 0.0);
         for (d, row) in mobility.iter().enumerate() {
             along += self.normal[d] * dot(row, &self.normal);
             across = row.iter().map(|c| c.abs()).sum::<f64>().larger(across);
         }
-        // What obstacles or pins hold answers by rounding alone.
+        // If obstacles or pins hold the points, the response is only rounding.
         let inverse = |k: f64, free: f64| if k > IMMOBILE * free { 1.0 / k } else { 0.0 };
         (self.mass, self.coupled) = ([inverse(along, free[0]), inverse(across, free[1])], true);
     }
@@ -122,7 +123,7 @@ impl<const D: usize> Row<D> {
         if size > most { scaled(&after, most / size) } else { after }
     }
 
-    /// One turn where points follow one another, or nodes carry them: as [`Row::solve`].
+    /// One turn for coupled or carried points, as [`Row::solve`].
     pub(crate) fn solve_coupled(
         &mut self,
         spread: &Spread,
@@ -156,18 +157,18 @@ impl<const D: usize> Row<D> {
         changed
     }
 
-    /// Spreads it over the nodes that carry its points, if any is carried.
+    /// Distributes it over the nodes that carry its points, if any is carried.
     pub(crate) fn put_into(&mut self, spread: &mut Spread, surface: &Surface<D>) {
         self.spread = spread.put(surface, (&self.points[..=D], &self.weights[..=D]));
     }
 
-    /// The points that it acts on, and their weights.
+    /// The points on which it acts, and their weights.
     #[inline]
     pub(crate) fn on<'a>(&'a self, spread: &'a Spread) -> Weighted<'a> {
         if self.spread[1] == 0 { (&self.points[..=D], &self.weights[..=D]) } else { spread.at(self.spread) }
     }
 
-    /// What stands for these points beside it.
+    /// The entry that represents these points outside of the row.
     #[inline]
     pub(crate) fn head(&self) -> [u32; 4] {
         if self.spread[1] == 0 { self.points } else { Spread::head(self.spread) }
@@ -179,7 +180,7 @@ impl<const D: usize> Row<D> {
         mean(self.on(spread), of)
     }
 
-    /// Gives its points an impulse [N s].
+    /// Applies an impulse to its points [N s].
     #[inline]
     pub(crate) fn give(&self, spread: &Spread, impulse: &[f64; D], inverse_mass: &[[f64; D]], v: &mut [[f64; D]]) {
         let (points, weights) = self.on(spread);
@@ -191,7 +192,7 @@ impl<const D: usize> Row<D> {
         }
     }
 
-    /// The whole impulse [N s].
+    /// The total impulse [N s].
     pub(crate) fn impulse(&self) -> [f64; D] {
         let mut out = self.friction_impulse;
         for d in 0..D {
@@ -200,10 +201,11 @@ impl<const D: usize> Row<D> {
         out
     }
 
-    /// One turn, where it acts on its points: the normal impulse that its bound needs, then the friction that this allows. Gives by how much its velocity changed [m/s].
+    /// One turn of a row that acts on its points: the normal impulse that its bound needs, then the friction that this allows.
+    /// Returns the change of its velocity [m/s].
     #[inline(always)]
     pub(crate) fn solve(&mut self, inverse_mass: &[[f64; D]], v: &mut [[f64; D]]) -> f64 {
-        // Velocities and inverse masses of its points, which are at most D + 1, come from memory once.
+        // Velocities and inverse masses of its points, which are at most D + 1, are read from memory once.
         let (mut own, mut inverse) = ([[0.0; D]; 4], [[0.0; D]; 4]);
         for k in 0..=D {
             let p = self.points[k] as usize;
@@ -250,7 +252,7 @@ impl<const D: usize> Row<D> {
         }
         if changed > 0.0 {
             (self.normal_impulse, self.friction_impulse) = (new, after);
-            // The first point last: an obstacle has no points, and repeats it.
+            // The first point is last: an obstacle has no points, and repeats it.
             for k in (0..=D).rev() {
                 v[self.points[k] as usize] = own[k];
             }

@@ -1,4 +1,4 @@
-//! From candidates to contacts: the gaps that count.
+//! From candidates to contacts: the relevant gaps.
 
 use crate::ccd::{edge_meets_edge, vertex_meets_facet};
 use crate::distances::Distances;
@@ -13,7 +13,7 @@ use core::ops::Range;
 use opruga_math::Lane;
 
 impl<const D: usize> Touching<D> {
-    /// Takes the gaps of all candidates that may come to touch; rows are in the order of their features.
+    /// Computes the gaps of all candidates that may touch; rows are in the order of their features.
     pub(crate) fn take_gaps(&mut self, h: f64) {
         self.rows.clear();
         self.watched.clear();
@@ -42,8 +42,8 @@ impl<const D: usize> Touching<D> {
         self.put_passing(h);
     }
 
-    /// Takes the distances of candidates whose boxes do not meet: how far boxes are apart says little of features that lie across the axes, and would be
-    /// asked for again in every step.
+    /// Computes the distances of candidates whose boxes do not meet. The distance of the boxes is a weak bound for features that lie across the
+    /// axes; such pairs would be checked again in every step.
     fn measure_apart(&mut self) {
         let Touching {
             surface,
@@ -69,18 +69,18 @@ impl<const D: usize> Touching<D> {
         }
     }
 
-    /// Takes the gaps of all candidates of one vertex.
+    /// Computes the gaps of all candidates of one vertex.
     fn take_gaps_of_vertex(&mut self, vertex: u32, candidates: Range<usize>, h: f64) {
         self.around.clear();
         let close = self.close[0].len();
         let mut inside = self.take_gaps_of(candidates.clone(), h, 0.0, false);
         if inside {
-            // The nearest facet counts there, whatever was known of it before.
+            // The nearest facet is needed there, whatever was known before.
             self.around.clear();
             self.close[0].truncate(close);
             self.take_gaps_of(candidates.clone(), h, 0.0, true);
         }
-        // Who seems to be deep inside may be outside, before a facet that is nearer and beyond the reach.
+        // A vertex that seems to be deep inside may be outside, in front of a facet that is nearer but beyond the reach.
         let known = -self.reach.push_of(vertex) - self.thickest_at(vertex);
         // Bodies at rest may begin deep inside one another.
         if self.at_once || self.around.iter().any(|(row, _)| row.gap < known) {
@@ -95,7 +95,7 @@ impl<const D: usize> Touching<D> {
         self.take_around(false);
     }
 
-    /// Takes the gap of a candidate of two edges.
+    /// Computes the gap of a candidate of two edges.
     fn take_gap_of_edges(&mut self, candidate: usize, h: f64) {
         let pair @ [a, b] = self.candidates.edge_edge[candidate];
         let edges = pair.map(|e| self.surface.edges[e as usize]);
@@ -118,7 +118,7 @@ impl<const D: usize> Touching<D> {
         if bodies[0] == bodies[1] && gap.gap < 0.0 {
             (gap.gap, gap.normal) = (-gap.gap, gap.normal.map(|n| -n));
         }
-        // Edges deep in one another are those of opposite sides as often as not: vertices and facets say where to go.
+        // Edges deep inside one another are often those of opposite sides: vertices and facets determine the direction out.
         if gap.gap < -law.thickness {
             return;
         }
@@ -126,10 +126,11 @@ impl<const D: usize> Touching<D> {
         self.take_around(true);
     }
 
-    /// Puts rows in play, or under watch where they do not meet by themselves; those that cannot move are neither.
+    /// Activates rows, or puts them under watch if they do not meet by themselves; rows that cannot move are dropped.
     ///
-    /// Pairs of edges are inactive at first unless they pressed in the step before, and so are all pairs of bodies that answer as a whole: where vertices and
-    /// facets hold surfaces, few edges press, and of what is near such bodies a fourth does. What overlaps is taken apart and so is active.
+    /// Pairs of edges are inactive at first unless they pressed in the previous step, and so are all pairs of coupled bodies: if
+    /// vertices and facets hold surfaces, few edges press, and only a quarter of the pairs near coupled bodies do. Overlapping
+    /// pairs are active, because they must be separated.
     fn take_around(&mut self, of_edges: bool) {
         let starts_inactive = !self.at_once && (of_edges || self.coupled.count() > 0 && !self.coupled.apart);
         let overlap = -OVERLAP * self.thickest[0];
@@ -153,8 +154,8 @@ impl<const D: usize> Touching<D> {
         self.thickest[usize::from(self.surface.is_of_obstacle(point))]
     }
 
-    /// Takes the gaps of some candidates of one vertex that may come closer than a distance [m]: of `all`, or without those that are known to be
-    /// farther apart. Says whether the vertex seems to be inside another body.
+    /// Computes the gaps of some candidates of one vertex that may come closer than a distance [m]: of `all`, or without those
+    /// that are known to be farther apart. Returns whether the vertex seems to be inside another body.
     fn take_gaps_of(&mut self, candidates: Range<usize>, h: f64, distance: f64, all: bool) -> bool {
         let mut inside = false;
         for k in candidates {
@@ -178,10 +179,10 @@ impl<const D: usize> Touching<D> {
             }
             let mut gap = Gap::of_vertex_and_facet(&self.surface, &self.before[0], vertex, facet);
             if own == other && gap.gap < 0.0 {
-                // A body holds itself on both sides.
+                // Contact of a body with itself acts on both sides.
                 (gap.gap, gap.normal) = (-gap.gap, gap.normal.map(|n| -n));
             }
-            // What is inside has to come out, however far.
+            // A vertex inside has to come out, however deep it is.
             self.clearance.note(0, k, if gap.gap < 0.0 { f64::NEG_INFINITY } else { gap.gap });
             inside |= gap.gap < 0.0;
             self.push(gap, &law, h, pair, true, distance);
@@ -189,7 +190,7 @@ impl<const D: usize> Touching<D> {
         inside
     }
 
-    /// Adds a row for the gap of a vertex and a facet, or of two edges, unless they stay apart by more than a distance [m].
+    /// Adds a row for the gap of a vertex and a facet, or of two edges, unless they stay farther apart than a distance [m].
     pub(crate) fn push(
         &mut self,
         mut gap: Gap<D>,
@@ -199,7 +200,7 @@ impl<const D: usize> Touching<D> {
         with_facet: bool,
         distance: f64,
     ) {
-        // A point goes by itself as far as contact may push it, at most.
+        // The displacement of a point is at most what contact may push it.
         let first = if with_facet { 1 } else { 2 };
         let reach = |points: &[u32]| points.iter().fold(0.0, |most: f64, p| self.reach.push_of(*p).larger(most));
         if gap.gap > law.thickness + distance + 2.0 * (reach(&gap.points[..first]) + reach(&gap.points[first..])) {
@@ -207,7 +208,7 @@ impl<const D: usize> Touching<D> {
         }
         let mut meets = true;
         if gap.gap > law.thickness && !self.at_once && self.goes_far(&gap, with_facet) {
-            // The closest points now are not those of the impact.
+            // The present closest points are not those of the impact.
             let ends = [&self.before[0][..], &self.after[0]];
             let time = meeting_time(&self.surface, ends, law.thickness, pair, with_facet);
             match time.and_then(|time| impact(&self.surface, ends, &mut self.impact, time, pair, with_facet)) {
@@ -219,11 +220,11 @@ impl<const D: usize> Touching<D> {
         let ([x0, v0], [x1, v1]) = (&self.before, &self.after);
         let (came, comes) = (-gap.along(v0), -gap.along(v1));
         let end = row.gap + gap.along(x1) - gap.along(x0);
-        // What pressed bodies at rest in their last correction does so again, unless it turns out that it need not.
+        // A pair that pressed bodies at rest in their last correction does so again, unless it turns out that it need not.
         let presses = self.at_once && self.last.binary_search_by_key(&row.id, |(id, ..)| *id).is_ok();
         let meets = meets && (end < 0.0 || row.gap < 0.0 || h * comes > row.gap || presses);
         if law.restitution > 0.0 && meets && row.gap > 0.0 {
-            // The surface is met within the step, whose force goes on to its end: s² = u² + 2 a g, between the speeds at both ends.
+            // The pair meets within the step, while the force acts to its end: s² = u² + 2 a g, between the speeds at both ends.
             let square = came * came + 2.0 * (comes - came) / h * row.gap;
             let speed = square.larger(0.0).sqrt().smaller(came.larger(comes)).larger(came.smaller(comes));
             if speed > self.laws.rest_speed {
@@ -233,7 +234,7 @@ impl<const D: usize> Touching<D> {
         self.around.push((row, meets));
     }
 
-    /// The row of a gap, which is not to become negative within the step.
+    /// The row of a gap, which must not become negative within the step.
     pub(crate) fn row(&mut self, gap: &Gap<D>, law: &PairLaw, h: f64, pair: [u32; 2], with_facet: bool) -> Row<D> {
         let mut row = Row::new(key(pair, with_facet), gap, law.thickness, law.friction);
         row.put_into(&mut self.spread, &self.surface);
@@ -242,7 +243,7 @@ impl<const D: usize> Touching<D> {
         row
     }
 
-    /// Whether a pair moves by more than a quarter of a feature within the step, relative to one another.
+    /// Whether the relative motion of a pair within the step exceeds a quarter of a feature.
     fn goes_far(&self, gap: &Gap<D>, with_facet: bool) -> bool {
         let ([x0, _], [x1, _]) = (&self.before, &self.after);
         let first = usize::from(with_facet);
@@ -256,8 +257,8 @@ impl<const D: usize> Touching<D> {
         16.0 * dot(&travel, &travel) > dot(&edge, &edge)
     }
 
-    /// Of the rows of one vertex, keeps what counts: outside of a body all facets before it, each closest point once; inside
-    /// the nearest one, through which it leaves.
+    /// Keeps the relevant rows of one vertex: outside of a body, all facets in front of it, each closest point once; inside, the
+    /// nearest one, through which it leaves.
     fn keep_the_nearest(&mut self) {
         if self.around.len() < 2 {
             return;
@@ -280,7 +281,7 @@ impl<const D: usize> Touching<D> {
                 }
                 let others = features(other);
                 let [a, b] = [row, other].map(depth);
-                // The same closest point, or one at the rim of a facet over which the vertex lies.
+                // The same closest point, or one on the rim of a facet over which the vertex is.
                 let within = key.iter().all(|p| *p == u32::MAX || others.contains(p));
                 if within && (key != others || k < j) {
                     self.keep[j] = false;
@@ -301,7 +302,8 @@ pub(crate) fn key([a, b]: [u32; 2], with_facet: bool) -> u64 {
     u64::from(!with_facet) << 62 | u64::from(a) << 31 | u64::from(b)
 }
 
-/// When, as a part of the step, a vertex comes closer to a facet than a distance [m], or an edge to another one; none where they stay apart.
+/// The fraction of the step at which a vertex comes closer to a facet than a distance [m], or an edge to another one; none if
+/// they stay apart.
 #[inline]
 pub(crate) fn meeting_time<const D: usize>(
     surface: &Surface<D>,
@@ -322,7 +324,7 @@ pub(crate) fn meeting_time<const D: usize>(
     }
 }
 
-/// The gap of a pair at the start of the step, by the normal and the weights that they have at a time within it; none for edges that then meet
+/// The gap of a pair at the start of the step, with the normal and the weights at a time within it; none for edges that then meet
 /// at an end.
 pub(crate) fn impact<const D: usize>(
     surface: &Surface<D>,
@@ -332,7 +334,7 @@ pub(crate) fn impact<const D: usize>(
     [a, b]: [u32; 2],
     with_facet: bool,
 ) -> Option<Gap<D>> {
-    // Normals of corners and edges ask the facets around.
+    // Normals of corners and edges need the facets around.
     let mut go = |p: u32| {
         let (from, to) = (&x0[p as usize], &x1[p as usize]);
         moved[p as usize] = core::array::from_fn(|d| from[d] + time * (to[d] - from[d]));
@@ -348,10 +350,10 @@ pub(crate) fn impact<const D: usize>(
         Gap::of_vertex_and_facet(surface, moved, a, b)
     } else {
         [a, b].into_iter().flat_map(|edge| surface.edges[edge as usize]).for_each(go_around);
-        // Edges that meet at an end are met by a vertex too.
+        // For edges that meet at an end, a vertex meets a facet too.
         Gap::of_edges(surface, moved, a, b)?
     };
-    // They are apart at the start: what is in front now stays in front.
+    // They are apart at the start, so what is in front now stays in front.
     then.gap = then.along(x0);
     if then.gap < 0.0 {
         (then.gap, then.normal) = (-then.gap, then.normal.map(|n| -n));
@@ -359,7 +361,7 @@ pub(crate) fn impact<const D: usize>(
     Some(then)
 }
 
-/// The corners of a facet that carry the closest point; the others are `u32::MAX`.
+/// The corners of a facet with nonzero weights at the closest point; the others are `u32::MAX`.
 fn features<const D: usize>(row: &Row<D>) -> [u32; 3] {
     let mut out = [u32::MAX; 3];
     for k in (1..=D).filter(|k| row.weights[*k] != 0.0) {

@@ -1,13 +1,13 @@
-//! Which pairs are at hand in a step: all that may meet in it, whatever contact does.
+//! The pairs of a step: all that may meet in it, whatever contact does.
 
 use crate::touching::{Touching, Trouble};
 
 impl<const D: usize> Touching<D> {
-    /// Begins a step of h [s]: where points may be in it.
+    /// Begins a step of h [s]: computes the positions that points may take in it.
     pub(crate) fn begin_search(&mut self, h: f64) {
         let [x0, x1] = [&self.before[0], &self.after[0]];
         if self.at_once {
-            // Where forces of contact are not yet those of the balance, they alone would lead bodies anywhere.
+            // If contact forces are not yet those of the balance, the free motion alone could lead bodies anywhere.
             self.reach.begin(&self.surface.body, [x0, x0], self.thickest[0] + self.margin, self.margin, 0.0);
         } else {
             self.reach.begin(&self.surface.body, [x0, x1], h * self.laws.recovery_speed, self.margin, STEPS);
@@ -15,7 +15,7 @@ impl<const D: usize> Touching<D> {
         self.clearance.follow(&self.surface, x0);
     }
 
-    /// Looks for candidates where those at hand may not be all that meet in this step.
+    /// Searches for candidates if the present ones may not include all pairs that meet in this step.
     pub(crate) fn search(&mut self) -> Result<(), Trouble> {
         self.clearance.set_push(self.reach.body_push());
         if self.reach.is_covered() && self.clearance.covers_all(self.margin) {
@@ -37,7 +37,7 @@ impl<const D: usize> Touching<D> {
                 clearance.take(surface, candidates, *margin);
                 return Ok(());
             }
-            // Where pairs of later steps are too many, those of this one alone.
+            // If the pairs of later steps are too many, only those of this step.
             reach.look_at_all();
             clearance.forget_own();
         }
@@ -45,7 +45,7 @@ impl<const D: usize> Touching<D> {
         Err(Trouble::TooMany { found: self.candidates.len() })
     }
 
-    /// Lets points reach as far as they end; says whether any did not.
+    /// Extends the boxes of points to their ends; returns whether any had to be extended.
     pub(crate) fn grow(&mut self) -> bool {
         let Touching { surface, reach, touched, after: [free, _], before: [from, _], end, margin, at_once, .. } = self;
         if *at_once {
@@ -56,5 +56,6 @@ impl<const D: usize> Touching<D> {
     }
 }
 
-/// For how many steps candidates of fast points are looked for at once. A search costs about as much as the gaps of eight steps.
+/// The number of steps for which candidates of fast points are searched at once. A search costs about as much as the gaps of
+/// eight steps.
 const STEPS: f64 = 8.0;

@@ -1,16 +1,16 @@
-//! What impulses make of a substep: where points go, and what contact took and gave.
+//! The result of the impulses of a substep: the motion of points, and the energies that contact took and gave.
 
 use crate::impulses::part;
 use crate::touching::{Touching, acting};
 use crate::vector::{dot, subtract};
 use opruga_math::Lane;
 
-/// The part of the thickness that pairs may lack before they are taken apart: the surfaces themselves do not overlap then, and what sweeps
-/// leave of a step is no reason to move anything.
+/// The fraction of the thickness by which pairs may be too close before they are separated: the surfaces themselves do not
+/// overlap then, and the remainder of the sweeps is no reason to move anything.
 pub(crate) const OVERLAP: f64 = 0.01;
 
 impl<const D: usize> Touching<D> {
-    /// Takes the points along with their new velocities, and overlapping ones apart.
+    /// Moves the points with their new velocities, and separates overlapping ones.
     pub(crate) fn settle(&mut self, h: f64) {
         for row in &self.rows {
             if row.normal_impulse > 0.0 && !row.of_obstacle {
@@ -30,7 +30,7 @@ impl<const D: usize> Touching<D> {
         self.lead_carried();
     }
 
-    /// Takes carried points where the nodes that carry them end.
+    /// Moves carried points to the end positions of the nodes that carry them.
     pub(crate) fn lead_carried(&mut self) {
         self.surface.follow(&mut self.end);
         for (p, carrier) in self.surface.carried() {
@@ -38,7 +38,7 @@ impl<const D: usize> Touching<D> {
         }
     }
 
-    /// Books what contact took and gave, and moves the points.
+    /// Enters the energies that contact took and gave, and moves the points.
     pub(crate) fn book(&mut self, h: f64) {
         let touched = &self.touched;
         let is_node = |p: &u32| self.surface.carrier_of(*p).is_none();
@@ -57,8 +57,8 @@ impl<const D: usize> Touching<D> {
                     continue;
                 }
                 let (v0, v1) = (&self.before[1][p as usize], &self.v[p as usize]);
-                // The velocity of what follows as a whole is the mean one already. What answers by itself after a step that was solved for
-                // gets its impulse at the end of that.
+                // The velocity of coupled points is already the mean one. A point that responds by itself after a step that was
+                // solved for gets its impulse at the end of that step.
                 let v0 = match (self.coupled.body_of(p), self.coupled.has(p)) {
                     (Some(_), _) => v1,
                     (None, true) => &self.after[1][p as usize],
@@ -72,7 +72,7 @@ impl<const D: usize> Touching<D> {
                     across -= weight * t * mean;
                     carried += weight * (n + t) * row.carry[d];
                     if self.inverse_mass[p as usize][d] == 0.0 {
-                        // A pin gives back what a contact takes of its motion.
+                        // A pin restores the motion that a contact takes from its node.
                         carried -= weight * (n + t) * 0.5 * (v0[d] + v1[d]);
                     }
                 }
@@ -103,13 +103,13 @@ impl<const D: usize> Touching<D> {
         }
     }
 
-    /// Displacements that take overlapping pairs apart.
+    /// Computes displacements that separate overlapping pairs.
     fn recover(&mut self, h: f64) {
         let most = self.laws.recovery_speed * h;
         for row in &self.rows {
             row.on(&self.spread).0.iter().for_each(|p| self.moved[*p as usize] = [0.0; D]);
         }
-        // Separately where rows share no point: nothing is moved for what overlaps elsewhere.
+        // Separately for rows that share no point, so that nothing moves because of overlaps elsewhere.
         for ends in self.turns.starts().windows(2) {
             let rows = &self.rows[ends[0] as usize..ends[1] as usize];
             self.wanted.clear();
@@ -124,7 +124,7 @@ impl<const D: usize> Touching<D> {
             if !overlap {
                 continue;
             }
-            // Displacements move every point by itself, also of bodies that answer impulses as a whole.
+            // Displacements move every point by itself, even in bodies that respond to impulses as a whole.
             self.masses.clear();
             self.masses.extend(rows.iter().map(|row| row.mass_apart(&self.spread, &self.inverse_mass)));
             let wanted = (&self.wanted[..], &self.masses[..]);

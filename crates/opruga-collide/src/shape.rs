@@ -1,4 +1,4 @@
-//! Shapes whose signed distance is a formula: one source for a number and for eight of them.
+//! Shapes whose signed distance is a formula, with one source for a number and for eight of them.
 
 use crate::motion::Pose;
 use crate::vector::{add, choose, dot, length, scaled, splat, subtract, turned};
@@ -6,34 +6,34 @@ use opruga_math::{Lane, lanes};
 
 /// A solid with a signed distance, negative inside.
 pub(crate) trait Shape<const D: usize>: Sized {
-    /// Half of the smallest width [m], above which a node in one step could come out on the far side.
+    /// Half of the smallest width [m]; a node that moves farther in one step could come out on the far side.
     fn half_width(&self) -> f64;
     /// The signed distance [m].
     fn gap<S: Lane>(&self, x: &[S; D]) -> S;
     /// The signed distance [m] and its gradient, the unit normal.
     fn gap_and_normal<S: Lane>(&self, x: &[S; D]) -> (S, [S; D]);
-    /// Whether flat faces bound it, which meet in edges.
+    /// Whether it is bounded by flat faces, which meet in edges.
     const FACES: bool = false;
-    /// Calls back with the flat faces that a point on the surface lies on, to within `grain` [m]: its height above each, and the
-    /// normal; with none where there are no flat faces.
+    /// Calls back with the flat faces on which a point on the surface is, to within `grain` [m]: its height above each, and the
+    /// normal; with none if there are no flat faces.
     fn visit_faces(&self, _x: &[f64; D], _grain: f64, _visit: &mut dyn FnMut(f64, [f64; D])) {}
 }
 
-/// A face that a node on its path comes upon: of several, that against which its displacement runs most.
+/// A face that a node meets on its path: if there are several, the one that its displacement opposes most.
 pub(crate) struct Met<const D: usize> {
-    /// How high over the face the node is [m].
+    /// The height of the node above the face [m].
     pub(crate) height: f64,
     pub(crate) normal: [f64; D],
-    /// How far the end of the path lies behind that face, of all on which the node is, of which it lies least behind [m].
+    /// The smallest distance of the end of the path behind a face, over all faces on which the node is [m].
     pub(crate) behind: f64,
-    /// On how many faces the node is.
+    /// The number of faces on which the node is.
     pub(crate) faces: usize,
-    /// Behind how many of these its path leads.
+    /// The number of these behind which its path leads.
     pub(crate) entered: usize,
 }
 
 impl<const D: usize> Met<D> {
-    /// What a node meets on its path from `x`, which keeps the distance `margin` from a shape to within `close`.
+    /// The face that a node meets on its path from `x`, which keeps the distance `margin` from a shape to within `close`.
     fn of<T: Shape<D>>(shape: &T, margin: f64, x: &[f64; D], displacement: &[f64; D], close: f64) -> Met<D> {
         let (height, normal) = shape.gap_and_normal(x);
         let nearest = Met { height: height - margin, normal, behind: f64::INFINITY, faces: 0, entered: 0 };
@@ -47,7 +47,7 @@ impl<const D: usize> Met<D> {
             met.faces += 1;
             met.entered += usize::from(along < 0.0);
         };
-        // At a distance there are no edges: a margin goes round them.
+        // At a distance there are no edges: a margin rounds them.
         if margin <= close {
             shape.visit_faces(x, 2.0 * close, &mut add);
         }
@@ -59,14 +59,14 @@ impl<const D: usize> Met<D> {
     }
 }
 
-/// Solid where x·n < offset.
+/// Solid for x·n < offset.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct HalfSpace<const D: usize> {
     pub(crate) normal: [f64; D],
     pub(crate) offset: f64,
 }
 
-/// Solid inside of a sphere (`sign` 1) or outside (−1).
+/// Solid inside a sphere (`sign` 1) or outside (−1).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ball<const D: usize> {
     pub(crate) center: [f64; D],
@@ -74,14 +74,14 @@ pub(crate) struct Ball<const D: usize> {
     pub(crate) sign: f64,
 }
 
-/// Solid nearer to the segment from `start` along `along` than `radius`.
+/// Solid within `radius` of the segment from `start` along `along`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Capsule<const D: usize> {
     pub(crate) start: [f64; D],
     pub(crate) along: [f64; D],
     pub(crate) inverse_square: f64,
     pub(crate) radius: f64,
-    /// A unit vector at a right angle to the segment: the normal on the segment itself.
+    /// A unit vector perpendicular to the segment: the normal on the segment itself.
     pub(crate) aside: [f64; D],
 }
 
@@ -93,12 +93,12 @@ pub(crate) struct Cuboid<const D: usize> {
     pub(crate) half: [f64; D],
 }
 
-/// The length of a vector and its direction; `fallback` where it is too short to have one.
+/// The length of a vector and its direction; `fallback` if it is too short to have one.
 #[inline(always)]
 fn direction<S: Lane, const D: usize>(a: &[S; D], fallback: &[f64; D]) -> (S, [S; D]) {
     let r = length(a);
     let unit = scaled(a, S::one() / r);
-    // Below this the square underflows and the quotient is no unit vector any more.
+    // Below this the square underflows and the quotient is no longer a unit vector.
     (r, choose(r.less(S::splat(1e-150)), &splat(fallback), &unit))
 }
 
@@ -119,7 +119,7 @@ impl<const D: usize> HalfSpace<D> {
         }
         HalfSpace::through(&pose.transform(&scaled(&self.normal, self.offset)), pose.direct(&self.normal))
     }
-    /// The least signed distance within a box of space.
+    /// The smallest signed distance within a box of space.
     pub(crate) fn least_gap(&self, low: &[f64; D], high: &[f64; D]) -> f64 {
         let mut gap = -self.offset;
         for d in 0..D {
@@ -206,7 +206,7 @@ impl<const D: usize> Cuboid<D> {
         }
         Cuboid { center: pose.transform(&self.center), axes, half: self.half }
     }
-    /// The corner with the sides to which the bits of a number point.
+    /// The corner in the directions that the bits of a number select.
     pub(crate) fn corner(&self, bits: usize) -> [f64; D] {
         let mut out = self.center;
         for d in 0..D {
@@ -253,7 +253,7 @@ impl<const D: usize> Shape<D> for Cuboid<D> {
     fn gap_and_normal<S: Lane>(&self, x: &[S; D]) -> (S, [S; D]) {
         let local = turned(&self.axes, &subtract(x, &splat(&self.center)));
         let over = lanes!(S, d => local[d].abs() - S::splat(self.half[d]));
-        // Inside: the nearest face, the first one of several. Outside: the nearest point of the surface.
+        // Inside: the nearest face, the first one if there are several. Outside: the nearest point of the surface.
         let (mut deepest, mut inside) = (over[0], [S::zero(); D]);
         inside[0] = S::one();
         let mut outside = lanes!(S, d => over[d].larger(S::zero()));
@@ -266,7 +266,7 @@ impl<const D: usize> Shape<D> for Cuboid<D> {
         }
         let distance = length(&outside);
         outside = scaled(&outside, S::one() / distance);
-        // A distance too short for a direction is one of the face.
+        // A distance too short for a direction counts as one from the face.
         let is_outside = S::splat(1e-150).less(distance);
         let mut normal = [S::zero(); D];
         for d in 0..D {
@@ -280,20 +280,20 @@ impl<const D: usize> Shape<D> for Cuboid<D> {
     }
 }
 
-/// How near to a shape [m] a node lies on its surface.
+/// The distance from a shape [m] below which a node is on its surface.
 pub(crate) fn close_to<T: Shape<D>, const D: usize>(shape: &T, margin: f64) -> f64 {
     let width = shape.half_width();
     if width < f64::INFINITY { 1e-9 * (width + margin) } else { 0.0 }
 }
 
-/// Whether a point on the surface lies on an edge, where more than one normal is right.
+/// Whether a point on the surface is on an edge, where the normal is not unique.
 pub(crate) fn is_on_edge<T: Shape<D>, const D: usize>(shape: &T, margin: f64, x: &[f64; D]) -> bool {
     Met::of(shape, margin, x, &[0.0; D], close_to(shape, margin)).faces > 1
 }
 
-/// What a node that lay on a surface at `a`, to within `small` [m], is held by on its path to `b`: the distance of `b` behind the
-/// tangent plane (negative) and the normal. None if it lay elsewhere or does not come in; nor on an edge, if more than one face
-/// is in its way, or if another contact, already `active`, leads it along one of the faces.
+/// The contact on its path to `b` of a node that was on a surface at `a`, to within `small` [m]: the distance of `b` behind the
+/// tangent plane (negative) and the normal. None if the node was elsewhere or does not enter; nor on an edge, if more than one
+/// face is in its way, or if another contact, already `active`, leads it along one of the faces.
 #[inline(never)]
 pub(crate) fn support<T: Shape<D>, const D: usize>(
     shape: &T,
@@ -314,10 +314,10 @@ pub(crate) fn support<T: Shape<D>, const D: usize>(
     None
 }
 
-/// Where a node that moved from `a` to `b` entered a convex solid: the distance of `b` behind the tangent plane there
-/// (negative) and the normal. None if it did not come in from outside.
+/// The point at which a node that moved from `a` to `b` entered a convex solid: the distance of `b` behind the tangent plane
+/// there (negative) and the normal. None if it did not enter from outside.
 ///
-/// Sphere tracing: the signed distance says how far one may go along the segment without meeting the surface.
+/// Sphere tracing: the signed distance is a safe step along the segment that does not reach the surface.
 #[inline(never)]
 pub(crate) fn entry<T: Shape<D>, const D: usize>(
     shape: &T,

@@ -1,6 +1,6 @@
 //! Parameters of the colliders.
 //!
-//! The dimension shows in two fields alone: a spin and a rotation are a number in 2D and a vector along the axis in 3D.
+//! Only two fields depend on the dimension: a spin and a rotation are a number in 2D and a vector along the axis in 3D.
 
 use opruga_core::spec::{Allowed, Condition, Default, Field, Role, Spec};
 

@@ -1,29 +1,30 @@
-//! The nodes that take part in contacts whose points they carry.
+//! The nodes that take part in contacts because they carry points of these.
 
 use crate::surface::Surface;
 
-/// Points and their weights, by which a contact moves and pushes them.
+/// Points and their weights, on which a contact acts.
 pub(crate) type Weighted<'a> = (&'a [u32], &'a [f64]);
 
-/// Nodes and weights of the contacts of a step that have a carried point, one contact after the other: such a contact acts on these nodes, not
-/// on its own points. Σ wᵢ vᵢ is the same for both, and so are momentum and angular momentum of an impulse.
+/// The nodes and weights of those contacts of a step that have a carried point, one contact after the other: such a contact acts
+/// on these nodes instead of its own points. Σ wᵢ vᵢ is the same for both, and so are momentum and angular momentum of an
+/// impulse.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Spread {
     points: Vec<u32>,
     weights: Vec<f64>,
 }
 
-/// The last entry of a head that stands for nodes in [`Spread`].
+/// The last entry of a head that represents nodes in [`Spread`].
 const ELSEWHERE: u32 = u32::MAX;
 
 impl Spread {
-    /// Forgets all.
+    /// Discards everything.
     pub(crate) fn clear(&mut self) {
         self.points.clear();
         self.weights.clear();
     }
 
-    /// Spreads points and their weights over the nodes that carry them, if any is carried: where these stand, and how many.
+    /// Distributes points and their weights over the nodes that carry them, if any is carried; returns their position and number.
     pub(crate) fn put<const D: usize>(&mut self, surface: &Surface<D>, (points, weights): Weighted<'_>) -> [u32; 2] {
         if !surface.carries_any(points) {
             return [0; 2];
@@ -31,7 +32,7 @@ impl Spread {
         let first = self.points.len();
         for (point, weight) in points.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
             surface.visit_nodes(*point, |node, share| {
-                // A node may carry more than one of the points, and be one.
+                // A node may carry more than one of the points, and be one itself.
                 match self.points[first..].iter().position(|p| *p == node) {
                     Some(at) => self.weights[first + at] += weight * share,
                     None => {
@@ -44,14 +45,14 @@ impl Spread {
         [first as u32, (self.points.len() - first) as u32]
     }
 
-    /// The nodes that stand there, and their weights.
+    /// The nodes at this position, and their weights.
     #[inline]
     pub(crate) fn at(&self, [first, count]: [u32; 2]) -> Weighted<'_> {
         let range = first as usize..(first + count) as usize;
         (&self.points[range.clone()], &self.weights[range])
     }
 
-    /// What stands for the nodes of a contact beside it.
+    /// The head that represents the nodes of a contact outside of it.
     pub(crate) fn head([first, count]: [u32; 2]) -> [u32; 4] {
         [first, count, 0, ELSEWHERE]
     }
@@ -59,7 +60,7 @@ impl Spread {
     /// The head of a contact that acts on nothing.
     pub(crate) const NOBODY: [u32; 4] = [0, 0, 0, ELSEWHERE];
 
-    /// The points that a head stands for.
+    /// The points that a head represents.
     #[inline(always)]
     pub(crate) fn points_of<'a, const D: usize>(&'a self, head: &'a [u32; 4]) -> &'a [u32] {
         if head[3] == ELSEWHERE { &self.points[head[0] as usize..(head[0] + head[1]) as usize] } else { &head[..=D] }

@@ -1,10 +1,11 @@
-//! Impulses of the contacts that act, all at once: conjugate gradients between sweeps.
+//! Impulses of the active contacts, all at once: conjugate gradients between sweeps.
 //!
-//! A sweep passes an impulse on from contact to contact. Where bodies answer as a whole, as those of implicit integrators do, a sweep takes
-//! away only a part of slow errors, such as those of a pressure that varies along a side. While the same contacts act, the equations are
-//! linear: contacts that press keep their normal velocity, and those that stick do not slide. Their matrix W = G Y Gᵀ is symmetric and has no
-//! negative eigenvalues, so conjugate gradients solve them. Contacts that would pull or begin to slide on the way leave the equations;
-//! sweeps decide which ones come back (Silcowitz, Niebe and Erleben 2010, a projected Gauss–Seidel subspace method).
+//! A sweep passes an impulse on from contact to contact. For coupled bodies, such as those of implicit integrators, a sweep
+//! removes only a part of slow errors, such as a pressure that varies along a side. As long as the same contacts are active, the
+//! equations are linear: contacts that press keep their normal velocity, and those that stick do not slide. Their matrix W = G Y
+//! Gᵀ is symmetric and has no negative eigenvalues, so conjugate gradients can solve them. Contacts that would pull or begin to
+//! slide are removed from the equations; sweeps decide which ones return (Silcowitz, Niebe and Erleben 2010, a projected
+//! Gauss–Seidel subspace method).
 
 use crate::coupled::Coupled;
 use crate::row::Row;
@@ -14,16 +15,16 @@ use core::ops::Range;
 use opruga_core::dense::Dense;
 use opruga_math::{Lane, Simd, WIDTH, sum_in_fixed_order};
 
-/// What conjugate gradients leave of the velocities that they solve for, as a part. With 1e-3 the rows `contact-patch-…` miss 1e-6.
+/// The fraction of the velocities that conjugate gradients leave. With 1e-3 the rows `contact-patch-…` miss 1e-6.
 const LEFT: f64 = 1e-4;
 
-/// A contact that acts. Its unknowns are the changes of its impulse along its normal and, where it sticks, along the axes across it.
+/// An active contact. Its unknowns are the changes of its impulse along its normal and, if it sticks, along the axes across it.
 struct Active {
     row: usize,
     unknowns: Range<usize>,
 }
 
-/// The parts of a change of the impulse up to which a contact presses and sticks; infinite where it does so all the way.
+/// The fractions of a change of the impulse up to which a contact presses and sticks; infinite if it does so throughout.
 fn reach<const D: usize>(row: &Row<D>, sticks: bool, change: &[f64; D]) -> (f64, f64) {
     let more = dot(change, &row.normal);
     let presses = if more < 0.0 { -row.normal_impulse / more } else { f64::INFINITY };
@@ -36,27 +37,28 @@ fn reach<const D: usize>(row: &Row<D>, sticks: bool, change: &[f64; D]) -> (f64,
     let a = dot(&slides, &slides) - squared * more * more;
     let half = dot(&own, &slides) - squared * row.normal_impulse * more;
     let c = dot(&own, &own) - squared * row.normal_impulse * row.normal_impulse;
-    // c < 0 inside the cone: the first root above zero ends it. No root is no number, which no comparison holds for.
+    // c < 0 inside the cone: the first root above zero ends it. If there is no root it is NaN, for which all comparisons are
+    // false.
     let root = (half * half - a * c).sqrt();
     let sum = half + if half < 0.0 { -root } else { root };
     let roots = [-sum / a, -c / sum];
     (presses, roots.into_iter().filter(|root| *root > 0.0).fold(f64::INFINITY, f64::smaller))
 }
 
-/// The contacts that act, and what they solve for.
+/// The active contacts, and their equations.
 struct Subspace<const D: usize> {
     active: Vec<Active>,
     /// The direction of each unknown.
     axes: Vec<[f64; D]>,
     /// W.
     matrix: Dense,
-    /// What is left of the velocities [m/s].
+    /// The remaining velocities [m/s].
     left: Vec<f64>,
     /// Which unknowns are solved for.
     is_free: Vec<bool>,
 }
 
-/// Goes to the impulses at which all contacts that act keep their velocities.
+/// Finds the impulses with which all active contacts keep their velocities.
 pub(crate) fn step<const D: usize>(
     rows: &mut [Row<D>],
     spread: &Spread,
@@ -102,7 +104,7 @@ impl<const D: usize> Subspace<D> {
         v: &[[f64; D]],
     ) -> Subspace<D> {
         let (mut active, mut axes, mut left) = (Vec::new(), Vec::new(), Vec::new());
-        // Contacts of bodies whose points answer by themselves converge by sweeps, and may be thousands.
+        // Contacts of uncoupled bodies converge by sweeps, and there may be thousands.
         let acts = |row: &Row<D>| row.coupled && row.normal_impulse > 0.0 && row.mass[0] > 0.0;
         for (number, row) in rows.iter().enumerate().filter(|(_, row)| acts(row)) {
             let first = axes.len();
@@ -169,7 +171,8 @@ impl<const D: usize> Subspace<D> {
         changes
     }
 
-    /// The part of the changes up to which all contacts press and stick; the first that does not leaves the equations, or slides from there on.
+    /// The fraction of the changes up to which all contacts press and stick; the first contact that does not is removed from the
+    /// equations, or slides from there on.
     fn leave(&mut self, rows: &[Row<D>], changes: &[[f64; D]]) -> f64 {
         let (mut part, mut first) = (1.0, None);
         for (active, change) in
@@ -204,7 +207,7 @@ fn sum(a: &[f64], b: &[f64]) -> f64 {
 pub(crate) mod tests {
     use super::*;
 
-    /// Contacts of a column of points along y on one that is held, each with an impulse of 1 N s.
+    /// Contacts of a column of points along y on a pinned one, each with an impulse of 1 N s.
     pub(crate) fn column(points: usize, friction: f64) -> (Vec<Row<2>>, Vec<[f64; 2]>) {
         let mut inverse_mass = vec![[1.0; 2]; points];
         inverse_mass[0] = [0.0; 2];
@@ -238,7 +241,7 @@ pub(crate) mod tests {
         v[0] = [0.0; 2];
         step(&mut rows, &Spread::default(), &inverse_mass, &mut Coupled::default(), &mut v);
         assert!(v.iter().flatten().all(|v| v.abs() < 1e-3), "{v:?}");
-        // Each carries those above it, beside what it had.
+        // Each carries those above it, in addition to its previous impulse.
         assert!(rows.iter().enumerate().all(|(k, row)| (row.normal_impulse - 1.0 - (39 - k) as f64).abs() < 0.1));
     }
 
@@ -249,7 +252,7 @@ pub(crate) mod tests {
         (v[0], v[5], v[9]) = ([0.0; 2], [40.0, -1.0], [0.0, 30.0]);
         let before = v.clone();
         step(&mut rows, &Spread::default(), &inverse_mass, &mut Coupled::default(), &mut v);
-        // The last point flies off with what its contact had, and the fast one slides.
+        // The last point leaves with the impulse of its contact, and the fast one slides.
         assert!(rows[8].normal_impulse == 0.0 && v[9][1] > v[8][1] && v[5][0] > 30.0);
         assert!(rows.iter().all(|row| row.normal_impulse >= 0.0));
         let momentum = |v: &[[f64; 2]]| v[1..].iter().map(|v| v[1]).sum::<f64>();

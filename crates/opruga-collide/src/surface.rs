@@ -1,9 +1,9 @@
-//! The surface of deformable bodies: what touches.
+//! The surface of deformable bodies: the features that touch.
 
 use crate::outline::Outline;
 use opruga_mesh::{Carrier, Mesh, TouchingSurface};
 
-/// Points, edges and facets of the surfaces of some bodies, all of one kind for those who look for contact.
+/// Points, edges and facets of the surfaces of some bodies, in a uniform form for contact.
 ///
 /// Points are nodes of the bodies that belong to a boundary, an open surface or a wire, or fixed combinations of nodes: [`Carrier`]. In 2D
 /// facets are edges, in 3D triangles.
@@ -14,18 +14,18 @@ pub struct Surface<const D: usize> {
     /// The corners of every facet. Those of a closed boundary have the inside to their left (2D) or on the side from which they
     /// appear clockwise (3D).
     pub facets: Vec<[u32; D]>,
-    /// Whether a facet is part of a closed boundary and so has an inside; others hold on both sides.
+    /// Whether a facet is part of a closed boundary and so has an inside; others act on both sides.
     pub closed: Vec<bool>,
     /// Edges in 3D, each once; empty in 2D, where facets are the edges.
     pub edges: Vec<[u32; 2]>,
-    /// The facets of each edge that have an inside, as numbers of facets; `u32::MAX` for none.
+    /// The facets with an inside at each edge, as numbers of facets; `u32::MAX` for none.
     pub sides: Vec<[u32; 2]>,
-    /// Where the points, facets, edges and vertices of a body begin. Points before its vertices only carry others.
+    /// The start of the points, facets, edges and vertices of each body. Points before its vertices only carry others.
     starts: Vec<[u32; 4]>,
-    /// The points that others carry, ascending, and what carries each: points that move by themselves.
+    /// The points that others carry, ascending, and their carriers: points that move by themselves.
     carried: Vec<u32>,
     carriers: Vec<Carrier>,
-    /// Which bodies touch faces of obstacles, by their place among those that were added: of others, obstacles hold the nodes.
+    /// Which bodies touch faces of obstacles, by their number in the order of addition; in the others, obstacles hold the nodes.
     touch_faces: Vec<bool>,
     /// The first body that is an obstacle, and its first point.
     obstacles: Option<[u32; 2]>,
@@ -40,23 +40,23 @@ impl<const D: usize> Surface<D> {
         self.body.len()
     }
 
-    /// The points of a body, by its place among those that were added: first those that are nodes, then those that nodes carry.
+    /// The points of a body, by its number in the order of addition: first those that are nodes, then those that nodes carry.
     pub fn points_of(&self, number: usize) -> core::ops::Range<usize> {
         self.range(number, 0, self.points())
     }
 
-    /// The points of a body that touch: all but those that only carry others.
+    /// The touching points of a body: all but those that only carry others.
     pub fn vertices_of(&self, number: usize) -> core::ops::Range<usize> {
         let points = self.points_of(number);
         self.starts.get(number).map_or(points.end, |start| start[3] as usize)..points.end
     }
 
-    /// The facets of a body, by its place among those that were added.
+    /// The facets of a body, by its number in the order of addition.
     pub fn facets_of(&self, number: usize) -> core::ops::Range<usize> {
         self.range(number, 1, self.facets.len())
     }
 
-    /// The edges of a body, by its place among those that were added.
+    /// The edges of a body, by its number in the order of addition.
     pub fn edges_of(&self, number: usize) -> core::ops::Range<usize> {
         self.range(number, 2, self.edges.len())
     }
@@ -66,18 +66,18 @@ impl<const D: usize> Surface<D> {
         at(number)..at(number + 1)
     }
 
-    /// How many bodies were added.
+    /// The number of added bodies.
     pub fn bodies(&self) -> usize {
         self.starts.len()
     }
 
-    /// Adds the surface of a body: boundary, open surfaces, wires, and without any of these its nodes as points. Gives the nodes that
-    /// are the first points which were added, in order.
+    /// Adds the surface of a body: boundary, open surfaces, wires, or its nodes as points if there are none of these. Returns the
+    /// nodes of the first added points, in order.
     pub fn add(&mut self, mesh: &Mesh<D>, body: u32) -> Vec<u32> {
         self.add_surface(mesh.touching_surface(true), body)
     }
 
-    /// Adds the surface of a body. Gives the nodes that are the first points which were added, in order; carried points follow.
+    /// Adds the surface of a body. Returns the nodes of the first added points, in order; carried points follow.
     pub fn add_surface(&mut self, own: TouchingSurface<D>, body: u32) -> Vec<u32> {
         let start = self.points() as u32;
         let first_facet = self.facets.len();
@@ -94,7 +94,7 @@ impl<const D: usize> Surface<D> {
         own.nodes
     }
 
-    /// Adds the surface of an obstacle, after all bodies, with the edges and corners of its outline alone.
+    /// Adds the surface of an obstacle, after all bodies, with only the edges and corners of its outline.
     pub fn add_obstacle(&mut self, outline: &Outline<D>, body: u32) {
         let (point, first) = (self.points() as u32, self.edges.len());
         self.obstacles.get_or_insert([body, point]);
@@ -109,14 +109,14 @@ impl<const D: usize> Surface<D> {
         self.sides.extend(sides);
     }
 
-    /// Lets a body, by its place among those that were added, touch faces of obstacles with its vertices. Otherwise obstacles hold its nodes by
-    /// themselves.
+    /// Lets a body, by its number in the order of addition, touch faces of obstacles with its vertices. Otherwise obstacles hold
+    /// its nodes directly.
     pub fn touch_faces(&mut self, number: usize) {
         self.touch_faces.resize(self.touch_faces.len().max(number + 1), false);
         self.touch_faces[number] = true;
     }
 
-    /// Whether a body touches faces of obstacles, by its place among those that were added.
+    /// Whether a body touches faces of obstacles, by its number in the order of addition.
     pub(crate) fn touches_faces(&self, number: u32) -> bool {
         self.touch_faces.get(number as usize).is_some_and(|touches| *touches)
     }
@@ -171,13 +171,13 @@ impl<const D: usize> Surface<D> {
         &self.around[self.ring[point as usize] as usize..self.ring[point as usize + 1] as usize]
     }
 
-    /// Whether a point lies on a closed boundary, and on nothing else.
+    /// Whether a point is on a closed boundary, and on nothing else.
     pub fn is_closed(&self, point: u32) -> bool {
         let around = self.facets_around(point);
         !around.is_empty() && around.iter().all(|facet| self.closed[*facet as usize])
     }
 
-    /// What carries a point; none where it is a node.
+    /// The carrier of a point; none if it is a node.
     #[inline]
     pub fn carrier_of(&self, point: u32) -> Option<&Carrier> {
         self.carried.binary_search(&point).ok().map(|k| &self.carriers[k])
@@ -194,7 +194,7 @@ impl<const D: usize> Surface<D> {
         !self.carried.is_empty() && points.iter().any(|p| self.carried.binary_search(p).is_ok())
     }
 
-    /// Calls back with the points that move by themselves and take part in one, and their weights.
+    /// Calls `visit` with the points that move by themselves and determine a point, and their weights.
     #[inline]
     pub fn visit_nodes(&self, point: u32, mut visit: impl FnMut(u32, f64)) {
         match if self.carried.is_empty() { None } else { self.carrier_of(point) } {
@@ -206,7 +206,7 @@ impl<const D: usize> Surface<D> {
         }
     }
 
-    /// Lets vectors of carried points follow those of the nodes: positions, velocities, displacements.
+    /// Computes vectors of carried points from those of the nodes: positions, velocities, displacements.
     pub fn follow(&self, vectors: &mut [[f64; D]]) {
         for (p, carrier) in self.carried() {
             let mut sum = [0.0; D];

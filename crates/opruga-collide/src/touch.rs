@@ -1,4 +1,4 @@
-//! One node and the surfaces that it has come to: what implicit integrators ask.
+//! One node and the surfaces that it has reached, for implicit integrators.
 
 use crate::collider::{Collider, Law, Part};
 use crate::facet_contacts::Placed;
@@ -14,24 +14,24 @@ use opruga_math::Lane;
 pub(crate) struct NodePath<'a, const D: usize> {
     pub(crate) from: &'a [f64; D],
     pub(crate) to: &'a [f64; D],
-    /// Where it would come to if what it lay on kept it out: that says by which face it meets another solid.
+    /// Its end position if the surface on which it was holds it: this determines the face through which it meets another solid.
     pub(crate) kept: [f64; D],
-    /// The faces of solids on which it would lie: where two solids meet, these have faces that look at each other.
+    /// The faces of solids on which it would be: where two solids meet, these include opposite faces.
     pub(crate) faces: Faces<D>,
     pub(crate) time: f64,
     pub(crate) h: f64,
-    /// The largest gap that matters [m].
+    /// The largest relevant gap [m].
     pub(crate) reach: f64,
 }
 
-/// The normals of the faces that a point lies on.
+/// The normals of the faces on which a point is.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Faces<const D: usize> {
     normals: [[f64; D]; MOST_FACES],
     count: usize,
 }
 
-/// More faces than meet in a corner of some boxes are not looked at.
+/// The largest number of faces that are examined, more than meet in a corner of several boxes.
 const MOST_FACES: usize = 16;
 
 impl<const D: usize> Faces<D> {
@@ -43,7 +43,7 @@ impl<const D: usize> Faces<D> {
             self.count += 1;
         }
     }
-    /// Whether another solid lies against a face of this normal.
+    /// Whether another solid adjoins a face with this normal.
     fn covers(&self, normal: &[f64; D]) -> bool {
         self.normals[..self.count].iter().any(|other| dot(other, normal) < 1e-6 - 1.0)
     }
@@ -53,19 +53,19 @@ impl<const D: usize> Faces<D> {
     }
 }
 
-/// What the path looks like from a collider.
+/// The path relative to a collider.
 struct Seen<'a, const D: usize> {
     to: &'a [f64; D],
     kept: &'a [f64; D],
     faces: &'a Faces<D>,
-    /// Where the node began, carried along with the collider.
+    /// The start of the node, carried along with the collider.
     carried: [f64; D],
     law: &'a Law,
     reach: f64,
 }
 
 impl<const D: usize> NodePath<'_, D> {
-    /// Lets a collider on which the node lay at the beginning keep it out.
+    /// Lets a collider hold the node if it was on it at the start.
     pub(crate) fn keep(&mut self, collider: &Collider<D>) {
         let frame = collider.still.unwrap_or_else(|| Frame::new(&collider.motion, self.time, self.h));
         let Frame { pose, carry } = &frame;
@@ -103,7 +103,7 @@ impl<const D: usize> NodePath<'_, D> {
         }
     }
 
-    /// Calls back with the surfaces of a collider that the node has come to; they are numbered from `first` on.
+    /// Calls `visit` with the surfaces of a collider that the node has reached; they are numbered from `first` on.
     pub(crate) fn touch(&self, collider: &Collider<D>, numbers: Range<usize>, visit: &mut dyn FnMut(Touch<D>)) {
         let still;
         let Frame { pose, carry }: &Frame<D> = match &collider.still {
@@ -142,7 +142,7 @@ impl<const D: usize> NodePath<'_, D> {
                         }
                     }
                     let gap = gap + dot(&subtract(self.to, to), &normal);
-                    // The side from which the node comes is that on which it is held.
+                    // The node is held on the side from which it comes.
                     let (before, _) = placed.find(&seen.carried, &seen.carried, f64::INFINITY);
                     (gap <= self.reach).then_some((gap, before, normal))
                 }
@@ -172,10 +172,10 @@ impl<const D: usize> Seen<'_, D> {
         let mut found = (gap - self.law.thickness, normal);
         let displacement = subtract(self.kept, &self.carried);
         let far = 0.5 * shape.half_width();
-        // The face by which it came in, which need not be the nearest one.
+        // The face through which it entered, which need not be the nearest one.
         let small = rounding(self.law, self.kept);
         let margin = self.law.thickness;
-        // What lies exactly where two solids meet is in both of them.
+        // A node exactly at the junction of two solids is in both of them.
         let covered = T::FACES && found.0 <= small && self.faces.any_covered();
         if (covered || T::FACES && found.0 < -small || far < dot(&displacement, &displacement).sqrt())
             && let Some(entered) = entry(shape, margin, &self.carried, self.kept)
@@ -189,8 +189,8 @@ impl<const D: usize> Seen<'_, D> {
         (found.0 <= self.reach).then_some((found.0, before, found.1))
     }
 
-    /// Where solids meet: of the faces at a point that no other solid lies against, the height above the one which the path runs
-    /// against most, and its normal.
+    /// Where solids meet: of the faces at a point that no other solid adjoins, the height above the one that the path opposes
+    /// most, and its normal.
     fn open_face<T: Shape<D>>(
         &self,
         shape: &T,

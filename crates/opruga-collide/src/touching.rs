@@ -1,4 +1,4 @@
-//! Deformable bodies that touch: what a substep makes of their surfaces.
+//! Touching deformable bodies: the contact of their surfaces in a substep.
 
 use crate::candidates::Candidates;
 use crate::clearance::Clearance;
@@ -16,7 +16,7 @@ use crate::zones::Zones;
 use opruga_core::contacts::Touch;
 use opruga_math::{Lane, Simd};
 
-/// The surfaces of bodies that may touch, and what is known of their contacts.
+/// The surfaces of bodies that may touch, and the state of their contacts.
 ///
 /// ```text
 /// gap       g(x₀) − thickness, normal and weights at the start of the step, or where a fast pair meets
@@ -26,105 +26,105 @@ use opruga_math::{Lane, Simd};
 /// position  x = x₀ + h v of every point that got an impulse; overlap is taken apart at `recovery_speed`, by positions alone
 /// ```
 ///
-/// Impulses start from those of the substep before; those of the last substep of a frame are for the caller to keep
-/// ([`Touching::visit_kept`], [`Touching::keep`]). Nothing depends on when candidates were looked for.
+/// Impulses start from those of the previous substep; the caller has to keep those of the last substep of a frame
+/// ([`Touching::visit_kept`], [`Touching::keep`]). Results do not depend on when candidates were searched.
 #[derive(Debug, Default)]
 pub struct Touching<const D: usize> {
-    /// What touches.
+    /// The surfaces.
     pub surface: Surface<D>,
-    /// How.
+    /// Their contact laws.
     pub laws: Laws,
-    /// One over the mass of every point along every axis [1/kg]; 0 where it is pinned, and of points that nodes carry.
+    /// The inverse mass of every point along every axis [1/kg]; 0 if it is pinned, and for points that nodes carry.
     pub inverse_mass: Vec<[f64; D]>,
-    /// Bodies whose points follow one another. Their velocities after the motion are the mean ones of the step.
+    /// Coupled bodies. Their velocities after the motion are the mean ones of the step.
     pub coupled: Coupled<D>,
     /// Positions [m] and velocities [m/s] of the points at the start of the step.
     pub before: [Vec<[f64; D]>; 2],
-    /// Those after the free motion; where points touch, what contact makes of them.
+    /// The same after the free motion; for touching points, the result of contact.
     pub after: [Vec<[f64; D]>; 2],
     /// The points that got an impulse or were moved, ascending.
     pub changed: Vec<u32>,
-    /// What contact and friction took from every point that changed, what obstacles and pins gave by their motion, and what moving the
-    /// point gave [J].
+    /// The energies that contact and friction took from every changed point, that obstacles and pins gave by their motion, and
+    /// that moving the point gave [J].
     pub losses: Vec<[f64; 4]>,
-    /// Whether overlap is taken apart by impulses, within the step, and not by positions: where bodies are at rest and have no speed.
+    /// Whether overlaps are removed by impulses within the step and not by positions: for bodies at rest, which have no velocity.
     pub(crate) at_once: bool,
-    /// Whether bodies that follow as a whole have a budget: impulses are then found as roughly as those of bodies that do not.
+    /// Whether coupled bodies have a budget: impulses are then found as roughly as those of uncoupled bodies.
     pub has_budget: bool,
-    /// How far points of bodies at rest may go at most [m]: impulses that lead them farther do not hold.
+    /// The largest displacement of points of bodies at rest [m]: impulses that exceed it are rejected.
     pub farthest: f64,
-    /// The impulses on points of bodies that follow as a whole which the free motion contains [N s]: those that are found are all the same the
-    /// whole ones, and [`Coupled::impulses_on`] what they add.
+    /// The impulses on points of coupled bodies that the free motion already contains [N s]. The solution still gives the total
+    /// impulses, and [`Coupled::impulses_on`] gives the difference.
     pub given: Vec<(u32, [f64; D])>,
-    /// Whether the steps report what contact did.
+    /// Whether the steps report the effects of contact.
     pub report: bool,
-    /// What contact did since the beginning of the frame, ascending by bodies.
+    /// The effects of contact since the beginning of the frame, sorted by bodies.
     pub reports: Vec<Report<D>>,
     /// The vector instructions to use; the bits of the results do not depend on them.
     pub simd: Simd,
     /// The margin of the search [m].
     pub margin: f64,
-    /// The most candidates.
+    /// The largest number of candidates.
     pub most: usize,
     pub(crate) candidates: Candidates<D>,
     pub(crate) reach: Reach<D>,
     pub(crate) clearance: Clearance<D>,
-    /// Candidates of a vertex and a facet, and of two edges, whose boxes do not meet in the step although their bound allows it; their features, and
-    /// their distances [m].
+    /// The candidates of a vertex and a facet, and of two edges, whose boxes do not meet in the step although their bounds allow contact; their
+    /// features and their distances [m].
     pub(crate) apart: [Vec<u32>; 2],
     pub(crate) apart_features: Vec<[u32; 2]>,
     pub(crate) distances: Vec<f64>,
-    /// The laws for which candidates were looked for.
+    /// The laws for which candidates were searched.
     found_for: Laws,
-    /// The contacts that are solved for: once solved, in the order of that.
+    /// The contacts that are solved for; after the solution, in the order of the solution.
     pub(crate) rows: Vec<Row<D>>,
-    /// What they act on where nodes carry their points.
+    /// The nodes on which they act if nodes carry their points.
     pub(crate) spread: Spread,
-    /// Pairs that do not meet by themselves, and their points; those that came into play leave nobody behind.
+    /// Pairs that do not meet by themselves, and their points; pairs that were activated leave an empty entry.
     pub(crate) watched: Vec<Row<D>>,
     pub(crate) heads: Vec<[u32; 4]>,
-    /// Pairs that meet by themselves, but are not solved for unless those that are leave them too fast.
+    /// Pairs that meet by themselves, but are solved for only if the solution of the others leaves them too fast.
     pub(crate) inactive: Vec<Row<D>>,
     /// The pairs of one vertex, or of two edges, and whether they meet by themselves.
     pub(crate) around: Vec<(Row<D>, bool)>,
     /// Features and impulses of the last substep, ascending.
     pub(crate) last: Vec<(u64, f64, [f64; D])>,
     pub(crate) keep: Vec<bool>,
-    /// Whether the obstacles of a point are among the rows; and points whose obstacles are asked for.
+    /// Whether the obstacles of a point are among the rows; and the points whose obstacles are requested.
     known: Vec<bool>,
     asked: Vec<u32>,
     pub(crate) v: Vec<[f64; D]>,
     pub(crate) moved: Vec<[f64; D]>,
     /// Positions at an impact within a step.
     pub(crate) impact: Vec<[f64; D]>,
-    /// Where the points are at the end of the step [m].
+    /// The positions of the points at the end of the step [m].
     pub(crate) end: Vec<[f64; D]>,
-    /// Pairs that would pass through one another, ascending, and the gap by which each is solved for.
+    /// Pairs that would pass through one another, ascending, and the gap with which each is solved.
     pub(crate) passing: Vec<(u64, Gap<D>)>,
-    /// Those of them that the last look has found.
+    /// Those of them that the last check has found.
     pub(crate) fresh: Vec<u64>,
     /// The pairs of a vertex and a facet, and of two edges, that may meet in the step.
     pub(crate) close: [Vec<[u32; 2]>; 2],
     pub(crate) zones: Zones<D>,
-    /// Whether the frame has begun without a look at which points lie inside other bodies; and these points, ascending.
+    /// Whether the frame has begun without a check of which points are inside other bodies; and these points, ascending.
     pub(crate) looks_inside: bool,
     pub(crate) began_inside: Vec<u32>,
-    /// The bodies of these points and of what they lie inside, ascending.
+    /// The bodies of these points and the bodies that contain them, ascending.
     pub(crate) entangled: Vec<[u32; 2]>,
-    /// The largest distance that surfaces keep in contact [m]: of bodies, and with obstacles.
+    /// The largest distance that surfaces keep in contact [m]: between bodies, and with obstacles.
     pub(crate) thickest: [f64; 2],
     pub(crate) wanted: Vec<f64>,
     pub(crate) masses: Vec<f64>,
     pub(crate) multipliers: Vec<f64>,
     pub(crate) touched: Vec<bool>,
-    /// Where a point stands among those that changed.
+    /// The index of a point among those that changed.
     pub(crate) number: Vec<u32>,
     pub(crate) turns: Turns<D>,
-    /// What was done since the counts were last taken.
+    /// Counts since they were last taken.
     pub counts: Counts,
 }
 
-/// What contact has cost.
+/// The cost of contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Substeps.
@@ -137,14 +137,15 @@ pub struct Counts {
     pub pairs: u64,
     /// Pairs that were solved for.
     pub contacts: u64,
-    /// How often one of these was solved for.
+    /// The number of turns in which these were solved.
     pub turns: u64,
-    /// How often gaps were taken and solved for: once in each substep, and anew where contact pushes points beyond their boxes.
+    /// The number of rounds of gaps and solutions: one in each substep, and another one whenever contact pushes points beyond
+    /// their boxes.
     pub rounds: u64,
 }
 
 impl Counts {
-    /// The sums of these and others.
+    /// The sums of these counts and others.
     pub fn and(&self, other: &Counts) -> Counts {
         Counts {
             steps: self.steps + other.steps,
@@ -163,26 +164,27 @@ impl Counts {
 pub enum Trouble {
     /// There are more pairs than the limit.
     TooMany {
-        /// How many were found before the search ended.
+        /// The number found before the search ended.
         found: usize,
     },
-    /// Surfaces that a barrier keeps apart meet already.
+    /// Surfaces that a barrier has to keep apart already meet.
     Meet {
         /// The bodies.
         bodies: [u32; 2],
     },
-    /// Pins and obstacles lead two bodies, or one and itself, through one another.
+    /// Pins and obstacles move two bodies, or one and itself, through one another.
     LedThrough {
         /// The bodies.
         bodies: [u32; 2],
     },
 }
 
-/// What obstacles say of a point: callback with the number of the point, its position at the start and the end of the step, and how far to look [m].
+/// The contacts of a point with obstacles: a callback with the number of the point, its position at the start and the end of the
+/// step, and the search distance [m].
 pub type Obstacles<'a, const D: usize> = &'a dyn Fn(u32, &[f64; D], &[f64; D], f64, &mut dyn FnMut(Touch<D>));
 
 impl<const D: usize> Touching<D> {
-    /// Forgets impulses and reports, at the beginning of a frame; candidates too, if the laws have changed.
+    /// Discards impulses and reports at the beginning of a frame; candidates too, if the laws have changed.
     pub fn begin(&mut self) {
         self.last.clear();
         self.reports.clear();
@@ -194,12 +196,12 @@ impl<const D: usize> Touching<D> {
         }
     }
 
-    /// Forgets the impulses of the last step, where the state is no longer the one that they led to.
+    /// Discards the impulses of the last step, if the state is no longer their result.
     pub fn forget_impulses(&mut self) {
         self.rows.clear();
     }
 
-    /// Calls back with the nodes, as points, and the impulses of the last step [N s], but for those of obstacles on points.
+    /// Calls `visit` with the nodes, as points, and the impulses of the last step [N s], except those of obstacles on points.
     pub fn visit_impulses(&self, mut visit: impl FnMut(usize, [f64; D])) {
         for row in self.rows.iter().filter(|row| row.normal_impulse > 0.0 && !row.of_obstacle) {
             let impulse = row.impulse();
@@ -209,7 +211,7 @@ impl<const D: usize> Touching<D> {
         }
     }
 
-    /// Calls back with the bodies of every contact of the last step that presses, but for those with obstacles.
+    /// Calls `visit` with the bodies of every pressing contact of the last step, except those with obstacles.
     pub fn visit_pairs(&self, mut visit: impl FnMut(u32, u32)) {
         for row in self.rows.iter().filter(|row| row.normal_impulse > 0.0 && !row.of_obstacle) {
             let [a, b] = [1.0, -1.0].map(|sign| {
@@ -222,17 +224,17 @@ impl<const D: usize> Touching<D> {
         }
     }
 
-    /// Takes overlap apart at once and lets nothing bounce, as bodies need it that look for their balance at rest.
+    /// Removes overlaps at once and without bounces, for bodies in search of their equilibrium.
     pub fn come_to_rest(&mut self) {
         self.at_once = true;
         self.laws.recovery_speed = 0.0;
         self.laws.table.iter_mut().for_each(|law| law.restitution = 0.0);
     }
 
-    /// Lets the points touch after a free substep of h [s]: `after` becomes what contact makes of it.
+    /// Applies contact to the points after a free substep of h [s]: `after` is replaced by the result.
     ///
     /// # Errors
-    /// [`Trouble`] where there are more candidates than [`Touching::most`], or pins and obstacles force a passage.
+    /// [`Trouble`] if there are more candidates than [`Touching::most`], or if pins and obstacles force a passage.
     pub fn step(&mut self, h: f64, obstacles: Option<Obstacles<'_, D>>) -> Result<(), Trouble> {
         self.begin_step();
         self.coupled.apart = true;
@@ -248,8 +250,8 @@ impl<const D: usize> Touching<D> {
         self.counts.steps += 1;
     }
 
-    /// Finds the impulses of a substep of h [s] and the motion that they lead to; bodies that answer as a whole do so by `respond`. Says
-    /// whether that motion holds: not where they do not answer, or points of them would have to move in another way.
+    /// Finds the impulses of a substep of h [s] and the resulting motion; coupled bodies respond through `respond`. Returns
+    /// whether that motion is valid: it is not if they do not respond, or if their points would have to move in another way.
     ///
     /// # Errors
     /// [`Trouble`] as of [`Touching::step`].
@@ -294,7 +296,7 @@ impl<const D: usize> Touching<D> {
                 self.rest();
             }
             if self.grow() {
-                // The next round begins with what this one has found.
+                // The next round starts from the result of this one.
                 if !self.at_once {
                     self.keep_impulses();
                 }
@@ -316,13 +318,13 @@ impl<const D: usize> Touching<D> {
         Ok(true)
     }
 
-    /// Whether no point of a body goes farther than it may.
+    /// Whether no point of a body moves farther than allowed.
     fn is_within_limit(&self) -> bool {
         let within = |p: usize| length(&subtract(&self.end[p], &self.before[0][p])) <= self.farthest;
         (0..self.coupled.count()).all(|body| self.coupled.points_of(body).all(within))
     }
 
-    /// Ends a substep: books what contact did, and moves the points.
+    /// Ends a substep: enters the effects of contact, and moves the points.
     pub fn end_step(&mut self, h: f64) {
         if self.report {
             reports::add(&mut self.reports, &self.rows, &self.surface, &self.end);
@@ -332,14 +334,14 @@ impl<const D: usize> Touching<D> {
         self.counts.pairs += (self.rows.len() + self.watched.len()) as u64;
     }
 
-    /// Lets all points answer by themselves for the rest of the substep: contact and the balance of forces do not agree.
+    /// Makes all points respond by themselves for the rest of the substep, because contact and the balance of forces disagree.
     pub fn part_coupled(&mut self) {
         self.coupled.apart = true;
         self.passing.clear();
         self.last.clear();
     }
 
-    /// How far the points of a body end from where the impulses were to lead them, at most [m].
+    /// The largest distance between the ends of the points of a body and the ends that the impulses should have given [m].
     pub fn missed_by(&self, body: usize, actual: impl Iterator<Item = [f64; D]>) -> f64 {
         let points = self.coupled.points_of(body);
         let mut most: f64 = 0.0;
@@ -350,18 +352,18 @@ impl<const D: usize> Touching<D> {
         most
     }
 
-    /// The velocity of a point that impulses lead to [m/s].
+    /// The velocity of a point that results from the impulses [m/s].
     pub fn velocity_found(&self, point: usize) -> [f64; D] {
         self.v[point]
     }
 
-    /// Whether a point follows others of its body in this substep.
+    /// Whether a point is coupled to others of its body in this substep.
     pub fn follows(&self, point: u32) -> bool {
         self.coupled.body_of(point).is_some()
     }
 
-    /// Looks whether pairs pass through one another where bodies that solve for the end of a step go to where they are now; those pairs are
-    /// solved for next.
+    /// Checks whether pairs pass through one another when bodies that solve for the end of a step move to their present
+    /// positions; those pairs are solved for next.
     pub fn passes(&mut self, h: f64) -> bool {
         for p in (0..self.coupled.count()).flat_map(|body| self.coupled.points_of(body)) {
             self.end[p] = self.after[0][p];
@@ -370,12 +372,12 @@ impl<const D: usize> Touching<D> {
         self.find_passages(h)
     }
 
-    /// How far overlap is taken apart at a point of a body that follows others [m].
+    /// The displacement of a point of a coupled body for removing overlaps [m].
     pub fn moved_of(&self, point: usize) -> [f64; D] {
         if self.coupled.body_of(point as u32).is_some() { self.moved[point] } else { [0.0; D] }
     }
 
-    /// Nothing touches: everything goes where it goes by itself.
+    /// Nothing touches: all points keep their free motion.
     fn rest(&mut self) {
         self.touched.clear();
         self.touched.resize(self.surface.points(), false);
@@ -383,7 +385,7 @@ impl<const D: usize> Touching<D> {
         self.end.clone_from(&self.after[0]);
     }
 
-    /// Solves for the velocities after contact; says whether all bodies that follow as a whole have answered.
+    /// Solves for the velocities after contact; returns whether all coupled bodies have responded.
     fn solve(&mut self, h: f64, obstacles: Option<Obstacles<'_, D>>, mut respond: Option<&mut dyn Respond<D>>) -> bool {
         self.v.clone_from(&self.after[1]);
         self.known.clear();
@@ -424,7 +426,7 @@ impl<const D: usize> Touching<D> {
         true
     }
 
-    /// Takes the impulses out of the motion that it contains already; says whether all bodies have answered.
+    /// Subtracts the impulses that the motion already contains; returns whether all bodies have responded.
     fn take_back_given(&mut self, respond: &mut Option<&mut dyn Respond<D>>) -> bool {
         for (point, impulse) in &self.given {
             let own = (&[*point][..], &[1.0][..]);
@@ -436,7 +438,7 @@ impl<const D: usize> Touching<D> {
         true
     }
 
-    /// Works out what rows from a number on weigh where their points follow one another; says whether these answer.
+    /// Computes the masses of rows from a number on if their points are coupled; returns whether these respond.
     fn weigh_coupled(&mut self, first: usize, respond: &mut Option<&mut dyn Respond<D>>) -> bool {
         if self.coupled.count() == 0 || self.coupled.apart {
             return true;
@@ -452,8 +454,8 @@ impl<const D: usize> Touching<D> {
         true
     }
 
-    /// Takes in what meets because one of its points was pushed, which it would not have done by itself, and inactive pairs that still approach too
-    /// fast; says whether there is any.
+    /// Activates pairs that meet because one of their points was pushed, and inactive pairs that still approach too fast; returns
+    /// whether there are any.
     fn activate(&mut self) -> bool {
         let before = self.rows.len();
         for (head, row) in self.heads.iter_mut().zip(&self.watched) {
@@ -488,14 +490,14 @@ impl<const D: usize> Touching<D> {
         self.last.retain(|(_, along, _)| *along > 0.0);
     }
 
-    /// Adds what obstacles hold of the points of all contacts: what bodies push against them must not go through.
+    /// Adds the contacts of obstacles with the points of all contacts: bodies must not push these points through obstacles.
     fn hold_points(&mut self, h: f64, obstacles: Option<Obstacles<'_, D>>) {
         let Some(obstacles) = obstacles else { return };
         self.asked.clear();
         let surface = &self.surface;
         for row in &self.rows {
             let coupled = &self.coupled;
-            // What answers as a whole looks for its end between the obstacles.
+            // Coupled bodies find their end between the obstacles themselves.
             let asks = |p: u32| !surface.is_of_obstacle(p) && coupled.body_of(p).is_none();
             for (p, _) in acting(&self.spread, row).filter(|(p, _)| asks(*p)) {
                 let known = &mut self.known[p as usize];
@@ -528,7 +530,7 @@ impl<const D: usize> Touching<D> {
         }
     }
 
-    /// Begins with the impulses of the last substep.
+    /// Starts from the impulses of the last substep.
     fn start_warm(&mut self) {
         let mut k = 0;
         for row in &mut self.rows {
@@ -562,12 +564,13 @@ impl<const D: usize> Touching<D> {
     }
 }
 
-/// The points that a row acts on, and their weights.
+/// The points on which a row acts, and their weights.
 pub(crate) fn acting<'a, const D: usize>(spread: &'a Spread, row: &'a Row<D>) -> impl Iterator<Item = (u32, f64)> + 'a {
     let (points, weights) = row.on(spread);
     points.iter().copied().zip(weights.iter().copied()).filter(|(_, weight)| *weight != 0.0)
 }
 
-/// How often pairs that would pass through one another are solved for along their normals, before what still passes moves as one: four, as an impulse
-/// along one pair may send another one through, but each round leaves fewer.
+/// The number of rounds in which pairs that would pass through one another are solved along their normals, before those that
+/// still pass move rigidly together: four, since an impulse along one pair may make another one pass, but each round leaves
+/// fewer.
 const ROUNDS: usize = 4;

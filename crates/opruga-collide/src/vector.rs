@@ -26,12 +26,12 @@ pub(crate) fn subtract<S: Lane, const D: usize>(a: &[S; D], b: &[S; D]) -> [S; D
 pub(crate) fn scaled<S: Lane, const D: usize>(a: &[S; D], s: S) -> [S; D] {
     lanes!(S, d => a[d] * s)
 }
-/// The same vector in every place.
+/// The same vector in every lane.
 #[inline(always)]
 pub(crate) fn splat<S: Lane, const D: usize>(a: &[f64; D]) -> [S; D] {
     lanes!(S, d => S::splat(a[d]))
 }
-/// `yes` where the mask holds, else `no`.
+/// `yes` where the mask is true, otherwise `no`.
 #[inline(always)]
 pub(crate) fn choose<S: Lane, const D: usize>(mask: S::Mask, yes: &[S; D], no: &[S; D]) -> [S; D] {
     lanes!(S, d => S::select(mask, yes[d], no[d]))
@@ -84,7 +84,7 @@ pub(crate) fn magnitude<const D: usize>(a: &[f64; D]) -> f64 {
     }
     sum
 }
-/// The matrix Ω for which Ω r is the velocity of a turning body at r: one number in 2D, a vector along the axis in 3D.
+/// The matrix Ω for which Ω r is the velocity of a rotating body at r: from one number in 2D, from a vector along the axis in 3D.
 pub(crate) fn turning<const D: usize>(spin: &[f64]) -> [[f64; D]; D] {
     let mut out = [[0.0; D]; D];
     if D == 2 {
@@ -121,13 +121,13 @@ pub(crate) fn rotation<const D: usize>(omega: &[[f64; D]; D], time: f64) -> [[f6
     }
     out
 }
-/// Axes across a normal, of unit length.
+/// Unit axes across a normal.
 pub(crate) fn across<const D: usize>(normal: &[f64; D]) -> impl Iterator<Item = [f64; D]> {
     let mut out = [[0.0; D]; D];
     if D == 2 {
         (out[0][0], out[0][1]) = (-normal[1], normal[0]);
     } else {
-        // The axis along which the normal points least.
+        // The axis along which the normal has the smallest component.
         let least = (0..D).min_by(|i, j| normal[*i].abs().total_cmp(&normal[*j].abs())).unwrap_or(0);
         let (i, j) = ((least + 1) % 3, (least + 2) % 3);
         let size = (normal[i] * normal[i] + normal[j] * normal[j]).sqrt();

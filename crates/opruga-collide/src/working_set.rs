@@ -1,8 +1,8 @@
-//! Impulses of contacts of bodies that answer as a whole, where far more pairs are looked at than press.
+//! Impulses of contacts of coupled bodies, when far more pairs are examined than press.
 //!
-//! Most pairs of a step only might touch: they are near, and have no impulse in the end. So the laws are solved for some contacts alone, the
-//! working set. Those that approach too fast then join it, the fastest first, until none does. Each solution holds the laws of all contacts
-//! of the set, so the last one holds those of all.
+//! Most pairs of a step are only near and have no impulse in the end. So the laws are solved for some contacts only, the working
+//! set. Contacts that approach too fast then join it, the fastest first, until none does. Each solution satisfies the laws of all
+//! contacts of the set, so the last one satisfies those of all contacts.
 
 use crate::coupled::Coupled;
 use crate::newton::{self, Aim};
@@ -10,11 +10,12 @@ use crate::row::Row;
 use crate::spread::Spread;
 use crate::vector::{dot, subtract};
 
-/// The most solutions. Two to five are enough in most steps; contacts that leave and join in turn have no end.
+/// The largest number of solutions. Two to five are enough in most steps; contacts that alternately leave and join never end.
 const MOST_SOLUTIONS: usize = 40;
 
-/// Goes to the impulses at which all contacts obey their laws, as near as is aimed at. Gives the number of turns; none where more contacts press than
-/// are solved at once, or no set is the last one: impulses and velocities then belong together, and sweeps go on from there.
+/// Finds the impulses with which all contacts obey their laws, to the required accuracy. Returns the number of turns; none if
+/// more contacts press than can be solved at once, or if the set does not settle: impulses and velocities are then consistent,
+/// and sweeps continue from there.
 pub(crate) fn solve<const D: usize>(
     rows: &mut [Row<D>],
     spread: &Spread,
@@ -40,7 +41,7 @@ pub(crate) fn solve<const D: usize>(
             rows.iter().zip(belongs).filter(|(_, own)| **own).map(|(row, _)| newton::count_of(row)).sum()
         };
         let mut size = unknowns(&belongs);
-        // What does not press leaves room for what approaches.
+        // Contacts that do not press make space for those that approach.
         let fits = |size: usize, k: usize| size + newton::count_of(&rows[k]) <= newton::MOST_UNKNOWNS;
         if size > newton::MOST_UNKNOWNS || joining.first().is_some_and(|(_, k)| !fits(size, *k)) {
             belongs.iter_mut().zip(rows.iter()).for_each(|(own, row)| *own = row.normal_impulse > 0.0);
@@ -69,7 +70,8 @@ mod tests {
     use super::*;
     use crate::subspace::tests::column;
 
-    /// Forty points fall onto a held one, and two thousand pairs of them might approach one another by a kilometre a second before they touch.
+    /// Forty points fall onto a pinned one, and two thousand pairs of them could approach one another at a kilometre per second
+    /// before they touch.
     #[test]
     fn pairs_that_only_might_touch_are_no_unknowns() {
         let (mut rows, inverse_mass) = column(41, 0.5);
@@ -86,7 +88,7 @@ mod tests {
         let turns = solve(&mut rows, &spread, &inverse_mass, &mut Coupled::default(), &mut v, aim);
         assert!(turns.is_some() && v.iter().flatten().all(|v| v.abs() < 1e-6), "{turns:?} {v:?}");
         assert!(rows[pressing..].iter().all(|row| row.normal_impulse == 0.0));
-        // Each carries those above it, beside what it had.
+        // Each carries those above it, in addition to its previous impulse.
         let carried = rows[..pressing].iter().zip((1..=40).rev());
         carried.for_each(|(row, above)| assert!((row.normal_impulse - 1.0 - f64::from(above)).abs() < 1e-3, "{row:?}"));
     }

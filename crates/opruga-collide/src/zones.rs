@@ -1,19 +1,20 @@
-//! Zones of points that move as one within a step, because each other motion would let surfaces pass through one another.
+//! Zones of points that move rigidly together within a step, because any other motion would let surfaces pass through one
+//! another.
 
 use opruga_math::symmetric;
 
-/// Differences of speeds, relative to 1 m/s or to themselves, that are rounding.
+/// Differences of speeds, relative to 1 m/s or to the speeds, that count as rounding.
 pub(crate) const ROUNDING: f64 = 1e-9;
 
-/// The points of a pair, at most four nodes for each of its four, and their number.
+/// The points of a pair, at most four nodes for each of its four points, and their number.
 pub(crate) type PointsOfPair = ([u32; 16], usize);
 
-/// The zones of a step, and what their points did before.
+/// The zones of a step, and the previous motion of their points.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Zones<const D: usize> {
-    /// Another point of the zone, or the point itself; empty where there is no zone.
+    /// Another point of the zone, or the point itself; empty if there is no zone.
     parent: Vec<u32>,
-    /// Points in zones, ascending, with the velocity that was solved for [m/s], and the velocities along axes that are led.
+    /// Points in zones, ascending, with their solved velocity [m/s], and the velocities along prescribed axes.
     points: Vec<(u32, [f64; D], Led<D>)>,
 }
 
@@ -28,7 +29,7 @@ impl<const D: usize> Default for Led<D> {
 }
 
 impl<const D: usize> Led<D> {
-    /// Another leader along an axis; none where it contradicts one before.
+    /// Prescribes the velocity along an axis; none if it contradicts an earlier one.
     pub(crate) fn lead(&mut self, axis: usize, speed: f64) -> Option<()> {
         match self.0[axis] {
             Some(known) if (known - speed).abs() > ROUNDING * (1.0 + known.abs()) => None,
@@ -45,7 +46,7 @@ impl<const D: usize> Led<D> {
 pub(crate) struct Zone<const D: usize> {
     center: [f64; D],
     velocity: [f64; D],
-    /// About the three axes; in the plane about the third alone.
+    /// About the three axes; in the plane only about the third.
     spin: [f64; 3],
     pub(crate) led: Led<D>,
 }
@@ -59,7 +60,7 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 }
 
 impl<const D: usize> Zone<D> {
-    /// The motion with the momentum of the points along all axes that nothing leads; and, where nothing leads any, with their angular
+    /// The motion with the momentum of the points along all axes that are not prescribed and, if none is, with their angular
     /// momentum.
     pub(crate) fn of(
         points: &[u32],
@@ -92,7 +93,7 @@ impl<const D: usize> Zone<D> {
         out
     }
 
-    /// ω of the angular momentum; none about axes on which all points lie.
+    /// ω from the angular momentum; zero about an axis through all points.
     fn spin_of(&self, points: &[u32], x: &[[f64; D]], v: &[[f64; D]], inverse_mass: &[[f64; D]]) -> [f64; 3] {
         let (mut inertia, mut momentum) = ([[0.0; 3]; 3], [0.0; 3]);
         for p in points {
@@ -130,13 +131,13 @@ impl<const D: usize> Zone<D> {
 }
 
 impl<const D: usize> Zones<D> {
-    /// Begins without any.
+    /// Discards all zones.
     pub(crate) fn clear(&mut self) {
         self.parent.clear();
         self.points.clear();
     }
 
-    /// Makes place for zones among so many points.
+    /// Makes space for zones among this many points.
     pub(crate) fn resize(&mut self, points: usize) {
         if self.parent.is_empty() {
             self.parent.extend(0..points as u32);
@@ -174,14 +175,14 @@ impl<const D: usize> Zones<D> {
         rooted.chunk_by(|a, b| a.0 == b.0).map(|zone| zone.iter().map(|(_, p)| *p).collect()).collect()
     }
 
-    /// Says by what a point is led.
+    /// Sets the prescribed velocities of a point.
     pub(crate) fn set_led(&mut self, point: u32, led: Led<D>) {
         if let Ok(at) = self.points.binary_search_by_key(&point, |(point, ..)| *point) {
             self.points[at].2 = led;
         }
     }
 
-    /// Books what becoming one took of the points, and what their leaders gave [J].
+    /// Enters the energies that the rigid motion took from the points, and that pins and obstacles gave [J].
     pub(crate) fn book(
         &self,
         before: &[[f64; D]],

@@ -1,4 +1,4 @@
-//! What the benchmarks of contact between bodies share: walls, and a line for ten frames.
+//! Common code of the benchmarks of contact between bodies: walls, and a line for ten frames.
 
 use opruga_collide::{Counts, Touching};
 use opruga_core::contacts::Touch;
@@ -6,7 +6,7 @@ use opruga_core::contacts::Touch;
 /// A plane: axis, position, sign of the normal.
 pub(crate) type Wall = (usize, f64, f64);
 
-/// Says what walls do to a point.
+/// Calls `visit` with the contacts of a point with the walls.
 pub(crate) fn touch_walls<const D: usize>(
     walls: &[Wall],
     friction: f64,
@@ -35,7 +35,7 @@ pub(crate) fn touch_walls<const D: usize>(
     }
 }
 
-/// Prints the times of contact in ten frames and of their free motion [s], what contact did, and a hash of the positions.
+/// Prints the times of contact and of free motion in ten frames [s], the counts of contact, and a hash of the positions.
 pub(crate) fn report<const D: usize>(
     first: usize,
     mut touch: Vec<f64>,
@@ -65,7 +65,8 @@ pub(crate) fn report<const D: usize>(
     );
 }
 
-/// Prints the memory of contact by vertices, and by candidates beyond 400 bytes a vertex: those of the last frames on average.
+/// Prints the memory of contact, by vertices, and by candidates beyond 400 bytes per vertex, with the mean number of candidates
+/// of the last frames.
 pub(crate) fn report_memory<const D: usize>(touching: &Touching<D>, vertices: usize) {
     let bytes = touching.heap_bytes() as f64;
     let candidates = touching.counts.candidates as f64 / touching.counts.steps as f64;

@@ -1,4 +1,4 @@
-//! The barrier: forces are derivatives of its energy, and nobody goes through it.
+//! The barrier: forces are derivatives of its energy, and nothing passes through it.
 
 use opruga_collide::{Barrier, Laws, PairLaw, Pressed, Surface};
 use opruga_math::Lane;
@@ -26,7 +26,7 @@ fn random(seed: &mut u64) -> f64 {
     (*seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
 }
 
-/// Two blocks one above the other at a distance, with all nodes moved a little, the upper one turned about the vertical.
+/// Two blocks one above the other at a distance, with all nodes displaced slightly, the upper one rotated about the vertical.
 fn blocks<const D: usize>(apart: f64, angle: f64, seed: &mut u64) -> (Surface<D>, Vec<[f64; D]>) {
     let mesh = Mesh::<D>::grid([-0.5; D], [1.0; D], [1; D]).expect("a grid");
     let mut surface = Surface::default();
@@ -123,7 +123,7 @@ fn the_barrier_has_two_continuous_derivatives_and_no_bound() {
         pairs.iter().fold([0.0; 3], |[e, f, c], pair| [e + pair.energy, f + pair.force, c + pair.curvature])
     };
     assert_eq!(at(1.001 * REACH), [0.0; 3]);
-    // Near the end b = (r − g)³/r; both features give way by 1e-3 m/N.
+    // Near the end b = (r − g)³/r; both features have a compliance of 1e-3 m/N.
     let (stiffness, left) = (500.0, 0.001 * REACH);
     let wanted = [left * left * left, 3.0 * left * left, 6.0 * left].map(|part| stiffness * part / REACH);
     let now = at(REACH - left);
@@ -139,7 +139,7 @@ fn the_barrier_has_two_continuous_derivatives_and_no_bound() {
     assert!(last[2] > 1e5);
 }
 
-/// Whatever the points want, they go so far only that no pair meets.
+/// Whatever the motion, points move only so far that no pair meets.
 #[test]
 fn the_free_part_of_a_motion_keeps_pairs_apart() {
     let mut seed = 3;
@@ -163,7 +163,7 @@ fn the_free_part_of_a_motion_keeps_pairs_apart() {
     }
 }
 
-/// The force of friction is the derivative of its energy, and at most µ N.
+/// The friction force is the derivative of its energy, and at most µ N.
 #[test]
 fn friction_is_the_derivative_of_its_energy() {
     let mut seed = 9;

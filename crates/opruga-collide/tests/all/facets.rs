@@ -1,4 +1,4 @@
-//! Obstacles of facets, at any angle: what slides on them, what lies in their grooves, what begins on them.
+//! Obstacles of facets at any angle: nodes that slide on them, lie in their grooves, or begin on them.
 #![allow(missing_docs)]
 
 use crate::common;
@@ -7,7 +7,7 @@ use opruga_core::spec::Values;
 
 const H: f64 = 1.0 / 960.0;
 
-/// A slab of 40 m × 2 m, turned about the origin by an angle, whose upper side goes through the origin.
+/// A slab of 40 m × 2 m, rotated about the origin by an angle, whose upper side passes through the origin.
 fn slab(angle: f64) -> Values {
     let (sin, cos) = libm::sincos(angle);
     let corner = |along: f64, up: f64| [cos * along - sin * up, sin * along + cos * up];
@@ -16,7 +16,7 @@ fn slab(angle: f64) -> Values {
     values::<2>("convex", &[("points", rows(&points))])
 }
 
-/// On a slope without friction a node goes g sin θ t²/2, on a convex body as on a half-space.
+/// On a slope without friction a node moves g sin θ t²/2, on a convex body as on a half-space.
 #[test]
 fn nodes_slide_freely_down_a_convex_body_turned_by_any_angle() {
     for degrees in [10.0f64, 26.565, 30.0, 45.0, 60.0, -20.0] {
@@ -26,7 +26,7 @@ fn nodes_slide_freely_down_a_convex_body_turned_by_any_angle() {
         let mut system = particles(&start, &[[0.0, 0.0]; 7], 1.0, &[slab(angle)]);
         system.gravity = [0.0, -G];
         run(&mut system, H, 960);
-        // Symplectic Euler goes h t/2 further than the exact fall.
+        // Symplectic Euler moves h t/2 farther than the exact fall.
         let expected = -G * sin * 0.5 * (1.0 + H);
         for (node, from) in start.iter().enumerate() {
             let (x, _) = at(&system, node);
@@ -67,7 +67,7 @@ fn nodes_slide_freely_down_a_convex_body_in_space() {
     }
 }
 
-/// Grooves of one surface hold as those of two half-spaces do: no energy comes, and what lies in them lies still.
+/// Grooves of one surface act like those of two half-spaces: no energy is created, and nodes in them lie still.
 #[test]
 fn a_groove_of_one_polyline_makes_no_energy() {
     let planes = [[1.0, 1.0], [-1.0, 1.0]].map(|n| values::<2>("half_space", &[("normal", vector(&n))]));
@@ -93,7 +93,7 @@ fn a_groove_of_one_polyline_makes_no_energy() {
     }
 }
 
-/// The same for a groove so sharp that its sides push nodes to and fro.
+/// The same for a groove so sharp that its sides push nodes back and forth.
 #[test]
 fn a_sharp_groove_holds_its_nodes_and_makes_no_energy() {
     let polyline = values::<2>("polyline", &[("points", rows(&[&[-0.2, 3.0], &[0.0, 0.0], &[0.3, 3.0]]))]);
@@ -111,7 +111,7 @@ fn a_sharp_groove_holds_its_nodes_and_makes_no_energy() {
     }
 }
 
-/// A node that begins exactly on a thin surface goes to the side of its normal, whatever rounding says of its place.
+/// A node that begins exactly on a thin surface goes to the side of its normal, whatever the rounding of its position.
 #[test]
 fn nodes_that_begin_on_a_thin_surface_are_held_on_the_side_of_its_normal() {
     for degrees in [0.0f64, 17.0, -33.0] {
@@ -152,8 +152,8 @@ fn nodes_that_begin_on_a_thin_surface_are_held_on_the_side_of_its_normal() {
     }
 }
 
-/// The margin of a thin surface grows with its distance from the origin: a node that begins exactly on it is not inside of it, near
-/// or far, and one beyond a margin that the scene asks for is.
+/// The margin of a thin surface grows with its distance from the origin: a node that begins exactly on it is not inside, near or
+/// far, while one beyond the margin that the scene requires is.
 #[test]
 fn nodes_that_begin_on_a_thin_surface_are_not_buried_in_it() {
     for far in [0.0, 3.0, 1e3, 1e6, 1e7] {

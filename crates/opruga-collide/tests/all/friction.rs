@@ -7,7 +7,7 @@ use opruga_core::spec::Values;
 
 const H: f64 = 1.0 / 960.0;
 
-/// A plane that falls to the right at the angle with tan θ = 0.5; in 3D it also leans along z.
+/// A plane that falls to the right at the angle with tan θ = 0.5; in 3D it is also inclined along z.
 fn incline<const D: usize>(tangent: f64, friction: f64) -> (Values, [f64; D], [f64; D]) {
     let size = (1.0 + tangent * tangent).sqrt();
     let mut normal = [0.0; D];
@@ -15,7 +15,7 @@ fn incline<const D: usize>(tangent: f64, friction: f64) -> (Values, [f64; D], [f
     (normal[0], normal[1]) = (tangent / size, 1.0 / size);
     (down[0], down[1]) = (1.0 / size, -tangent / size);
     if D == 3 {
-        // Turned by 36.87° about y.
+        // Rotated by 36.87° about y.
         (normal[2], normal[0]) = (0.6 * normal[0], 0.8 * normal[0]);
         (down[2], down[0]) = (0.6 * down[0], 0.8 * down[0]);
     }
@@ -120,14 +120,14 @@ fn a_conveyor_takes_a_node_along() {
     assert!((v[0] - 1.0).abs() < 1e-12 && v[1] == 0.0);
     // Behind the floor by v²/(2 µ g).
     assert!((x[0] - (1.0 - 0.5 / (0.5 * G))).abs() < 2e-3, "{x:?}");
-    // The work of the floor is the kinetic energy and as much again lost by friction.
+    // The work of the floor is the kinetic energy plus the same amount lost by friction.
     let (work, lost) = (sum(&system.work.user), sum(&system.work.friction));
     assert!((work - 2.0).abs() < 1e-9 && (lost - 1.0).abs() < 2e-2, "{work} {lost}");
 }
 
 #[test]
 fn a_turntable_holds_a_node_within_the_friction_limit() {
-    // ω² r < µ g: it goes round and stays at its radius; beyond that it slides outward.
+    // ω² r < µ g: it moves with the floor at its radius; beyond that it slides outward.
     let radius = |spin: f64| {
         let table = values::<3>(
             "half_space",

@@ -16,7 +16,8 @@ fn floor(fields: &[(&str, Value)]) -> Values {
     values::<2>("half_space", &all)
 }
 
-/// What the pass took and gave is the change of kinetic energy, for any shape, motion and state (no force acts).
+/// The energies that the pass takes and gives equal the change of kinetic energy, for any shape, motion and state (no force
+/// acts).
 fn one_pass<const D: usize>(
     list: &[Values],
     x: &[[f64; D]],
@@ -77,7 +78,7 @@ fn a_ball_bounces_back_with_its_fraction_of_speed() {
 
 #[test]
 fn the_floor_of_the_thesis() {
-    // y points down, floor at y = 500; on crossing y = 500 and v_y = −½ v_y, also when the node lies on it.
+    // y points down, floor at y = 500; on crossing y = 500, v_y = −½ v_y, even if the node lies on it.
     let plane = values::<2>(
         "half_space",
         &[
@@ -129,8 +130,8 @@ fn heights_fall_by_the_square_of_the_restitution() {
     }
 }
 
-/// The floor gives back e² of ½ m s², with s² = u² + 2 a g of the speed u and the gap g before the step: no force makes energy
-/// by going on in the rest of the step. A rule of steps that is late on its way, as symplectic Euler is, meets it with less.
+/// The floor returns e² of ½ m s², with s² = u² + 2 a g from the speed u and the gap g before the step: a force that acts in the
+/// rest of the step creates no energy. An integrator whose position lags, such as symplectic Euler, arrives with less.
 #[test]
 fn an_impact_gives_back_no_more_than_came_in_while_a_force_pushes() {
     let (h, mass) = (0.01, 3.0);
@@ -163,7 +164,7 @@ fn an_impact_gives_back_no_more_than_came_in_while_a_force_pushes() {
 
 #[test]
 fn a_bouncing_node_comes_to_rest() {
-    // Restitution 0.9 and a step as long as a frame: weight gives it 0.16 m/s per step, more than the speed of rest.
+    // Restitution 0.9 and a step as long as a frame: weight adds 0.16 m/s per step, more than the rest speed.
     let mut system = particles(&[[0.0, 0.3]], &[[0.0, 0.0]], 1.0, &[floor(&[("restitution", number(0.9))])]);
     system.gravity = [0.0, -G];
     run(&mut system, 1.0 / 60.0, 60 * 60);
@@ -256,7 +257,7 @@ fn a_piston_pushes_and_its_work_is_the_energy() {
 
 #[test]
 fn nodes_settle_in_a_corner() {
-    // A container tilted by 30°: nodes slide into its lowest corner, within both walls, and lie still. 2D and 3D.
+    // A container tilted by 30°: nodes slide into its lowest corner, stay within both walls, and lie still. 2D and 3D.
     let container = values::<2>(
         "box",
         &[

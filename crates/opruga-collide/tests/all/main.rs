@@ -1,4 +1,4 @@
-//! Every test of this crate that needs no process of its own, in one program: it is linked once.
+//! Every test of this crate that does not need its own process, in one program that is linked once.
 
 mod barrier;
 mod common;

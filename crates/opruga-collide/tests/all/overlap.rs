@@ -1,4 +1,4 @@
-//! Bodies that begin nearer to one another than they are to keep.
+//! Bodies that begin closer to one another than their contact distance.
 
 use opruga_collide::{Laws, PairLaw, Touching};
 use opruga_mesh::Mesh;

@@ -1,4 +1,4 @@
-//! The same bits with every set of vector instructions and in every layout; and a body at rest does not tremble.
+//! The same bits with every set of vector instructions and in every layout; and a body at rest does not vibrate.
 #![allow(missing_docs)]
 
 use crate::common;
@@ -10,7 +10,7 @@ use opruga_core::system::System;
 use opruga_core::tile::Tile;
 use opruga_math::Simd;
 
-/// Every kind of collider, moving and standing, in one scene.
+/// Every kind of collider, moving and at rest, in one scene.
 fn zoo<const D: usize>() -> Vec<Values> {
     let v = |x: [f64; 3]| vector(&x[..D]);
     let path = |rows: [[f64; 4]; 3]| Value::Rows(rows.iter().map(|r| r[..D + 1].to_vec()).collect());
@@ -126,7 +126,7 @@ fn same_bits<const D: usize>() {
                 assert_eq!((batch.state.x.at(place), batch.state.v.at(place)), expected, "{simd:?} {node} {body}");
             }
         }
-        // The ledger of one body adds up in another order.
+        // The ledger of one body is summed in another order.
         let total = sum(&reference.work.contact);
         assert!((batch.work.contact[0] - total).abs() < 1e-12 * total);
     }
@@ -190,7 +190,7 @@ fn a_body_at_rest_does_not_tremble() {
         }
         let mut system = particles(&ring, &[[0.0; 2]; 12], 0.1, &[slope(e, mu)]);
         system.gravity = [0.0, -G];
-        // A flat: the ring would roll down the slope, a square of floor and wall holds it.
+        // A flat: a ring would roll down the slope; a square between floor and wall is held.
         system.contacts = Some(std::sync::Arc::new(colliders::<2>(&[
             slope(e, mu),
             values::<2>(

@@ -1,4 +1,4 @@
-//! Solids that lie beside one another: nothing falls between them, and nothing stumbles over the seam.
+//! Adjacent solids: nothing falls between them, and nothing is stopped by the seam.
 #![allow(missing_docs)]
 
 use crate::common;
@@ -27,7 +27,7 @@ fn pairs(more: &[(&str, opruga_core::spec::Value)]) -> Vec<Vec<Values>> {
     out
 }
 
-/// Places about the seam, and on it.
+/// Positions near the seam, and on it.
 const PLACES: [f64; 9] = [0.0, 1e-12, -1e-12, 1e-7, -1e-7, 1e-4, -1e-4, 2e-3, -2e-3];
 
 #[test]
@@ -45,7 +45,7 @@ fn nothing_falls_between_two_solids() {
                     let (x, v) = at(&system, node);
                     let what = format!("pair {which}, µ {friction}, e {restitution}, from {from} at {across} m/s");
                     assert!((x[1] - thickness).abs() < 1e-4, "{what}: {x:?}");
-                    // What creeps by less than the grain of the surface may stop on the seam.
+                    // A node that creeps by less than the grain of the surface may stop on the seam.
                     if friction == 0.0 && thickness == 0.0 {
                         assert!(
                             (x[0] - from - 2.0 * across).abs() < 4e-9 && (v[0] - across).abs() < 2e-9,
@@ -94,7 +94,7 @@ fn who_lands_beside_the_edge_of_a_solid_bounces_from_its_top() {
     }
 }
 
-/// A solid alone: who hits its side stays outside of it, who slides off its edge falls.
+/// A single solid: a node that hits its side stays outside, and one that slides off its edge falls.
 #[test]
 fn a_side_is_no_top() {
     let [colliders, ..] = &pairs(&[])[..] else { panic!("there are pairs") };

@@ -1,4 +1,4 @@
-//! Every shape: where nodes end, fast nodes, degenerate places, bounds, pictures, errors.
+//! Every shape: end positions of nodes, fast nodes, degenerate positions, bounds, pictures, errors.
 #![allow(missing_docs)]
 
 use crate::common;
@@ -27,12 +27,12 @@ fn nodes_end_on_the_surface() {
     near(after(&plate, [0.9, 0.1], [0.0; 2], H).0, [1.0, 0.1]);
     near(after(&plate, [-0.3, -0.45], [0.0; 2], H).0, [-0.3, -0.5]);
     near(after(&plate, [1.1, 0.1], [0.0; 2], H).0, [1.1, 0.1]);
-    // A margin rounds the corner: the node lies at 45° from it.
+    // A margin rounds the corner: the node is at 45° from it.
     let round =
         values::<2>("box", &[("min", vector(&[-1.0, -0.5])), ("max", vector(&[1.0, 0.5])), ("thickness", number(0.2))]);
     let corner = 0.2 * 0.5f64.sqrt();
     near(after(&round, [1.1, 0.6], [0.0; 2], H).0, [1.0 + corner, 0.5 + corner]);
-    // Turned by 90° (from x to y) the long side points up.
+    // Rotated by 90° (from x to y), the long side points up.
     let turned = values::<2>(
         "box",
         &[
@@ -121,7 +121,7 @@ fn degenerate_places_have_a_direction() {
     }
     // As documented: up from the centre of a ball.
     near(after(&values::<2>("ball", &[("radius", number(1.0))]), [0.0; 2], [0.0; 2], H).0, [0.0, 1.0]);
-    // Numbers that are none stay alone.
+    // NaN does not spread to other nodes.
     let mut system = particles(
         &[[f64::NAN, 0.0], [0.0, 0.5]],
         &[[0.0; 2]; 2],
@@ -201,7 +201,7 @@ fn thin_surfaces_hold_on_both_sides() {
 
 #[test]
 fn a_groove_keeps_its_nodes() {
-    // A narrow V: pushed out of one flank a node must not slip through the other.
+    // A narrow V: a node that one flank pushes out must not slip through the other.
     let groove = values::<2>(
         "polyline",
         &[("points", rows(&[&[-0.1, 1.0], &[0.0, 0.0], &[0.1, 1.0]])), ("friction", number(0.2))],
@@ -220,7 +220,7 @@ fn a_groove_keeps_its_nodes() {
 
 #[test]
 fn a_moving_mesh_takes_nodes_along() {
-    // A plate that rises at 3 m/s through resting nodes, and one that turns.
+    // A plate that rises at 3 m/s through resting nodes, and one that rotates.
     let plate = values::<3>(
         "triangle_mesh",
         &[
@@ -242,7 +242,7 @@ fn a_moving_mesh_takes_nodes_along() {
     let mut system = particles(&[[0.5, 0.1]], &[[0.0; 2]], 1.0, &[paddle]);
     run(&mut system, H, 20);
     let (x, v) = at(&system, 0);
-    // Hit by the paddle at atan(0.1/0.5), and flung on ahead of it.
+    // The paddle hits the node at atan(0.1/0.5), and throws it ahead.
     assert!(v[1] > 9.0 && v[0] < -1.0 && sum(&system.work.user) > 0.0, "{x:?} {v:?}");
 }
 
@@ -330,7 +330,7 @@ fn refusals_name_collider_and_value() {
         assert_eq!(index, 1);
         source
     }
-    // A direction of zeros is no value of the field; one whose length is lost has none either.
+    // A zero direction is not a valid value of the field; nor is one whose length underflows.
     let e = refused::<2>(values::<2>("half_space", &[("normal", vector(&[1e-200, 0.0]))]));
     assert_eq!((e.kind.as_str(), e.code()), ("half_space", "collider.no_direction"));
     assert_eq!(e.about.in_full(), "`normal` is [1e-200, 0.0]; allowed: a vector of a length above 1e-150");

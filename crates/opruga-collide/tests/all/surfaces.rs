@@ -1,4 +1,4 @@
-//! Surfaces of bodies: candidates against all pairs, closest points against samples, gaps inside and outside.
+//! Surfaces of bodies: candidates compared with all pairs, closest points with samples, gaps inside and outside.
 #![allow(missing_docs)]
 
 use opruga_collide::{
@@ -18,7 +18,7 @@ impl Noise {
     }
 }
 
-/// Several bodies of different sizes, thrown together, at the start and the end of a step.
+/// Several bodies of different sizes, mixed, at the start and the end of a step.
 fn crowd<const D: usize>(meshes: &[Mesh<D>], noise: &mut Noise) -> (Surface<D>, Vec<[f64; D]>, Vec<[f64; D]>) {
     let mut surface = Surface::default();
     let (mut start, mut end) = (Vec::new(), Vec::new());
@@ -61,7 +61,7 @@ fn boxes<const D: usize>(start: &[[f64; D]], end: &[[f64; D]]) -> Vec<[[f64; D];
     .collect()
 }
 
-/// Whether features have a point in common, or a node that takes part in points of both.
+/// Whether features share a point, or a node that takes part in points of both.
 fn join<const D: usize>(surface: &Surface<D>, a: &[u32], b: &[u32]) -> bool {
     let nodes = |points: &[u32]| {
         let mut all = Vec::new();
@@ -78,7 +78,7 @@ fn compare_with_all_pairs<const D: usize>(meshes: &[Mesh<D>], seed: u64) -> usiz
     let meet = |a: u32, b: u32| if a == b { a.is_multiple_of(2) } else { !(a + b).is_multiple_of(5) };
     let mut candidates = Candidates::default();
     let margin = 0.03;
-    // Twice, so that what the first search left has no effect on the second.
+    // Twice, because the data of the first search must not affect the second.
     assert!(candidates.find(&surface, &boxes(&end, &end), [0.5; 2], usize::MAX, |_, _| true));
     assert!(candidates.find(&surface, &boxes(&start, &end), [margin; 2], usize::MAX, meet));
     let mut expected = Vec::new();
@@ -167,7 +167,7 @@ fn closest_points_are_the_closest() {
     }
 }
 
-/// The gap to the nearest facet of a closed body is negative exactly inside, and changes as its weights and normal say.
+/// The gap to the nearest facet of a closed body is negative exactly inside, and changes according to its weights and normal.
 #[test]
 fn the_sign_of_the_gap_is_that_of_the_side() {
     let mut noise = Noise(3);
@@ -204,11 +204,11 @@ fn the_sign_of_the_gap_is_that_of_the_side() {
     }
 }
 
-/// Two edges of boxes that are one over the other, across one another.
+/// Two edges of boxes, one above the other and across one another.
 #[test]
 fn edges_know_their_inner_side() {
     let brick = Mesh::<3>::grid([-1.0, -0.1, -0.1], [2.0, 0.2, 0.2], [1, 1, 1]).expect("a brick");
-    // Turned by 45° about its long axis, so that an edge is on top.
+    // Rotated by 45° about its long axis, so that an edge is on top.
     let c = 0.5f64.sqrt();
     let turned: Vec<[f64; 3]> = brick.positions.iter().map(|[x, y, z]| [*x, c * (y - z), c * (y + z)]).collect();
     let across: Vec<[f64; 3]> = turned.iter().map(|[x, y, z]| [*z, *y, -x]).collect();
@@ -256,7 +256,7 @@ fn queries(text: &str) -> Vec<Query> {
         .collect()
 }
 
-/// No collision is missed, and the time found is one at which the features have not met.
+/// No collision is missed, and at the returned time the features have not met.
 #[test]
 fn continuous_detection_misses_nothing() {
     let data = [
@@ -283,7 +283,7 @@ fn continuous_detection_misses_nothing() {
     assert!(extra <= 10, "{extra} false alarms");
 }
 
-/// A vertex that flies through a facet at any speed meets it, where it is closer than the distance asked for.
+/// A vertex that moves through a facet at any speed meets it, where it is closer than the given distance.
 #[test]
 fn fast_features_do_not_pass_through() {
     let facet = [[-1.0, 0.0], [1.0, 0.0]];
@@ -298,7 +298,7 @@ fn fast_features_do_not_pass_through() {
             None => assert_eq!(speed, 1e-3),
         }
     }
-    // What moves together never meets, however fast.
+    // Features that move together never meet, however fast.
     let together = |x: [f64; 2]| [x[0] + 1e6, x[1] - 1e6];
     let moved = [facet[0], facet[1]].map(together);
     assert_eq!(vertex_meets_facet(&[[0.3, 0.5], together([0.3, 0.5])], &[facet, moved], 0.01), None);

@@ -1,4 +1,4 @@
-//! Impulses between surfaces, on rings of springs that are stepped here: contact by itself, without a world around it.
+//! Impulses between surfaces, on rings of springs that are stepped here: contact by itself, without a world.
 #![allow(missing_docs)]
 
 use opruga_collide::{Laws, PairLaw, Touching, Trouble};
@@ -80,7 +80,7 @@ impl<const D: usize> Toy<D> {
         }
     }
 
-    /// The free step alone.
+    /// Only the free step.
     fn free(&mut self, h: f64) {
         std::mem::swap(&mut self.touching.before, &mut self.touching.after);
         let [x, v] = &self.touching.before;
@@ -210,7 +210,7 @@ impl Toy<3> {
         sum
     }
 
-    /// Pairs of facets of different bodies that cross: a cell of springs that is turned inside out crosses itself.
+    /// Pairs of facets of different bodies that cross; an inverted cell of springs crosses itself.
     fn crossings(&self) -> usize {
         let (positions, facets) = (self.touching.after[0].clone(), self.touching.surface.facets.clone());
         let body = |facet: u32| self.touching.surface.body[facets[facet as usize][0] as usize];
@@ -218,7 +218,7 @@ impl Toy<3> {
         pairs.iter().filter(|[a, b]| body(*a) != body(*b)).count()
     }
 
-    /// How far apart the nodes that only carry points of two bodies are along x [m]; negative where they reach over one another.
+    /// The distance along x between the nodes of two bodies that only carry points [m]; negative if they overlap.
     fn carriers_apart(&self) -> f64 {
         let Touching { surface, after: [x, _], .. } = &self.touching;
         let most = |body: usize, sign: f64| {
@@ -259,7 +259,7 @@ fn rings_meet_and_keep_momentum() {
     }
 }
 
-/// A thin wire holds what comes at any speed.
+/// A thin wire stops bodies at any speed.
 #[test]
 fn nothing_tunnels() {
     for speed in [1.0, 10.0, 100.0, 1000.0, 3e4, 1e5] {
@@ -282,7 +282,7 @@ fn nothing_tunnels() {
     }
 }
 
-/// Two wires that are held, and led through one another.
+/// Two pinned wires that are moved through one another.
 #[test]
 fn what_is_led_through_is_refused() {
     let wire = || Mesh::<2>::line([0.0, -1.0], [0.0, 1.0], 8).expect("a wire");
@@ -303,7 +303,7 @@ fn what_is_led_through_is_refused() {
     panic!("they passed");
 }
 
-/// A heap of gas balls in a box comes to rest and stays apart; one of bare springs is crushed and gains no energy.
+/// A heap of gas balls in a box comes to rest without overlap; one of bare springs is crushed and gains no energy.
 #[test]
 fn heaps_come_to_rest() {
     for (gas, friction) in [(20.0, 0.3), (0.0, 0.3), (0.0, 0.0)] {
@@ -317,7 +317,7 @@ fn heaps_come_to_rest() {
         (toy.gas, toy.gravity, toy.floor) = (gas, 9.81, vec![(1, 0.0, 1.0), (0, -0.3, 1.0), (0, 1.42, -1.0)]);
         toy.drag = 4.0;
         let top = toy.mass * 9.81 * 2.5 * toy.touching.surface.points() as f64;
-        // Bare springs lie down flat: many layers.
+        // Bare springs collapse into many flat layers.
         for step in 0..(if gas > 0.0 { 8000 } else { 4500 }) {
             toy.step(1.0 / 3840.0);
             assert!(toy.kinetic() < top, "{gas}, step {step}: {} J", toy.kinetic());
@@ -352,13 +352,14 @@ fn cubes_stack() {
     assert!((low(1) - 0.5).abs() < 0.03 && (low(2) - 1.0).abs() < 0.06, "{} {}", low(1), low(2));
 }
 
-/// What a step has found out about pairs saves looks in later steps, and changes no bit: bodies that know nothing of the steps before do the same.
+/// The stored bounds of pairs save checks in later steps and change no bit: bodies without information from previous steps give
+/// the same result.
 #[test]
 fn what_is_known_of_distances_changes_no_bits() {
     fn compare<const D: usize>(make: impl Fn() -> Toy<D>, h: f64, steps: usize) {
         let [mut knowing, mut ignorant] = [make(), make()];
         for step in 0..steps {
-            // Neither begins with impulses of the step before, which the other one would not have.
+            // Neither starts with impulses of the previous step, which the other one would not have.
             knowing.touching.begin();
             let old = std::mem::take(&mut ignorant.touching);
             let fresh = &mut ignorant.touching;
@@ -406,7 +407,7 @@ fn candidates_of_a_flight_are_dropped_at_rest() {
     assert!(resting < flying / 2, "{flying} in flight, {resting} at rest");
 }
 
-/// Points that nodes carry hand impulses on to these: momentum and angular momentum stay, and nothing crosses.
+/// Points that nodes carry pass impulses on to these: momentum and angular momentum are conserved, and nothing crosses.
 #[test]
 fn carried_points_meet() {
     let ball = || Mesh::<3>::icosphere(0.5, 2).expect("a ball").lattice_filling(0.25).expect("a lattice");
@@ -435,15 +436,16 @@ fn carried_points_meet() {
         let after = toy.momentum();
         assert!((0..3).all(|k| (after[k] - before[k]).abs() < 1e-13), "{name}: {before:?} {after:?}");
         let turned = toy.angular_momentum();
-        // Overlap is taken apart by positions alone, which turns what moves; pairs that go far get their impulse where they meet.
+        // Overlaps are removed by positions only, which rotates moving bodies; pairs that move far get their impulse where they
+        // meet.
         let exact = if h < 0.002 { 1e-5 } else { f64::INFINITY };
         assert!((0..3).all(|k| (turned[k] - turning[k]).abs() < exact), "{name}: {turning:?} {turned:?}");
-        // What carries a skin reaches beyond it.
+        // The nodes that carry a skin extend beyond it.
         assert!(name == "cubes" || nearest < -0.01 || name == "a cube and a skin", "{name}: {nearest} m");
     }
 }
 
-/// What contact adds to the steps of many balls: printed with `--nocapture`.
+/// The cost of contact in the steps of many balls, printed with `--nocapture`.
 #[test]
 #[ignore = "a measurement"]
 fn the_cost_of_many_balls() {
