@@ -1,4 +1,4 @@
-//! Commands without a dimension in their type: as they are in space, of which a world in the plane leaves the third numbers out.
+//! Commands without a dimension in their type. They are written as in space; a world in the plane ignores the third numbers.
 
 use crate::blueprint::{Action, AnyBlueprint, Blueprint, CommandBlueprint, Selector};
 use crate::bytes::{Reader, Writer};
@@ -30,10 +30,10 @@ impl Selector<3> {
 }
 
 impl CommandBlueprint<3> {
-    /// The same in `D` dimensions.
+    /// The same command in `D` dimensions.
     ///
     /// # Errors
-    /// [`WorldError::Path`] where it adds a body, which has the dimension of its scene: [`crate::AnyWorld::act_of`] takes such a command.
+    /// [`WorldError::Path`] if the command adds a body: a body has the dimension of its scene. [`crate::AnyWorld::act_of`] takes such a command.
     pub(crate) fn cut<const D: usize>(&self) -> Result<CommandBlueprint<D>, WorldError> {
         let action = match &self.action {
             Action::Drag { body, node, facet, stiffness, path, largest_force } => Action::Drag {
@@ -63,19 +63,19 @@ impl CommandBlueprint<3> {
 }
 
 impl<const D: usize> Blueprint<D> {
-    /// The last command that has begun by a time [s] and adds a body.
+    /// The last command that adds a body and has begun by a given time [s].
     fn addition(&self, now: f64) -> Option<&CommandBlueprint<D>> {
         self.commands.iter().rfind(|command| command.at <= now && matches!(command.action, Action::Add(_)))
     }
 }
 
 impl AnyBlueprint {
-    /// The last command that has begun by a time [s] and adds a body, for a world of the same dimension.
+    /// The last command that adds a body and has begun by a given time [s], for a world of the same dimension.
     ///
-    /// The body goes there as bytes, as it does in a snapshot.
+    /// The body is passed on as bytes, as in a snapshot.
     ///
     /// # Errors
-    /// [`WorldError::Path`] where there is none, or the world has another dimension.
+    /// [`WorldError::Path`] if there is no such command, or if the world has another dimension.
     pub(crate) fn addition_for<const D: usize>(
         &self,
         registry: &Registry<D>,

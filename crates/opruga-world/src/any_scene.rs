@@ -1,4 +1,4 @@
-//! A scene without a dimension in its type: what readers of either dimension ask of it.
+//! A scene without a dimension in its type: the queries that do not depend on the dimension.
 
 use crate::blueprint::{
     AnyBlueprint, Blueprint, BodyBlueprint, ColliderBlueprint, ContactBlueprint, Pictured, Recorded, Time,
@@ -34,11 +34,11 @@ pub trait AnyScene {
     fn integrator(&self) -> &Values;
     /// Rigid obstacles.
     fn colliders(&self) -> &[ColliderBlueprint];
-    /// How bodies touch one another; none where they pass through one another.
+    /// How bodies touch one another; none if they pass through one another.
     fn contact(&self) -> Option<&ContactBlueprint>;
-    /// How many numbers of bodies there are; a number may belong to a body that is gone.
+    /// The number of body numbers. A number may belong to a body that was removed.
     fn body_count(&self) -> usize;
-    /// A body by its number; none where there is no such number.
+    /// The body with a number, if there is one.
     fn body(&self, number: usize) -> Option<&dyn AnyBody>;
     /// The names of the columns of every probe, in the order of [`AnyWorld::probe`].
     fn probe_columns(&self) -> Vec<Vec<String>>;
@@ -117,21 +117,21 @@ pub trait AnyBody: core::fmt::Debug {
     fn name(&self) -> &str;
     /// Its models and their parameters.
     fn models(&self) -> &[Values];
-    /// Its own integrator; none: that of the scene.
+    /// Its own integrator; if there is none, the body uses that of the scene.
     fn integrator(&self) -> Option<&Values>;
     /// Depth out of the plane in 2D; in 3D the thickness of a sheet or the width of a wire [m].
     fn thickness(&self) -> f64;
     /// The number of nodes of its rest shape.
     fn nodes(&self) -> usize;
-    /// Where its nodes are at rest, before it is moved to its place [m]; z is 0 in the plane.
+    /// The rest positions of its nodes, before the body is moved to its position in the scene [m]; z is 0 in the plane.
     fn rest_positions(&self) -> Vec<[f64; 3]>;
-    /// Where its rest shape lies at the start [m]; z is 0 in the plane.
+    /// The translation of its rest shape at the start [m]; z is 0 in the plane.
     fn translation(&self) -> [f64; 3];
-    /// The rest shape's node numbers of the boundary, one row of as many numbers as coordinates per facet.
+    /// The node numbers of the boundary facets of the rest shape. Each row has as many numbers as a node has coordinates.
     fn facets(&self) -> &[u32];
     /// The triangles of an open surface.
     fn sheets(&self) -> &[[u32; 3]];
-    /// The lines that are drawn of a body with a surface.
+    /// The lines that are drawn for a body with a surface.
     fn wires(&self) -> &[[u32; 2]];
     /// The filled interior.
     fn cells(&self) -> &Cells;
@@ -141,20 +141,20 @@ pub trait AnyBody: core::fmt::Debug {
     fn cell_groups(&self) -> &BTreeMap<String, Vec<u32>>;
     /// What is drawn instead of the boundary.
     fn skin(&self) -> Option<&Skin>;
-    /// The signed volume that its facets enclose where its nodes are at some positions [m³, m² in the plane]; none without facets.
+    /// The signed volume that its facets enclose when its nodes are at the given positions [m³, m² in the plane]; none without facets.
     fn enclosed_volume(&self, positions: &[[f64; 3]]) -> Option<f64>;
     /// The pairs of nodes that its elements join.
     fn edges(&self) -> Vec<[u32; 2]>;
-    /// The nodes that its own pins hold or move, in rising order.
+    /// The nodes that its own pins hold or move, in ascending order.
     fn pinned_nodes(&self) -> Vec<u32>;
     /// Whether one of its own pins holds nodes at rest.
     fn is_pinned_at_rest(&self) -> bool;
-    /// The smallest and largest angles and edges of its cells; none where it has no cells.
+    /// The smallest and largest angles and edges of its cells; none if it has no cells.
     fn cell_quality(&self) -> Option<CellQuality>;
 }
 
 impl dyn AnyBody + '_ {
-    /// Whether one of its models has a role.
+    /// Whether one of its models has the given role.
     pub fn has_role(&self, role: Role) -> bool {
         self.models().iter().any(|model| model.spec().has_role(role))
     }
@@ -229,7 +229,7 @@ impl<const D: usize> AnyBody for BodyBlueprint<D> {
 }
 
 impl AnyBlueprint {
-    /// What readers of either dimension ask of the scene.
+    /// The scene as seen by callers that do not depend on the dimension.
     pub fn scene(&self) -> &dyn AnyScene {
         match self {
             AnyBlueprint::Plane(blueprint) => blueprint,
@@ -278,7 +278,7 @@ impl AnyBlueprint {
         })
     }
 
-    /// Everything that a world of the scene would refuse.
+    /// All errors that a world of the scene would return.
     pub fn problems(&self, options: &Options, registries: &Registries) -> Vec<WorldError> {
         let Registries { plane, space } = registries;
         match self {
@@ -288,7 +288,7 @@ impl AnyBlueprint {
     }
 }
 
-/// A vector with 0 where it has no coordinate.
+/// The vector in space, with 0 for coordinates that it does not have.
 pub(crate) fn three<const D: usize>(vector: [f64; D]) -> [f64; 3] {
     core::array::from_fn(|d| vector.get(d).copied().unwrap_or(0.0))
 }

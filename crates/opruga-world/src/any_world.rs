@@ -25,33 +25,33 @@ use std::borrow::Cow;
 
 /// A world in the plane or in space. Vectors have three numbers; in the plane z is 0.
 ///
-/// [`AnyBlueprint::build`](crate::blueprint::AnyBlueprint::build) makes one of a scene, and every [`World`] is one. The methods of
-/// [`World`] of the same names say more about each.
+/// [`AnyBlueprint::build`](crate::blueprint::AnyBlueprint::build) builds one from a scene. Every [`World`] implements this trait; its methods of the
+/// same names are documented in more detail.
 pub trait AnyWorld: core::fmt::Debug + Send {
     /// The scene, with all changes since.
     fn scene(&self) -> &dyn AnyScene;
 
-    /// Bodies that commands of the scene will add, in the order of time.
+    /// Bodies that commands of the scene will add, in order of time.
     fn coming_bodies(&self) -> Vec<&dyn AnyBody>;
 
     /// Steps through one frame.
     ///
     /// # Errors
-    /// [`WorldError`] names body, node and substep; the world is at its last good frame.
+    /// [`WorldError`] names the body, node and substep. The world is then at its last good frame.
     fn frame(&mut self) -> Result<(), WorldError>;
-    /// Looks whether the step is still stable where energy has come from nowhere.
+    /// Checks whether the step is still stable if energy has appeared without a source.
     fn look_at_steps_again(&mut self) -> bool;
-    /// Keeps the state after every so many substeps for [`AnyWorld::look_within`].
+    /// Keeps the state after every `every` substeps for [`AnyWorld::look_within`].
     fn keep_looks(&mut self, every: u32);
-    /// Shows the world as it was within the last frame, look after look.
+    /// Shows the world at the kept states within the last frame, one after another.
     fn look_within(&mut self, look: &mut dyn FnMut(&mut dyn AnyWorld));
     /// Frames since the start.
     fn frames(&self) -> u64;
     /// The time [s].
     fn time(&self) -> f64;
-    /// The substep [s].
+    /// The substep h [s].
     fn h(&self) -> f64;
-    /// The vector instructions in force.
+    /// The vector instructions in use.
     fn simd(&self) -> Simd;
     /// Threads in use.
     fn threads(&self) -> usize;
@@ -61,23 +61,23 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     /// # Errors
     /// As [`World::set`].
     fn set(&mut self, path: &str, value: Value) -> Result<(), WorldError>;
-    /// Gives a command that begins now, as if the scene had held it from the start; returns its number. In the plane the third numbers
-    /// of vectors, axes and rows mean nothing.
+    /// Gives a command that begins now, as if the scene had contained it from the start; returns its number. In the plane the third numbers of
+    /// vectors, axes and rows are ignored.
     ///
     /// # Errors
-    /// As [`World::act`]; also where it adds a body.
+    /// As [`World::act`]; also if the command adds a body.
     fn act(&mut self, command: &CommandBlueprint<3>) -> Result<usize, WorldError>;
-    /// Gives the last command of a scene that has begun by now and adds a body; returns its number.
+    /// Gives the last command of a scene that adds a body and has begun by now; returns its number.
     ///
     /// # Errors
-    /// As [`World::act`]; also where the scene has no such command, or another dimension.
+    /// As [`World::act`]; also if the scene has no such command or has another dimension.
     fn act_of(&mut self, scene: &AnyBlueprint) -> Result<usize, WorldError>;
-    /// Begins and ends what is due now without waiting for the coming frame.
+    /// Begins and ends the commands that are due now, without waiting for the next frame.
     ///
     /// # Errors
     /// As [`World::begin_what_is_due`].
     fn begin_what_is_due(&mut self) -> Result<(), WorldError>;
-    /// Leads the pointer of a drag.
+    /// Extends the path of the pointer of a drag.
     ///
     /// # Errors
     /// As [`World::lead`].
@@ -87,54 +87,54 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     /// # Errors
     /// As [`World::finish`].
     fn finish(&mut self, number: usize, until: f64) -> Result<(), WorldError>;
-    /// The command that the last call of [`AnyWorld::frame`] has refused: the cause of its error.
+    /// The command that the last call of [`AnyWorld::frame`] refused, which is the cause of its error.
     fn refused_command(&self) -> Option<RefusedCommand<'_>>;
-    /// Moves a node and gives it a velocity, from outside of the physics.
+    /// Moves a node and gives it a velocity, from outside the physics.
     ///
     /// # Errors
     /// As [`World::set_node`].
     fn set_node(&mut self, body: usize, node: u32, position: [f64; 3], velocity: [f64; 3]) -> Result<(), WorldError>;
-    /// Takes a body away.
+    /// Removes a body.
     ///
     /// # Errors
     /// As [`World::remove_body`].
     fn remove_body(&mut self, name: &str) -> Result<(), WorldError>;
-    /// Writes down from now on what the program does, for [`AnyWorld::take_inputs`].
+    /// Records the inputs of the program from now on, for [`AnyWorld::take_inputs`].
     fn keep_inputs(&mut self);
-    /// What the program has done since the last call, each as its bytes or as the error of [`Input::to_bytes`].
+    /// The inputs of the program since the last call, each as its bytes or as the error of [`Input::to_bytes`].
     fn take_inputs(&mut self) -> Vec<Result<Vec<u8>, WorldError>>;
-    /// Does again what [`AnyWorld::take_inputs`] has written.
+    /// Repeats an input that [`AnyWorld::take_inputs`] recorded.
     ///
     /// # Errors
-    /// Those of the call that it stands for; the world stays as it was.
+    /// The errors of the original call; the world is then unchanged.
     fn repeat(&mut self, input: &[u8]) -> Result<(), WorldError>;
 
-    /// The whole state in bytes.
+    /// The whole state as bytes.
     fn snapshot(&self) -> Vec<u8>;
     /// Appends the bytes of [`AnyWorld::snapshot`].
     fn snapshot_into(&self, out: &mut Vec<u8>);
-    /// Goes to the state of a snapshot.
+    /// Restores the state of a snapshot.
     ///
     /// # Errors
     /// As [`World::restore`].
     fn restore(&mut self, bytes: &[u8]) -> Result<(), WorldError>;
-    /// Goes to the state of a snapshot of the same past.
+    /// Restores the state of a snapshot from the same past.
     ///
     /// # Errors
     /// As [`World::rewind`].
     fn rewind(&mut self, bytes: &[u8]) -> Result<(), WorldError>;
     /// The hash of all positions and velocities, node by node.
     fn state_hash(&self) -> u64;
-    /// The quick hash of the same numbers.
+    /// The fast hash of the same numbers.
     fn frame_hash(&self) -> u64;
 
     /// The energy ledger of the last frame.
     fn energy(&self) -> Energy;
-    /// The linear and the angular momentum; in the plane the angular one has only its last number.
+    /// The linear and the angular momentum. In the plane only the last number of the angular momentum is used.
     fn momentum(&self) -> [[f64; 3]; 2];
-    /// What models say of a body.
+    /// The readings of the models of a body.
     fn readings(&mut self, body: usize) -> Vec<Reading>;
-    /// The names of the readings of a body; none where a model refuses it. Numbers behind those of the scene stand for
+    /// The names of the readings of a body; empty if a model refuses the body. Numbers after those of the scene belong to
     /// [`AnyWorld::coming_bodies`].
     fn reading_names_of(&self, body: usize) -> Vec<Cow<'static, str>>;
     /// The values of a probe.
@@ -143,21 +143,21 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     fn node_pressures(&mut self, body: usize) -> Vec<(u32, f64)>;
     /// Stress and volume ratio of the cells of a body.
     fn cell_states(&self, body: usize) -> Vec<CellState>;
-    /// Visits what is known of the cells and facets of a body, with their nodes.
+    /// Visits the known states of the cells and facets of a body, with their nodes.
     fn visit_states(&self, body: usize, visit: &mut dyn FnMut(&CellState, &[u32]));
-    /// What the nodes of a body are under: means of the cells or facets around them.
+    /// The states of the nodes of a body: means over the cells or facets around each node.
     fn node_states(&self, body: usize) -> Vec<Option<NodeState>>;
-    /// Warns once of bodies that pass through one another in a scene without contact; to be called after every frame.
+    /// Warns once about bodies that pass through one another in a scene without contact. Call it after every frame.
     fn warn_of_missing_contact(&mut self);
-    /// The surfaces that cross, and bodies that lie in one another.
+    /// Surfaces that cross, and bodies that lie inside one another.
     fn crossed_surfaces(&self) -> Vec<Crossed>;
-    /// Bodies of which points lie inside another one.
+    /// Bodies with points inside another body.
     fn overlaps(&self) -> Vec<Overlap>;
-    /// Lets the frames that follow report their contacts, or not.
+    /// Turns the report of contacts on or off for the frames that follow.
     fn report_contacts(&mut self, report: bool);
-    /// The contacts between bodies in the last frame, ascending by bodies.
+    /// The contacts between bodies in the last frame, in ascending order of bodies.
     fn contacts(&self) -> Vec<Contact<3>>;
-    /// The first point of a body that a ray meets, at most `reach` [m] from its origin. In the plane the third coordinates do not count.
+    /// The first point of a body that a ray hits, at most `reach` [m] from its origin. In the plane the third coordinates are ignored.
     ///
     /// # Errors
     /// As for [`World::cast_ray`].
@@ -167,7 +167,7 @@ pub trait AnyWorld: core::fmt::Debug + Send {
         direction: [f64; 3],
         reach: f64,
     ) -> Result<Option<SurfacePoint<3>>, WorldError>;
-    /// The point of the surfaces of all bodies that is nearest to a point, at most `reach` [m] away.
+    /// The point nearest to a given point on the surfaces of all bodies, at most `reach` [m] away.
     ///
     /// # Errors
     /// As for [`World::nearest_surface_point`].
@@ -179,57 +179,57 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     fn modes(&self, body: usize, count: usize) -> Result<Vec<Mode<3>>, WorldError>;
     /// Warnings so far, with counts.
     fn warnings(&self) -> Vec<Warning>;
-    /// Warnings so far, and what is odd about the shapes in the present state.
+    /// Warnings so far, and warnings about the shapes of bodies in the present state.
     fn warnings_at_the_end(&self) -> Vec<Warning>;
     /// The kinds of integrators in use.
     fn integrators(&self) -> Vec<&'static str>;
-    /// Whether every body is in statics, which knows no time.
+    /// Whether every body uses statics, which has no time.
     fn is_static(&self) -> bool;
-    /// Whether an integrator with these parameters solves for the end of its steps; false where there is no such integrator.
+    /// Whether an integrator with these parameters is implicit; false if there is no such integrator.
     fn is_implicit(&self, integrator: &Values) -> bool;
-    /// The first integrator with a role among those that the world knows.
+    /// The first known integrator with the given role.
     fn integrator_with(&self, role: Role) -> Option<&'static Spec>;
-    /// The step that would be stable for all bodies under another integrator [s]; none where there is no such step or integrator.
+    /// The step that would be stable for all bodies under another integrator [s]; none if there is no such step or integrator.
     fn stable_step_under(&self, integrator: &Values) -> Option<f64>;
     /// The estimates of the stable step.
     fn stability(&self) -> &[(String, Stability)];
-    /// What implicit integrators did since the start.
+    /// The work of implicit integrators since the start.
     fn solver_work(&self) -> SolverWork;
-    /// Whether the same bits come out on every processor.
+    /// Whether the results have the same bits on every processor.
     fn same_bits_everywhere(&self) -> bool;
-    /// How many islands there are.
+    /// The number of islands.
     fn islands(&self) -> usize;
-    /// Bytes on the heap for the state and the models of all bodies.
+    /// Bytes on the heap for the state and models of all bodies.
     fn heap_bytes(&self) -> usize;
 
-    /// Numbers of the bodies that are there.
+    /// The numbers of the present bodies.
     fn bodies(&self) -> Vec<usize>;
     /// The number of a body by its name.
     fn body(&self, name: &str) -> Option<usize>;
-    /// A handle of a body.
+    /// A handle to a body.
     fn handle(&self, body: usize) -> Option<BodyHandle>;
-    /// The number of nodes of a body; 0 where there is no such body.
+    /// The number of nodes of a body; 0 if there is no such body.
     fn node_count(&self, body: usize) -> usize;
-    /// The positions of the nodes of a body [m]; empty where there is no such body.
+    /// The positions of the nodes of a body [m]; empty if there is no such body.
     fn positions(&self, body: usize) -> Vectors<'_>;
-    /// The velocities of the nodes of a body [m/s]; empty where there is no such body.
+    /// The velocities of the nodes of a body [m/s]; empty if there is no such body.
     fn velocities(&self, body: usize) -> Vectors<'_>;
-    /// The mass of a node [kg]; NaN where there is no such body or node.
+    /// The mass of a node [kg]; NaN if there is no such body or node.
     fn node_mass(&self, body: usize, node: u32) -> f64;
-    /// The forces of the models of one account on the nodes of a body, or of all models [N]: computed by every call.
+    /// The forces on the nodes of a body [N] from the models of one account, or from all models. Every call computes them.
     fn forces(&mut self, body: usize, account: Option<Account>) -> Vec<[f64; 3]>;
-    /// The forces of obstacles on the nodes of a body in the coming substep [N]: computed by every call.
+    /// The forces of obstacles on the nodes of a body in the coming substep [N]. Every call computes them.
     fn contact_forces(&mut self, body: usize) -> Vec<[f64; 3]>;
-    /// The nodes of a body that pins hold now.
+    /// The nodes of a body that are pinned now.
     fn pinned_now(&self, body: usize) -> Vec<u32>;
-    /// The stiffness [N/m] and the largest force [N] of a pull that names neither; none where there is no such body.
+    /// The default stiffness [N/m] and largest force [N] of a pull; none if there is no such body.
     fn usual_pull(&self, body: usize) -> Option<[f64; 2]>;
-    /// Pulls that act at present: held point [m], pointer [m], force [N].
+    /// Pulls that act now: grabbed point [m], pointer [m], force [N].
     fn pulls(&self) -> Vec<[[f64; 3]; 3]>;
-    /// The obstacles at the present time, in the order of the scene.
+    /// The obstacles at the present time, in scene order.
     fn obstacles(&self) -> Vec<Picture<3>>;
-    /// The pairs of nodes that springs of a body join; none where there is no such body, or a model refuses it. Numbers behind those
-    /// of the scene stand for [`AnyWorld::coming_bodies`].
+    /// The pairs of nodes that springs of a body join; none if there is no such body or if a model refuses it. Numbers after those of the scene
+    /// belong to [`AnyWorld::coming_bodies`].
     fn springs_of(&self, body: usize) -> Option<Vec<[u32; 2]>>;
 }
 

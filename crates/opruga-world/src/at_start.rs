@@ -4,7 +4,7 @@ use crate::blueprint::{Surroundings, Time};
 use opruga_core::spec::Values;
 use std::collections::BTreeMap;
 
-/// What of the scene has changed since the start, as it was then. What it has become stands in the blueprint.
+/// The changed parts of the scene as they were at the start. Their present values are in the blueprint.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct AtStart<const D: usize> {
     pub(crate) integrator: Option<Values>,
@@ -12,6 +12,6 @@ pub(crate) struct AtStart<const D: usize> {
     pub(crate) time: Option<Time>,
     pub(crate) colliders: BTreeMap<usize, Values>,
     pub(crate) contact: Option<Values>,
-    /// Models and integrators of bodies of the scene; a body that a command of it adds begins as the command says.
+    /// Models and integrators of the bodies of the scene. A body that a command of the scene adds starts with the values of that command.
     pub(crate) bodies: BTreeMap<usize, (Vec<Values>, Option<Values>)>,
 }

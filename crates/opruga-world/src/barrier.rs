@@ -1,7 +1,7 @@
-//! Bodies that a barrier keeps apart: a substep of all that solve for its end.
+//! Bodies that a barrier keeps apart: one substep of all bodies with implicit integrators.
 //!
-//! Each begins its step, the common end is searched for ([`Search`]), and each ends its step with the forces of the others. The end of a step of statics is
-//! the common balance.
+//! Each body begins its step, [`Search`] finds the common end, and each body ends its step with the forces of the others. In statics the end of a
+//! step is the common equilibrium.
 
 use crate::barrier_search::{Kept, Opened, Refused, Search, scaled};
 use crate::island::Island;
@@ -16,7 +16,7 @@ use opruga_math::WIDTH;
 use opruga_solve::Directions;
 
 impl<const D: usize> Meeting<D> {
-    /// Makes a substep of all bodies that the barrier keeps apart. Where one of them fails in it, its outcome says so.
+    /// Makes a substep of all bodies that the barrier keeps apart. If one of them fails, its outcome contains the error.
     pub(crate) fn step_with_barrier(
         &mut self,
         islands: &mut [&mut Island<D>],
@@ -55,7 +55,7 @@ impl<const D: usize> Meeting<D> {
         outcome
     }
 
-    /// Makes a step of h to a time [s], or two of half the length where its end is not found and the scene asks for that.
+    /// Makes a step of h to a time [s]. If its end is not found and the scene allows it, makes two steps of half the length.
     fn advance_as_one(
         &mut self,
         islands: &mut [&mut Island<D>],
@@ -84,7 +84,7 @@ impl<const D: usize> Meeting<D> {
         self.advance_as_one(islands, step, kept, (0.5 * h, time), halvings + 1)
     }
 
-    /// Makes a step of h to a time [s], a part of a whole substep [s].
+    /// Makes a step of h to a time [s]; the step is a part of a whole substep [s].
     fn find_common_end(
         &mut self,
         islands: &mut [&mut Island<D>],
@@ -98,7 +98,7 @@ impl<const D: usize> Meeting<D> {
         for (body, pushed) in self.pushed.iter().enumerate() {
             let island = &mut islands[pushed.island];
             island.system.pushes = Some(Vec::new());
-            // Bodies whose integrator does not solve for the end of a step are refused before the run.
+            // Bodies with explicit integrators are refused before the run.
             let Some(begun) = island.integrator.open(&mut island.system, h) else { continue };
             for (p, index) in self.touching.coupled.points_of(body).zip(&pushed.indices) {
                 coordinates[p] = Some((opened.len(), first + *index as usize * D));
@@ -145,7 +145,7 @@ impl<const D: usize> Meeting<D> {
 }
 
 impl<const D: usize> Search<'_, '_, D> {
-    /// Ends the steps of all bodies, with the forces that they exert on one another, as impulses of a whole substep of h [s].
+    /// Ends the steps of all bodies. The forces that they exert on one another are reported as impulses of a whole substep of h [s].
     fn close(self, h: f64) -> Result<(), Refused> {
         let (iterations, converged, moves) = (self.iterations, self.converged, self.staying.is_none());
         let Search { islands, touching, barrier, opened, coordinates, moved, x, pressed, rubbing, .. } = self;
@@ -186,7 +186,7 @@ impl<const D: usize> Search<'_, '_, D> {
                 }
                 let node = (at - first) / D;
                 pushes.push((node, forces[p]));
-                // Statics enters all work as that of the hand that leads the bodies.
+                // In statics all work counts as work of the user who moves the bodies.
                 if moves {
                     system.work.contact[node % WIDTH] += losses[p][0];
                     system.work.friction[node % WIDTH] += losses[p][1];
@@ -213,7 +213,7 @@ impl<const D: usize> Search<'_, '_, D> {
     }
 }
 
-/// Refuses a body with cells inside out: in such a one nothing is apart.
+/// Refuses a body with inverted cells: a barrier cannot keep it apart from anything.
 fn refuse_inverted_cells<const D: usize>(system: &System<D>) -> Result<(), StepError> {
     let view = system.view(Stage::Current, system.time);
     for member in &system.members {

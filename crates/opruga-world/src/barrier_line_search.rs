@@ -1,29 +1,29 @@
-//! The line search of bodies that a barrier keeps apart: how far a correction goes.
+//! The line search of bodies that a barrier keeps apart: how long a correction may be.
 //!
-//! No correction goes farther than pairs may go without meeting, and the sum of all energies falls along it.
+//! A correction ends before any pair meets, and the sum of all energies falls along it.
 
 use crate::barrier_search::{Opened, Refused, Search};
 use opruga_collide::{Touching, Trouble};
 use opruga_math::Lane;
 
-/// The part of the slope that may be left after a correction. Without it corrections go to and fro over the end of sticking, as energies differ by less than
-/// their rounding there (`what_sticks_on_a_body_does_not_creep`).
+/// The largest fraction of the slope that may remain after a correction. Without this limit corrections alternate around the end of sticking, because
+/// the energies differ there by less than their rounding errors (`what_sticks_on_a_body_does_not_creep`).
 const SLOPE_LEFT: f64 = 0.8;
 
-/// A correction whose end is steeper than this part of its beginning lets the next one go twice as far, up to so many times its length: a matrix
-/// without negative eigenvalues is too stiff where bodies buckle. Without it, a square of springs that buckles on landing takes more than 100 iterations
-/// (`bodies_that_buckle_find_an_end`).
+/// If the slope at the end of a correction is more than this fraction of the slope at its beginning, the next correction may be twice as long, up to
+/// `LONGEST_STRETCH` times its length. A matrix without negative eigenvalues is too stiff for bodies that buckle. Without this rule, a square of
+/// springs that buckles on landing takes more than 100 iterations (`bodies_that_buckle_find_an_end`).
 const STEEP: f64 = 0.3;
 const LONGEST_STRETCH: f64 = 16.0;
 
-/// Halvings of a correction at most: a trillionth of it is none.
+/// The maximum number of halvings of a correction: a trillionth of a correction counts as none.
 const MOST_HALVINGS: u32 = 40;
 
-/// Energies that differ by less than this part of their terms are the same.
+/// Energies whose difference is below this fraction of their terms count as equal.
 const ROUNDING: f64 = 1e-12;
 
 impl<const D: usize> Search<'_, '_, D> {
-    /// The slope of the sum along the correction, less the works of what obstacles do.
+    /// The slope of the sum along the correction, minus the work of the obstacles.
     pub(crate) fn slope(&mut self, gradient: &[f64]) -> f64 {
         let mut slope = 0.0;
         for open in &mut self.opened {
@@ -39,7 +39,7 @@ impl<const D: usize> Search<'_, '_, D> {
         slope
     }
 
-    /// Goes along the correction as far as pairs may go, and the sum falls; gives the part that was gone.
+    /// Moves along the correction as far as the pairs allow and the sum falls. Returns the fraction of the correction that was made.
     pub(crate) fn go(&mut self, slope: f64) -> Result<f64, Refused> {
         for (p, of_point) in self.coordinates.iter().enumerate() {
             let from = &self.x[p];
@@ -80,7 +80,7 @@ impl<const D: usize> Search<'_, '_, D> {
                 let gradient = self.gradient();
                 now = self.slope(&gradient);
             }
-            // Differences of energies are lost in rounding where the step is small.
+            // If the step is small, the difference of the energies is lost in rounding.
             let risen = match (before, self.energy().filter(|_| allowed)) {
                 (Some([before, size]), Some([after, other])) => {
                     let rounding = ROUNDING * (size + other + (part * given).abs()) + rounding;
@@ -117,7 +117,7 @@ impl<const D: usize> Search<'_, '_, D> {
         Ok(gone)
     }
 
-    /// Φ of all bodies, B and D, and the size of their parts [J]; none where damping takes part.
+    /// Φ of all bodies plus B and D, and the sum of the sizes of the terms [J]; none with damping.
     fn energy(&self) -> Option<[f64; 2]> {
         let [mut sum, mut size] = [0.0; 2];
         for open in &self.opened {
@@ -134,7 +134,7 @@ impl<const D: usize> Search<'_, '_, D> {
         Some([sum, size])
     }
 
-    /// The part of the paths to these positions [m] that all pairs may go.
+    /// The fraction of the paths to these positions [m] that no pair forbids.
     fn free_part(&mut self, far: &[[f64; D]]) -> Result<f64, Refused> {
         let Touching { surface, laws, most, .. } = &*self.touching;
         let mut end = far.to_vec();
@@ -142,7 +142,7 @@ impl<const D: usize> Search<'_, '_, D> {
         for _ in 0..MOST_HALVINGS {
             match self.barrier.look(surface, laws, [&self.x, &end], *most) {
                 Ok(()) => return Ok(part * self.barrier.free_part(surface, laws, [&self.x, &end])),
-                // Paths across many bodies have more pairs than the limit allows: half of them may do.
+                // Paths across many bodies have more pairs than the limit allows; half of the paths may stay below it.
                 Err(Trouble::TooMany { .. }) => part *= 0.5,
                 Err(trouble) => return Err(trouble.into()),
             }
@@ -153,7 +153,7 @@ impl<const D: usize> Search<'_, '_, D> {
         Ok(self.barrier.look(surface, laws, [&self.x, &self.x], *most).map(|()| 0.0)?)
     }
 
-    /// Looks for pairs on the paths on which points set out in a step of h [s].
+    /// Searches for pairs along the paths that the points would take in a step of h [s].
     pub(crate) fn look_ahead(&mut self, h: f64) -> Result<(), Refused> {
         let Touching { surface, laws, most, before: [x, v], .. } = &*self.touching;
         self.trial.clear();

@@ -1,12 +1,13 @@
-//! Bodies that a barrier keeps apart: one balance for all that solve for the end of a substep.
+//! Bodies that a barrier keeps apart: one minimisation for all bodies with implicit integrators, whose result is the end of a substep.
 //!
 //! ```text
 //! Σ Φ(u) + B(x₀ + u) + D(u) → min    Φ of each body, B the barrier, D friction at given normal forces
 //! ```
 //!
-//! Newton's method: a direction from the matrices of the bodies, each with its factor, and the second derivatives of B and D as short vectors
-//! beside them (conjugate gradients); no step goes farther than pairs may go without meeting, and the sum falls. So surfaces that are apart
-//! at the start of a substep are so at its end. Multipliers of friction and the normal forces that it goes by are found in rounds around that.
+//! Newton's method with conjugate gradients finds a direction. Its matrix consists of the matrices of the bodies, each with its own factor, and of
+//! the second derivatives of B and D, which are stored as short vectors. A step ends before any pair meets, and the sum falls. Surfaces that are
+//! apart at the start of a substep are therefore apart at its end. Outer rounds find the friction multipliers and the normal forces on which friction
+//! depends.
 //!
 //! Source: M. Li and others, Incremental potential contact, ACM Trans. Graph. 39 (2020), algorithm 1.
 
@@ -21,39 +22,40 @@ use opruga_core::system::Workspace;
 use opruga_math::Lane;
 use opruga_solve::{Directions, Preconditioner, conjugate_gradients, dot};
 
-/// The part of its right-hand side that the linear solver may leave, in the first iteration; it falls with what is out of balance. As where a body is alone.
+/// The tolerance of the linear solver in the first iteration, relative to its right-hand side. It falls with the residual, as for a single body.
 const LEFT: f64 = 1e-2;
 
-/// The least part: the residuals of stiff bodies (1e7 Pa) are rounding below it, and directions made of them lead nowhere.
+/// The smallest tolerance. Below it the residuals of stiff bodies (1e7 Pa) are rounding errors, and directions computed from them are useless.
 const LEAST_LEFT: f64 = 1e-9;
 
-/// Products of conjugate gradients at most: every pair that presses hard takes about one.
+/// The maximum number of products of conjugate gradients: every pair under a large force takes about one.
 const MOST_PRODUCTS: u32 = 2000;
 
-/// Iterations of a search with a budget at most, with those that it does not count: as many as exact steps have without friction.
+/// The maximum number of iterations of a search with a budget, including those that do not count against the budget: as many as exact steps have
+/// without friction.
 const MOST_IN_BUDGET: u32 = 100;
 
-/// Rounds of friction at most, and the part of itself by which its force still changes where they end.
+/// The maximum number of rounds of friction, and the relative change of the friction force at which they end.
 const MOST_ROUNDS: u32 = 30;
 const SETTLED: f64 = 1e-3;
 
-/// The part of what is out of balance with which a search with a budget is at its end. With 0.2 in its place, the impact of 27 cubes makes 4 % of the energy
-/// in motion, and the ledger of a tower closes to 2 % (`a_barrier_with_a_budget_leaves_bodies_where_exact_steps_do`).
+/// The fraction of the initial residual at which a search with a budget ends. With 0.2 instead, the impact of 27 cubes creates 4 % of the energy in
+/// motion, and the ledger of a tower closes to 2 % (`a_barrier_with_a_budget_leaves_bodies_where_exact_steps_do`).
 const ENOUGH: f64 = 0.05;
 
-/// The part of that which the linear solver may leave, and the part of its right-hand side that it leaves at most. They trade products for iterations;
-/// the residual with which a search ends does not depend on them.
+/// The tolerance of the linear solver relative to `ENOUGH`, and its largest value relative to the right-hand side. These two numbers trade products
+/// for iterations; the residual at which a search ends does not depend on them.
 const LINEAR_SHARE: f64 = 0.5;
 const MOST_LEFT: f64 = 0.1;
 
-/// What a scene keeps for its barrier.
+/// The data that a scene keeps for its barrier.
 #[derive(Debug, Default)]
 pub(crate) struct Kept<const D: usize> {
     pub(crate) barrier: Barrier<D>,
-    /// Friction of the substep before; ascending.
+    /// Friction of the previous substep; ascending.
     pub(crate) multipliers: Vec<(u64, [f64; D])>,
     pub(crate) workspaces: Vec<Workspace<D>>,
-    /// How often a substep whose search does not end is halved at most.
+    /// The maximum number of times that a substep is halved if its search does not converge.
     pub(crate) most_halvings: u32,
 }
 
@@ -63,7 +65,7 @@ impl<const D: usize> Kept<D> {
     }
 }
 
-/// Where a substep ends for all bodies.
+/// Errors that end a substep for all bodies.
 pub(crate) enum Refused {
     Step(StepError),
     Trouble(Trouble),
@@ -79,7 +81,7 @@ impl From<Trouble> for Refused {
     }
 }
 
-/// A body whose step has begun, and where its coordinates begin in long vectors.
+/// A body whose step has begun, and the index of its first coordinate in the long vectors.
 pub(crate) struct Opened<const D: usize> {
     pub(crate) island: usize,
     pub(crate) first: usize,
@@ -92,42 +94,42 @@ pub(crate) struct Search<'a, 'b, const D: usize> {
     pub(crate) touching: &'a mut Touching<D>,
     pub(crate) barrier: &'a mut Barrier<D>,
     pub(crate) opened: Vec<Opened<D>>,
-    /// The body and the first coordinate of every point of the surfaces; none of obstacles.
+    /// The body and first coordinate index of every point of the surfaces; none for points of obstacles.
     pub(crate) coordinates: Vec<Option<(usize, usize)>>,
-    /// Displacements of all points since the start, and where they are.
+    /// Displacements of all points since the start of the step, and their positions.
     pub(crate) moved: Vec<[f64; D]>,
     pub(crate) x: Vec<[f64; D]>,
     pub(crate) trial: Vec<[f64; D]>,
-    /// How far obstacles still have to go [m].
+    /// The remaining displacements of obstacles [m].
     pub(crate) ahead: Vec<[f64; D]>,
     pub(crate) pressed: Vec<Pressed<D>>,
     pub(crate) rubbing: Vec<Rubbing<D>>,
-    /// Second derivatives of what acts between bodies, where the last correction was looked for.
+    /// Second derivatives of the energies between bodies at the point where the last correction was computed.
     pub(crate) stiffness: PairStiffness<D>,
     pub(crate) directions: Directions,
     pub(crate) length: usize,
     pub(crate) iterations: u32,
     /// Whether all bodies have a budget (`accuracy = "real_time"`).
     pub(crate) has_budget: bool,
-    /// Whether the search has come to its end, friction included.
+    /// Whether the search has converged, including friction.
     pub(crate) converged: bool,
-    /// By how much the next correction is lengthened.
+    /// The factor by which the next correction is lengthened.
     pub(crate) stretch: f64,
-    /// How firmly bodies at rest stay where they are within a correction; none of bodies that move.
+    /// The terms that keep bodies at rest near their present positions during a correction; none for moving bodies.
     pub(crate) staying: Option<Staying>,
 }
 
-/// What is out of balance in an iteration.
+/// The residual of an iteration.
 struct Residual {
-    /// The forces between bodies with their sign turned, ∂(B + D)/∂u [N].
+    /// The forces between bodies with their sign reversed, ∂(B + D)/∂u [N].
     gradient: Vec<f64>,
-    /// How far obstacles and pins lead nodes [m].
+    /// The displacements that obstacles and pins prescribe for nodes [m].
     prescribed: Vec<f64>,
-    /// What the correction has to balance [N].
+    /// The right-hand side for the correction [N].
     right: Vec<f64>,
-    /// Its size relative to the largest one of the search.
+    /// Its norm relative to the largest one of the search.
     share: f64,
-    /// Whether bodies at rest are balanced.
+    /// Whether bodies at rest are in equilibrium.
     balanced: bool,
 }
 
@@ -147,7 +149,7 @@ impl<const D: usize> Preconditioner for Factors<'_, D> {
 }
 
 impl<const D: usize> Search<'_, '_, D> {
-    /// How much the points give way, by the matrices at the start of the step.
+    /// Finds the compliance of the points from the matrices at the start of the step.
     pub(crate) fn find_softness(&mut self) -> Result<(), Refused> {
         self.barrier.softness.clear();
         self.barrier.softness.resize(self.coordinates.len(), 0.0);
@@ -169,7 +171,7 @@ impl<const D: usize> Search<'_, '_, D> {
         Ok(())
     }
 
-    /// Lets bodies at rest stay where they are now by a part of their mass.
+    /// Adds a part of the masses of bodies at rest, which keeps them near their present positions.
     fn stay(&mut self) -> Result<(), StepError> {
         let Some(staying) = &self.staying else { return Ok(()) };
         for (body, Opened { island, step, .. }) in self.opened.iter_mut().enumerate() {
@@ -179,7 +181,7 @@ impl<const D: usize> Search<'_, '_, D> {
         Ok(())
     }
 
-    /// Takes the derivatives of all bodies, and factors them.
+    /// Computes the derivatives of all bodies and factors their matrices.
     fn factor(&mut self, exact: bool) -> Result<(), Refused> {
         let islands = &self.islands;
         let refused = self.opened.iter_mut().position(|open| !open.step.factor(&islands[open.island].system, exact));
@@ -191,14 +193,15 @@ impl<const D: usize> Search<'_, '_, D> {
         StepError::of(name, Refusal::NoFactor {}).into()
     }
 
-    /// Finds the common end, friction included. With a budget, friction goes by the normal forces at the start, and its multipliers settle from step to step.
+    /// Finds the common end, including friction. With a budget, friction depends on the normal forces at the start, and its multipliers converge over
+    /// several steps.
     pub(crate) fn find_end(&mut self, h: f64, multipliers: Vec<(u64, [f64; D])>) -> Result<(), Refused> {
         let mut before = Vec::new();
         self.look_ahead(h)?;
         self.press()?;
         self.rub(&multipliers);
-        // Bodies that come to rest are balanced once friction is known. Until then it follows every correction: what slides without it may have no
-        // balance but far away (`stacks_come_to_their_balance`).
+        // Bodies that come to rest reach equilibrium only when friction is known. Until then friction is updated after every correction: without
+        // friction a sliding body may have its only equilibrium far away (`stacks_come_to_their_balance`).
         let (mut precise, mut rounds) = (self.staying.is_none(), 0);
         while rounds < MOST_ROUNDS {
             self.converged = true;
@@ -206,7 +209,7 @@ impl<const D: usize> Search<'_, '_, D> {
             if self.has_budget {
                 return Ok(());
             }
-            // The normal forces that friction goes by, and its multipliers, are those of what was found.
+            // The multipliers and the normal forces on which friction depends come from this result.
             let multipliers = self.multipliers();
             before = std::mem::take(&mut self.rubbing);
             self.rub(&multipliers);
@@ -223,7 +226,7 @@ impl<const D: usize> Search<'_, '_, D> {
                 return self.accept_or_refuse(accepts).map(|_| ());
             }
         }
-        // Its forces are those with which the bodies are balanced.
+        // The bodies are in equilibrium with the previous friction forces.
         self.rubbing = before;
         if self.staying.is_some() {
             self.find_minimum(true)?;
@@ -232,12 +235,12 @@ impl<const D: usize> Search<'_, '_, D> {
         Ok(())
     }
 
-    /// What friction acts against on every pair [N], by the features of the pairs.
+    /// The force that friction resists on every pair [N], by the features of the pairs.
     pub(crate) fn multipliers(&self) -> Vec<(u64, [f64; D])> {
         self.rubbing.iter().map(|rub| (rub.id, scaled(&rub.force(&rub.slip(&self.moved)), -1.0))).collect()
     }
 
-    /// Lets pairs rub that press, with multipliers where they are known.
+    /// Adds friction to pairs under pressure, with their multipliers if these are known.
     fn rub(&mut self, multipliers: &[(u64, [f64; D])]) {
         let known =
             |id: u64| multipliers.binary_search_by_key(&id, |(id, _)| *id).map_or([0.0; D], |k| multipliers[k].1);
@@ -245,7 +248,7 @@ impl<const D: usize> Search<'_, '_, D> {
         self.rubbing = rubs.map(|pair| pair.rubbing(known(pair.id))).collect();
     }
 
-    /// Whether friction is what it was in the search that has just ended.
+    /// Whether friction has the same values as in the search that has just ended.
     fn is_settled(&self, before: &[Rubbing<D>]) -> bool {
         let (mut most, mut changed): (f64, f64) = (0.0, 0.0);
         for rub in &self.rubbing {
@@ -259,8 +262,8 @@ impl<const D: usize> Search<'_, '_, D> {
         changed <= SETTLED * most
     }
 
-    /// Newton's method at given friction, to the tolerance of the bodies; or one correction of bodies at rest. Says whether a minimum was found: for one
-    /// correction, whether the bodies were balanced before, to a part of their forces.
+    /// Newton's method at given friction, to the tolerance of the bodies; for bodies at rest, one correction. Returns whether a minimum was found.
+    /// For one correction, this is whether the bodies were in equilibrium before it, to a fraction of their forces.
     fn find_minimum(&mut self, precise: bool) -> Result<bool, Refused> {
         let (mut first, mut counted) = (0.0, 0);
         self.stretch = if precise { 1.0 } else { self.stretch };
@@ -281,10 +284,11 @@ impl<const D: usize> Search<'_, '_, D> {
             if self.has_budget && self.iterations > 1 && self.find_residual(&mut first, balanced).share <= ENOUGH {
                 return Ok(true);
             }
-            // Exact derivatives near the minimum; where these lead nowhere, those without negative eigenvalues. A budget takes these at once.
+            // Near the minimum, use exact derivatives; if they give no direction, use derivatives without negative eigenvalues. With a budget, use
+            // the latter at once.
             let mut direction = None;
             for exact in [true, false].into_iter().skip(usize::from(self.has_budget)) {
-                // The matrices at the start are those by which points give way.
+                // The compliance of the points was computed from the matrices at the start, so these are already known.
                 if !self.has_budget || self.iterations > 1 || changed {
                     self.factor(exact)?;
                 }
@@ -296,7 +300,7 @@ impl<const D: usize> Search<'_, '_, D> {
             }
             let Some((slope, balanced)) = direction else { return Err(self.not_definite(0)) };
             let part = self.go(slope)?;
-            // What pairs in the way, or a sum that rises, cut short is no iteration of a budget: bodies would stop in flight.
+            // A correction that pairs or a rise of the sum have shortened does not count against a budget; otherwise bodies would stop in mid-flight.
             counted += u32::from(part == 1.0 || !self.has_budget);
             if let Some(staying) = self.staying.as_mut().filter(|_| part == 1.0) {
                 staying.loosen();
@@ -320,13 +324,13 @@ impl<const D: usize> Search<'_, '_, D> {
         }
     }
 
-    /// The most iterations of a body, and whether a search that has not converged then counts.
+    /// The most iterations of a body, and whether a search that has not converged is then accepted.
     fn most_iterations(&self) -> (u32, bool) {
         let each = self.opened.iter().map(|open| open.step.most_iterations());
         each.fold((0, true), |(most, all), (iterations, accepts)| (most.max(iterations), all && accepts))
     }
 
-    /// Takes a minimum that was not found for one, where the scene says so.
+    /// Accepts a result that is not a minimum, if the scene allows it.
     fn accept_or_refuse(&mut self, accepts: bool) -> Result<bool, Refused> {
         self.converged = false;
         if accepts { Ok(true) } else { Err(self.no_end(self.iterations)) }
@@ -337,8 +341,8 @@ impl<const D: usize> Search<'_, '_, D> {
         StepError::of(name, Refusal::NoCommonEnd { iterations }).into()
     }
 
-    /// Whether the forces on every body at rest are balanced, however firmly it stays where it is; `gradient` is what acts between bodies, `left` what
-    /// is out of balance, and `most` the largest part of the forces that may be.
+    /// Whether the forces on every body at rest balance, without the terms that keep it near its present position. `gradient` contains the forces
+    /// between bodies, `left` the residual, and `most` the largest allowed residual relative to the forces.
     fn is_balance(&self, gradient: &[f64], left: &[f64], most: f64) -> bool {
         let balances = |open: &Opened<D>| {
             let (left, range) = (norm(&left[open.range()]), open.range());
@@ -348,7 +352,7 @@ impl<const D: usize> Search<'_, '_, D> {
         self.staying.is_none() || self.opened.iter().all(balances)
     }
 
-    /// Adds a vector of a pair to those of its points.
+    /// Adds a vector of a pair to the vectors of its points.
     fn scatter(&self, (points, weights): Weighted<'_>, force: &[f64; D], to: &mut [f64]) {
         for (p, w) in points.iter().zip(weights).filter(|(_, w)| **w != 0.0) {
             self.touching.surface.visit_nodes(*p, |node, share| {
@@ -377,7 +381,8 @@ impl<const D: usize> Search<'_, '_, D> {
         out
     }
 
-    /// Finds what is out of balance; `first` is the largest size of it, and `most` the largest part of the forces with which bodies at rest are balanced.
+    /// Finds the residual. `first` is its largest norm so far; `most` is the largest residual, relative to the forces, at which bodies at rest count
+    /// as being in equilibrium.
     fn find_residual(&mut self, first: &mut f64, most: f64) -> Residual {
         let gradient = self.gradient();
         let between = (&self.pressed[..], &self.rubbing[..]);
@@ -399,7 +404,7 @@ impl<const D: usize> Search<'_, '_, D> {
         Residual { gradient, prescribed, right, share, balanced }
     }
 
-    /// Finds the correction of all bodies, if it leads downhill: the slope of the sum along it.
+    /// Finds the correction of all bodies. Returns the slope of the sum along it, if the sum falls.
     fn find_direction(&mut self, left: &Residual) -> Option<f64> {
         let Residual { gradient, prescribed, right, share, .. } = left;
         let (linear, settled) = if self.has_budget {
@@ -415,7 +420,7 @@ impl<const D: usize> Search<'_, '_, D> {
                 let range = open.range();
                 open.step.correction().copy_from_slice(&whole[range]);
             }
-            // What holds nodes takes the forces between bodies too.
+            // Constraints on nodes also take up the forces between bodies.
             let mut between = gradient.clone();
             self.stiffness.multiply(&whole, true, &mut between);
             let mut changed = false;
@@ -432,14 +437,15 @@ impl<const D: usize> Search<'_, '_, D> {
             if !changed {
                 break;
             }
-            // What friction changes by may be rounding.
+            // The change of friction may be a rounding error.
             let Some(more) = self.solve(&whole, LEFT.larger(linear)) else { break };
             step.iter_mut().zip(&more).for_each(|(s, more)| *s += more);
         }
         Some(self.slope(gradient))
     }
 
-    /// Solves with the matrix of all bodies and what acts between them, by conjugate gradients; none where that leads nowhere.
+    /// Solves with the matrix of all bodies and of the energies between them, by conjugate gradients; none if the result is not a direction of
+    /// descent.
     fn solve(&mut self, right: &[f64], tolerance: f64) -> Option<Vec<f64>> {
         let mut out = vec![0.0; self.length];
         let mut directions = std::mem::take(&mut self.directions);
@@ -456,7 +462,7 @@ impl<const D: usize> Search<'_, '_, D> {
         let by = Factors(&self.opened);
         let ended = conjugate_gradients(multiply, &by, right, &mut out, tolerance, MOST_PRODUCTS, &mut directions);
         self.directions = directions;
-        // Near the solution directions are rounding: what was found until there leads downhill all the same.
+        // Near the solution the directions are rounding errors, but the result so far may still be a direction of descent.
         let leads_down = ended.is_ok() || dot(right, &out) > 0.0;
         (leads_down && out.iter().all(|x| x.is_finite())).then_some(out)
     }

@@ -1,4 +1,4 @@
-//! A scene after it was read and checked, before it is built: plain data, no file format, no engine.
+//! A scene that has been read and checked but not built yet: plain data, independent of file format and engine.
 
 use opruga_core::spec::Values;
 use opruga_mesh::Mesh;
@@ -16,7 +16,7 @@ pub enum AnyBlueprint {
 impl TryFrom<AnyBlueprint> for Blueprint<2> {
     type Error = AnyBlueprint;
 
-    /// The scene in the plane; as it was where it is in space.
+    /// Returns the scene in the plane, or the unchanged scene if it is in space.
     fn try_from(scene: AnyBlueprint) -> Result<Self, AnyBlueprint> {
         match scene {
             AnyBlueprint::Plane(blueprint) => Ok(blueprint),
@@ -28,7 +28,7 @@ impl TryFrom<AnyBlueprint> for Blueprint<2> {
 impl TryFrom<AnyBlueprint> for Blueprint<3> {
     type Error = AnyBlueprint;
 
-    /// The scene in space; as it was where it is in the plane.
+    /// Returns the scene in space, or the unchanged scene if it is in the plane.
     fn try_from(scene: AnyBlueprint) -> Result<Self, AnyBlueprint> {
         match scene {
             AnyBlueprint::Space(blueprint) => Ok(blueprint),
@@ -40,40 +40,40 @@ impl TryFrom<AnyBlueprint> for Blueprint<3> {
 /// A checked scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Blueprint<const D: usize> {
-    /// The name of the scene: that of its file, without the ending.
+    /// The name of the scene: its file name without the extension.
     pub name: String,
     /// A sentence for lists and pictures.
     pub title: String,
-    /// What pictures and plots call the unit of length: `m`, unless the scene counts in something else, such as pixels.
+    /// The label of the unit of length in pictures and plots: `m`, unless the scene uses another unit, such as pixels.
     pub length_unit: String,
-    /// Whose drawings, maps and surfaces the scene shows, and under which licence: written under every picture.
+    /// The authors and licences of the drawings, maps and surfaces in the scene; written under every picture.
     pub credit: String,
     /// What pictures of the scene show.
     pub picture: Pictured<D>,
-    /// The seed of everything random.
+    /// The seed of all random numbers.
     pub seed: u64,
     /// How time passes.
     pub time: Time,
-    /// What acts everywhere.
+    /// Forces and limits that apply everywhere.
     pub surroundings: Surroundings<D>,
     /// The integrator and its parameters (`kind`, and the fields of its specification).
     pub integrator: Values,
-    /// The bodies, copies already written out.
+    /// The bodies, with copies already expanded.
     pub bodies: Vec<BodyBlueprint<D>>,
     /// Rigid obstacles.
     pub colliders: Vec<ColliderBlueprint>,
-    /// How bodies touch one another; none: they do not.
+    /// How bodies touch one another; none if they do not.
     pub contact: Option<ContactBlueprint>,
     /// Forces from outside.
     pub loads: Vec<LoadBlueprint<D>>,
     /// What is done to the bodies while they move.
     pub commands: Vec<CommandBlueprint<D>>,
-    /// What is written down frame by frame.
+    /// The quantities that are recorded frame by frame.
     pub probes: Vec<ProbeBlueprint<D>>,
 }
 
 impl<const D: usize> Blueprint<D> {
-    /// The same surroundings with other bodies, obstacles and loads, to look at some by themselves.
+    /// The same surroundings with other bodies, obstacles and loads, so that some of them can be examined alone.
     pub(crate) fn part(
         &self,
         bodies: Vec<BodyBlueprint<D>>,
@@ -92,7 +92,7 @@ impl<const D: usize> Blueprint<D> {
             integrator: self.integrator.clone(),
             bodies,
             colliders,
-            // Of a part its groups may be missing.
+            // A part may lack some of the groups.
             contact: self.contact.as_ref().map(|c| ContactBlueprint { values: c.values.clone(), pairs: Vec::new() }),
             loads,
             commands: Vec::new(),
@@ -101,12 +101,12 @@ impl<const D: usize> Blueprint<D> {
     }
 }
 
-/// What pictures of a scene show; what is absent is chosen by what is seen. No number of the physics depends on it.
+/// What pictures of a scene show. Values that are not given are chosen from the visible objects. No number of the physics depends on them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pictured<const D: usize> {
-    /// How many moments a film strip shows.
+    /// The number of moments in a film strip.
     pub panels: Option<u32>,
-    /// The lowest and the highest corner of the part that a film strip shows [m].
+    /// The lowest and the highest corner of the region that a film strip shows [m].
     pub region: Option<[[f64; D]; 2]>,
     /// The angle of the camera around the y axis, from z towards x [degrees]; only in space.
     pub azimuth: Option<f64>,
@@ -126,28 +126,28 @@ pub struct Time {
 }
 
 impl Time {
-    /// How many whole frames it takes until the end.
+    /// The number of whole frames until the end.
     pub fn frames(&self) -> u64 {
-        // Rounding apart; what is no number takes none.
+        // Tolerates rounding; NaN gives 0 frames.
         let frames = (self.seconds / self.frame - 1e-9).ceil();
         if frames > 0.0 { frames as u64 } else { 0 }
     }
 }
 
-/// What acts everywhere.
+/// Forces and limits that apply everywhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surroundings<const D: usize> {
     /// Acceleration of gravity [m/s²].
     pub gravity: [f64; D],
-    /// Drag per unit of mass [1/s]: a = −drag·v. It brakes rigid motion too.
+    /// Drag per unit of mass [1/s]: a = −drag·v. It slows rigid motion too.
     pub drag: f64,
-    /// The largest force on a node [N]; counted every time it acts. None: no limit.
+    /// The largest force on a node [N]. Each use of the limit is counted. None: no limit.
     pub largest_force: Option<f64>,
-    /// The largest speed of a node [m/s]; counted every time it acts. None: no limit.
+    /// The largest speed of a node [m/s]. Each use of the limit is counted. None: no limit.
     pub largest_velocity: Option<f64>,
-    /// Bodies all of whose nodes are farther from the origin than this are taken away [m]; each is counted. None: no limit.
+    /// A body is removed if all of its nodes are farther from the origin than this [m]. Removed bodies are counted. None: no limit.
     pub largest_distance: Option<f64>,
-    /// Whether bodies that rest in a degenerate shape are displaced at random, so that they leave it; counted every time it acts.
+    /// Whether bodies at rest in a degenerate shape get a random displacement, so that they leave it. Each displacement is counted.
     pub unfold: bool,
 }
 
@@ -158,31 +158,31 @@ pub struct BodyBlueprint<const D: usize> {
     pub name: String,
     /// Its rest shape; copies share it.
     pub mesh: Arc<Mesh<D>>,
-    /// Where its rest shape lies at the start [m].
+    /// The translation of its rest shape at the start [m].
     pub translation: [f64; D],
     /// Velocity at the start [m/s].
     pub velocity: [f64; D],
-    /// Angular velocity at the start about the centre of mass [rad/s]: one number in 2D, three in 3D.
+    /// Angular velocity about the centre of mass at the start [rad/s]: one number in 2D, three in 3D.
     pub angular_velocity: Vec<f64>,
-    /// Gradient of the velocity at the start G = ∂v/∂x, row by row [1/s]: what G (x − c) adds about the centre of mass c.
+    /// Velocity gradient at the start, G = ∂v/∂x, row by row [1/s]. It adds G (x − c), where c is the centre of mass.
     pub velocity_gradient: [[f64; D]; D],
-    /// What every node has besides at the start [m/s], one row per node; empty: nothing.
+    /// Additional velocity of every node at the start [m/s], one row per node; empty: none.
     pub node_velocities: Arc<[[f64; D]]>,
-    /// How much it weighs.
+    /// Its mass.
     pub mass: Mass,
-    /// Depth out of the plane in 2D; in 3D the thickness of a sheet or the width of a wire, for the mass by density alone [m].
+    /// Depth out of the plane in 2D; in 3D the thickness of a sheet or the width of a wire, used only for a mass given by density [m].
     pub thickness: f64,
-    /// Its own integrator and the parameters of that; none: that of the scene.
+    /// Its own integrator and parameters; none: that of the scene.
     pub integrator: Option<Values>,
     /// Its models and their parameters.
     pub models: Vec<Values>,
     /// Its pins.
     pub pins: Vec<PinBlueprint<D>>,
-    /// How it touches other bodies (`schema::BODY_CONTACT`); none: as the scene says.
+    /// How it touches other bodies (`schema::BODY_CONTACT`); none: as the scene specifies.
     pub contact: Option<Values>,
 }
 
-/// How much a body weighs.
+/// The mass of a body.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Mass {
     /// Mass of the whole body [kg].
@@ -232,12 +232,12 @@ pub enum Selector<const D: usize> {
     Not(std::boxed::Box<Selector<D>>),
 }
 
-/// Nodes held at their place, or moved in a prescribed way.
+/// Pinned nodes: held at rest, or moved along a given motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PinBlueprint<const D: usize> {
     /// Which nodes.
     pub select: Selector<D>,
-    /// Which axes are held.
+    /// The pinned axes.
     pub axes: [bool; D],
     /// Displacement from the start over time, rows `[t, dx, dy(, dz)]`; empty: at rest.
     pub motion: Vec<Vec<f64>>,
@@ -255,14 +255,14 @@ pub struct ColliderBlueprint {
 pub struct ContactBlueprint {
     /// The fields of `schema::CONTACT`.
     pub values: Values,
-    /// What pairs of groups do (`schema::CONTACT_PAIR`).
+    /// Settings for pairs of groups (`schema::CONTACT_PAIR`).
     pub pairs: Vec<Values>,
 }
 
 /// A force from outside.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoadBlueprint<const D: usize> {
-    /// The body, by its place in the list.
+    /// The body, by its index in the list.
     pub body: usize,
     /// Which nodes.
     pub select: Selector<D>,
@@ -272,18 +272,18 @@ pub struct LoadBlueprint<const D: usize> {
     pub curve: Vec<Vec<f64>>,
 }
 
-/// What a load does.
+/// The kind of a load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LoadKind<const D: usize> {
     /// The same force on every selected node [N].
     Force([f64; D]),
-    /// A force per area, spread over the selected part of the boundary (rest area) [Pa].
+    /// A force per area, distributed over the selected part of the boundary (rest area) [Pa].
     Traction([f64; D]),
     /// A pressure on the selected part of the boundary, along its present inner normal [Pa].
     Pressure(f64),
-    /// A force per volume at rest, spread over the cells all of whose nodes are selected by their shape functions [N/m³].
+    /// A force per volume at rest [N/m³]. It acts on the cells whose nodes are all selected, and their shape functions distribute it.
     BodyForce([f64; D]),
-    /// A force of one size on every selected node, towards a point that stays where it is.
+    /// A force of constant size on every selected node, towards a fixed point.
     Central {
         /// Its size [N]; negative: away from the point.
         value: f64,
@@ -292,33 +292,33 @@ pub enum LoadKind<const D: usize> {
     },
 }
 
-/// Something done to a body from time `at` to time `until`.
+/// An action on a body from time `at` to time `until`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CommandBlueprint<const D: usize> {
     /// When it begins [s].
     pub at: f64,
-    /// When it ends [s]; for what is done at once, the same as `at`.
+    /// When it ends [s]; for an instantaneous action, the same as `at`.
     pub until: f64,
-    /// What is done.
+    /// The action.
     pub action: Action<D>,
 }
 
-/// What a command does.
+/// The action of a command.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Action<const D: usize> {
     /// Pull a node toward a moving pointer by a critically damped spring.
     Drag {
-        /// The body, by its place in the list; bodies that commands add are numbered on behind it, in the order of time.
+        /// The body, by its index in the list. Bodies that commands add are numbered after the others, in order of time.
         body: usize,
-        /// The node; none: the one nearest to the pointer at the beginning.
+        /// Pull a node towards a moving pointer by a critically damped spring.
         node: Option<u32>,
-        /// Whether the nearest point of a facet is held rather than a node.
+        /// Whether the drag grabs the nearest point of a facet rather than a node.
         facet: bool,
         /// Stiffness of the spring [N/m].
         stiffness: Option<f64>,
         /// The path of the pointer, rows `[t, x, y(, z)]`.
         path: Vec<Vec<f64>>,
-        /// The largest force [N]; counted every time it acts.
+        /// The largest force [N]. Each use of the limit is counted.
         largest_force: Option<f64>,
     },
     /// A force on nodes [N].
@@ -327,10 +327,10 @@ pub enum Action<const D: usize> {
         body: usize,
         /// Which nodes.
         select: Selector<D>,
-        /// The force on every one of them [N].
+        /// The force on each node [N].
         force: [f64; D],
     },
-    /// Hold nodes where they are at the beginning.
+    /// Pin nodes at the positions that they have at the beginning of the command.
     Pin {
         /// The body.
         body: usize,
@@ -339,7 +339,7 @@ pub enum Action<const D: usize> {
         /// Which axes.
         axes: [bool; D],
     },
-    /// Let go of nodes that the body's own pins, or commands before this one, hold.
+    /// Release nodes that the body's own pins or earlier commands hold.
     Free {
         /// The body.
         body: usize,
@@ -353,7 +353,7 @@ pub enum Action<const D: usize> {
         /// The new value.
         value: opruga_core::spec::Value,
     },
-    /// Give a body other models or another integrator, while it moves.
+    /// Give a moving body other models or another integrator.
     Change {
         /// The body.
         body: usize,
@@ -364,27 +364,27 @@ pub enum Action<const D: usize> {
     },
     /// Add a body.
     Add(std::boxed::Box<BodyBlueprint<D>>),
-    /// Take a body away.
+    /// Remove a body.
     Remove {
         /// The name of the body.
         name: String,
     },
 }
 
-/// Columns of `diagnostics.csv` that follow nodes.
+/// Columns of `diagnostics.csv` that record quantities of nodes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProbeBlueprint<const D: usize> {
     /// Its name, the first part of the columns' names.
     pub name: String,
     /// The body.
     pub body: usize,
-    /// Which nodes; their mean is written (of reactions the sum).
+    /// Which nodes. The columns contain the mean over them (the sum, for reactions).
     pub select: Selector<D>,
-    /// What is written: `position`, `velocity`, `reaction`, `contact`, `stress`, `volume_ratio`.
+    /// The recorded quantities: `position`, `velocity`, `reaction`, `contact`, `stress`, `volume_ratio`.
     pub record: Vec<Recorded>,
 }
 
-/// What a probe writes down.
+/// A quantity that a probe records.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Recorded {
     /// Mean position [m].
@@ -395,14 +395,14 @@ pub enum Recorded {
     Reaction,
     /// Sum of the forces that obstacles exert [N].
     Contact,
-    /// Cauchy's stress at the nodes, their mean, and the von Mises stress of that [Pa].
+    /// Mean Cauchy stress at the nodes, and the von Mises stress of that mean [Pa].
     Stress,
-    /// The volume over that at rest J at the nodes, their mean.
+    /// Mean volume ratio J at the nodes.
     VolumeRatio,
 }
 
 impl Recorded {
-    /// All of them with their words in scenes.
+    /// All of them, with their names in scene files.
     pub const ALL: [(&'static str, Recorded); 6] = [
         ("position", Recorded::Position),
         ("velocity", Recorded::Velocity),
@@ -412,7 +412,7 @@ impl Recorded {
         ("volume_ratio", Recorded::VolumeRatio),
     ];
 
-    /// The last parts of the names of its columns, behind `NAME.`. In the plane stress has a part across it too.
+    /// The last parts of the names of its columns, after `NAME.`. In the plane, stress also has a component out of the plane.
     pub fn columns(self, dimension: usize) -> &'static [&'static str] {
         match (self, dimension) {
             (Recorded::Position, _) => &["x", "y", "z"][..dimension],
@@ -425,7 +425,7 @@ impl Recorded {
         }
     }
 
-    /// Whether only cells with a stress have it.
+    /// Whether it exists only for cells with a stress.
     pub fn is_of_cells(self) -> bool {
         matches!(self, Recorded::Stress | Recorded::VolumeRatio)
     }

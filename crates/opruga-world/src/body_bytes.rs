@@ -1,4 +1,4 @@
-//! Bodies and commands of the program as bytes: snapshots hold them whole, so that nothing need be kept of those that are gone.
+//! Bodies and commands of the program as bytes. Snapshots contain them completely, so that removed bodies and finished commands need not be kept.
 
 use crate::blueprint::{Action, BodyBlueprint, CommandBlueprint, Mass, PinBlueprint};
 use crate::bytes::{Reader, Writer};
@@ -52,12 +52,12 @@ impl Writer<'_> {
         self.optional(integrator, |out, values| out.values(values));
     }
 
-    /// A body but for its mesh.
+    /// A body without its mesh.
     pub(crate) fn body<const D: usize>(&mut self, body: &BodyBlueprint<D>) {
         self.text(&body.name);
         self.vectors(&[body.translation, body.velocity]);
         self.numbers(&body.angular_velocity);
-        // The rows of the gradient, then the velocities of nodes, of which most bodies have none.
+        // The rows of the gradient, then the velocities of nodes, which are empty for most bodies.
         self.vectors(&[&body.velocity_gradient[..], &body.node_velocities].concat());
         let (kind, numbers): (u64, &[f64]) = match &body.mass {
             Mass::Total(mass) => (0, std::slice::from_ref(mass)),
@@ -69,7 +69,7 @@ impl Writer<'_> {
         self.numbers(numbers);
         self.number(body.thickness);
         self.own_integrator(body.integrator.as_ref());
-        // What a body says of its contact stands behind its models, so that bodies which say nothing have the bytes they always had.
+        // The contact settings of a body follow its models, so that the bytes of bodies without such settings do not change.
         self.count((body.models.len() + usize::from(body.contact.is_some())) as u64);
         body.models.iter().chain(&body.contact).for_each(|values| self.values(values));
         self.count(body.pins.len() as u64);
@@ -164,7 +164,7 @@ impl Reader<'_> {
         Ok(if self.count()? == 1 { Some(read(self)?) } else { None })
     }
 
-    /// The values of a kind that `known` gives the specification of.
+    /// The values of a kind whose specification `known` returns.
     pub(crate) fn values(
         &mut self,
         dimension: usize,
@@ -195,7 +195,7 @@ impl Reader<'_> {
         self.optional(|reader| reader.values(D, |kind| registry.integrator(kind).map(|rule| rule.spec())))
     }
 
-    /// A body whose mesh is still to come.
+    /// A body without its mesh, which is added later.
     pub(crate) fn body<const D: usize>(&mut self, registry: &Registry<D>) -> Result<BodyBlueprint<D>, WorldError> {
         let name = self.text()?;
         let [translation, velocity] = self.vectors::<D>()?[..] else { return Err(damaged(Content::Body)) };

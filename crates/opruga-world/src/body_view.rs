@@ -1,4 +1,4 @@
-//! One body as a handle names it: readings that say what is wrong instead of showing another body.
+//! A body that a handle refers to. Readings return an error if the handle is stale, instead of another body.
 
 use crate::blueprint::BodyBlueprint;
 use crate::error::{Part, WorldError};
@@ -8,7 +8,7 @@ use crate::slots::BodyHandle;
 use crate::world::World;
 use opruga_core::error::BuildError;
 
-/// A body that is there, for reading; [`World::view`] makes it of a handle.
+/// Read access to a present body; [`World::view`] makes it from a handle.
 #[derive(Clone, Copy, Debug)]
 pub struct BodyView<'w, const D: usize> {
     world: &'w World<D>,
@@ -19,12 +19,13 @@ impl<const D: usize> World<D> {
     /// The body of a handle.
     ///
     /// # Errors
-    /// `stale_handle` if the body was removed, if the world was taken back to before it came, or if the handle is one of another world.
+    /// `stale_handle` if the body was removed, if the world was rewound to a time before the body was added, or if the handle belongs to another
+    /// world.
     pub fn view(&self, handle: BodyHandle) -> Result<BodyView<'_, D>, WorldError> {
         Ok(BodyView { world: self, number: self.resolve(handle)? })
     }
 
-    /// The number of the body of a handle, which it keeps as long as it is there.
+    /// The number of the body of a handle. It stays the same while the body exists.
     ///
     /// # Errors
     /// As [`World::view`].
@@ -38,11 +39,11 @@ impl<const D: usize> World<D> {
 }
 
 impl<'w, const D: usize> BodyView<'w, D> {
-    /// The number of the body, for the methods of [`World`].
+    /// The number of the body, for use with the methods of [`World`].
     pub fn number(&self) -> usize {
         self.number
     }
-    /// What it was made of, with all changes since.
+    /// Its blueprint, with all changes since.
     pub fn blueprint(&self) -> &'w BodyBlueprint<D> {
         &self.world.blueprint.bodies[self.number]
     }

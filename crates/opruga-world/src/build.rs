@@ -1,4 +1,4 @@
-//! From a blueprint to systems: masses, columns, models, pins and loads.
+//! Builds systems from a blueprint: masses, columns, models, pins and loads.
 
 use crate::blueprint::{Blueprint, BodyBlueprint, LoadKind, Mass};
 use crate::carried::{BodyHistory, BodyState};
@@ -26,7 +26,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 impl<const D: usize> Builder<'_, D> {
-    /// Whether anything beside its own pins may hold a body: obstacles, or others that it touches.
+    /// Whether something besides its own pins may hold a body: obstacles, or other bodies that it touches.
     fn may_be_supported(&self, body: &BodyBlueprint<D>) -> bool {
         let scene = self.blueprint;
         let by_others = scene.contact.is_some()
@@ -81,18 +81,18 @@ pub(crate) fn initial_state<const D: usize>(body: &BodyBlueprint<D>) -> BodyStat
     BodyState { x, v, memory: Vec::new(), history: BodyHistory::default() }
 }
 
-/// What building an island needs.
+/// The data that are needed to build an island.
 pub(crate) struct Builder<'a, const D: usize> {
     pub(crate) blueprint: &'a Blueprint<D>,
     pub(crate) registry: &'a Registry<D>,
     pub(crate) simd: Simd,
-    /// That of the scene, for bodies without their own.
+    /// The integrator of the scene, for bodies without their own.
     pub(crate) integrator: &'a Arc<dyn Integrator<D>>,
-    /// What breaks off the preparation of a model.
+    /// The means to cancel the preparation of a model.
     pub(crate) break_off: &'a BreakOff,
 }
 
-/// Bodies that come to lie side by side, with their states.
+/// Bodies that will lie side by side in lanes, with their states.
 struct Seats<'a, const D: usize> {
     layout: Layout,
     bodies: Vec<&'a BodyBlueprint<D>>,
@@ -107,7 +107,7 @@ impl<const D: usize> Seats<'_, D> {
 }
 
 impl<const D: usize> Builder<'_, D> {
-    /// Builds the island of some bodies with their states.
+    /// Builds the island of some bodies in their states.
     pub(crate) fn island(
         &self,
         bodies: &[usize],
@@ -150,7 +150,7 @@ impl<const D: usize> Builder<'_, D> {
         Ok(Island::new(system, integrator, bodies.to_vec(), range))
     }
 
-    /// The masses of the nodes of every body [kg], all of which and whose states are within what can be computed.
+    /// The masses of the nodes of every body [kg]. Checks that masses and states are in the range that can be computed.
     fn plausible_masses(&self, seats: &Seats<'_, D>, range: f64) -> Result<Vec<Vec<f64>>, WorldError> {
         let refused = |body: &BodyBlueprint<D>, source| WorldError::Build { part: Part::body(&body.name), source };
         for (body, state) in seats.bodies.iter().zip(seats.states) {
@@ -165,7 +165,7 @@ impl<const D: usize> Builder<'_, D> {
         Ok(masses)
     }
 
-    /// A substep [s].
+    /// The length of a substep [s].
     fn substep(&self) -> f64 {
         self.blueprint.time.frame / f64::from(self.blueprint.time.substeps)
     }
@@ -196,7 +196,7 @@ impl<const D: usize> Builder<'_, D> {
         system
     }
 
-    /// Adds a model of the first body with its values for all bodies, and what it remembers of them.
+    /// Adds a model of the first body, with its parameters for all bodies and its memory of them.
     fn add_model(
         &self,
         system: &mut System<D>,
@@ -241,7 +241,7 @@ impl<const D: usize> Builder<'_, D> {
         Ok(())
     }
 
-    /// Refuses laws of contact, models and an integrator that do not go together.
+    /// Refuses contact laws, models and an integrator that cannot be combined.
     fn check_choices(
         &self,
         seats: &Seats<'_, D>,
@@ -253,7 +253,7 @@ impl<const D: usize> Builder<'_, D> {
             contact_laws::check(self.blueprint, body, integrator)?;
         }
         self.check_cells(first)?;
-        // Loads know their derivatives; a model may lack them.
+        // Loads provide their derivatives; models may lack them.
         for member in &system.members[..first.models.len()] {
             if !member.potential.properties().views.include(integrator.needs()) {
                 return Err(no_view(&*member.potential, integrator.name()));
@@ -265,7 +265,7 @@ impl<const D: usize> Builder<'_, D> {
         Ok(())
     }
 
-    /// Refuses cells that two models own, and cells that no model owns though models name groups.
+    /// Refuses cells that belong to two models. If models name groups, also refuses cells that belong to no model.
     fn check_cells(&self, body: &BodyBlueprint<D>) -> Result<(), BuildError> {
         let mut owner = vec![None; body.mesh.cells.len()];
         let mut groups = Vec::new();
@@ -277,7 +277,7 @@ impl<const D: usize> Builder<'_, D> {
             let group = model.text("cells");
             let own: Vec<u32> = match group {
                 None => (0..owner.len() as u32).collect(),
-                // A group that is not there is refused by the model itself.
+                // The model itself refuses a missing group.
                 Some(name) => body.mesh.cell_groups.get(name).cloned().unwrap_or_default(),
             };
             groups.extend(group.map(|name| format!("`{name}`")));
@@ -300,7 +300,7 @@ impl<const D: usize> Builder<'_, D> {
         }
     }
 
-    /// Refuses what cannot go with a mass matrix that couples nodes.
+    /// Refuses everything that cannot be combined with a mass matrix that couples nodes.
     fn check_mass_matrix(&self, body: &BodyBlueprint<D>, integrator: &dyn Integrator<D>) -> Result<(), BuildError> {
         let coupling =
             body.models.iter().find(|model| model.text("mass") == Some("consistent")).or(body.models.first());
@@ -309,7 +309,7 @@ impl<const D: usize> Builder<'_, D> {
         if !integrator.takes_mass_matrix() {
             return refuse(Refusal::MassMatrix { integrator: integrator.name() });
         }
-        // In statics masses are weights alone.
+        // In statics masses serve only as weights.
         if !self.blueprint.colliders.is_empty() && !integrator.is_static() {
             return refuse(Refusal::MassAndObstacles {});
         }
@@ -416,7 +416,7 @@ impl<const D: usize> Builder<'_, D> {
     }
 }
 
-/// A model without what an integrator needs.
+/// The error for a model that lacks what an integrator needs.
 fn no_view<const D: usize>(model: &dyn Potential<D>, integrator: &str) -> BuildError {
     let properties = model.properties();
     let (integrator, why) = (integrator.to_string(), model.lacks());

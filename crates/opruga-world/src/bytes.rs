@@ -1,4 +1,4 @@
-//! Numbers, texts and values as bytes: what snapshots and written inputs are made of.
+//! Numbers, texts and values as bytes, for snapshots and recorded inputs.
 
 use crate::carried::{BodyHistory, Kept};
 use crate::error::WorldError;
@@ -14,7 +14,7 @@ const COUNT: u64 = 1;
 const FLAG: u64 = 2;
 const VECTORS: u64 = 3;
 
-/// Little-endian numbers, one after the other.
+/// Writes little-endian numbers, one after another.
 pub(crate) struct Writer<'a>(pub(crate) &'a mut Vec<u8>);
 
 impl Writer<'_> {
@@ -76,7 +76,7 @@ impl Writer<'_> {
             self.number(*x);
         }
     }
-    /// What the integrator of one body keeps.
+    /// The history that the integrator keeps for one body.
     pub(crate) fn history<const D: usize>(&mut self, system: &System<D>, lane: usize) {
         self.text(system.history.owner());
         let channels = system.history.channels();
@@ -103,7 +103,7 @@ impl Writer<'_> {
             }
         }
     }
-    /// The vectors of the nodes of one body; room is made once, for this is most of a snapshot.
+    /// The vectors of the nodes of one body. Memory is reserved once, because this is most of a snapshot.
     pub(crate) fn columns<const D: usize>(&mut self, columns: &Columns<D>, system: &System<D>, lane: usize) {
         self.count(system.nodes as u64);
         let from = self.0.len();
@@ -139,7 +139,7 @@ impl Reader<'_> {
     pub(crate) fn count(&mut self) -> Result<u64, WorldError> {
         Ok(u64::from_le_bytes(self.eight()?))
     }
-    /// A count of things that each take at least eight bytes: never more than there are bytes.
+    /// A count of items that take at least eight bytes each. It is never larger than the number of bytes.
     pub(crate) fn length(&mut self) -> Result<usize, WorldError> {
         let n = self.count()?;
         if n > self.0.len() as u64 / 8 {
@@ -203,7 +203,7 @@ impl Reader<'_> {
         }
         Ok(history)
     }
-    /// The history in a snapshot of version 8, if its integrator kept nothing; others held numbers without names.
+    /// The history in a snapshot of version 8 if its integrator kept nothing. Other histories contained numbers without names.
     pub(crate) fn empty_history<const D: usize>(&mut self) -> Result<Option<BodyHistory<D>>, WorldError> {
         let owner = self.text()?;
         let (columns, numbers) = (self.count()?, self.count()?);

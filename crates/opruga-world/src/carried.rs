@@ -1,19 +1,19 @@
-//! What of a body is carried over when its island is built anew.
+//! The parts of the state of a body that are kept when its island is rebuilt.
 
 use opruga_core::history::Content;
 use opruga_core::system::System;
 
-/// What is carried over when islands are built anew.
+/// The state of a body that is kept when islands are rebuilt.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct BodyState<const D: usize> {
     pub(crate) x: Vec<[f64; D]>,
     pub(crate) v: Vec<[f64; D]>,
-    /// Memory of each model of the blueprint: every eighth number belongs to this body.
+    /// Memory of each model of the blueprint; every eighth number belongs to this body.
     pub(crate) memory: Vec<Vec<f64>>,
     pub(crate) history: BodyHistory<D>,
 }
 
-/// The channels of one body.
+/// The history of one body, by channels.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct BodyHistory<const D: usize> {
     /// The integrator.
@@ -22,7 +22,7 @@ pub(crate) struct BodyHistory<const D: usize> {
     pub(crate) channels: Vec<(String, Kept<D>)>,
 }
 
-/// What a channel holds of one body.
+/// The content of a channel for one body.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Kept<const D: usize> {
     Number(f64),
@@ -33,7 +33,7 @@ pub(crate) enum Kept<const D: usize> {
 }
 
 impl<const D: usize> BodyHistory<D> {
-    /// That of a body in a lane.
+    /// The history of the body in a lane.
     pub(crate) fn of(system: &System<D>, lane: usize) -> BodyHistory<D> {
         let kept = |content: &Content<D>| match content {
             Content::Number(number) => Kept::Number(*number),
@@ -63,11 +63,11 @@ impl<const D: usize> BodyHistory<D> {
                 .zip(own)
                 .all(|((name, kept), (channel, content))| name == channel.name && kept.is_like(content))
     }
-    /// Whether its vectors belong to so many nodes.
+    /// Whether its vectors belong to the given number of nodes.
     pub(crate) fn is_of_nodes(&self, nodes: usize) -> bool {
         self.channels.iter().all(|(_, kept)| !matches!(kept, Kept::Vectors(vectors) if vectors.len() != nodes))
     }
-    /// Gives it back to the system of a body, channel by channel, if that has the same integrator.
+    /// Restores the history of a body in a system, channel by channel, if the system has the same integrator.
     pub(crate) fn restore(&self, system: &mut System<D>, lane: usize) {
         if self.owner != system.history.owner() {
             return;

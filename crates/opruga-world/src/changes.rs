@@ -1,6 +1,6 @@
-//! What changes in a scene while it runs: parameters that are set. What they were at the start is kept, so that a snapshot of a
-//! changed scene, which says what differs from that, can be restored in a world of the scene as it was, and an earlier one in a
-//! changed world. That takes as much memory as the scene has parameters, however often they are set.
+//! Parameters of a scene that change during a run. Their values at the start are kept. A snapshot contains the differences from these values, so a
+//! snapshot of a changed scene can be restored in a world of the original scene, and an earlier snapshot in a changed world. The memory for this is
+//! at most that of the parameters of the scene, however often they are set.
 
 use crate::at_start::AtStart;
 use crate::blueprint::{Surroundings, Time};
@@ -16,7 +16,7 @@ use opruga_core::spec::{Allowed, Spec, Value, Values, nearest};
 use opruga_math::message::AnyMessage;
 use std::collections::BTreeMap;
 
-/// Where an added body comes from.
+/// The origin of an added body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Source {
     /// A command, by its number.
@@ -25,7 +25,7 @@ pub(crate) enum Source {
     Program,
 }
 
-/// The part of the scene that a parameter belongs to, as it was.
+/// The part of the scene that contains a parameter, as it was before the change.
 #[derive(Clone, Debug)]
 pub(crate) enum Before<const D: usize> {
     Models(Vec<(usize, Vec<Values>)>),
@@ -38,10 +38,10 @@ pub(crate) enum Before<const D: usize> {
     Contact(Values),
 }
 
-/// What a change of the scene leaves to do: the part of the scene as it was, and the bodies whose islands must follow.
+/// The result of a change of the scene: the part of the scene before it, and the bodies whose islands must be updated.
 pub(crate) type Changed<const D: usize> = Result<(Before<D>, Touched), WorldError>;
 
-/// A parameter that is set: its path, the last name in it, and its value from now on.
+/// A parameter to be set: its path, the last name in the path, and its new value.
 struct Setting<'a> {
     path: &'a str,
     field: &'a str,
@@ -49,15 +49,15 @@ struct Setting<'a> {
 }
 
 impl Setting<'_> {
-    /// Why it cannot be set.
+    /// The error that explains why it cannot be set.
     fn refuse(&self, about: impl Into<AnyMessage>) -> WorldError {
         WorldError::path(self.path, about)
     }
-    /// Writes the value into those of a kind.
+    /// Writes the value into the parameters of a kind.
     fn write<const D: usize>(&self, values: &mut Values, spec: &Spec) -> Result<(), WorldError> {
         values.set_instead(spec, self.field, self.value.clone(), D).map_err(|fault| self.refuse(fault))
     }
-    /// The value, if it is in a range.
+    /// The value, if it is in the allowed range.
     fn accepted<const D: usize>(&self, range: Allowed) -> Result<Value, WorldError> {
         let refused = |(value, allowed)| self.refuse(PathFault::Is { value, allowed });
         range.accept(self.value.clone(), D).map_err(refused)
@@ -66,20 +66,21 @@ impl Setting<'_> {
 
 impl<const D: usize> World<D> {
     /// Changes a parameter: `body.NAME.models.KIND.FIELD`, `body.NAME.integrator.FIELD`, `integrator.FIELD`, `collider.NUMBER.FIELD`,
-    /// `contact.FIELD`, `world.gravity`, `world.drag`, `world.largest_force`, `world.largest_velocity`, `world.largest_distance`, `world.unfold`, `time.substeps`.
+    /// `contact.FIELD`, `world.gravity`, `world.drag`, `world.largest_force`, `world.largest_velocity`, `world.largest_distance`, `world.unfold`,
+    /// `time.substeps`.
     ///
-    /// The name of a body with copies means all of them, `NAME[i]` one; a body or a model may be named by its number. The
-    /// stable step is estimated anew.
+    /// The name of a body with copies means all of them, `NAME[i]` one; a body or a model may be given by its number. The stable step is estimated
+    /// again.
     ///
     /// # Errors
-    /// [`WorldError`] says what is wrong; the world stays as it was.
+    /// [`WorldError`] gives the cause; the world is then unchanged.
     pub fn set(&mut self, path: &str, value: Value) -> Result<(), WorldError> {
         self.set_now(path, value.clone())?;
         self.write_down(|| Input::Set { path: path.to_string(), value });
         Ok(())
     }
 
-    /// Changes a parameter, for the program or for a command.
+    /// Changes a parameter on behalf of the program or of a command.
     pub(crate) fn set_now(&mut self, path: &str, value: Value) -> Result<(), WorldError> {
         let (before, touched) = self.change(path, value.clone())?;
         let memory = self.contact_memory.clone();
@@ -93,12 +94,12 @@ impl<const D: usize> World<D> {
         Ok(())
     }
 
-    /// Lets islands and estimates follow a change of the scene.
+    /// Updates islands and estimates after a change of the scene.
     fn follow(&mut self, touched: &Touched) -> Result<(), WorldError> {
         self.regroup(touched, &BTreeMap::new()).and_then(|()| self.check_stability())
     }
 
-    /// Changes the scene alone; returns what it was, and the bodies whose islands must follow.
+    /// Changes only the scene. Returns the part of the scene before the change, and the bodies whose islands must be updated.
     pub(crate) fn change(&mut self, path: &str, value: Value) -> Changed<D> {
         let parts: Vec<&str> = path.split('.').collect();
         let setting = |field| Setting { path, field, value };
@@ -114,7 +115,7 @@ impl<const D: usize> World<D> {
         }
     }
 
-    /// Changes a model of one body or of all copies of one.
+    /// Changes a model of one body or of all copies of a body.
     fn change_models(&mut self, name: &str, kind: &str, setting: Setting<'_>) -> Changed<D> {
         let mut changed = Vec::new();
         for body in self.named_or_refused(name).map_err(|fault| setting.refuse(fault))? {
@@ -137,7 +138,7 @@ impl<const D: usize> World<D> {
         Ok((Before::Models(changed), Touched::Bodies(touched)))
     }
 
-    /// Changes the integrator of one body or of all copies of one.
+    /// Changes the integrator of one body or of all copies of a body.
     fn change_own_integrators(&mut self, name: &str, setting: Setting<'_>) -> Changed<D> {
         let mut changed = Vec::new();
         for body in self.named_or_refused(name).map_err(|fault| setting.refuse(fault))? {
@@ -157,7 +158,7 @@ impl<const D: usize> World<D> {
         Ok((Before::OwnIntegrators(changed), Touched::Bodies(touched)))
     }
 
-    /// Changes the integrator of the scene, which all bodies without their own follow.
+    /// Changes the integrator of the scene, which all bodies without their own use.
     fn change_integrator(&mut self, setting: Setting<'_>) -> Changed<D> {
         let spec = self.registry.integrator(self.blueprint.integrator.kind()).map(|i| i.spec());
         let spec = spec.ok_or_else(|| setting.refuse(PathFault::NoSuchIntegrator {}))?;
@@ -193,17 +194,17 @@ impl<const D: usize> World<D> {
         Ok((Before::Collider(number, before), Touched::Bodies(Vec::new())))
     }
 
-    /// Changes how bodies meet.
+    /// Changes the contact of bodies.
     fn change_contact(&mut self, setting: Setting<'_>) -> Changed<D> {
         let contact = self.blueprint.contact.as_mut().ok_or_else(|| setting.refuse(PathFault::NoContact {}))?;
         let before = contact.values.clone();
         setting.write::<D>(&mut contact.values, CONTACT.spec)?;
-        // Made anew with the laws that hold from now on.
+        // They are rebuilt with the new laws.
         self.clusters = None;
         Ok((Before::Contact(before), Touched::Bodies(Vec::new())))
     }
 
-    /// Changes gravity, drag, what limits motion, or whether degenerate bodies unfold.
+    /// Changes gravity, drag, the limits of motion, or whether degenerate bodies unfold.
     fn change_surroundings(&mut self, setting: Setting<'_>) -> Changed<D> {
         let before = self.blueprint.surroundings;
         let number = |value: Value| match value {
@@ -262,7 +263,7 @@ impl<const D: usize> World<D> {
         Ok(bodies)
     }
 
-    /// The bodies that a name means: one, all copies, or the one of a number.
+    /// The bodies with a name: one body, all copies, or the body with that number.
     fn named(&self, name: &str) -> Vec<usize> {
         if let Some(body) = self.body(name) {
             return vec![body];
@@ -278,7 +279,7 @@ impl<const D: usize> World<D> {
         name.parse().ok().filter(|b| self.handle(*b).is_some()).into_iter().collect()
     }
 
-    /// Puts a part of the scene back.
+    /// Restores a part of the scene.
     pub(crate) fn undo(&mut self, before: Before<D>) {
         match before {
             Before::Models(changed) => {
@@ -300,7 +301,7 @@ impl<const D: usize> World<D> {
             Before::Time(time) => self.blueprint.time = time,
             Before::Collider(number, values) => {
                 self.blueprint.colliders[number].values = values;
-                // They were built from the same values before.
+                // They were built from the same values before, so this succeeds.
                 if let Ok(colliders) = build_colliders(&self.blueprint) {
                     self.colliders = colliders;
                 }
@@ -314,7 +315,7 @@ impl<const D: usize> World<D> {
         }
     }
 
-    /// Keeps what a part of the scene was at the start, where it has changed for the first time.
+    /// Keeps a part of the scene as it was at the start, when it changes for the first time.
     pub(crate) fn keep_start(&mut self, before: Before<D>) {
         let AtStart { integrator, surroundings, time, colliders, contact, bodies } = &mut self.at_start;
         match before {
@@ -339,11 +340,11 @@ impl<const D: usize> World<D> {
                 bodies.entry(number).or_insert((models, integrator));
             }
         }
-        // Bodies of the program are kept as they are.
+        // Bodies of the program keep their present values.
         bodies.retain(|body, _| self.slots.origin.get(*body) != Some(&Origin::Program));
     }
 
-    /// Takes the scene back to what it was at the start, in the blueprint alone.
+    /// Restores the scene as it was at the start, in the blueprint only.
     pub(crate) fn undo_all(&mut self) {
         let AtStart { integrator, surroundings, time, colliders, contact, bodies } = std::mem::take(&mut self.at_start);
         let scene = &mut self.blueprint;

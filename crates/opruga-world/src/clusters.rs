@@ -1,4 +1,4 @@
-//! Which bodies go through the frame together, and what is kept of their contacts.
+//! Bodies that are stepped through the frame together, and their stored contacts.
 
 use crate::blueprint::Blueprint;
 use crate::island::{FramePlan, Island};
@@ -11,34 +11,34 @@ use opruga_collide::{Counts, Trouble};
 #[derive(Debug)]
 pub(crate) struct Clusters<const D: usize> {
     pub(crate) scene: SceneContact<D>,
-    /// Islands that go through the frame together, in the order of their first ones.
+    /// Islands that are stepped through the frame together, in the order of the first island of each group.
     pub(crate) groups: Vec<Group<D>>,
-    /// Who belongs together in this frame, and for whom the groups were made.
+    /// The partition of the islands in this frame, and the partition for which the groups were made.
     partition: Partition,
     arranged_for: Option<Partition>,
-    /// What meetings have cost that are no more.
+    /// The contact work of meetings that no longer exist.
     counts: Counts,
     boxes: Vec<Bounds<D>>,
     order: Vec<u32>,
 }
 
-/// Islands with bodies that may touch, and their contacts; one island without any where its bodies touch nothing.
+/// Islands with bodies that may touch, and their contacts. A body that touches nothing forms a group of one island.
 #[derive(Debug)]
 pub(crate) struct Group<const D: usize> {
-    /// By their place in the world, ascending.
+    /// By their index in the world, ascending.
     pub(crate) islands: Vec<usize>,
     pub(crate) meetings: Vec<Meeting<D>>,
     pub(crate) progress: Progress,
 }
 
-/// How far a group has come in the frame.
+/// The progress of a group through the frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Progress {
-    /// It has yet to go through it.
+    /// Not stepped yet.
     Waiting,
-    /// It has; its islands say how.
+    /// Stepped; its islands hold the outcome.
     Done,
-    /// What befell it, in the numbers of the scene, and when [s].
+    /// Stopped by an error, in the numbers of the scene, at a time [s].
     Stuck(Trouble, f64),
 }
 
@@ -64,17 +64,17 @@ impl<const D: usize> Clusters<D> {
         self.groups.iter_mut().flat_map(|group| &mut group.meetings)
     }
 
-    /// What contact has cost since the bodies were put together.
+    /// The contact work since the bodies were grouped.
     pub(crate) fn counts(&self) -> Counts {
         self.meetings().fold(self.counts, |sum, meeting| sum.and(&meeting.touching.counts))
     }
 
-    /// Lets contacts be reported, or not.
+    /// Turns the report of contacts on or off.
     pub(crate) fn report(&mut self, report: bool) {
         self.meetings_mut().for_each(|meeting| meeting.touching.report = report);
     }
 
-    /// Begins a frame: bodies belong together that come close by the velocities which they have.
+    /// Begins a frame. Bodies that will come close with their present velocities are grouped.
     pub(crate) fn begin(&mut self, blueprint: &Blueprint<D>, islands: &[Island<D>], plan: &FramePlan<'_, D>) {
         let Clusters { scene, partition, boxes, order, .. } = self;
         boxes.clear();
@@ -92,8 +92,8 @@ impl<const D: usize> Clusters<D> {
         self.groups.iter_mut().for_each(|group| group.progress = Progress::Waiting);
     }
 
-    /// Looks where the bodies went. Where some have come close to others that were not with them, those belong together too, and their groups have
-    /// yet to go through the frame; says whether there are any.
+    /// Checks where the bodies have moved. If bodies have come close to bodies of other groups, these groups are merged and still have to be stepped
+    /// through the frame. Returns whether there are any.
     pub(crate) fn merge(&mut self, blueprint: &Blueprint<D>, islands: &[Island<D>], plan: &FramePlan<'_, D>) -> bool {
         let Clusters { scene, partition, boxes, order, .. } = self;
         for (number, (island, lane)) in scene.seats.iter().enumerate() {
@@ -106,7 +106,7 @@ impl<const D: usize> Clusters<D> {
         self.groups.iter().any(|group| group.progress == Progress::Waiting)
     }
 
-    /// Makes the groups of the clusters. Those that stay as they were keep their contacts, and how far they have come.
+    /// Makes the groups of the clusters. Unchanged groups keep their contacts and their progress.
     fn arrange(&mut self, blueprint: &Blueprint<D>, islands: &[Island<D>]) {
         if self.arranged_for.as_ref() == Some(&self.partition) {
             return;
@@ -145,7 +145,7 @@ impl<const D: usize> Clusters<D> {
     }
 }
 
-/// The islands that clusters join, and these clusters, in the order of the first islands.
+/// The islands that clusters join, together with these clusters, in the order of the first islands.
 fn groups_of<const D: usize>(
     scene: &SceneContact<D>,
     clusters: &[Cluster],

@@ -1,4 +1,4 @@
-//! What is done to bodies while they move: drag, push, pin, free, set, add, remove.
+//! Actions on moving bodies: drag, push, pin, free, set, add, remove.
 
 use crate::blueprint::{Action, BodyBlueprint, CommandBlueprint, Selector};
 use crate::changes::Source;
@@ -17,11 +17,11 @@ use std::collections::BTreeSet;
 use std::sync::atomic::AtomicU64;
 use std::sync::{Arc, PoisonError};
 
-/// Where a scene is silent, a pull is at most that of a spring stretched by so many sizes of the body.
+/// The default largest force of a pull is that of a spring stretched by this many sizes of the body.
 const FARTHEST_PULL: f64 = 10.0;
 
 impl<const D: usize> Action<D> {
-    /// The body that it is about; none where it names a parameter, or a body by its name.
+    /// The body that it acts on; none if it names a parameter, or a body by its name.
     pub fn body(&self) -> Option<usize> {
         match self {
             Action::Drag { body, .. }
@@ -33,12 +33,12 @@ impl<const D: usize> Action<D> {
         }
     }
 
-    /// Whether it acts over a time, up to an end, and not at once.
+    /// Whether it acts over a period with an end rather than instantaneously.
     pub fn lasts(&self) -> bool {
         matches!(self, Action::Drag { .. } | Action::Push { .. } | Action::Pin { .. })
     }
 
-    /// The word of a scene for what is done.
+    /// The word for the action in scene files.
     pub fn word(&self) -> &'static str {
         match self {
             Action::Drag { .. } => "drag",
@@ -54,23 +54,22 @@ impl<const D: usize> Action<D> {
 }
 
 impl<const D: usize> World<D> {
-    /// The command that the last call of [`World::frame`] has refused: the cause of its error.
+    /// The command that the last call of [`World::frame`] refused, which is the cause of its error.
     pub fn refused_command(&self) -> Option<&CommandBlueprint<D>> {
         self.refused.as_deref()
     }
 
-    /// The stiffness [N/m] and the largest force [N] with which a pull acts on a body where its command names neither; none where there
-    /// is no such body.
+    /// The default stiffness [N/m] and largest force [N] of a pull on a body; none if there is no such body.
     pub fn usual_pull(&self, body: usize) -> Option<[f64; 2]> {
         self.handle(body)?;
         let (island, lane) = self.locations[body];
         Some(usual_pull(&self.islands[island].system, lane, &self.blueprint.bodies[body]))
     }
 
-    /// Gives a command; it begins at its time, at the beginning of a frame. Once it is over nothing is kept of it.
+    /// Gives a command. It begins at its time, at the beginning of a frame. Nothing is kept of it once it is over.
     ///
     /// # Errors
-    /// [`WorldError`] if it names a body that is not there, or holds what no command of a scene could.
+    /// [`WorldError`] if it names a body that does not exist, or if no command of a scene could have its content.
     pub fn command(&mut self, command: CommandBlueprint<D>) -> Result<(), WorldError> {
         if let Some(body) = command.action.body()
             && !self.slots.is_there(body)
@@ -83,12 +82,12 @@ impl<const D: usize> World<D> {
         Ok(())
     }
 
-    /// Gives a command that begins now, as if the scene had held it from the start; returns its number.
+    /// Gives a command that begins now, as if the scene had contained it from the start; returns its number.
     ///
-    /// Commands of the scene that are due begin before it. The number stays the same until the world is built anew.
+    /// Commands of the scene that are due begin before it. The number stays the same until the world is rebuilt.
     ///
     /// # Errors
-    /// [`WorldError`] if its time is not that of the coming frame or if it is refused; then it was never given.
+    /// [`WorldError`] if its time is not that of the coming frame, or if it is refused. The command then has no effect.
     pub fn act(&mut self, command: CommandBlueprint<D>) -> Result<usize, WorldError> {
         let (at, now) = (command.at, self.time());
         if (at - now).abs() > 1e-9 * self.blueprint.time.frame {
@@ -97,7 +96,7 @@ impl<const D: usize> World<D> {
         crate::validity::given(&command)?;
         self.begin_what_is_due()?;
         self.write_down(|| Input::Act);
-        // Where a reader of the scene puts it: in the order of time, behind those that begin with it.
+        // The position in which a scene file would have it: in order of time, after the commands that begin at the same time.
         let number = self.running.iter().rposition(|r| !r.given && r.command.at <= at).map_or(0, |last| last + 1);
         let generation = self.slots.next_of_act();
         self.running.insert(number, Running { acted: true, generation, ..Running::waiting(command) });
@@ -111,12 +110,12 @@ impl<const D: usize> World<D> {
         Ok(number)
     }
 
-    /// Leads the pointer of a drag: adds a row `[t, x, y(, z)]` to the end of its path.
+    /// Extends the path of the pointer of a drag: adds a row `[t, x, y(, z)]` to its end.
     ///
-    /// What was stepped before does not change if the row lies behind the frame that comes next.
+    /// Earlier steps are not affected if the row is later than the next frame.
     ///
     /// # Errors
-    /// [`WorldError::Path`] if the command is no drag, the time does not rise, or a number is not finite.
+    /// [`WorldError::Path`] if the command is not a drag, if the time does not increase, or if a number is not finite.
     pub fn lead(&mut self, number: usize, row: Vec<f64>) -> Result<(), WorldError> {
         let refuse = |fault: PathFault| WorldError::path(format!("command.{number}"), fault);
         let running = self.running.get_mut(number).ok_or_else(|| refuse(PathFault::NoCommand {}))?;
@@ -132,10 +131,10 @@ impl<const D: usize> World<D> {
         Ok(())
     }
 
-    /// Ends a command at a time [s] instead of its own.
+    /// Ends a command at a given time [s] instead of its own.
     ///
     /// # Errors
-    /// [`WorldError::Path`] if there is no such command, or it would not end after its beginning.
+    /// [`WorldError::Path`] if there is no such command, or if it would not end after its beginning.
     pub fn finish(&mut self, number: usize, until: f64) -> Result<(), WorldError> {
         match self.running.get_mut(number) {
             Some(running) if until > running.command.at => {
@@ -150,11 +149,11 @@ impl<const D: usize> World<D> {
         }
     }
 
-    /// Begins and ends what is due now without waiting for the coming frame, which then finds it done: what is to be seen
-    /// at a moment that was gone back to.
+    /// Begins and ends the commands that are due now, without waiting for the coming frame, which does not repeat them. This shows the state at a
+    /// moment to which the world was rewound.
     ///
     /// # Errors
-    /// [`WorldError`] of the first command that is refused; the others begin all the same.
+    /// [`WorldError`] of the first command that is refused; the others begin nevertheless.
     pub fn begin_what_is_due(&mut self) -> Result<(), WorldError> {
         let now = self.time();
         // A frame begins at a multiple of its length; times given in decimals may differ from it by rounding.
@@ -169,7 +168,7 @@ impl<const D: usize> World<D> {
                 Progress::Waiting if over => self.running[number].progress = Progress::Done,
                 Progress::Waiting if soon >= running.command.at => match self.begin(number) {
                     Ok(body) => touched.extend(body),
-                    // It is told once; what else begins now begins all the same.
+                    // The error is reported once; the other commands that are due begin nevertheless.
                     Err(error) => {
                         self.running[number].progress = Progress::Done;
                         if failed.is_ok() {
@@ -190,12 +189,12 @@ impl<const D: usize> World<D> {
         failed
     }
 
-    /// Forgets commands of the program that are over.
+    /// Removes commands of the program that are over.
     pub(crate) fn forget_commands(&mut self) {
         self.running.retain(|running| !running.given || running.progress != Progress::Done);
     }
 
-    /// Bodies that commands of the scene have added know those by their numbers, which move where one is put between.
+    /// Updates the command numbers that added bodies refer to, when a command is inserted or removed.
     fn renumber(&mut self, from: usize, by: isize) {
         for origin in &mut self.slots.origin {
             if let Origin::Command(number) = origin
@@ -206,7 +205,7 @@ impl<const D: usize> World<D> {
         }
     }
 
-    /// Begins a command; the body on which it acts from now on.
+    /// Begins a command. Returns the body on which it acts from now on.
     fn begin(&mut self, number: usize) -> Result<Option<usize>, WorldError> {
         let command = self.running[number].command.clone();
         if let Some(body) = command.action.body()
@@ -258,13 +257,13 @@ impl<const D: usize> World<D> {
         Ok(command.action.body())
     }
 
-    /// The nodes of a selector on a body, by its shape at rest.
+    /// The nodes of a body that a selector selects, by its rest shape.
     pub(crate) fn selected(&self, body: usize, select: &Selector<D>) -> Vec<u32> {
         let blueprint = &self.blueprint.bodies[body];
         select.resolve(&blueprint.mesh, &blueprint.translation)
     }
 
-    /// The node nearest to a point, or the corners of the nearest facet with the shares of its nearest point.
+    /// The node nearest to a point; or the corners of the nearest facet, with the weights of its nearest point.
     fn nearest(&self, body: usize, point: [f64; D], facet: bool) -> Vec<(u32, f64)> {
         let distance = |x: [f64; D]| (0..D).map(|d| (x[d] - point[d]) * (x[d] - point[d])).sum::<f64>();
         let mesh = Arc::clone(&self.blueprint.bodies[body].mesh);
@@ -297,7 +296,7 @@ impl<const D: usize> World<D> {
         vec![(best.1, 1.0)]
     }
 
-    /// Adds what commands do at present to the systems of an island that was just built.
+    /// Adds the effects of active commands to the systems of a newly built island.
     pub(crate) fn apply_running(&mut self, island: usize) {
         let bodies = self.islands[island].bodies.clone();
         for number in 0..self.running.len() {
@@ -319,7 +318,7 @@ impl<const D: usize> World<D> {
                     entries.sort_by_key(|e| e.0);
                     system.add(Box::new(NodeForces { entries, curve: Vec::new() }));
                 }
-                // Pins of the body and of commands before this one are there already, those of later commands are not.
+                // Pins of the body and of earlier commands are already present; those of later commands are not.
                 Action::Free { .. } => {
                     let free: BTreeSet<usize> = targets.iter().map(|(node, _)| index(*node)).collect();
                     system.pins.retain(|pin| !free.contains(&pin.index));
@@ -348,7 +347,7 @@ impl<const D: usize> World<D> {
         island.system.equip(&*island.integrator);
     }
 
-    /// Pulls that act at present: grabbed point, pointer, force [N].
+    /// Pulls that act now: grabbed point, pointer, force [N].
     pub fn pulls(&self) -> Vec<([f64; D], [f64; D], [f64; D])> {
         let mut out = Vec::new();
         for running in &self.running {
@@ -374,20 +373,20 @@ impl<const D: usize> World<D> {
     }
 }
 
-/// The stiffness [N/m] and the largest force [N] of a pull of which the scene says neither.
+/// The default stiffness [N/m] and largest force [N] of a pull.
 ///
-/// Left to itself, its spring would swing the whole body twice a second. It pulls at most as it does stretched by [`FARTHEST_PULL`]
-/// sizes of the body at rest, wherever the pointer gets to.
+/// With this stiffness the whole body would oscillate on the spring twice a second. The largest force is that of the spring stretched by
+/// [`FARTHEST_PULL`] sizes of the body at rest, wherever the pointer goes.
 fn usual_pull<const D: usize>(system: &System<D>, lane: usize, body: &BodyBlueprint<D>) -> [f64; 2] {
     let whole: f64 = (0..system.nodes).map(|n| system.mass.at(system.layout.index(n, lane))).sum();
     let stiffness = whole * 157.913_670_417_429_74;
     [stiffness, farthest_pull(&body.mesh, stiffness)]
 }
 
-/// The force of a pull of a stiffness beyond which it does not grow where the scene is silent [N].
+/// The default largest force of a pull with a given stiffness [N].
 fn farthest_pull<const D: usize>(mesh: &Mesh<D>, stiffness: f64) -> f64 {
     let size = longest_side(mesh);
-    // A point has no size to measure the pull by.
+    // A single point has no size that could limit the pull.
     if size > 0.0 { FARTHEST_PULL * size * stiffness } else { f64::INFINITY }
 }
 
@@ -420,7 +419,7 @@ fn pull_of<const D: usize>(
     }
 }
 
-/// Shares of the corners in the point of a segment or triangle that is nearest to a point.
+/// The weights of the corners at the point of a segment or triangle that is nearest to a given point.
 fn nearest_shares<const D: usize>(corners: &[[f64; D]], point: &[f64; D]) -> Vec<f64> {
     let dot = |a: &[f64; D], b: &[f64; D]| (0..D).map(|d| a[d] * b[d]).sum::<f64>();
     let minus = |a: &[f64; D], b: &[f64; D]| -> [f64; D] { core::array::from_fn(|d| a[d] - b[d]) };
@@ -434,7 +433,7 @@ fn nearest_shares<const D: usize>(corners: &[[f64; D]], point: &[f64; D]) -> Vec
         let s = on_segment(&corners[0], &corners[1]);
         return vec![1.0 - s, s];
     }
-    // Barycentric coordinates of the foot of the perpendicular; outside of the triangle the best edge.
+    // Barycentric coordinates of the foot of the perpendicular; if it is outside the triangle, those of the nearest point of the edges.
     let (u, w, r) = (minus(&corners[1], &corners[0]), minus(&corners[2], &corners[0]), minus(point, &corners[0]));
     let (uu, uw, ww, ru, rw) = (dot(&u, &u), dot(&u, &w), dot(&w, &w), dot(&r, &u), dot(&r, &w));
     let determinant = uu * ww - uw * uw;

@@ -1,4 +1,4 @@
-//! Which bodies began to touch, go on, and came apart: for programs that ask.
+//! Contacts between bodies that began, continue or ended, for programs that ask for them.
 
 use crate::blueprint::BodyBlueprint;
 use crate::contact_report::{Contact, ContactPhase};
@@ -6,27 +6,28 @@ use crate::warnings::{Warning, WorldWarning};
 use crate::world::World;
 
 impl<const D: usize> World<D> {
-    /// Lets the frames that follow report their contacts, or not; at the start they do not, which costs nothing.
+    /// Turns the report of contacts on or off for the frames that follow. It is off at the start and then costs nothing.
     pub fn report_contacts(&mut self, report: bool) {
         self.contacts = report.then(Vec::new);
     }
 
-    /// The contacts between bodies in the last frame, ascending by bodies: the same for every number of threads. Empty unless
-    /// [`World::report_contacts`] was asked for.
+    /// The contacts between bodies in the last frame, in ascending order of bodies. They are the same for every number of threads. Empty unless
+    /// [`World::report_contacts`] was called.
     ///
-    /// Reports are no part of the state: after [`World::restore`] all contacts begin anew.
+    /// Reports are not part of the state: after [`World::restore`] all contacts begin again.
     pub fn contacts(&self) -> &[Contact<D>] {
         self.contacts.as_deref().unwrap_or_default()
     }
 
-    /// Forgets who touched before, and how hard.
+    /// Forgets which bodies touched before, and their impulses.
     pub(crate) fn forget_contacts(&mut self) {
         let meetings = self.clusters.iter_mut().flat_map(|clusters| clusters.meetings_mut());
         meetings.for_each(|meeting| meeting.touching.forget_impulses());
         self.contacts.iter_mut().for_each(Vec::clear);
     }
 
-    /// Warns of bodies of different integrators that met in the frame: once, with the first, counted per frame and pair.
+    /// Warns about bodies with different integrators that met in the frame. The warning is issued once, for the first pair, and counts frames and
+    /// pairs.
     pub(crate) fn warn_of_mixed_contact(&mut self) {
         const MIXED: &str = "contact.mixed";
         let mixed = || self.clusters.iter().flat_map(|clusters| clusters.meetings()).flat_map(|meeting| &meeting.mixed);
@@ -49,7 +50,7 @@ impl<const D: usize> World<D> {
         }
     }
 
-    /// Takes the reports of a frame.
+    /// Collects the reports of a frame.
     pub(crate) fn take_contacts(&mut self) {
         let Some(before) = self.contacts.take() else { return };
         let mut now = Vec::new();

@@ -1,4 +1,4 @@
-//! What `[contact]` and the bodies say of contact, as the laws of pairs of bodies.
+//! The contact laws of pairs of bodies, from `[contact]` and the settings of the bodies.
 
 use crate::blueprint::{Blueprint, BodyBlueprint, ContactBlueprint};
 use crate::refusals::Refusal;
@@ -9,12 +9,12 @@ use opruga_core::spec::{Role, Value, Values};
 use opruga_math::Lane;
 use opruga_mesh::{Mesh, TouchingSurface};
 
-/// The distance of surfaces in contact where the scene is silent, relative to the mean edge: small beside every facet, and many times what
-/// sweeps and rounding leave of a gap.
+/// The default distance of surfaces in contact, relative to the mean edge. It is small compared with every facet, and many times the error of a gap
+/// from sweeps and rounding.
 const THICKNESS_OF_EDGE: f64 = 0.01;
 
 impl<const D: usize> BodyBlueprint<D> {
-    /// Whether the body touches anything where the scene has contact.
+    /// Whether the body touches anything if the scene has contact.
     pub(crate) fn touches(&self) -> bool {
         self.contact.as_ref().is_none_or(|own| own.flag("touch"))
     }
@@ -23,7 +23,7 @@ impl<const D: usize> BodyBlueprint<D> {
         let cells = self.contact.as_ref().is_some_and(|own| own.text("surface") == Some("cells"));
         self.mesh.touching_surface(!cells)
     }
-    /// The group that `[[contact.pair]]` knows it by.
+    /// Its group in `[[contact.pair]]`.
     pub fn contact_group(&self) -> &str {
         self.contact.as_ref().and_then(|own| own.text("group")).unwrap_or_else(|| self.common_name())
     }
@@ -32,10 +32,10 @@ impl<const D: usize> BodyBlueprint<D> {
 /// The edges of a surface at rest.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Edges {
-    /// Their lengths, added up [m], and their number.
+    /// The sum of their lengths [m], and their number.
     pub(crate) sum: f64,
     pub(crate) count: usize,
-    /// The least length [m].
+    /// The shortest length [m].
     pub(crate) shortest: f64,
 }
 
@@ -57,7 +57,7 @@ pub(crate) fn edges_of<const D: usize>(surface: &TouchingSurface<D>, mesh: &Mesh
     Edges { sum, count, shortest }
 }
 
-/// What bodies of one class have in common.
+/// The properties that bodies of one class share.
 #[derive(Clone, Debug, PartialEq)]
 struct Class<'a> {
     group: &'a str,
@@ -67,7 +67,7 @@ struct Class<'a> {
     itself: bool,
 }
 
-/// The laws of some bodies of a scene among one another. `mean_edge` is that of all their surfaces [m].
+/// The contact laws among some bodies of a scene. `mean_edge` is the mean over all their surfaces [m].
 pub(crate) fn laws<const D: usize>(
     scene: &Blueprint<D>,
     contact: &ContactBlueprint,
@@ -135,11 +135,11 @@ pub(crate) fn laws<const D: usize>(
     }
 }
 
-/// The reach of a barrier where the scene is silent, relative to the mean edge and at most to the shortest: small beside every facet.
+/// The default reach of a barrier relative to the mean edge, and its largest value relative to the shortest edge: small compared with every facet.
 const REACH_OF_EDGE: f64 = 0.02;
 const REACH_OF_SHORTEST: f64 = 0.5;
 
-/// The reach of the barrier of a scene that asks for one [m].
+/// The reach of the barrier, if the scene has one [m].
 pub(crate) fn reach_of(contact: &ContactBlueprint, mean_edge: f64, shortest: f64) -> Option<f64> {
     let own = (REACH_OF_EDGE * mean_edge).smaller(REACH_OF_SHORTEST * shortest);
     is_barrier(contact).then(|| contact.values.number("reach").unwrap_or(own))
@@ -149,7 +149,7 @@ fn is_barrier(contact: &ContactBlueprint) -> bool {
     contact.values.text("response") == Some("barrier")
 }
 
-/// Refuses bodies at rest that touch in a way which statics does not know.
+/// Refuses bodies at rest whose contact is of a kind that statics does not support.
 fn check_rest<const D: usize>(scene: &Blueprint<D>, own: &dyn Integrator<D>) -> Result<(), BuildError> {
     let is_static =
         |body: &BodyBlueprint<D>| body.integrator.as_ref().unwrap_or(&scene.integrator).spec().has_role(Role::Statics);
@@ -164,7 +164,7 @@ fn check_rest<const D: usize>(scene: &Blueprint<D>, own: &dyn Integrator<D>) -> 
     Ok(())
 }
 
-/// Refuses a body that contact cannot step.
+/// Refuses a body that cannot be stepped with contact.
 pub(crate) fn check<const D: usize>(
     scene: &Blueprint<D>,
     body: &BodyBlueprint<D>,

@@ -1,7 +1,7 @@
-//! What contact keeps from frame to frame: the impulses with which the last substep ended, by which the next one begins.
+//! The state of contact that is kept from frame to frame: the impulses at the end of the last substep, which are the starting values of the next one.
 //!
-//! Impulses belong to pairs of features, and pushes to nodes. Both are kept by bodies of the scene, whatever clusters these are in, in an order that
-//! follows from bodies and features alone.
+//! Impulses belong to pairs of features, and pushes belong to nodes. Both are kept by bodies of the scene, independently of clusters, in an order
+//! that depends only on bodies and features.
 
 use crate::bytes::{Reader, Writer};
 use crate::clusters::Clusters;
@@ -10,7 +10,7 @@ use crate::island::Island;
 use crate::meeting::Meeting;
 use crate::path_faults::SnapshotFault;
 
-/// The impulses of a pair: along its normal and across it [N s]; under a barrier the friction that its multiplier stands for [N].
+/// The impulses of a pair along its normal and across it [N s]; with a barrier, the friction force of its multiplier [N].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Kept<const D: usize> {
     pub(crate) pair: PairKey,
@@ -21,14 +21,14 @@ pub(crate) struct Kept<const D: usize> {
 /// Two features.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct PairKey {
-    /// What meets what: see [`KINDS`].
+    /// The kind of the pair: see [`KINDS`].
     pub(crate) kind: u32,
-    /// Body and feature; of an obstacle [`OBSTACLE`] and its number in place of a body.
+    /// Body and feature; for an obstacle, [`OBSTACLE`] plus its number in place of the body.
     pub(crate) first: [u32; 2],
     pub(crate) second: [u32; 2],
 }
 
-/// A vertex and a facet, two edges, a point and a surface of an obstacle that holds nodes.
+/// A vertex and a facet, two edges, or a point and a surface of an obstacle that holds nodes.
 const KINDS: u32 = 3;
 
 /// The last of them.
@@ -37,16 +37,16 @@ const OF_SURFACE: u32 = 2;
 /// Added to the number of an obstacle whose corners and edges are features.
 const OBSTACLE: u32 = 1 << 31;
 
-/// The impulse with which a node was pushed in its step [N s].
+/// The impulse of contact on a node in its step [N s].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Push<const D: usize> {
     pub(crate) body: u32,
-    /// The number of the point among those of the body.
+    /// The number of the point within the body.
     pub(crate) point: u32,
     pub(crate) impulse: [f64; D],
 }
 
-/// All that contact keeps; ascending.
+/// The state of contact; ascending.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct ContactMemory<const D: usize> {
     pub(crate) pairs: Vec<Kept<D>>,
@@ -54,20 +54,20 @@ pub(crate) struct ContactMemory<const D: usize> {
 }
 
 impl<const D: usize> ContactMemory<D> {
-    /// Forgets all.
+    /// Forgets everything.
     pub(crate) fn clear(&mut self) {
         self.pairs.clear();
         self.pushes.clear();
     }
 
-    /// Forgets what belongs to bodies that are no longer what they were.
+    /// Forgets the entries of bodies that were replaced or removed.
     pub(crate) fn forget(&mut self, is_gone: impl Fn(usize) -> bool) {
         let gone = |[body, _]: [u32; 2]| body < OBSTACLE && is_gone(body as usize);
         self.pairs.retain(|kept| !gone(kept.pair.first) && !gone(kept.pair.second));
         self.pushes.retain(|push| !is_gone(push.body as usize));
     }
 
-    /// Takes what clusters have come to at the end of a frame.
+    /// Takes the results of clusters at the end of a frame.
     pub(crate) fn take(&mut self, clusters: &Clusters<D>) {
         self.clear();
         for meeting in clusters.meetings() {
@@ -77,7 +77,7 @@ impl<const D: usize> ContactMemory<D> {
         self.pushes.sort_unstable_by_key(|push| (push.body, push.point));
     }
 
-    /// Writes all into a snapshot.
+    /// Writes everything into a snapshot.
     pub(crate) fn write(&self, out: &mut Writer<'_>) {
         out.count(self.pairs.len() as u64);
         for Kept { pair: PairKey { kind, first, second }, along, across } in &self.pairs {
@@ -97,7 +97,7 @@ impl<const D: usize> ContactMemory<D> {
     /// Reads it from a snapshot.
     ///
     /// # Errors
-    /// [`WorldError::Snapshot`] where it holds what cannot be.
+    /// [`WorldError::Snapshot`] if it contains impossible values.
     pub(crate) fn read(reader: &mut Reader<'_>) -> Result<ContactMemory<D>, WorldError> {
         let refuse = || WorldError::snapshot(SnapshotFault::Contact {});
         let index = |reader: &mut Reader<'_>| u32::try_from(reader.count()?).map_err(|_| refuse());
@@ -132,7 +132,7 @@ impl<const D: usize> ContactMemory<D> {
 }
 
 impl<const D: usize> Meeting<D> {
-    /// Adds what it keeps.
+    /// Adds the impulses of this meeting to the memory.
     fn remember(&self, memory: &mut ContactMemory<D>) {
         let bodies = |number: u32| match self.bodies.get(number as usize) {
             Some(body) => *body as u32,
@@ -165,7 +165,7 @@ impl<const D: usize> Meeting<D> {
         }
     }
 
-    /// Begins with what was kept of its bodies.
+    /// Starts with the stored impulses of its bodies.
     pub(crate) fn recall(&mut self, memory: &ContactMemory<D>, islands: &mut [&mut Island<D>], h: f64) {
         let number = |body: u32| match body.checked_sub(OBSTACLE) {
             Some(outline) => self.cluster.outlines.binary_search(&outline).ok().map(|k| (self.bodies.len() + k) as u32),
@@ -177,7 +177,7 @@ impl<const D: usize> Meeting<D> {
             let id = self.touching.id_of([kind, number(first[0])?, first[1], other, second[1]])?;
             Some((id, kept.along, kept.across))
         };
-        // In the order of the pairs, which is that of their numbers.
+        // In the order of the pairs, which is the order of their numbers.
         let firsts = self.bodies.iter().map(|body| *body as u32);
         let firsts = firsts.chain(self.cluster.outlines.iter().map(|outline| OBSTACLE | outline));
         let of_body = |kind: u32, body: u32| {

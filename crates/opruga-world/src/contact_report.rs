@@ -5,29 +5,29 @@ use opruga_collide::Report;
 /// Whether two bodies touched in the last frame and in the one before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ContactPhase {
-    /// In the last frame alone.
+    /// Only in the last frame.
     Began,
     /// In both.
     Persists,
-    /// In the one before alone.
+    /// Only in the frame before.
     Ended,
 }
 
 /// The contact of two bodies, or of a body with itself, in a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact<const D: usize> {
-    /// The bodies, by their index in the scene, the lower one first.
+    /// The bodies, by their index in the scene; the lower one is first.
     pub bodies: [usize; 2],
-    /// Whether it is new, goes on or is over.
+    /// Whether it is new, continues or has ended.
     pub phase: ContactPhase,
-    /// The mean position of its points, each weighted by the normal impulse there [m]. Of a contact that ended, where it was.
+    /// The mean position of its points, weighted by the normal impulse at each [m]. For a contact that ended, its last position.
     pub position: [f64; D],
-    /// The mean of its normals, from the second body to the first, of length 1; zero where they cancel. Of a contact that ended, what it was.
+    /// The mean of its normals, from the second body to the first, of length 1; zero if they cancel. For a contact that ended, its last normal.
     pub normal: [f64; D],
-    /// The impulse that the first body got in the frame [N s]; its mean force is that over the length of the frame. Zero of a contact
-    /// that ended, and of a body with itself, which pushes both ways alike.
+    /// The impulse on the first body in the frame [N s]; divided by the length of the frame it is the mean force. Zero for a contact that ended, and
+    /// for a body with itself, where the impulses cancel.
     pub impulse: [f64; D],
-    /// Σ λₙ of all its points and substeps [N s]: how hard the surfaces were pressed together. Zero of a contact that ended.
+    /// Σ λₙ over all its points and substeps [N s]: how hard the surfaces were pressed together. Zero for a contact that ended.
     pub pressed: f64,
 }
 

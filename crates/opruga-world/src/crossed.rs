@@ -9,33 +9,34 @@ use opruga_mesh::{Crossings, Mesh, crossing_edges, winding_number};
 /// Two bodies, or a body and itself, whose surfaces cross.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Crossed {
-    /// The bodies, by their place in the scene.
+    /// The bodies, by their index in the scene.
     pub bodies: [usize; 2],
-    /// A facet of each, in the order of the surface that touches: boundary or skin, open surfaces, wires; none where one body lies in the other without crossing it.
+    /// A facet of each, in the order of the surface that touches: boundary or skin, open surfaces, wires. None if one body lies inside the other
+    /// without crossing it.
     pub facets: Option<[u32; 2]>,
 }
 
-/// A body of which points lie inside another one.
+/// A body with points inside another body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Overlap {
-    /// The body whose points they are, and the one that they are in, by their place in the scene.
+    /// The body whose points they are, and the body that contains them, by their index in the scene.
     pub bodies: [usize; 2],
-    /// The part of the points of its surface.
+    /// The fraction of the points of its surface.
     pub share: f64,
 }
 
-/// The surfaces of some bodies as they are now, as one mesh.
+/// The present surfaces of some bodies as one mesh.
 struct Surfaces<const D: usize> {
     positions: Vec<[f64; D]>,
-    /// Boundaries, open surfaces, and in the plane wires.
+    /// Boundaries, open surfaces, and, in the plane, wires.
     facets: Vec<[u32; D]>,
-    /// The body of every facet, and its number there.
+    /// The body of every facet, and the number of the facet in it.
     origin: Vec<(usize, u32)>,
     /// The closed boundaries of bodies.
     closed: Vec<Boundary<D>>,
 }
 
-/// A closed boundary: its body, its facets among those of all, and the box around it.
+/// A closed boundary: its body, the range of its facets, and its bounding box.
 struct Boundary<const D: usize> {
     body: usize,
     facets: core::ops::Range<usize>,
@@ -43,15 +44,15 @@ struct Boundary<const D: usize> {
 }
 
 impl<const D: usize> World<D> {
-    /// The surfaces that cross of bodies that contact keeps apart, one pair of facets for each pair of bodies, ascending; and bodies that
-    /// lie in one another. Without a section `[contact]`, those of all bodies, and none of a body with itself.
+    /// Surfaces that cross among the bodies that contact keeps apart, one pair of facets for each pair of bodies, in ascending order; and bodies that
+    /// lie inside one another. Without a section `[contact]` all bodies are checked, but no body against itself.
     ///
-    /// Exact for the coordinates as they are. Wires of space are not looked at.
+    /// The check is exact for the given coordinates. Wires in space are not checked.
     pub fn crossed_surfaces(&self) -> Vec<Crossed> {
         let (bodies, laws) = self.kept_apart();
         let index = |body: usize| bodies.binary_search(&body).unwrap_or(0) as u32;
         let meet = |a: usize, b: usize| laws.as_ref().map_or(a != b, |laws| laws.meet(index(a), index(b)));
-        // Most bodies are far from all others: a line that sweeps along x holds the boxes over it.
+        // Most bodies are far from all others, so a sweep along x keeps only the boxes that overlap the present x.
         let bounds: Vec<[[f64; D]; 2]> = bodies.iter().map(|body| self.bounds_of(*body)).collect();
         let mut order: Vec<usize> = (0..bodies.len()).collect();
         order.sort_by(|a, b| bounds[*a][0][0].total_cmp(&bounds[*b][0][0]));
@@ -94,8 +95,8 @@ impl<const D: usize> World<D> {
         (bodies, laws)
     }
 
-    /// Bodies of which points lie within the closed boundary of another one, of those that contact keeps apart, without a section `[contact]`
-    /// of all; ascending by bodies. A check that shares no code with the detection of contact.
+    /// Bodies with points inside the closed boundary of another body, in ascending order, among the bodies that contact keeps apart; without a
+    /// section `[contact]`, among all bodies. The check shares no code with the detection of contact.
     pub fn overlaps(&self) -> Vec<Overlap> {
         let (bodies, laws) = self.kept_apart();
         let surfaces = self.surfaces(&bodies);
@@ -117,14 +118,14 @@ impl<const D: usize> World<D> {
         found
     }
 
-    /// The box around the nodes of a body [m].
+    /// The bounding box of the nodes of a body [m].
     pub(crate) fn bounds_of(&self, body: usize) -> [[f64; D]; 2] {
         let nodes = 0..self.blueprint.bodies[body].mesh.nodes() as u32;
         bounds(nodes.map(|node| self.position(body, node)))
     }
 
-    /// Warns once of bodies that pass through one another in a scene without contact, to be called after every frame. Looks in frames 1, 2,
-    /// 4, 8, …, so that it costs little in long runs. No part of a frame: games have no use for it, and it asks for memory.
+    /// Warns once about bodies that pass through one another in a scene without contact. Call it after every frame. It checks in frames 1, 2, 4, 8,
+    /// …, so that it costs little in long runs. It is not part of a frame, because it allocates memory and games do not need it.
     pub fn warn_of_missing_contact(&mut self) {
         const NONE: &str = "contact.none";
         let due = self.frames.is_power_of_two() && self.blueprint.contact.is_none() && self.blueprint.bodies.len() > 1;
@@ -174,7 +175,7 @@ impl<const D: usize> Surfaces<D> {
         lifted.crossing_facets()
     }
 
-    /// The points of the facets of some bodies, which are all that have any.
+    /// The points of the facets of some bodies, which are the only bodies with facets.
     fn points_of(&self, bodies: &[usize]) -> Vec<Vec<u32>> {
         let mut points = vec![Vec::new(); bodies.len()];
         for (facet, (body, _)) in self.facets.iter().zip(&self.origin) {
@@ -196,14 +197,14 @@ impl<const D: usize> Surfaces<D> {
         within && winding_number(&self.facets[facets.clone()], &self.positions, x).abs() > 0.5
     }
 
-    /// Bodies of which a point lies inside another one.
+    /// Bodies with a point inside another body.
     fn nested(&self) -> Vec<Crossed> {
         let mut found = Vec::new();
         for boundary in &self.closed {
             let outer = boundary.body;
             let mut last = None;
             for (facet, (inner, _)) in self.facets.iter().zip(&self.origin) {
-                // One point of every other body.
+                // One point of every other body is enough.
                 if *inner == outer || last == Some(*inner) {
                     continue;
                 }
@@ -218,7 +219,7 @@ impl<const D: usize> Surfaces<D> {
     }
 }
 
-/// The box around some points.
+/// The bounding box of some points.
 fn bounds<const D: usize>(points: impl Iterator<Item = [f64; D]>) -> [[f64; D]; 2] {
     let (mut low, mut high) = ([f64::INFINITY; D], [f64::NEG_INFINITY; D]);
     for x in points {

@@ -1,4 +1,4 @@
-//! Bodies between moving obstacles that leave them no room.
+//! Bodies between moving obstacles that leave no space for them.
 
 use crate::selection::longest_side;
 use crate::warnings::{Lay, Warning, WorldWarning};
@@ -9,11 +9,11 @@ use opruga_mesh::Measure;
 /// The code of the warning.
 const CODE: &str = "contact.no_room";
 
-/// A node this much deeper in an obstacle than its surface, in sizes of its body, is no longer held by it: implicit rules let nodes
-/// in a little.
+/// The smallest depth of a node inside an obstacle, in sizes of its body, at which the obstacle no longer holds it: implicit integrators allow a
+/// small penetration.
 const DEEP: f64 = 1e-3;
 
-/// Obstacles whose outer normals are opposite to within this leave nothing between them where they touch: −cos of the angle.
+/// Obstacles whose outer normals are opposite to within this leave no space between them where they touch: −cos of the angle.
 const OPPOSITE: f64 = 0.999;
 
 /// A step so short that obstacles hardly move in it [s].
@@ -21,7 +21,7 @@ const INSTANT: f64 = 1e-9;
 
 /// The node of a body that lies deepest between two obstacles.
 struct Squeezed {
-    /// How deep in the first of them [m].
+    /// Its depth in the first obstacle [m].
     depth: f64,
     node: u32,
     inside: usize,
@@ -29,11 +29,11 @@ struct Squeezed {
 }
 
 impl<const D: usize> World<D> {
-    /// Warns of a body of which free nodes touch one obstacle and lie inside another, or lie between two whose surfaces meet there,
-    /// which happens where obstacles that are led meet or pass one another: no place for the nodes is right then. Counted per frame
-    /// and body. What has no thickness, a sheet in space or a wire, may lie between surfaces that meet.
+    /// Warns about a body with free nodes that touch one obstacle and lie inside another, or that lie between two obstacles whose surfaces meet
+    /// there. This happens if moving obstacles meet or pass one another: no position of the nodes is then valid. The warning counts frames and
+    /// bodies. A sheet in space or a wire has no thickness and may lie between surfaces that meet.
     ///
-    /// Obstacles that stand still are looked at once, before the first frame. Nothing is allocated unless there is a warning.
+    /// Obstacles at rest are checked once, before the first frame. Nothing is allocated unless there is a warning.
     pub(crate) fn warn_of_crushed_bodies(&mut self) {
         let Some(colliders) = self.colliders.clone().filter(|c| c.any_moves()) else { return };
         if self.blueprint.colliders.len() < 2 {
@@ -75,7 +75,7 @@ impl<const D: usize> World<D> {
                 }
             }
             let Some(Squeezed { depth, node, inside, touched }) = worst else { continue };
-            // What is held goes where it is led.
+            // Pinned nodes follow their pins.
             if self.pinned_nodes(body).binary_search(&node).is_ok() {
                 continue;
             }

@@ -1,4 +1,4 @@
-//! What can go wrong in a world.
+//! Errors of a world.
 
 use crate::schema::MOST_SUBSTEPS;
 use opruga_core::error::{BuildError, StepError, what_was_left};
@@ -6,7 +6,7 @@ use opruga_math::message::{AnyMessage, Message};
 use opruga_math::messages;
 use opruga_math::words::number;
 
-/// What would help where so many substeps would be stable.
+/// A hint that names the number of substeps that would be stable, if there is one.
 fn remedy(substeps: u32) -> String {
     match substeps {
         ..=MOST_SUBSTEPS => format!("substeps >= {substeps}"),
@@ -16,12 +16,12 @@ fn remedy(substeps: u32) -> String {
     }
 }
 
-/// The largest damping rate of a body, where it is damped.
+/// The largest damping rate of a body, if the body is damped.
 fn damped(damping: f64) -> String {
     if damping == 0.0 { String::new() } else { format!(", damping {} 1/s", number(damping)) }
 }
 
-/// What helps where a body may fall for ever.
+/// A hint for a body that may fall forever.
 fn falls(range: Option<f64>) -> &'static str {
     match range {
         Some(_) => "; `world.largest_distance` takes away what falls for ever",
@@ -29,12 +29,12 @@ fn falls(range: Option<f64>) -> &'static str {
     }
 }
 
-/// Another body, or the same.
+/// The other body, or "itself" if both are the same.
 fn other(first: &str, second: &str) -> String {
     if first == second { "itself".into() } else { format!("`{second}`") }
 }
 
-/// A part of a world and the kind of thing that refuses there.
+/// A part of a world and the kind of the component that refuses it.
 fn refusing(part: &Part, kind: &str) -> String {
     match part {
         Part::Collider { .. } => format!("{part} ({kind})"),
@@ -73,53 +73,54 @@ messages! {
         "part.build" #[error("{}: {}", refusing(part, &source.kind), source.about)]
         #[allowed("{}", source.about.allowed().unwrap_or_default())] #[hint("{}", source.about.hint().unwrap_or_default())]
         Build { part: Part, source: BuildError },
-        /// The substep h \[s\] is longer than the integrator allows, and what it allows \[s\]: the largest frequency \[rad/s\], the largest
-        /// damping rate \[1/s\], and the least number of substeps of a frame that is stable; a frame may not have as many.
+        /// The substep h \[s\] is longer than the integrator allows. Contains the longest allowed substep \[s\], the largest frequency \[rad/s\], the
+        /// largest damping rate \[1/s\], and the smallest stable number of substeps of a frame, which may exceed the limit of a frame.
         "step.unstable"
         #[error("the step h = {} s of `{integrator}` is unstable for body `{body}`", number(*h))]
         #[allowed("h <= {} s (its fastest motion: {} rad/s{})", number(*limit), number(*omega), damped(*damping))]
         #[hint("{}", remedy(*substeps))]
         UnstableStep { integrator: &'static str, body: String, h: f64, limit: f64, omega: f64, damping: f64, substeps: u32 },
-        /// The motion left the finite numbers, or the range in which positions have digits: the time at the start of the substep \[s\], that
-        /// of the last good frame \[s\], and how far from the origin positions keep their digits \[m\], where the node went beyond that.
+        /// The motion left the finite numbers or the range in which positions keep their digits. Contains the time at the start of the substep \[s\],
+        /// the time of the last good frame \[s\], and, if the node left that range, the distance from the origin up to which positions keep their
+        /// digits \[m\].
         "run.diverged"
         #[error("body `{body}` diverged: node {node} left {} in the substep from t = {} s; the world is at its last good frame, t = {} s", what_was_left(*range), number(*time), number(*last))]
         #[hint("more substeps may help{}", falls(*range))]
         Diverged { body: String, node: u32, time: f64, last: f64, range: Option<f64> },
-        /// A model has no meaning in the state reached.
+        /// A model is not defined in the state that was reached.
         "run.model" #[error("body `{body}`: {cause}; the world is at its last good frame")]
         #[allowed("{}", cause.allowed().unwrap_or_default())] #[hint("{}", cause.hint().unwrap_or_default())]
         Step { body: String, cause: Box<StepError> },
-        /// An implicit integrator has not found the end of a step.
+        /// An implicit integrator did not find the end of a step.
         "run.not_converged" #[error("body `{body}`: {cause}; the world is at its last good frame")]
         #[allowed("{}", cause.allowed().unwrap_or_default())] #[hint("{}", cause.hint().unwrap_or_default())]
         NotConverged { body: String, cause: Box<StepError> },
-        /// The sums over all bodies left the finite numbers in the frame after the last good one, whose time is given \[s\].
+        /// The sums over all bodies left the finite numbers in the frame after the last good one. Contains the time of the last good frame \[s\].
         "run.overflow"
         #[error("the energy or the momentum of all bodies together left the finite numbers in the frame from t = {} s; the world is at its last good frame", number(*last))]
         #[hint("are masses, stiffnesses and speeds in units that go together (metres, kilograms, seconds)?")]
         Overflow { last: f64 },
-        /// More pairs may touch in a step than the scene allows; the time of the last good frame \[s\].
+        /// More pairs may touch in a step than the scene allows. Contains the time of the last good frame \[s\].
         "limit.contacts"
         #[error("more than {most} pairs of vertices, edges and facets may touch in a step ({found} were found) in the frame from t = {} s; the world is at its last good frame", number(*last))]
         #[allowed("{most}")] #[hint("a larger `most_pairs` in `[contact]`, or coarser surfaces")]
         TooManyContacts { found: usize, most: usize, last: f64 },
-        /// Surfaces meet that a barrier keeps apart; the second is another body, the same, or an obstacle. The time at the end of the
-        /// substep \[s\].
+        /// Surfaces that a barrier should keep apart meet. The second is another body, the same body, or an obstacle. Contains the time at the end of
+        /// the substep \[s\].
         "contact.surfaces_meet"
         #[error("the surfaces of `{first}` and {} meet at t = {} s, where a barrier needs a gap; the world is at its last good frame", other(first, second), number(*time))]
         #[hint("bodies that begin apart, a smaller `thickness`, or `response = \"constraint\"`")]
         Meet { first: String, second: String, time: f64 },
-        /// Pins and obstacles lead bodies through one another; the second is another body, the same, or an obstacle. The time at the end of
-        /// the substep \[s\].
+        /// Pins and obstacles move bodies through one another. The second is another body, the same body, or an obstacle. Contains the time at the
+        /// end of the substep \[s\].
         "contact.led_through"
         #[error("pins and obstacles lead `{first}` through {} at t = {} s; the world is at its last good frame", other(first, second), number(*time))]
         #[hint("another path of what leads them, or `touch = false` for the pair")]
         LedThrough { first: String, second: String, time: f64 },
-        /// The frame was broken off from outside ([`crate::Options::break_off`]).
+        /// The frame was cancelled from outside ([`crate::Options::break_off`]).
         "run.broken_off" #[error("the frame was broken off; the world is at its last good frame")]
         BrokenOff {},
-        /// A name, path or value does not fit.
+        /// A name, path or value is not valid.
         "path.unknown" #[error("`{path}`: {about}")]
         #[allowed("{}", about.allowed().unwrap_or_default())] #[hint("{}", about.hint().unwrap_or_default())]
         Path { path: String, about: AnyMessage },
@@ -137,7 +138,7 @@ impl Part {
 }
 
 impl WorldError {
-    /// A name, path or value does not fit.
+    /// A name, path or value is not valid.
     pub fn path(path: impl Into<String>, about: impl Into<AnyMessage>) -> WorldError {
         WorldError::Path { path: path.into(), about: about.into() }
     }

@@ -1,23 +1,23 @@
-//! What a blueprint may not say, as messages.
+//! Messages about errors in a blueprint.
 
 use opruga_math::messages;
 use opruga_math::words::number;
 
-/// What is allowed in names.
+/// The characters and lengths that names may have.
 const NAMES: &str = "1 to 256 bytes without control characters and . , [ ] = quotes; not only digits";
 
-/// In which line a name stands first.
+/// The line in which a name first occurs.
 fn first_in(line: &Option<usize>) -> String {
     line.map_or_else(String::new, |line| format!(", first in line {line}"))
 }
 
-/// The characters that another name does not share.
+/// The characters that the other name does not contain.
 fn points(points: &Option<String>) -> &str {
     points.as_deref().unwrap_or("nothing")
 }
 
 messages! {
-    /// What is wrong with a name.
+    /// Errors of a name.
     #[derive(Clone, Debug, PartialEq)]
     pub enum NameFault {
         "scene.name" #[error("the name is empty")] #[value("")] #[allowed("{NAMES}")]
@@ -40,7 +40,7 @@ messages! {
         AlikeProbes { name: String, here: Option<String>, there: Option<String>, line: Option<usize> },
     }
 
-    /// What is wrong with the numbers of a blueprint, or with what its parts name.
+    /// Errors in the numbers of a blueprint, or in the names that its parts refer to.
     #[derive(Clone, Debug, PartialEq)]
     pub enum BlueprintFault {
         "scene.range" #[error("a step of {} s is lost in {} s: time would stand still", number(*h), number(*seconds))]

@@ -1,5 +1,4 @@
-//! A hash of all positions and velocities that is quick enough for every frame: it costs less than a substep, also of
-//! scenes that have few of them.
+//! A hash of all positions and velocities that is fast enough for every frame: it costs less than a substep, even in scenes with few substeps.
 
 use crate::world::World;
 use opruga_core::state::Layout;
@@ -9,7 +8,7 @@ use opruga_math::{Pack, WIDTH, Work};
 /// An odd factor: the golden ratio in 64 bits.
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// Where the sums of the lanes begin: each at another number.
+/// The initial values of the sums of the lanes, which all differ.
 const START: [u64; WIDTH] = {
     let mut start = [0; WIDTH];
     let mut lane = 0;
@@ -20,19 +19,19 @@ const START: [u64; WIDTH] = {
     start
 };
 
-/// Hashes a hash into another.
+/// Combines two hashes.
 #[inline(always)]
 fn join(hash: u64, other: u64) -> u64 {
     let hash = (hash ^ other).wrapping_mul(GOLDEN);
     hash ^ hash >> 32
 }
 
-/// Eight sums of the bits of numbers, and as many of these sums, which see the order (Fletcher): additions alone, which every
-/// set of vector instructions has for 64 bits.
+/// Eight sums of the bits of numbers, and eight sums of these sums, which depend on the order (Fletcher). They need only additions, which every set
+/// of vector instructions has for 64 bits.
 ///
-/// The upper half of a number is laid over its lower one, so that numbers that differ have terms that differ below 2³².
-/// Two of them in a lane then never cancel out: where their terms add up to nothing, the sums of sums are off by one of them
-/// times the distance, which is no multiple of 2⁶⁴. More than two cancel by chance alone.
+/// The upper half of a number is combined with its lower half, so that different numbers have terms that differ by less than 2³². Two changed numbers
+/// in one lane therefore never cancel: if their terms add up to zero, the sums of sums differ by one term times the distance, which is not a multiple
+/// of 2⁶⁴. More than two changes cancel only by chance.
 struct Sums {
     first: [u64; WIDTH],
     second: [u64; WIDTH],
@@ -59,8 +58,8 @@ impl Sums {
     }
 }
 
-/// The hashes of the bodies of a system, which lie in the lanes of a batch or alone in the first. Node i of a body goes to its
-/// sums i modulo eight, coordinate by coordinate, positions first, whichever the layout.
+/// The hashes of the bodies of a system, which are in the lanes of a batch, or alone in the first lane. In either layout node i of a body is added to
+/// its sums i modulo eight, coordinate by coordinate, positions first.
 struct OfBodies<'a, const D: usize>(&'a System<D>);
 
 impl<const D: usize> Work for OfBodies<'_, D> {
@@ -94,7 +93,7 @@ impl<const D: usize> Work for OfBodies<'_, D> {
             }
             Layout::Batch => {
                 let mut out = [system.nodes as u64; WIDTH];
-                // Row by row: the sums of all of them would not fit into registers.
+                // Row by row, because the sums of all rows would not fit into registers.
                 for row in 0..WIDTH {
                     let mut sums = Sums { first: [START[row]; WIDTH], second: [0; WIDTH] };
                     for columns in [&positions, &velocities] {
@@ -105,7 +104,7 @@ impl<const D: usize> Work for OfBodies<'_, D> {
                                 sums.add(&packs[node]);
                                 node += WIDTH;
                             }
-                            // As behind the last node of a body alone.
+                            // The padding after the last node, as for a single body.
                             if node < system.nodes.next_multiple_of(WIDTH) {
                                 sums.add(&[0.0; WIDTH]);
                             }
@@ -123,8 +122,8 @@ impl<const D: usize> Work for OfBodies<'_, D> {
 }
 
 impl<const D: usize> World<D> {
-    /// A 64-bit hash over the same numbers, coordinate by coordinate of every body, eight at a time: so quick that every
-    /// frame of a recording has one.
+    /// A 64-bit hash of the same numbers, coordinate by coordinate of every body, eight at a time. It is so fast that every frame of a recording has
+    /// one.
     pub fn frame_hash(&self) -> u64 {
         let hash = |system: &System<D>| system.simd.run(OfBodies(system));
         let of_islands: Vec<[u64; WIDTH]> = self.islands.iter().map(|island| hash(&island.system)).collect();

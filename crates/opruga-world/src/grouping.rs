@@ -1,4 +1,4 @@
-//! Which bodies lie side by side in the lanes.
+//! Grouping of bodies that lie side by side in the lanes.
 
 use crate::blueprint::BodyBlueprint;
 use crate::masses::densities;
@@ -8,12 +8,12 @@ use opruga_math::WIDTH;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Bodies with more nodes than this fill the vector lanes by themselves.
+/// Bodies with more nodes than this fill the vector lanes on their own.
 const LARGEST_IN_BATCH: usize = 1024;
-/// Fewer alike bodies than this are cheaper one by one.
+/// A batch of fewer bodies than this costs more than stepping them one by one.
 const SMALLEST_BATCH: usize = 3;
 
-/// Which bodies may lie side by side: the same rest shape and integrator, and models that differ in numbers only.
+/// Whether bodies may lie side by side: they have the same rest shape and integrator, and models that differ only in numbers.
 pub(crate) fn alike<const D: usize>(a: &BodyBlueprint<D>, b: &BodyBlueprint<D>) -> bool {
     Arc::ptr_eq(&a.mesh, &b.mesh)
         && a.integrator == b.integrator
@@ -33,9 +33,9 @@ fn alike_values(a: &Values, b: &Values) -> bool {
             .all(|((n, x), (m, y))| n == m && (matches!((x, y), (Value::Number(_), Value::Number(_))) || x == y))
 }
 
-/// Groups of bodies that are stepped together, in the order of their first body.
+/// Groups of bodies that are stepped together, in the order of their first bodies.
 ///
-/// A body keeps its seat among its kind when others are taken away: so only the group that loses or wins a body changes.
+/// A body keeps its seat among bodies of its kind when others are removed, so only the group that loses or gains a body changes.
 pub(crate) fn group<const D: usize>(
     bodies: &[BodyBlueprint<D>],
     slots: &Slots,
@@ -57,7 +57,7 @@ pub(crate) fn group<const D: usize>(
         kinds[kind].1.push(number);
         kind_of[number] = Some(kind);
     }
-    // Empty seats beside bodies of a kind.
+    // Empty seats beside bodies of the same kind.
     for (number, origin) in slots.origin.iter().enumerate() {
         if let Origin::Free(Some(like)) = origin
             && let Some(kind) = kind_of.get(*like).copied().flatten()

@@ -1,4 +1,4 @@
-//! What a program does to a world from outside of its scene: written down on request, so that a recording can do it again.
+//! Inputs of a program to a world that are not part of its scene. They are recorded on request, so that a recording can repeat them.
 
 use crate::blueprint::{Action, CommandBlueprint, Selector};
 use crate::bytes::{Reader, Writer};
@@ -6,7 +6,7 @@ use crate::error::WorldError;
 use crate::path_faults::{PathFault, SnapshotFault};
 use opruga_core::spec::Value;
 
-/// Something that a program has done to a world between two frames.
+/// An input of a program to a world between two frames.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Input<const D: usize> {
     /// [`World::command`].
@@ -39,9 +39,9 @@ pub enum Input<const D: usize> {
         /// The name of the body.
         name: String,
     },
-    /// [`World::act`], [`World::lead`] and [`World::finish`]: commands that are made while they act are kept in a scene.
+    /// [`World::act`], [`World::lead`] and [`World::finish`]: commands that are created during a run are stored in a scene.
     Act,
-    /// [`World::add_force`]: a law that only the program knows, which cannot be written as bytes.
+    /// [`World::add_force`]: a law of the program, which cannot be written as bytes.
     Force {
         /// The body, by its number.
         body: usize,
@@ -67,7 +67,7 @@ impl<const D: usize> Input<D> {
     /// The bytes of the input, for [`Input::from_bytes`].
     ///
     /// # Errors
-    /// [`WorldError::Path`] for bodies and forces that the program has made itself: they are no data.
+    /// [`WorldError::Path`] for bodies and forces that the program has created itself: they cannot be written as data.
     pub fn to_bytes(&self) -> Result<Vec<u8>, WorldError> {
         let mut bytes = Vec::new();
         let mut out = Writer(&mut bytes);
@@ -100,10 +100,10 @@ impl<const D: usize> Input<D> {
         Ok(bytes)
     }
 
-    /// The input of these bytes.
+    /// The input that these bytes contain.
     ///
     /// # Errors
-    /// [`WorldError::Snapshot`] where they are none.
+    /// [`WorldError::Snapshot`] if the bytes contain no input.
     pub fn from_bytes(bytes: &[u8]) -> Result<Input<D>, WorldError> {
         let mut reader = Reader(bytes);
         let input = match reader.count()? {
@@ -128,7 +128,7 @@ fn unknown() -> WorldError {
     WorldError::snapshot(SnapshotFault::Input {})
 }
 
-/// False for what cannot be written.
+/// Writes an action; returns false if it cannot be written.
 pub(crate) fn write_action<const D: usize>(out: &mut Writer<'_>, action: &Action<D>) -> bool {
     match action {
         Action::Drag { body, node, facet, stiffness, path, largest_force } => {
@@ -245,7 +245,7 @@ pub(crate) fn write_selector<const D: usize>(out: &mut Writer<'_>, select: &Sele
     }
 }
 
-/// How deep sets may be nested.
+/// The maximum nesting of sets.
 const DEEPEST: u32 = 128;
 
 pub(crate) fn read_selector<const D: usize>(reader: &mut Reader<'_>, depth: u32) -> Result<Selector<D>, WorldError> {

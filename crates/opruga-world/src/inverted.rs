@@ -1,29 +1,29 @@
-//! Cells of finite elements that are inside out in the present state, wholly or somewhere.
+//! Cells of finite elements that are inverted in the present state, entirely or in part.
 //!
-//! Two things are looked at. Integration points, with what the law is asked with there: that of a box is not its shape alone. And J of
-//! the shape over the whole cell: it is a polynomial over another one, of quadratic cells and boxes, whose sign its coefficients prove
-//! or one of its values refutes ([`opruga_mesh::least_jacobian`]). A cell may be folded at a corner while all of its integration points
-//! are right side out, and no force tells.
+//! Two checks are made. One uses the integration points with the deformation that the law sees there, which for boxes does not depend on the shape
+//! alone. The other uses J of the shape over the whole cell. For quadratic cells and boxes it is a quotient of polynomials; its coefficients may
+//! prove its sign, or one value may disprove it ([`opruga_mesh::least_jacobian`]). A cell may be folded at a corner although none of its integration
+//! points is inverted, and no force shows it.
 
 use crate::warnings::{CellHint, InvertedCells, UnfoldHint, Warning, WorldWarning};
 use crate::world::World;
 use opruga_core::spec::Role;
 use opruga_mesh::{jacobian_at, least_jacobian};
 
-/// What is known of a cell.
+/// The result for a cell.
 enum Found {
-    /// It is inside out where J is this.
+    /// Inverted; J has this value where the cell is inverted.
     Inverted(f64),
-    /// It is flat somewhere, or nearly: J is as little as this, and may be negative.
+    /// Degenerate somewhere, or nearly so: J is as small as this, and may be negative.
     Nearly(f64),
 }
 
 impl<const D: usize> World<D> {
-    /// A warning (`cells.inverted`) of cells of finite elements that are inside out in the present state, wholly or
-    /// somewhere, which the rules of motion allow; none where all are certainly right side out. Looked for anew by every call.
+    /// A warning (`cells.inverted`) about cells of finite elements that are inverted in the present state, entirely or in part, which the integrators
+    /// allow; none if certainly no cell is inverted. Every call computes it again.
     ///
-    /// J of quadratic cells and boxes is bounded over the whole cell ([`opruga_mesh::least_jacobian`]), whatever their integration
-    /// points see. A cell that is so nearly flat somewhere that the bounds do not decide is counted as one that may be.
+    /// J of quadratic cells and boxes is bounded over the whole cell ([`opruga_mesh::least_jacobian`]), independently of the integration points. A
+    /// cell that is so close to degenerate somewhere that the bounds are not conclusive counts as possibly inverted.
     pub fn inverted_cells(&self) -> Option<Warning> {
         let solid = |body: &usize| {
             self.blueprint.bodies[*body].models.iter().any(|model| model.spec().has_role(Role::OwnsCells))
@@ -34,7 +34,7 @@ impl<const D: usize> World<D> {
             let shapes = self.shapes_of_cells(body);
             for cell in self.cell_states(body) {
                 let points = cell.smallest_volume_ratio;
-                // Written so that what is no number is inverted.
+                // This form treats NaN as inverted.
                 let right = points > 0.0;
                 let found = match shapes.get(cell.cell as usize) {
                     Some(Some(Found::Inverted(ratio))) if right || *ratio < points => Found::Inverted(*ratio),
@@ -45,7 +45,7 @@ impl<const D: usize> World<D> {
                 };
                 let certain = matches!(found, Found::Inverted(_));
                 (count, uncertain) = if certain { (count + 1, uncertain) } else { (count, uncertain + 1) };
-                // What is certain is named before what is not.
+                // Certain cases are named before uncertain ones.
                 if first.as_ref().is_none_or(|(.., known)| certain && matches!(known, Found::Nearly(_))) {
                     first = Some((body, cell.cell, found));
                 }
@@ -69,8 +69,8 @@ impl<const D: usize> World<D> {
         Some(Warning::new(warning, count + uncertain))
     }
 
-    /// What the shapes of the cells of a body show, in the order of its cells. Cells that have no positive J at rest, such as those with
-    /// nodes at a quarter of their sides, have none that could keep its sign.
+    /// The results for the shapes of the cells of a body, in the order of its cells. Cells without a positive J at rest, such as those with nodes at
+    /// a quarter of their sides, have no result, because their J has no sign to keep.
     fn shapes_of_cells(&self, body: usize) -> Vec<Option<Found>> {
         let mesh = &self.blueprint.bodies[body].mesh;
         let (mut now, mut rest) = (Vec::new(), Vec::new());
@@ -89,12 +89,12 @@ impl<const D: usize> World<D> {
         found.collect()
     }
 
-    /// What helps a body that rests in a degenerate shape, where the scene does not say it.
+    /// The hint for a body that rests in a degenerate shape, if the scene does not already use it.
     pub(crate) fn or_unfold(&self) -> Option<UnfoldHint> {
         (!self.blueprint.surroundings.unfold).then_some(UnfoldHint::Unfold)
     }
 
-    /// What else than more substeps turns cells of a body right side out: no law that it already has.
+    /// The hint that helps against inverted cells of a body besides more substeps; it never names a law that the body already has.
     fn what_rights_cells(&self, body: usize) -> CellHint {
         let solids = self.blueprint.bodies[body].models.iter().filter(|model| model.spec().has_role(Role::OwnsCells));
         let laws: Vec<&str> = solids.filter_map(|model| model.text("material")).collect();

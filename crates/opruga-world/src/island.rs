@@ -1,4 +1,4 @@
-//! Bodies that are stepped together, and the frame that they step through on their own.
+//! Bodies that are stepped together, and the stepping of one frame for them alone.
 
 use crate::blueprint::BodyBlueprint;
 use crate::ledger::{Stock, Survey, survey, take_stock, total_of};
@@ -14,30 +14,30 @@ use opruga_core::system::{Member, System, Work8, Workspace};
 use opruga_math::Lane;
 use std::sync::Arc;
 
-/// One body, or up to eight alike ones side by side.
+/// One body, or up to eight alike bodies side by side.
 #[derive(Debug)]
 pub(crate) struct Island<const D: usize> {
     pub(crate) system: System<D>,
     pub(crate) integrator: Arc<dyn Integrator<D>>,
-    /// What the estimate of its stable step said, once it was made.
+    /// The estimate of its stable step, once it has been made.
     pub(crate) stability: Option<Stability>,
-    /// The bodies, by their place in the world.
+    /// The bodies, by their index in the world.
     pub(crate) bodies: Vec<usize>,
     pub(crate) stock: Stock,
     pub(crate) survey: Survey<D>,
-    /// How far from the origin along an axis its positions keep their digits [m].
+    /// The distance from the origin along an axis up to which its positions keep their digits [m].
     pub(crate) range: f64,
     pub(crate) work: Work8,
     /// The potential energy at the start of the last frame [J].
     pub(crate) potential_before: f64,
-    /// Where its bodies went in the last frame, if that was watched.
+    /// The region that its bodies passed through in the last frame, if it was recorded.
     pub(crate) path: Path<D>,
-    /// How the last frame ended.
+    /// The result of the last frame.
     pub(crate) outcome: Result<(), StepError>,
     last: Option<Saved<D>>,
-    /// The states at the looks within the last frame.
+    /// The states that were kept within the last frame.
     looks: Vec<Saved<D>>,
-    /// The state at the start of a substep that may be made again.
+    /// The state at the start of a substep that may be repeated.
     pub(crate) substep_start: Option<Saved<D>>,
 }
 
@@ -49,7 +49,7 @@ pub(crate) struct Saved<const D: usize> {
     memory: Vec<Vec<f64>>,
     history: History<D>,
     time: f64,
-    /// What entered and left since the start of the frame.
+    /// The work and losses since the start of the frame.
     pub(crate) work: Work8,
 }
 
@@ -65,10 +65,9 @@ impl<const D: usize> Saved<D> {
         }
     }
 
-    /// Takes another state into the same memory.
+    /// Stores another state in the same memory.
     ///
-    /// The columns change hands, and the system goes on with a copy: what is kept stays as it is in memory, and is not
-    /// written there once more.
+    /// The columns are swapped, and the system continues with a copy. The stored state is therefore not written to memory a second time.
     pub(crate) fn take(&mut self, system: &mut System<D>, time: f64) {
         std::mem::swap(&mut self.x, &mut system.state.x);
         std::mem::swap(&mut self.v, &mut system.state.v);
@@ -97,7 +96,7 @@ impl<const D: usize> Saved<D> {
         system.time = self.time;
     }
 
-    /// Exchanges the state with that of a system.
+    /// Swaps the state with that of a system.
     fn swap(&mut self, system: &mut System<D>) {
         std::mem::swap(&mut self.x, &mut system.state.x);
         std::mem::swap(&mut self.v, &mut system.state.v);
@@ -109,26 +108,26 @@ impl<const D: usize> Saved<D> {
     }
 }
 
-/// Nodes from which on threads share the work on one body.
+/// The number of nodes from which threads share the work on one body.
 const SHARED_FROM: usize = 1000;
 
-/// What a frame needs to know.
+/// The data that a frame needs.
 #[derive(Clone, Copy)]
 pub(crate) struct FramePlan<'a, const D: usize> {
     pub(crate) colliders: Option<&'a Arc<Colliders<D>>>,
     pub(crate) start: f64,
     pub(crate) substeps: u32,
     pub(crate) h: f64,
-    /// Substeps between two looks within the frame; 0: none.
+    /// Substeps between two kept states within the frame; 0: none.
     pub(crate) look_every: u32,
-    /// Whether islands keep where their bodies go ([`Island::path`]).
+    /// Whether islands record the region that their bodies pass through ([`Island::path`]).
     pub(crate) watched: bool,
-    /// The bodies of the world where those that rest in a degenerate shape are displaced.
+    /// The bodies of the world, if bodies that rest in a degenerate shape are to be displaced.
     pub(crate) unfold: Option<&'a [BodyBlueprint<D>]>,
 }
 
 impl<const D: usize> FramePlan<'_, D> {
-    /// The same frame with each substep in so many parts, without looks in between.
+    /// The same frame with each substep divided into `parts`, without kept states in between.
     pub(crate) fn in_parts(&self, parts: u32) -> Self {
         FramePlan { substeps: self.substeps * parts, h: self.h / f64::from(parts), look_every: 0, ..*self }
     }
@@ -158,15 +157,15 @@ impl<const D: usize> Island<D> {
         island
     }
 
-    /// Whether so many threads work on this island together: it is large, and its integrator knows how, or a model where
-    /// there are fewer islands than threads; of an explicit step a part alone is shared.
+    /// Whether this many threads work on this island together. It must be large, and its integrator must support this, or a model if there are fewer
+    /// islands than threads; in an explicit step only a part of the work is shared.
     pub(crate) fn is_shared_by(&self, threads: usize, islands: usize) -> bool {
         let models = || self.system.members.iter().any(|member| member.potential.properties().shares_threads);
         let known = || self.integrator.shares_threads() || islands < threads && models();
         threads > 1 && self.system.nodes >= SHARED_FROM && known()
     }
 
-    /// Looks at the state again after it was changed from outside.
+    /// Updates what is computed from the state after a change from outside.
     pub(crate) fn refresh(&mut self) {
         self.survey = survey(&self.system);
         self.stock = take_stock(&mut self.system);
@@ -177,8 +176,8 @@ impl<const D: usize> Island<D> {
         self.stock.elastic + self.stock.gas + self.survey.gravity
     }
 
-    /// What the rule has taken by itself since the start of the last frame [J], if it says so, and if every model says what its
-    /// forces do; `work` is what entered and left since then.
+    /// The numerical loss of the integrator since the start of the last frame [J], if the integrator measures it and every model reports the work of
+    /// its forces. `work` contains the work and losses since then.
     pub(crate) fn numerical_loss(&self, work: &Work8) -> f64 {
         if !self.integrator.measures_its_damping() || !self.system.has_energy() {
             return 0.0;
@@ -188,7 +187,7 @@ impl<const D: usize> Island<D> {
         entered + gas + correction + (self.potential_before - self.potential())
     }
 
-    /// What models say of one of the bodies.
+    /// The readings of the models of one of the bodies.
     pub(crate) fn readings(&mut self, lane: usize, time: f64) -> Vec<Reading> {
         let mut out = Vec::new();
         self.ask(time, |member, view| {
@@ -205,7 +204,7 @@ impl<const D: usize> Island<D> {
         out
     }
 
-    /// Asks every model that is prepared for the present state.
+    /// Queries every model, prepared for the present state.
     fn ask(&mut self, time: f64, mut question: impl FnMut(&Member<D>, &View<D>)) {
         let system = &mut self.system;
         let view = View {
@@ -223,8 +222,7 @@ impl<const D: usize> Island<D> {
         }
     }
 
-    /// Steps through a frame in a workspace that is lent; on failure the island is at its last good frame and the reason
-    /// names substep and node.
+    /// Steps through a frame with a borrowed workspace. On failure the island is at its last good frame, and the error names substep and node.
     pub(crate) fn frame(&mut self, plan: &FramePlan<D>, workspace: &mut Workspace<D>) {
         self.system.exchange(workspace);
         self.outcome = self.step_through(plan);
@@ -237,8 +235,8 @@ impl<const D: usize> Island<D> {
         let swept = self.swept_bounds(plan);
         let may_touch = self.reaches(plan, &swept);
         let mut outcome = self.attempt(plan, may_touch);
-        // A body that left the region swept by its velocities, or found no end of a step, might have met an obstacle: once
-        // more, looking at all.
+        // A body that left the region swept by its velocities, or whose step found no end, might have met an obstacle: repeat the frame and check all
+        // obstacles.
         if !may_touch
             && plan.colliders.is_some()
             && outcome.as_ref().map_or(true, |after| left(&swept, &after.position))
@@ -270,7 +268,7 @@ impl<const D: usize> Island<D> {
         }
     }
 
-    /// Lets a body leave a degenerate shape at the end of a frame; looks at the state again.
+    /// Lets a body leave a degenerate shape at the end of a frame; surveys the state again.
     fn recover(&mut self, plan: &FramePlan<D>, meets: bool) -> Result<Survey<D>, StepError> {
         if self.integrator.is_static() {
             let start = self.survey.kinetic + self.potential_before;
@@ -303,7 +301,7 @@ impl<const D: usize> Island<D> {
         self.surveyed(plan.start)
     }
 
-    /// Looks at all nodes; refuses what is not finite or out of range.
+    /// Surveys all nodes; refuses values that are not finite or out of range.
     pub(crate) fn surveyed(&self, start: f64) -> Result<Survey<D>, StepError> {
         let survey = survey(&self.system);
         let [low, high] = &survey.position;
@@ -315,7 +313,7 @@ impl<const D: usize> Island<D> {
         Err(self.culprit(start).unwrap_or(StepError::Diverged { body: 0, node: 0, time: start, range }))
     }
 
-    /// The system at the beginning of a substep.
+    /// Sets the system to the beginning of a substep.
     pub(crate) fn set_out(&mut self, plan: &FramePlan<D>, substep: u32) {
         self.system.time = plan.start + f64::from(substep) * plan.h;
         self.system.lead_pins(plan.h);
@@ -324,7 +322,7 @@ impl<const D: usize> Island<D> {
         }
     }
 
-    /// Repeats the frame, looking at every substep.
+    /// Repeats the frame and checks every substep.
     fn name_culprit(&mut self, plan: &FramePlan<D>) -> Option<StepError> {
         self.system.contacts = plan.colliders.map(|c| Arc::clone(c).into_contacts());
         for substep in 0..plan.substeps {
@@ -340,7 +338,7 @@ impl<const D: usize> Island<D> {
         None
     }
 
-    /// The first node that is not finite, or beyond the range.
+    /// The first node that is not finite or is out of range.
     fn culprit(&self, time: f64) -> Option<StepError> {
         let system = &self.system;
         for node in 0..system.nodes {
@@ -357,13 +355,13 @@ impl<const D: usize> Island<D> {
         None
     }
 
-    /// Begins to keep where bodies go in a frame, if that is asked for.
+    /// Begins to record the region that bodies pass through in a frame, if that is requested.
     pub(crate) fn begin_path(&mut self, plan: &FramePlan<D>) {
         self.path = Path::default();
         self.keep_path(plan);
     }
 
-    /// Adds where bodies are now.
+    /// Adds the present positions of the bodies.
     pub(crate) fn keep_path(&mut self, plan: &FramePlan<D>) {
         if plan.watched {
             self.path.include(&self.system, &self.system.state.x);
@@ -386,20 +384,20 @@ impl<const D: usize> Island<D> {
         }
     }
 
-    /// Exchanges the state with that of a look; twice is nothing. Gives what entered and left until the look.
+    /// Swaps the state with a kept one; a second call undoes the swap. Returns the work and losses up to the kept state.
     pub(crate) fn swap_look(&mut self, number: usize) -> Option<Work8> {
         let look = self.looks.get_mut(number)?;
         look.swap(&mut self.system);
         Some(look.work)
     }
 
-    /// Goes back to a state that was kept, with what had entered and left until then.
+    /// Restores a kept state, with the work and losses up to it.
     pub(crate) fn return_to(&mut self, mut kept: Saved<D>) {
         kept.swap(&mut self.system);
         (self.system.time, self.system.work) = (kept.time, kept.work);
     }
 
-    /// Goes back to the last good frame.
+    /// Restores the last good frame.
     pub(crate) fn restore(&mut self) {
         if let Some(saved) = &self.last {
             saved.write_into(&mut self.system);
@@ -413,20 +411,20 @@ impl<const D: usize> Island<D> {
             || colliders.reach(plan.start, plan.start + f64::from(plan.substeps) * plan.h, &swept[0], &swept[1])
     }
 
-    /// The bounding box swept within the frame: that of now, moved by v·dt + ½g·dt², and a margin for how the bodies deform.
+    /// The bounding box swept within the frame: the present one, moved by v·dt + ½g·dt², plus a margin for the deformation of the bodies.
     ///
-    /// It decides whether obstacles are looked at, and with them how implicit steps are solved. So it follows from positions and
-    /// velocities alone, which snapshots hold: what an island has seen in earlier frames must not widen it.
+    /// It determines whether obstacles are checked, and therefore how implicit steps are solved. For this reason it depends only on positions and
+    /// velocities, which snapshots contain: earlier frames of an island must not enlarge it.
     fn swept_bounds(&self, plan: &FramePlan<D>) -> [[f64; D]; 2] {
         self.sweep(plan, self.survey.position, self.survey.velocity)
     }
 
-    /// The box swept by what lies within a box and has velocities within a range [m/s].
+    /// The box swept by points that lie in a box and whose velocities are in a range [m/s].
     fn sweep(&self, plan: &FramePlan<D>, [mut low, mut high]: Bounds<D>, [slow, fast]: Bounds<D>) -> Bounds<D> {
         let dt = f64::from(plan.substeps) * plan.h;
         for d in 0..D {
             let fall = 0.5 * self.system.gravity[d] * dt * dt;
-            // A body at the turn of a swing is slow and goes far within the frame all the same: a tenth of its size is much.
+            // A body at the turning point of an oscillation is slow but may move far within the frame; a tenth of its size is a generous margin.
             let margin = 0.1 * (high[d] - low[d]) + fall.abs();
             low[d] += (slow[d] * dt).smaller(0.0) - margin;
             high[d] += (fast[d] * dt).larger(0.0) + margin;
@@ -434,10 +432,10 @@ impl<const D: usize> Island<D> {
         [low, high]
     }
 
-    /// The boxes that its bodies sweep within the frame, lane by lane, as [`Island::swept_bounds`] has it for all together.
+    /// The boxes that its bodies sweep within the frame, lane by lane; [`Island::swept_bounds`] returns the box of all together.
     pub(crate) fn swept_by_bodies(&self, plan: &FramePlan<D>, mut visit: impl FnMut(usize, Bounds<D>)) {
         if self.integrator.is_static() {
-            // It goes wherever its balance is.
+            // It may move to any position of equilibrium.
             let everywhere = [[f64::NEG_INFINITY; D], [f64::INFINITY; D]];
             (0..self.bodies.len()).for_each(|lane| visit(lane, everywhere));
             return;

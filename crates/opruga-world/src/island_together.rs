@@ -1,4 +1,4 @@
-//! A frame of an island through which others go with it, substep by substep.
+//! A frame of an island that is stepped together with others, substep by substep.
 
 use crate::island::{FramePlan, Island, Saved};
 use crate::ledger::take_stock;
@@ -7,18 +7,18 @@ use opruga_core::system::{Work8, Workspace};
 use std::sync::Arc;
 
 impl<const D: usize> Island<D> {
-    /// Begins a frame through which others step together with it.
+    /// Begins a frame that is stepped together with others.
     pub(crate) fn begin_together(&mut self, plan: &FramePlan<D>) {
         self.save(plan.start);
         self.potential_before = self.potential();
         self.system.work = Work8::default();
-        // Whom it meets on the way nobody knows: obstacles are always looked at.
+        // It is not known what it will meet, so obstacles are always checked.
         self.system.contacts = plan.colliders.map(|colliders| Arc::clone(colliders).into_contacts());
         self.outcome = Ok(());
         self.begin_path(plan);
     }
 
-    /// Whether its bodies have been where positions keep their digits, so far in this frame.
+    /// Whether the positions of its bodies have kept their digits so far in this frame.
     pub(crate) fn is_in_range(&self) -> bool {
         let within = |lane: usize| {
             let [low, high] = self.path.of(self.system.layout, lane);
@@ -27,7 +27,7 @@ impl<const D: usize> Island<D> {
         self.path.is_sound() && (0..self.bodies.len()).all(within)
     }
 
-    /// Keeps the state at the start of a substep, to which [`Island::rewind`] goes back.
+    /// Keeps the state at the start of a substep; [`Island::rewind`] restores it.
     pub(crate) fn mark(&mut self) {
         let time = self.system.time;
         match &mut self.substep_start {
@@ -36,7 +36,7 @@ impl<const D: usize> Island<D> {
         }
     }
 
-    /// Goes back to the start of the substep.
+    /// Restores the state at the start of the substep.
     pub(crate) fn rewind(&mut self) {
         if let Some(kept) = self.substep_start.take() {
             kept.write_into(&mut self.system);
@@ -45,7 +45,7 @@ impl<const D: usize> Island<D> {
         }
     }
 
-    /// Makes one substep in a workspace that is lent.
+    /// Makes one substep with a borrowed workspace.
     pub(crate) fn step_together(&mut self, plan: &FramePlan<D>, substep: u32, workspace: &mut Workspace<D>) {
         self.system.exchange(workspace);
         self.outcome = self.system.go_on().and_then(|()| {
@@ -58,20 +58,20 @@ impl<const D: usize> Island<D> {
         }
     }
 
-    /// Begins a substep that others make with it.
+    /// Begins a substep that is made jointly with others.
     pub(crate) fn begin_as_one(&mut self, plan: &FramePlan<D>, substep: u32) {
         self.outcome = Ok(());
         self.set_out(plan, substep);
     }
 
-    /// Refuses a substep that others make with it.
+    /// Refuses a substep that is made jointly with others.
     pub(crate) fn refuse(&mut self, error: StepError) {
         self.outcome = Err(error);
         self.restore();
         self.system.work = Work8::default();
     }
 
-    /// Keeps the state after a substep where that is one to look at.
+    /// Keeps the state after a substep, if it is due.
     pub(crate) fn look_together(&mut self, plan: &FramePlan<D>, substep: u32) {
         let done = substep + 1;
         if plan.look_every > 0 && done.is_multiple_of(plan.look_every) && done < plan.substeps {

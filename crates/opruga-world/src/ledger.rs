@@ -1,11 +1,11 @@
-//! Where the energy is and where it went.
+//! The energy ledger: the energies, works and losses of a world.
 
 use opruga_core::potential::Account;
 use opruga_core::state::{Layout, View};
 use opruga_core::system::{SolverWork, System, Work8};
 use opruga_math::{Lane, Pack, Strip, WIDTH, Work, lanes, sum_in_fixed_order};
 
-/// Energy of the world and what entered and left it since the start [J]; every channel is measured by itself.
+/// The energies of the world, and the works and losses since the start [J]. Every channel is measured separately.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energy {
     /// Kinetic energy ½ v·M v, with lumped masses ½ Σ m v².
@@ -16,55 +16,54 @@ pub struct Energy {
     pub gas: f64,
     /// Potential energy −Σ m g·x.
     pub gravity: f64,
-    /// Work of loads, pushes, pulls, moving obstacles and pins, and the energy that came or went with a change of the scene:
-    /// a parameter that was set, a body that was added or taken away.
+    /// Work of loads, pushes, pulls, moving obstacles and pins, plus the energy of changes of the scene: parameters that were set, bodies that were
+    /// added or removed.
     pub work_user: f64,
-    /// Energy given to the gas by ramps, heating and leaks.
+    /// Energy that ramps, heating and leaks supply to the gas.
     pub work_gas: f64,
-    /// Energy taken by damping.
+    /// Energy dissipated by damping.
     pub loss_damping: f64,
-    /// Energy taken by friction.
+    /// Energy dissipated by friction.
     pub loss_friction: f64,
-    /// Energy taken by impacts.
+    /// Energy lost in impacts.
     pub loss_contact: f64,
-    /// Energy that obstacles gave by putting nodes back on their surface: the work against the forces on those nodes, to
-    /// the first order of the depth.
+    /// Energy that obstacles supply when they put nodes back on their surface: the work against the forces on those nodes, to first order in the
+    /// depth.
     pub work_correction: f64,
-    /// Energy that implicit rules take by themselves, from the formula of each rule; negative where a rule has made energy.
+    /// Energy that implicit integrators dissipate numerically, from the formula of each integrator; negative if an integrator has added energy.
     pub loss_numerical: f64,
-    /// What the other channels do not explain: the error of explicit rules, and of implicit ones what their equations were left out
-    /// of balance.
+    /// The remainder: the error of explicit integrators, and the residual of the equations of implicit ones.
     pub loss_integrator: f64,
     /// |loss_integrator| relative to `in_motion`.
     pub closure: f64,
-    /// The largest energy that was in motion so far, or what rounding alone may make of a body at rest where that is more.
+    /// The largest energy in motion so far, or what rounding alone may add to a body at rest, if that is larger.
     pub in_motion: f64,
 }
 
 impl Energy {
-    /// Kinetic, elastic, gas and gravity together [J].
+    /// The sum of kinetic, elastic, gas and gravity [J].
     pub fn total(&self) -> f64 {
         self.kinetic + self.elastic + self.gas + self.gravity
     }
 
-    /// What was lost or made neither by a model nor by an obstacle, relative to `in_motion`: by the rule itself, and unexplained.
+    /// The energy that neither a model nor an obstacle has removed or added, relative to `in_motion`: the numerical loss plus the remainder.
     pub fn drift(&self) -> f64 {
         self.part_in_motion(self.loss_numerical + self.loss_integrator)
     }
 
-    /// Whether rules have taken, or made, so much by themselves that it is warned of.
+    /// Whether the numerical loss or gain of integrators is so large that a warning is due.
     pub(crate) fn is_damped_by_rules(&self) -> bool {
         self.part_in_motion(self.loss_numerical) > LARGEST_DAMPING
     }
 
-    /// Whether every number is one.
+    /// Whether every number is finite.
     pub(crate) fn is_finite(&self) -> bool {
         let works = self.work_user + self.work_gas + self.work_correction;
         let losses = self.loss_damping + self.loss_friction + self.loss_contact + self.loss_numerical;
         (self.total() + works + losses + self.loss_integrator + self.closure + self.in_motion).is_finite()
     }
 
-    /// A part of the energy in motion, without its sign; zero where there is none.
+    /// The absolute value of an energy relative to the energy in motion; zero if nothing has moved.
     pub(crate) fn part_in_motion(&self, energy: f64) -> f64 {
         if self.in_motion > 0.0 { energy.abs() / self.in_motion } else { 0.0 }
     }
@@ -80,7 +79,7 @@ pub struct Momentum<const D: usize> {
 }
 
 impl<const D: usize> Momentum<D> {
-    /// Whether every number is one.
+    /// Whether every number is finite.
     pub(crate) fn is_finite(&self) -> bool {
         self.linear.0.iter().chain(&self.angular).all(|x| x.is_finite())
     }
@@ -100,11 +99,11 @@ impl<const D: usize> Default for Vector<D> {
 pub(crate) struct Stock {
     pub(crate) elastic: f64,
     pub(crate) gas: f64,
-    /// The parts whose differences elastic energies are.
+    /// The sum of the sizes of the terms whose differences are the elastic energies.
     pub(crate) parts: f64,
 }
 
-/// One look at all nodes of an island: motion, bounds, and whether every number is finite.
+/// A survey of all nodes of an island: motion, bounds, and whether every number is finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Survey<const D: usize> {
     pub(crate) mass: f64,
@@ -118,7 +117,7 @@ pub(crate) struct Survey<const D: usize> {
     pub(crate) finite: bool,
 }
 
-/// Adds the numbers that belong to real bodies.
+/// Adds the numbers of real bodies, without padding.
 pub(crate) fn total_of<const D: usize>(system: &System<D>, parts: &[f64; WIDTH]) -> f64 {
     match system.layout {
         Layout::Single => sum_in_fixed_order(parts),
@@ -142,7 +141,7 @@ pub(crate) fn take_stock<const D: usize>(system: &mut System<D>) -> Stock {
         if !member.potential.properties().views.energy {
             continue;
         }
-        // A model that refused the state would have ended the frame.
+        // A model that refuses the state would have ended the frame.
         let _ = member.potential.prepare(system.simd, &view, &member.memory, &mut member.scratch);
         let energy = member.potential.energy(system.simd, &view, &member.scratch);
         let energy = match system.layout {
@@ -158,7 +157,7 @@ pub(crate) fn take_stock<const D: usize>(system: &mut System<D>) -> Stock {
     out
 }
 
-/// Looks at all nodes of a system once.
+/// Surveys all nodes of a system in one pass.
 pub(crate) fn survey<const D: usize>(system: &System<D>) -> Survey<D> {
     let sums = system.simd.run(Look { system });
     let mut momentum = Momentum::default();
@@ -184,7 +183,7 @@ pub(crate) fn survey<const D: usize>(system: &System<D>) -> Survey<D> {
     }
 }
 
-/// What a mass matrix that couples nodes adds to the momentum, and to the kinetic energy [J].
+/// The part that a mass matrix with coupled nodes adds to the momentum, and to the kinetic energy [J].
 fn coupled_motion<const D: usize>(system: &System<D>, momentum: &mut Momentum<D>) -> f64 {
     let Some(inertia) = &system.inertia else { return 0.0 };
     let v = system.node_by_node(&system.state.v);
@@ -203,7 +202,7 @@ fn coupled_motion<const D: usize>(system: &System<D>, momentum: &mut Momentum<D>
     0.5 * inertia.square::<D>(&v)
 }
 
-/// What [`survey`] finds, eight partial results each.
+/// The results of [`survey`], each in eight partial sums.
 struct Looked<const D: usize> {
     mass: [f64; WIDTH],
     kinetic: [f64; WIDTH],
@@ -239,7 +238,7 @@ impl<const D: usize> Work for Look<'_, D> {
             let mut position: [P; D] = lanes!(P, d => x.load(d, k));
             let mut velocity: [P; D] = lanes!(P, d => v.load(d, k));
             if k + WIDTH > end {
-                // Behind the last node: no mass, and the place of the first node of the pack.
+                // After the last node: no mass, and the position of the first node of the pack.
                 let real = P::first(end - k);
                 mass = P::select(real, mass, P::zero());
                 weighs = P::select(real, weighs, P::zero());
@@ -258,7 +257,7 @@ impl<const D: usize> Work for Look<'_, D> {
                 high[d] = position[d].larger(high[d]);
                 slow[d] = velocity[d].smaller(slow[d]);
                 fast[d] = velocity[d].larger(fast[d]);
-                // Zero times a number is zero, times anything else it is not.
+                // Zero times a finite number is zero; zero times infinity or NaN is not.
                 finite += (position[d] + velocity[d]) * P::zero();
             }
             all += mass;
@@ -292,23 +291,22 @@ impl<const D: usize> Work for Look<'_, D> {
     }
 }
 
-/// The unexplained part of the energy in motion above which a frame is counted and warned of.
+/// The unexplained energy, relative to the energy in motion, above which a frame is counted and causes a warning.
 pub(crate) const LARGEST_CLOSURE: f64 = 0.1;
 
-/// The part of it that rules may take by themselves before a frame is counted: half of what may be unexplained, since it says what
-/// it is, and does so from step to step in one direction.
+/// The numerical loss, relative to the energy in motion, above which a frame is counted. It is half of the limit for the unexplained energy, because
+/// it is known and has the same sign from step to step.
 pub(crate) const LARGEST_DAMPING: f64 = 0.05;
 
-/// What rounding does to a number, many times over, relative to it.
+/// The relative error of a number after many roundings.
 const ROUNDING: f64 = 1e-13;
 
-/// What rounding makes of a difference of numbers, relative to them, ten times over: a few roundings of 1e-16 each, all of
-/// them in one direction, still leave the ledger closed.
+/// Ten times the error of a difference of numbers by rounding, relative to the numbers: a few roundings of 1e-16 each, all in one direction, still
+/// leave the ledger closed.
 const CANCELLATION: f64 = 1e-14;
 
 impl<const D: usize> Survey<D> {
-    /// The energy of motions that are all rounding [J]: every node errs by a rounding of the largest coordinate in a step of
-    /// h [s].
+    /// The energy of motions that are only rounding [J]: in a step of h [s] every node has an error of one rounding of the largest coordinate.
     fn of_rounding(&self, h: f64) -> f64 {
         let ends = self.position.iter().flatten();
         let farthest = ends.fold(0.0, |most: f64, x| most.larger(x.abs()));
@@ -317,7 +315,7 @@ impl<const D: usize> Survey<D> {
     }
 }
 
-/// What entered and left, added up over all frames since the start.
+/// Works and losses, summed over all frames since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Flows {
     pub(crate) user: f64,
@@ -326,29 +324,29 @@ pub(crate) struct Flows {
     pub(crate) friction: f64,
     pub(crate) contact: f64,
     pub(crate) correction: f64,
-    /// What rules have taken by themselves.
+    /// The numerical loss of integrators.
     pub(crate) numerical: f64,
-    /// The energy at the start, moved by what changes of the scene put in or took out.
+    /// The energy at the start, plus the energy that changes of the scene added or removed.
     pub(crate) start: f64,
-    /// What changes of the scene put in so far, less what they took out.
+    /// The energy that changes of the scene added so far, minus the energy that they removed.
     pub(crate) changed: f64,
     /// The largest energy in motion so far.
     pub(crate) largest: f64,
     pub(crate) limited_forces: u64,
     pub(crate) limited_velocities: u64,
     pub(crate) limited_pulls: u64,
-    /// Bodies that went too far and were taken away.
+    /// Bodies that went too far and were removed.
     pub(crate) lost_bodies: u64,
-    /// What implicit integrators did.
+    /// The work of implicit integrators.
     pub(crate) solver: SolverWork,
-    /// Frames that ended with a larger part of the energy unexplained than [`LARGEST_CLOSURE`].
+    /// Frames that ended with an unexplained energy above [`LARGEST_CLOSURE`].
     pub(crate) open_frames: u64,
-    /// Frames at the end of which rules had taken a larger part by themselves than [`LARGEST_DAMPING`].
+    /// Frames that ended with a numerical loss above [`LARGEST_DAMPING`].
     pub(crate) damped_frames: u64,
 }
 
 impl Flows {
-    /// Adds what entered and left an island since the start of the last frame until now, and what rules have taken by themselves [J].
+    /// Adds the works and losses of an island since the start of the last frame, and the numerical loss of its integrator [J].
     pub(crate) fn add<const D: usize>(&mut self, system: &System<D>, numerical_loss: f64, work: &Work8) {
         self.numerical += numerical_loss;
         self.user += total_of(system, &work.user);
@@ -361,7 +359,7 @@ impl Flows {
         self.limited_velocities += work.limited_velocities;
         self.solver.add(&work.solver);
     }
-    /// Counts a frame that ended with this ledger, where it is one to warn of. The ledger of models without an energy does not close.
+    /// Counts a frame that ended with this ledger, if a warning is due. The ledger of models without an energy does not close.
     pub(crate) fn count_frame(&mut self, energy: &Energy, has_energy: impl FnOnce() -> bool) {
         self.open_frames += u64::from(energy.closure > LARGEST_CLOSURE && has_energy());
         self.damped_frames += u64::from(energy.is_damped_by_rules());
@@ -402,7 +400,7 @@ impl Flows {
         energy.loss_integrator = given - taken - energy.total();
         let moved = energy.kinetic + energy.elastic.abs() + (energy.gas + energy.gravity - self.start).abs();
         self.largest = self.largest.larger(moved);
-        // Where nothing moves, what is left is rounding, and no part of anything.
+        // If nothing moves, the remainder is only rounding and is relative to nothing.
         rounding += ROUNDING * (energy.gas.abs() + energy.gravity.abs() + self.start.abs());
         energy.in_motion = self.largest.larger(rounding);
         energy.closure = energy.part_in_motion(energy.loss_integrator);

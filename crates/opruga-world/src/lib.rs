@@ -1,4 +1,4 @@
-//! Worlds of Opruga: bodies, obstacles, time, commands and what can be read of them.
+//! Worlds of Opruga: bodies, obstacles, time, commands and readings.
 
 mod any_command;
 mod any_scene;
@@ -94,7 +94,7 @@ pub use node_columns::{Strided, Vectors};
 pub use node_states::NodeState;
 pub use opruga_core::break_off::BreakOff;
 pub use path_faults::{PathFault, SnapshotFault};
-/// What the laws of the finite elements say at one deformation gradient.
+/// The laws of the finite elements at one deformation gradient.
 pub mod law {
     pub use opruga_models::fem::{SPEC, own_fields};
     pub use opruga_models::materials::{AtPoint, NAMES, in_plane, in_space};

@@ -1,4 +1,4 @@
-//! Forces from outside: loads, pushes, the pull of a pointer, a user's own law.
+//! Forces from outside: loads, pushes, the pull of a pointer, and a user's own law.
 
 use opruga_core::error::StepError;
 use opruga_core::potential::{Account, Definiteness, Observe, Potential, Properties, Sink, Views};
@@ -12,12 +12,12 @@ use std::sync::{Arc, PoisonError, RwLock};
 
 const USER: Views = Views { energy: false, hessian: true, symmetric: true, damping: false };
 
-/// A multiple of the unit matrix.
+/// A multiple of the identity matrix.
 fn isotropic<const D: usize>(value: f64) -> [[f64; D]; D] {
     core::array::from_fn(|i| core::array::from_fn(|j| if i == j { value } else { 0.0 }))
 }
 
-/// Adds a force at an index and enters its power.
+/// Adds a force at an index and records its power.
 fn push<const D: usize>(tile: &mut Tile<D>, view: &View<D>, index: usize, force: [f64; D]) {
     let k = index - tile.range.start;
     let mut power = 0.0;
@@ -31,7 +31,7 @@ fn push<const D: usize>(tile: &mut Tile<D>, view: &View<D>, index: usize, force:
 /// Given forces on nodes, with a factor over time.
 #[derive(Debug)]
 pub(crate) struct NodeForces<const D: usize> {
-    /// Index and force [N], indices rising.
+    /// Index and force [N], with ascending indices.
     pub(crate) entries: Vec<(usize, [f64; D])>,
     /// Factor over time, rows `[t, factor]`; empty: 1.
     pub(crate) curve: Vec<Vec<f64>>,
@@ -58,12 +58,12 @@ impl<const D: usize> Potential<D> for NodeForces<D> {
 
 impl<const D: usize> Observe<D> for NodeForces<D> {}
 
-/// Forces of one size towards a point that stays where it is, with a factor over time: F = s (c − x)/|c − x|.
+/// Forces of constant size towards a fixed point, with a factor over time: F = s (c − x)/|c − x|.
 ///
-/// A node at the point itself feels no force, because no direction leads there.
+/// A node at the point itself feels no force, because there is no direction.
 #[derive(Debug)]
 pub(crate) struct CentralForces<const D: usize> {
-    /// Where the nodes lie, rising.
+    /// Indices of the nodes, ascending.
     pub(crate) indices: Vec<usize>,
     /// s [N].
     pub(crate) value: f64,
@@ -116,8 +116,8 @@ impl<const D: usize> Potential<D> for CentralForces<D> {
 
 impl<const D: usize> Observe<D> for CentralForces<D> {}
 
-/// A pressure on sides of cells along their present inner normal, with a factor over time: F_a = −p ∫ Nₐ dA, integrated
-/// without error by the shape functions Nₐ of the sides.
+/// A pressure on sides of cells along their present inner normal, with a factor over time: F_a = −p ∫ Nₐ dA, integrated exactly with the shape
+/// functions Nₐ of the sides.
 #[derive(Debug)]
 pub(crate) struct FollowerPressure<const D: usize> {
     /// Pressure [Pa], times thickness in 2D.
@@ -126,7 +126,7 @@ pub(crate) struct FollowerPressure<const D: usize> {
     stride: usize,
     /// Indices of the nodes of every side.
     sides: Vec<Vec<usize>>,
-    /// For each number of nodes, the points of such sides.
+    /// For each number of nodes, the integration points of sides with that number.
     points: Vec<Vec<SidePoint>>,
 }
 
@@ -135,7 +135,7 @@ impl<const D: usize> FollowerPressure<D> {
         let points = (0..=MOST_SIDE_NODES).map(|n| if n < D { Vec::new() } else { side_points(D, n) }).collect();
         FollowerPressure { pressure, curve: curve.to_vec(), stride, sides, points }
     }
-    /// Where the nodes of a side are.
+    /// The positions of the nodes of a side.
     fn corners(view: &View<D>, side: &[usize]) -> [[f64; D]; MOST_SIDE_NODES] {
         core::array::from_fn(|n| side.get(n).map_or([0.0; D], |&index| view.position(index)))
     }
@@ -177,7 +177,7 @@ impl<const D: usize> Potential<D> for FollowerPressure<D> {
 
 impl<const D: usize> Observe<D> for FollowerPressure<D> {}
 
-/// The symmetric part of −∂F/∂x of a pressure on sides: exact for a closed surface, whose pressure has a potential.
+/// The symmetric part of −∂F/∂x of a pressure on sides. It is exact for a closed surface, whose pressure has a potential.
 impl<const D: usize> FollowerPressure<D> {
     fn add_hessian(&self, view: &View<D>, sink: &mut dyn Sink<D>) {
         let strength = 0.5 * self.pressure * factor(&self.curve, view.time);
@@ -210,12 +210,12 @@ impl<const D: usize> FollowerPressure<D> {
     }
 }
 
-/// A spring, critically damped on the grabbed mass, from a moving pointer to a node or to a point of a facet.
+/// A spring from a moving pointer to a node or to a point of a facet, critically damped for the grabbed mass.
 #[derive(Debug)]
 pub(crate) struct Pull<const D: usize> {
-    /// Indices of the grabbed nodes and their shares, which add up to one.
+    /// Indices of the grabbed nodes and their weights, which add up to one.
     pub(crate) grabbed: Vec<(usize, f64)>,
-    /// Path of the pointer, rows `[t, x, y(, z)]`; it grows while somebody leads the pointer.
+    /// Path of the pointer, rows `[t, x, y(, z)]`; it grows while the pointer is moved.
     pub(crate) path: Arc<RwLock<Vec<Vec<f64>>>>,
     /// Stiffness [N/m].
     pub(crate) stiffness: f64,
@@ -223,11 +223,11 @@ pub(crate) struct Pull<const D: usize> {
     pub(crate) damping: f64,
     /// The largest force [N].
     pub(crate) largest_force: f64,
-    /// How often it was reached.
+    /// The number of times it was reached.
     pub(crate) limited: Arc<AtomicU64>,
 }
 
-/// Makes the squares of the largest numbers finite.
+/// A factor that makes the squares of the largest numbers finite.
 const FAR: f64 = 1e-200;
 
 impl<const D: usize> Pull<D> {
@@ -252,7 +252,8 @@ impl<const D: usize> Pull<D> {
         let limited = !within && self.largest_force.is_finite();
         if limited {
             if !square.is_finite() {
-                // What is too large for a square still has a direction; what has none, between two infinite parts, does not pull.
+                // A force that is too large for its square still has a direction. A force without direction, between two infinite components, does
+                // not pull.
                 force = force.map(|f| if f.is_nan() { 0.0 } else { FAR * f.clamp(-f64::MAX, f64::MAX) });
                 square = force.iter().map(|f| f * f).sum();
             }
@@ -302,7 +303,7 @@ impl<const D: usize> Potential<D> for Pull<D> {
 impl<const D: usize> Observe<D> for Pull<D> {}
 
 impl<const D: usize> Pull<D> {
-    /// A spring or damper of some strength at the grabbed point; none where the force is at its limit.
+    /// A spring or damper of the given strength at the grabbed point; none if the force is at its limit.
     fn add_spring(&self, view: &View<D>, strength: f64, sink: &mut dyn Sink<D>) {
         let (_, _, _, limited) = self.force(view);
         let strength = if limited { 0.0 } else { strength };
@@ -356,7 +357,7 @@ impl<const D: usize> Potential<D> for UserForce<D> {
 impl<const D: usize> Observe<D> for UserForce<D> {}
 
 impl<const D: usize> UserForce<D> {
-    /// The symmetric part of −∂F/∂x or −∂F/∂v at every node, by central differences: the law is a black box.
+    /// The symmetric part of −∂F/∂x or −∂F/∂v at every node, by central differences, because the law is a black box.
     fn add_slope(&self, view: &View<D>, [of_x, of_v]: [f64; 2], sink: &mut dyn Sink<D>) {
         const STEP: f64 = 6e-6;
         for node in 0..view.nodes {

@@ -1,20 +1,19 @@
-//! Shows a world as it was within the last frame.
+//! Access to the states of a world within the last frame.
 
 use crate::ledger::{Energy, Flows, Momentum};
 use crate::world::World;
 
 impl<const D: usize> World<D> {
-    /// Keeps the state after every so many substeps of the coming frames for [`World::look_within`]; 0 keeps none.
+    /// Keeps the state after every `every` substeps of the coming frames for [`World::look_within`]; 0 keeps none.
     ///
-    /// Results do not depend on it. Each look of a frame holds a copy of all positions and velocities; only the first
-    /// frame asks for that memory.
+    /// Results do not depend on it. Each kept state is a copy of all positions and velocities. Only the first frame allocates this memory.
     pub fn keep_looks(&mut self, every: u32) {
         (self.looks.every, self.looks.fresh) = (every, false);
     }
 
-    /// Shows the world as it was within the last frame, look after look; then it is as before.
+    /// Shows the world at each state that was kept within the last frame, one after another; then restores it.
     ///
-    /// Shown are positions, velocities, time, energy, momentum, readings and probes.
+    /// Positions, velocities, time, energy, momentum, readings and probes are shown as at that state.
     pub fn look_within(&mut self, mut look: impl FnMut(&mut World<D>)) {
         let every = self.looks.every;
         if every == 0 || !self.looks.fresh {
@@ -27,7 +26,7 @@ impl<const D: usize> World<D> {
             let mut flows = self.looks.flows;
             let mut complete = true;
             for island in &mut self.islands {
-                // Islands that were built since then have no looks.
+                // Islands built since then have no kept states.
                 let work = island.swap_look(number as usize);
                 island.refresh();
                 match work {

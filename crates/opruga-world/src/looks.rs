@@ -1,16 +1,16 @@
-//! Looks into the middle of a frame, for readers that must not miss what swings faster than frames pass.
+//! States kept within a frame, for readers that need motion that is faster than the frames.
 
 use crate::ledger::Flows;
 
-/// Where a world is looked at between frames.
+/// The settings for states that are kept between frames.
 #[derive(Debug, Default)]
 pub(crate) struct Looks {
-    /// Substeps between two looks; 0: none.
+    /// Substeps between two kept states; 0: none.
     pub(crate) every: u32,
-    /// Whether the last frame has left looks behind.
+    /// Whether the last frame has kept states.
     pub(crate) fresh: bool,
-    /// What had entered and left before the last frame.
+    /// The flows before the last frame.
     pub(crate) flows: Flows,
-    /// The time while a look lasts [s].
+    /// The time of the state that is being shown [s].
     pub(crate) time: Option<f64>,
 }

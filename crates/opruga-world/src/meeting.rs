@@ -1,4 +1,4 @@
-//! The surfaces of bodies that may touch, beside the islands that hold their nodes.
+//! The surfaces of bodies that may touch, together with the islands that own their nodes.
 
 use crate::barrier_search::Kept;
 use crate::blueprint::Blueprint;
@@ -10,47 +10,47 @@ use opruga_core::system::Workspace;
 use opruga_math::WIDTH;
 use std::sync::Arc;
 
-/// Bodies of a cluster, which go through a frame together because they may touch.
+/// Bodies of a cluster. They are stepped through a frame together because they may touch.
 #[derive(Debug)]
 pub(crate) struct Meeting<const D: usize> {
     pub(crate) touching: Touching<D>,
-    /// Who they are, and their numbers in the scene: bodies, then obstacles.
+    /// The members of the cluster, and their numbers in the scene: bodies, then obstacles.
     pub(crate) cluster: Cluster,
     numbers: Vec<u32>,
     colliders: Option<Arc<Colliders<D>>>,
-    /// Those that hold nodes of bodies that touch faces of obstacles.
+    /// The obstacles without their faces, for nodes of bodies that touch these faces by contact of surfaces.
     pub(crate) without_faces: Option<Arc<dyn Contacts<D>>>,
-    /// For every island of the group the first of its points and where their nodes lie in its columns, body by body.
+    /// For every island of the group, body by body: the first point of the body, and the indices of its nodes in the columns of the island.
     columns: Vec<Vec<(u32, Vec<u32>)>>,
-    /// The island of every point and the index in its columns; `u32::MAX` for one that nodes carry.
+    /// The island of every point and its index in the columns of that island; `u32::MAX` for a point whose position follows from nodes.
     points: Vec<(u32, u32)>,
-    /// The bodies that touch, by their place in the scene.
+    /// The bodies that touch, by their index in the scene.
     pub(crate) bodies: Vec<usize>,
-    /// The integrators of the bodies, where there are several: the same number, the same integrator.
+    /// The integrators of the bodies, if there are several: equal numbers mean the same integrator.
     rules: Vec<u32>,
-    /// The bodies of different integrators that met in the frame, by their place in the scene, ascending.
+    /// The bodies with different integrators that met in the frame, by their index in the scene, ascending.
     pub(crate) mixed: Vec<[usize; 2]>,
-    /// Corners and edges of obstacles, which follow the bodies, and the first point of each.
+    /// Corners and edges of obstacles, which come after the bodies, and the first point of each.
     pub(crate) outlines: Vec<(Arc<Outline<D>>, usize)>,
-    /// The bodies that take pushes into the balance of forces of their steps.
+    /// The bodies whose steps include contact forces in their balance of forces.
     pub(crate) pushed: Vec<Pushed<D>>,
-    /// Whether they are bodies of statics, which look for their common balance.
+    /// Whether they are bodies of statics, which have a common equilibrium.
     pub(crate) at_rest: bool,
-    /// What keeps them apart instead of impulses, if the scene says so.
+    /// The barrier that keeps them apart instead of impulses, if the scene has one.
     pub(crate) barrier: Option<Kept<D>>,
-    /// For the steps of bodies that make them again.
+    /// A workspace for bodies that repeat their steps.
     pub(crate) workspace: Workspace<D>,
 }
 
-/// A body that takes pushes into the balance of forces.
+/// A body whose step includes contact forces in its balance of forces.
 #[derive(Debug)]
 pub(crate) struct Pushed<const D: usize> {
     pub(crate) island: usize,
-    /// Where its points lie in the columns of the island.
+    /// The indices of its points in the columns of the island.
     pub(crate) indices: Vec<u32>,
-    /// The impulses that its step was made with, by its points [N s].
+    /// The impulses that were applied in its step, by its points [N s].
     pub(crate) applied: Vec<(usize, [f64; D])>,
-    /// The number of the matrix by which it answers impulses; none where it was not asked since its last step.
+    /// The number of the matrix that gives its response to impulses; none if it has not been requested since the last step.
     pub(crate) matrix: Option<u64>,
 }
 
@@ -59,14 +59,14 @@ impl<const D: usize> Pushed<D> {
         Pushed { island, indices, applied: Vec::new(), matrix: None }
     }
 
-    /// The forces of its impulses in a substep of h [s], by index into the columns of its island [N].
+    /// The forces of its impulses in a substep of h [s], by their index into the columns of its island [N].
     pub(crate) fn forces(&self, h: f64) -> Vec<(usize, [f64; D])> {
         let force = |(point, impulse): &(usize, [f64; D])| (self.indices[*point] as usize, impulse.map(|c| c / h));
         self.applied.iter().map(force).collect()
     }
 }
 
-/// A substep that bodies have made without one another.
+/// A substep that the bodies have made independently of one another.
 #[derive(Clone, Copy)]
 pub(crate) struct Substep<'a, const D: usize> {
     pub(crate) plan: &'a FramePlan<'a, D>,
@@ -77,7 +77,7 @@ pub(crate) struct Substep<'a, const D: usize> {
 }
 
 impl<const D: usize> Substep<'_, D> {
-    /// Does something with what obstacles say of single points.
+    /// Runs a computation with the obstacles as seen by single points.
     fn with_obstacles<R>(&self, work: impl FnOnce(Option<Obstacles<'_, D>>) -> R) -> R {
         let Some(obstacles) = self.obstacles else { return work(None) };
         let (time, h) = (self.time, self.plan.h);
@@ -86,7 +86,7 @@ impl<const D: usize> Substep<'_, D> {
 }
 
 impl<const D: usize> Meeting<D> {
-    /// The surfaces of a cluster, whose bodies live in some islands of the scene.
+    /// The surfaces of a cluster whose bodies are in some islands of the scene.
     pub(crate) fn of(
         blueprint: &Blueprint<D>,
         scene: &SceneContact<D>,
@@ -144,8 +144,8 @@ impl<const D: usize> Meeting<D> {
             touching.come_to_rest();
         }
         touching.has_budget = pushed.iter().all(|pushed| all[islands[pushed.island]].integrator.has_budget());
-        // An obstacle that holds a node lets no contact lift it off within the step. Beside an edge, contacts and held nodes would contradict each
-        // other: so what steps implicitly meets faces as those of bodies.
+        // An obstacle that holds a node does not let contact lift it off within the step. Beside an edge, contacts and held nodes would contradict
+        // each other, so bodies with implicit steps touch the faces of obstacles like the faces of bodies.
         let mut without_faces = None;
         if let Some(colliders) = scene.colliders().filter(|_| (!at_rest || scene.reach.is_some()) && !pushed.is_empty())
         {
@@ -175,17 +175,17 @@ impl<const D: usize> Meeting<D> {
         }
     }
 
-    /// Whether its bodies make their substeps as one: those that a barrier keeps apart, and those that come to rest on one another.
+    /// Whether its bodies make their substeps jointly: bodies that a barrier keeps apart, and bodies that come to rest on one another.
     pub(crate) fn is_one(&self) -> bool {
         self.barrier.is_some() || self.at_rest
     }
 
-    /// Whether an island makes its substeps as one with others.
+    /// Whether an island makes its substeps jointly with others.
     pub(crate) fn steps_as_one(&self, island: usize) -> bool {
         self.is_one() && self.pushed.iter().any(|pushed| pushed.island == island)
     }
 
-    /// The numbers of bodies and obstacles in what befell it, as the scene counts them.
+    /// The same trouble with the numbers that bodies and obstacles have in the scene.
     pub(crate) fn in_scene(&self, trouble: Trouble) -> Trouble {
         let all = |bodies: [u32; 2]| bodies.map(|body| self.numbers[body as usize]);
         match trouble {
@@ -195,7 +195,7 @@ impl<const D: usize> Meeting<D> {
         }
     }
 
-    /// Takes positions and velocities at a time [s], after the free motion or at the beginning of a frame.
+    /// Reads positions and velocities at a time [s], after the free motion or at the beginning of a frame.
     pub(crate) fn take(&mut self, islands: &[&mut Island<D>], time: f64) {
         self.move_outlines(time);
         let [x, v] = &mut self.touching.after;
@@ -213,7 +213,7 @@ impl<const D: usize> Meeting<D> {
         }
     }
 
-    /// Takes corners of obstacles to where they are at a time [s].
+    /// Moves corners of obstacles to their positions at a time [s].
     pub(crate) fn move_outlines(&mut self, time: f64) {
         let [x, v] = &mut self.touching.after;
         for (outline, first) in &self.outlines {
@@ -225,8 +225,8 @@ impl<const D: usize> Meeting<D> {
         }
     }
 
-    /// Adds the forces of the last substep of h [s] on the nodes of a body [N], but for those of obstacles on nodes. `stride` is how many
-    /// bodies lie side by side in its island.
+    /// Adds the contact forces of the last substep of h [s] on the nodes of a body [N], without those of obstacles on nodes. `stride` is the number
+    /// of bodies side by side in its island.
     pub(crate) fn add_forces(&self, body: usize, h: f64, stride: usize, forces: &mut [[f64; D]]) {
         let Some(number) = self.bodies.iter().position(|other| *other == body) else { return };
         let own = self.touching.surface.points_of(number);
@@ -240,19 +240,19 @@ impl<const D: usize> Meeting<D> {
         });
     }
 
-    /// Where the step that follows begins: where the last one ended.
+    /// Begins the next step where the last one ended.
     pub(crate) fn set_out(&mut self, islands: &mut [&mut Island<D>]) {
         let Touching { before, after, .. } = &mut self.touching;
         std::mem::swap(before, after);
         self.mark(islands);
     }
 
-    /// Whether bodies of it answer to contact as a whole, so that steps and contact are solved in turn.
+    /// Whether some of its bodies respond to contact as a whole, so that steps and contact are solved in turn.
     pub(crate) fn is_pushed(&self) -> bool {
         !self.pushed.is_empty()
     }
 
-    /// Finds what contact makes of bodies that have made the substep each by itself; [`Meeting::write_back`] gives it to them.
+    /// Solves the contact of bodies that have made the substep independently; [`Meeting::write_back`] applies the result to them.
     pub(crate) fn solve(&mut self, step: &Substep<'_, D>) -> Result<(), Trouble> {
         self.touching.begin_step();
         step.with_obstacles(|touch| self.touching.find_impulses(step.plan.h, touch, None))?;
@@ -260,7 +260,7 @@ impl<const D: usize> Meeting<D> {
         Ok(())
     }
 
-    /// The same for bodies that answer as a whole, with all that this changes in them. Where one of them fails in it, its outcome says so.
+    /// The same for bodies that respond as a whole, with all changes that follow in them. If one of them fails, its outcome contains the error.
     pub(crate) fn solve_in_turn(
         &mut self,
         islands: &mut [&mut Island<D>],
@@ -282,7 +282,7 @@ impl<const D: usize> Meeting<D> {
         Ok(())
     }
 
-    /// Takes note of bodies of different integrators that met in the substep.
+    /// Records bodies with different integrators that met in the substep.
     fn note_mixed(&mut self) {
         let Meeting { touching, rules, mixed, bodies, .. } = self;
         if rules.is_empty() {
@@ -299,12 +299,12 @@ impl<const D: usize> Meeting<D> {
         });
     }
 
-    /// Writes what contact made of the bodies into their islands, and enters its works.
+    /// Writes the results of contact into the islands of the bodies, and records the works.
     pub(crate) fn write_back(&mut self, islands: &mut [&mut Island<D>]) {
         self.note_mixed();
         let Touching { changed, losses, after: [x, v], .. } = &self.touching;
         for (p, [contact, friction, user, correction]) in changed.iter().zip(losses) {
-            // What contact takes at points of obstacles is booked with the first island.
+            // The losses of contact at points of obstacles are assigned to the first island.
             let point = self.points.get(*p as usize).copied();
             let (island, index) = point.unwrap_or_default();
             let (island, index) = (&mut islands[island as usize], index as usize);

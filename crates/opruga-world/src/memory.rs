@@ -1,4 +1,4 @@
-//! Whether the bodies of a world fit into the memory that they may take, before anything large is built.
+//! Checks that the bodies of a world fit into the allowed memory, before anything large is built.
 
 use crate::blueprint::{Blueprint, BodyBlueprint};
 use crate::build::build_integrator;
@@ -12,16 +12,16 @@ use opruga_math::Lane;
 use opruga_mesh::Mesh;
 use std::sync::Arc;
 
-/// About how much memory bodies take: meshes, states, models, and what integrators work in.
+/// An estimate of the memory of bodies: meshes, states, models, and workspaces of integrators.
 struct Estimate<'a, const D: usize> {
     registry: &'a Registry<D>,
     /// The integrator of the scene.
     integrator: &'a dyn Integrator<D>,
-    /// The mesh of the body before: copies stand one after the other and share theirs.
+    /// The mesh of the previous body: copies are adjacent and share their mesh.
     mesh: *const Mesh<D>,
     all: f64,
     largest: f64,
-    /// The body that takes most.
+    /// The body that takes the most memory.
     name: &'a str,
 }
 
@@ -47,10 +47,10 @@ impl<'a, const D: usize> Estimate<'a, D> {
     }
 }
 
-/// About how much memory the bodies of a world take [bytes]: meshes, states, models, and what integrators work in, at their most.
+/// The approximate maximum memory of the bodies of a world [bytes]: meshes, states, models, and workspaces of integrators.
 ///
 /// # Errors
-/// [`WorldError`] where there is no such integrator.
+/// [`WorldError`] if there is no such integrator.
 pub fn estimate<const D: usize>(blueprint: &Blueprint<D>, registry: &Registry<D>) -> Result<f64, WorldError> {
     let integrator = build_integrator(registry, &blueprint.integrator, || Part::Section { path: "integrator" })?;
     Ok(estimate_of(&blueprint.bodies, &*integrator, registry)?.all)
@@ -68,10 +68,10 @@ fn estimate_of<'a, const D: usize>(
     Ok(estimate)
 }
 
-/// Refuses bodies that take more memory than they may, or more than the machine gives.
+/// Refuses bodies that take more memory than is allowed, or more than the system provides.
 ///
 /// # Errors
-/// `limit.memory`, with the body that takes most; [`WorldError`] where there is no such integrator.
+/// `limit.memory`, with the body that takes the most; [`WorldError`] if there is no such integrator.
 pub(crate) fn check<const D: usize>(
     bodies: &[BodyBlueprint<D>],
     integrator: &dyn Integrator<D>,
@@ -88,9 +88,9 @@ pub(crate) fn check<const D: usize>(
     Err(WorldError::Build { part: Part::body(name), source: BuildError::of("memory", refusal) })
 }
 
-/// Asks for memory in one piece and gives it back: where a limit of the system is below that, building would end the program.
+/// Allocates the memory in one piece and frees it. If a limit of the system were lower, building would abort the program.
 fn is_given(bytes: f64) -> bool {
-    /// Less than this is not asked for: it is there, or nothing works.
+    /// Smaller amounts are not tested: without them nothing works.
     const LITTLE: f64 = 16_777_216.0;
     let mut probe: Vec<u8> = Vec::new();
     bytes < LITTLE || probe.try_reserve_exact(bytes.smaller(isize::MAX as f64) as usize).is_ok()

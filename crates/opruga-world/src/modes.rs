@@ -1,9 +1,8 @@
 //! Natural frequencies: small oscillations of a body about its present state.
 //!
-//! M q″ + K q = 0 with K = ∂²U/∂x∂x of all models and loads as they act now and the masses of the nodes, lumped or consistent
-//! as the models say: q = φ cos ωt with K φ = ω² M φ. Damping is left out. The state should be an equilibrium; about any other state the frequencies are
-//! those of the springs' and the gas's stiffness there. A negative ω² is told as it is: the state is unstable, as a body is
-//! that is about to buckle.
+//! M q″ + K q = 0 with K = ∂²U/∂x∂x of all present models and loads, and the masses of the nodes, lumped or consistent depending on the models: q = φ
+//! cos ωt with K φ = ω² M φ. Damping is ignored. The state should be an equilibrium; in any other state the frequencies are those of the stiffness of
+//! springs and gas there. A negative ω² is reported as it is: the state is unstable, for example that of a body about to buckle.
 
 use crate::any_scene::three;
 use crate::error::{Part, WorldError};
@@ -23,23 +22,23 @@ use std::collections::BTreeMap;
 /// One natural frequency and its shape.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mode<const D: usize> {
-    /// ω² [1/s²]; zero for rigid modes, negative where the state is unstable.
+    /// ω² [1/s²]; zero for rigid modes, negative if the state is unstable.
     pub square: f64,
     /// Displacement of every node, with φᵀMφ = 1 kg·m² [m].
     pub shape: Vec<[f64; D]>,
-    /// How far K φ = ω² M φ holds, |K φ − ω² M φ| in the norm of the inverse lumped masses [1/s²].
+    /// The error of K φ = ω² M φ: |K φ − ω² M φ| in the norm of the inverse lumped masses [1/s²].
     pub residual: f64,
-    /// The name of a motion of the whole body that nothing holds, such as `translation along x`.
+    /// The name of an unconstrained rigid motion of the body, such as `translation along x`.
     pub rigid: Option<String>,
 }
 
 impl<const D: usize> Mode<D> {
-    /// The same in space; displacements along z are 0 where the body lies in the plane.
+    /// The same mode in space; displacements along z are 0 if the body lies in the plane.
     pub(crate) fn in_space(self) -> Mode<3> {
         let Mode { square, shape, residual, rigid } = self;
         Mode { square, shape: shape.into_iter().map(three).collect(), residual, rigid }
     }
-    /// ω [rad/s]; zero where ω² is not positive.
+    /// ω [rad/s]; zero if ω² is not positive.
     pub fn omega(&self) -> f64 {
         if self.square > 0.0 { self.square.sqrt() } else { 0.0 }
     }
@@ -49,18 +48,18 @@ impl<const D: usize> Mode<D> {
     }
 }
 
-/// A rigid motion that strains the body by less than this part of its stiffness is free.
+/// A rigid motion is free if it strains the body by less than this fraction of its stiffness.
 const FREE: f64 = 1e-9;
 
-/// What a search for modes may take [bytes].
+/// The maximum memory of a search for modes [bytes].
 const MOST_BYTES: f64 = 4_294_967_296.0;
 
 impl<const D: usize> World<D> {
     /// The lowest `count` natural modes of a body about its present state, rigid ones first.
     ///
     /// # Errors
-    /// [`WorldError`] if there is no such body, if a model lacks second derivatives or refuses the state, or if no
-    /// frequency can be found since a node without mass can move.
+    /// [`WorldError`] if there is no such body, if a model lacks second derivatives or refuses the state, or if no frequency exists because a node
+    /// without mass can move.
     pub fn modes(&self, body: usize, count: usize) -> Result<Vec<Mode<D>>, WorldError> {
         if self.handle(body).is_none() {
             return Err(WorldError::path(format!("body.{body}"), PathFault::NoBody {}));
@@ -68,7 +67,7 @@ impl<const D: usize> World<D> {
         let name = self.blueprint.bodies[body].name.clone();
         let refuse =
             |refusal: Refusal| WorldError::Build { part: Part::body(&name), source: BuildError::of("modes", refusal) };
-        // By itself: others side by side do not matter.
+        // The body alone: the other bodies of its batch do not matter.
         let mut system = self.island_of(&[body], &BTreeMap::new(), &self.integrator)?.system;
         let has_modes = |views: Views| views.hessian && views.symmetric;
         if let Some(member) = system.members.iter().find(|member| !has_modes(member.potential.properties().views)) {
@@ -94,7 +93,7 @@ impl<const D: usize> World<D> {
 /// Small motions of a body about its present state: M q″ + K q = 0.
 struct SmallMotions<const D: usize> {
     system: System<D>,
-    /// K [N/m], where pinned axes have neither a row nor a column.
+    /// K [N/m], without rows and columns of pinned axes.
     stiffness: BlockMatrix<D>,
     /// The lumped mass of every axis of every node [kg].
     mass: Vec<f64>,
@@ -102,15 +101,15 @@ struct SmallMotions<const D: usize> {
     pinned: Vec<bool>,
     /// Nodes none of whose axes are pinned.
     free: Vec<bool>,
-    /// What takes pinned axes out, of every node.
+    /// The projector of every node that removes pinned axes.
     projectors: Vec<[[f64; D]; D]>,
     /// The largest ratio of a diagonal element of K to its mass [1/s²].
     fastest: f64,
 }
 
 impl<const D: usize> SmallMotions<D> {
-    /// Of a system whose forces are those of its present state; refuses what has no frequencies, and a search for `count`
-    /// modes that takes too much memory.
+    /// The small motions of a system whose forces belong to its present state. Refuses a system without frequencies, and a search for `count` modes
+    /// that needs too much memory.
     fn about(system: System<D>, count: usize) -> Result<Self, Refusal> {
         let mut stiffness = BlockMatrix::<D>::default();
         stiffness.assemble(system.nodes, 0, |matrix| {
@@ -151,7 +150,7 @@ impl<const D: usize> SmallMotions<D> {
         Ok(SmallMotions { system, stiffness, mass, pinned, free, projectors, fastest })
     }
 
-    /// Rigid motions that strain nothing, which need no search, and their shapes axis by axis.
+    /// Rigid motions without strain, which need no search, and their shapes axis by axis.
     fn rigid(&self) -> (Vec<Mode<D>>, Vec<Vec<f64>>) {
         let mut rigid: Vec<Mode<D>> = Vec::new();
         let mut known: Vec<Vec<f64>> = Vec::new();
@@ -175,14 +174,14 @@ impl<const D: usize> SmallMotions<D> {
         (rigid, known)
     }
 
-    /// From here on pinned axes have no mass.
+    /// Sets the masses of pinned axes to zero.
     fn leave_out_pinned_axes(&mut self) {
         for (m, pinned) in self.mass.iter_mut().zip(&self.pinned) {
             *m = if *pinned { 0.0 } else { *m };
         }
     }
 
-    /// The lowest modes that are orthogonal to those that are known.
+    /// The lowest modes that are orthogonal to the known ones.
     fn elastic(&self, wanted: usize, known: &[Vec<f64>]) -> Result<Vec<Mode<D>>, Refusal> {
         let (shift, factor) = self.factor()?;
         let by_mass = |x: &[f64], y: &mut [f64]| weigh(&self.system, &self.mass, x, y);
@@ -200,8 +199,7 @@ impl<const D: usize> SmallMotions<D> {
         Ok(found.into_iter().map(|found| mode(found.square, &found.shape, found.residual)).collect())
     }
 
-    /// A factor of K + s M with its s [1/s²]. The matrix must be positive definite; that of a state that is about to buckle
-    /// needs a larger s.
+    /// A factor of K + s M, and s [1/s²]. The matrix must be positive definite; a state that is about to buckle needs a larger s.
     fn factor(&self) -> Result<(f64, Cholesky), Refusal> {
         let system = &self.system;
         let mut shift = 1e-6 * self.fastest;

@@ -1,8 +1,8 @@
-//! Views of the numbers of a body's nodes as they lie in the columns of a world.
+//! Views of the values of a body's nodes, as they are stored in the columns of a world.
 
 use crate::world::World;
 
-/// One number of every node of a body, as it lies in memory: nodes of eight alike bodies lie side by side.
+/// One number of every node of a body, as stored in memory. The nodes of up to eight alike bodies are interleaved.
 #[derive(Clone, Copy, Debug)]
 pub struct Strided<'w> {
     column: &'w [f64],
@@ -22,17 +22,17 @@ impl<'w> Strided<'w> {
     pub fn is_empty(self) -> bool {
         self.column.is_empty()
     }
-    /// The number of a node; NaN where there is no such node.
+    /// The number of a node; NaN if there is no such node.
     pub fn at(self, node: usize) -> f64 {
         self.column.get(node * self.stride).copied().unwrap_or(f64::NAN)
     }
-    /// The numbers as one slice, where nothing lies between them.
+    /// The numbers as one slice, if they are contiguous.
     pub fn as_slice(self) -> Option<&'w [f64]> {
         (self.stride == 1).then_some(self.column)
     }
 }
 
-/// One vector of every node of a body: a view into the columns of the world, which copies nothing.
+/// One vector of every node of a body: a view into the columns of the world without a copy.
 #[derive(Clone, Copy, Debug)]
 pub struct Vectors<'w> {
     columns: [Strided<'w>; 3],
@@ -44,7 +44,7 @@ impl<'w> Vectors<'w> {
     pub fn len(self) -> usize {
         self.columns[0].len()
     }
-    /// Whether there is no node, also where there is no such body.
+    /// Whether there is no node, for example because there is no such body.
     pub fn is_empty(self) -> bool {
         self.columns[0].is_empty()
     }
@@ -52,7 +52,7 @@ impl<'w> Vectors<'w> {
     pub fn columns(&self) -> &[Strided<'w>] {
         &self.columns[..self.dimension]
     }
-    /// The vector of a node, with 0 for z in the plane; NaN where there is no such node.
+    /// The vector of a node, with 0 for z in the plane; NaN if there is no such node.
     pub fn at(self, node: usize) -> [f64; 3] {
         core::array::from_fn(|d| if d < self.dimension { self.columns[d].at(node) } else { 0.0 })
     }

@@ -1,4 +1,4 @@
-//! The forces on the nodes of a body: of models, obstacles and pins.
+//! The forces of models, obstacles and pins on the nodes of a body.
 
 use crate::world::World;
 use opruga_core::contacts::{Contacts, Moved};
@@ -8,9 +8,9 @@ use opruga_integrators::accelerations;
 use opruga_math::WIDTH;
 
 impl<const D: usize> World<D> {
-    /// The forces of the models of one account on the nodes of a body [N]; none: of all models, gravity included.
+    /// The forces on the nodes of a body [N] from the models of one account; without an account, from all models, including gravity.
     ///
-    /// Empty where the body is not there or a model refuses the state.
+    /// Empty if there is no such body or if a model refuses the state.
     pub fn node_forces(&mut self, body: usize, account: Option<Account>) -> Vec<[f64; D]> {
         if self.handle(body).is_none() {
             return Vec::new();
@@ -24,7 +24,7 @@ impl<const D: usize> World<D> {
         let Ok(forces) = forces else { return Vec::new() };
         (0..system.nodes).map(|node| forces.at(system.layout.index(node, lane))).collect()
     }
-    /// The nodes of a body that pins hold now, along some of their axes or all.
+    /// The nodes of a body that are pinned now, along some or all axes.
     pub fn pinned_nodes(&self, body: usize) -> Vec<u32> {
         if self.handle(body).is_none() {
             return Vec::new();
@@ -34,12 +34,12 @@ impl<const D: usize> World<D> {
         let pinned: std::collections::BTreeSet<usize> = system.pins.iter().map(|pin| pin.index).collect();
         (0..system.nodes as u32).filter(|node| pinned.contains(&system.layout.index(*node as usize, lane))).collect()
     }
-    /// The forces of contact on the nodes of a body [N]: of obstacles in the coming substep, f = m (v' − v*)/h, and of bodies, and of corners
-    /// and edges of obstacles, in the last one, impulse over h.
+    /// The contact forces on the nodes of a body [N]. Those of obstacles are for the coming substep, f = m (v' − v*)/h. Those of bodies, and of
+    /// corners and edges of obstacles, are for the last one, impulse over h.
     ///
-    /// v* is the velocity that the forces of now would give a node within h without obstacles, v' the one with them:
-    /// normal force, friction, and in an impact the impulse over h. Held nodes feel none; the pin takes it.
-    /// Empty where the body is not there, nothing can touch it, or a model refuses the state.
+    /// v* is the velocity that the present forces would give a node within h without obstacles, v' the velocity with obstacles. The force consists of
+    /// normal force and friction, and in an impact of the impulse over h. Pinned nodes have no contact force; the pin takes it. Empty if there is no
+    /// such body, if nothing can touch it, or if a model refuses the state.
     pub fn contact_forces(&mut self, body: usize) -> Vec<[f64; D]> {
         let mut forces = self.obstacle_forces(body);
         if let Some(clusters) = self.clusters.as_ref().filter(|_| self.handle(body).is_some()) {
@@ -97,7 +97,7 @@ impl<const D: usize> World<D> {
         };
         (0..system.nodes).map(|node| force(layout.index(node, lane))).collect()
     }
-    /// The sum of the forces that pins exert on nodes [N]; NaN where there is no such body, or one of the nodes is not there.
+    /// The sum of the forces that pins exert on nodes [N]; NaN if there is no such body or if one of the nodes does not exist.
     pub fn reaction(&mut self, body: usize, nodes: &[u32]) -> [f64; D] {
         let count = self.node_count(body);
         if !self.slots.is_there(body) || nodes.iter().any(|node| *node as usize >= count) {
@@ -109,7 +109,7 @@ impl<const D: usize> World<D> {
         let system = &mut self.islands[island].system;
         let mut sum = [0.0; D];
         let Ok(forces) = system.forces(true) else { return sum };
-        // How pins accelerate what they hold; nothing does in statics.
+        // The accelerations that pins impose on their nodes; zero in statics.
         let mut rates = vec![None; system.nodes * D];
         for pin in &system.pins {
             let node = pin.index / system.layout.stride();
@@ -122,14 +122,14 @@ impl<const D: usize> World<D> {
         let inertia = system.inertia.as_ref().filter(|_| !still).map(|inertia| {
             let mut a: Vec<f64> = rates.iter().map(|rate| rate.unwrap_or(0.0)).collect();
             let is_pinned: Vec<bool> = rates.iter().map(Option::is_some).collect();
-            // Where masses are coupled there are no obstacles, so that these are all forces on what is free.
+            // A coupled mass matrix excludes obstacles, so these are all the forces on the free nodes.
             accelerations(system, &is_pinned, &system.node_by_node(&forces), &mut a);
             (inertia, a)
         });
         for node in nodes.iter().map(|node| *node as usize) {
             let index = system.layout.index(node, lane);
             let more = inertia.as_ref().map_or([0.0; D], |(inertia, a)| inertia.product::<D>(node, a));
-            // A node that two pins hold is held by one force all the same.
+            // A node with two pins still has only one force.
             for d in 0..D {
                 if let Some(rate) = rates[node * D + d] {
                     sum[d] += system.mass.at(index) * rate + more[d] - forces.0[d][index];

@@ -3,15 +3,15 @@
 use crate::world::World;
 use opruga_core::potential::CellState;
 
-/// What a node is under: the mean of the cells around it, weighted by their volume at rest, or of the facets, by their area.
+/// The state of a node: the mean over the cells around it, weighted by their volume at rest, or over the facets, weighted by their area.
 ///
-/// Cells have a mean of their own, which is exact where the stress is linear over a cell; at the boundary, where cells lie
-/// on one side only, the mean of a node is that of the cells' middles.
+/// The state of a cell is itself a mean, which is exact if the stress is linear over the cell. At the boundary, where cells lie on one side only, the
+/// mean of a node is therefore that of the centres of the cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NodeState {
-    /// Cauchy's stress [Pa], row by row; in the plane with what acts across it.
+    /// Cauchy stress [Pa], row by row; in the plane including the component out of the plane.
     pub stress: [[f64; 3]; 3],
-    /// The volume over that at rest J.
+    /// The volume ratio J.
     pub volume_ratio: f64,
 }
 
@@ -28,7 +28,7 @@ impl NodeState {
         .von_mises()
     }
 
-    /// The parts of the stress and the von Mises stress in the order of [`crate::blueprint::Recorded::columns`] [Pa].
+    /// The components of the stress and the von Mises stress, in the order of [`crate::blueprint::Recorded::columns`] [Pa].
     pub fn components(&self, dimension: usize) -> Vec<f64> {
         let s = &self.stress;
         let mut out = vec![s[0][0], s[1][1], s[2][2], s[0][1]];
@@ -63,7 +63,7 @@ impl Sum {
 }
 
 impl<const D: usize> World<D> {
-    /// What the nodes of a body are under; none for a node around which nothing has a stress, empty where the body is not there.
+    /// The states of the nodes of a body; none for a node without stress around it, empty if there is no such body.
     pub fn node_states(&self, body: usize) -> Vec<Option<NodeState>> {
         if self.handle(body).is_none() {
             return Vec::new();
@@ -77,7 +77,7 @@ impl<const D: usize> World<D> {
         sums.iter().map(Sum::mean).collect()
     }
 
-    /// Visits what is known of the cells and facets of a body, with their nodes.
+    /// Visits the known states of the cells and facets of a body, with their nodes.
     pub fn visit_states(&self, body: usize, visit: &mut dyn FnMut(&CellState, &[u32])) {
         if self.handle(body).is_none() {
             return;
@@ -88,7 +88,7 @@ impl<const D: usize> World<D> {
         self.facet_states(body).iter().for_each(|state| visit(state, &mesh.facets[state.cell as usize]));
     }
 
-    /// The mean over some nodes; none where no node has a state.
+    /// The mean over some nodes; none if no node has a state.
     pub(crate) fn mean_of_cells(&self, body: usize, nodes: &[u32]) -> Option<NodeState> {
         let states = self.node_states(body);
         let mut sum = Sum::default();

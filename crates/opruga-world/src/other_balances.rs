@@ -1,17 +1,17 @@
-//! Bodies of finite elements that end in another balance than that of their own shape.
+//! Bodies of finite elements that end in another equilibrium than that of their own shape.
 //!
-//! A body may come to rest folded, inside out, drawn together to a point or snapped through, though nothing that acts on it now
-//! would take it there. That is no question of its cells: an arch that has snapped through is made of good ones. It is one of
-//! energy. With the forces fᵢ = ∂U/∂xᵢ that hold the shape against its cells, and the rest shape moved as a whole to where it fits
-//! best, yᵢ, a convex energy is U ≤ Σ fᵢ·(xᵢ − yᵢ) ≤ Σ |fᵢ| |xᵢ − yᵢ|. Solids that turn have no convex energy, but what is bent or
-//! drawn from outside has long ways and keeps within that: at small strain U is half of it at most, in bending with large rotations
-//! a small part. A folded body holds its energy by itself, by forces that are small or act where its own shape would lie too.
+//! A body may come to rest folded, inverted, contracted to a point or snapped through, although no present force would take it there. The cells do
+//! not show this: an arch that has snapped through consists of good cells. The energy shows it. Let fᵢ = ∂U/∂xᵢ be the forces that hold the shape
+//! against its cells, and yᵢ the rest shape, moved as a rigid body to its best fit. A convex energy satisfies U ≤ Σ fᵢ·(xᵢ − yᵢ) ≤ Σ |fᵢ| |xᵢ − yᵢ|.
+//! The energy of solids that rotate is not convex, but bodies that are bent or stretched from outside have large displacements and satisfy the bound:
+//! at small strain U is at most half of it, and in bending with large rotations a small part. A folded body keeps its energy without support, with
+//! forces that are small or that act where its own shape would also be.
 //!
-//! The best fit is that of least squares with the weights |fᵢ|: it lays the rest shape to where something holds the body.
+//! The best fit is the least-squares fit with the weights |fᵢ|: it places the rest shape where something holds the body.
 //!
-//! Pins that lead nodes have done work all along their ways, whatever lies between the ends of these: a bar that they have turned
-//! three times round holds what they gave, though its ends lie where those of the bar at rest do. A node that was led counts with the
-//! way that it has gone, beyond one of all pins as a whole, where that is longer: U ≤ Σ |fᵢ| sᵢ where the forces grew on the way.
+//! Pins that move nodes do work along their whole path, whatever the distance between its ends. A bar that was twisted by three full turns contains
+//! the work of its pins, although its ends are where those of the bar at rest are. A node that pins have moved therefore counts with the length sᵢ of
+//! its path, minus a rigid motion of all pins, if that is longer: U ≤ Σ |fᵢ| sᵢ if the forces grew along the path.
 
 use crate::pin_travel::travel_lengths;
 use crate::warnings::{Warning, WorldWarning};
@@ -25,26 +25,26 @@ use opruga_math::{Column, Lane, WIDTH, sum_in_fixed_order};
 use opruga_solve::dense::symmetric_eigen;
 use std::collections::BTreeMap;
 
-/// Kinetic energy beyond a motion as a whole that counts as rest, as a part of the stored energy.
+/// The kinetic energy beyond a rigid motion below which a body counts as being at rest, relative to the stored energy.
 const REST: f64 = 1e-2;
 
-/// Cells are strained where their volume, or the distance of two of their nodes, has changed by more than this part of it.
+/// A cell counts as strained if its volume, or the distance of two of its nodes, has changed by more than this fraction.
 const STRAINED: f64 = 1e-3;
 
-/// The weight of all masses together in the fit, beside one for all forces: so it is defined where forces leave it open.
+/// The weight of all masses together in the fit, relative to a weight of 1 for all forces. It makes the fit unique if the forces do not.
 const LITTLE: f64 = 1e-6;
 
-/// How many times as large as at its end the mean force of a way may have been along which pins led a node: laws that soften, and
-/// bodies that buckle, give way.
+/// The largest ratio of the mean force along the path of a pinned node to the force at its end: the force may fall for laws that soften and for
+/// bodies that buckle.
 const FALLEN: f64 = 2.0;
 
 /// A vector; in the plane the last number is zero.
 type Vector = [f64; 3];
 
-/// A body in another balance.
+/// A body in another equilibrium.
 struct Unaccounted {
     body: usize,
-    /// What its cells hold [J], and how much of that the forces on it account for [J].
+    /// The energy of its cells [J], and the part of it that the forces on the body account for [J].
     energy: f64,
     accounted: f64,
 }
@@ -56,26 +56,25 @@ struct Node {
     velocity: Vector,
     force: Vector,
     mass: f64,
-    /// How far pins have led it [m].
+    /// The length of the path along which pins have moved it [m].
     led: f64,
 }
 
 impl<const D: usize> World<D> {
-    /// Warnings so far, and what is odd about the shapes in the present state: [`World::inverted_cells`] and
-    /// [`World::other_balances`]. For the end of a run, since shapes are looked at anew by every call.
+    /// Warnings so far, plus warnings about the shapes in the present state: [`World::inverted_cells`] and [`World::other_balances`]. Meant for the
+    /// end of a run, because every call examines the shapes again.
     pub fn warnings_at_the_end(&self) -> Vec<Warning> {
         let shapes = self.inverted_cells().into_iter().chain(self.other_balances());
         self.warnings().into_iter().chain(self.shape_warnings()).chain(shapes).collect()
     }
 
-    /// A warning (`cells.other_balance`) of bodies of finite elements that are nearly at rest and hold more energy than the
-    /// forces on them account for, from their own shape on: they snapped through, are folded, inside out or twisted
-    /// round. None where there is no such body. Looked for anew by every call.
+    /// A warning (`cells.other_balance`) about bodies of finite elements that are nearly at rest and contain more energy than the forces on them
+    /// account for relative to their own shape: they have snapped through, or are folded, inverted or twisted. None if there is no such body. Every
+    /// call computes it again.
     ///
-    /// With the forces fᵢ that hold the shape [N] and the rest shape moved as a whole to where it fits the present places
-    /// xᵢ best, yᵢ, a body is told of where its energy is more than Σ |fᵢ| |xᵢ − yᵢ|: what loads, pins, obstacles or gas have
-    /// deformed holds half of that at most if it is strained a little. Bodies of the material `linear`, which has one shape in
-    /// which it holds nothing, are never told of.
+    /// Let fᵢ be the forces that hold the shape [N], and yᵢ the rest shape, moved as a rigid body to the best fit with the present positions xᵢ. A
+    /// body is reported if its energy is more than Σ |fᵢ| |xᵢ − yᵢ|. A body that loads, pins, obstacles or gas have deformed contains at most half of
+    /// that if its strain is small. Bodies of the material `linear`, which has only one shape without energy, are never reported.
     pub fn other_balances(&self) -> Option<Warning> {
         let mut found: Vec<Unaccounted> = Vec::new();
         for island in &self.islands {
@@ -122,8 +121,8 @@ impl<const D: usize> World<D> {
         Some(Warning::new(warning, count))
     }
 
-    /// Whether a body has finite elements or a model whose forces turn with it, and no law of small strain: that has one shape that holds
-    /// nothing, and no other balance.
+    /// Whether a body has finite elements, or a model whose forces turn with it, and no law of small strain. Such a law has a single shape without
+    /// energy and no other equilibrium.
     fn is_judged(&self, body: usize) -> bool {
         let models = self.blueprint.bodies[body].models.iter();
         let mut solids = models.filter(|model| model.spec().has_role(Role::OwnsCells)).peekable();
@@ -155,7 +154,7 @@ impl<const D: usize> World<D> {
         mesh.positions.iter().enumerate().map(of).collect()
     }
 
-    /// Whether any cell has another shape than at rest.
+    /// Whether any cell has a shape that differs from its rest shape.
     fn is_strained(&self, body: usize, nodes: &[Node]) -> bool {
         let strained = |ratio: f64| (ratio - 1.0).abs() > STRAINED;
         let mesh = &self.blueprint.bodies[body].mesh;
@@ -171,8 +170,8 @@ impl<const D: usize> World<D> {
     }
 }
 
-/// The energies of the models of a system by which its bodies are judged [J], and the forces of these on all nodes at rest [N]; none where they
-/// have no meaning.
+/// The energies of the models of a system by which its bodies are judged [J], and the forces of these models on all nodes at zero velocity [N]; none
+/// if they are not defined.
 fn elastic<const D: usize>(system: &System<D>, time: f64) -> Option<([f64; WIDTH], Columns<D>)> {
     let still = Columns::<D>::zeros(system.index_count());
     let mut forces = Columns::<D>::zeros(system.index_count());
@@ -199,7 +198,8 @@ fn elastic<const D: usize>(system: &System<D>, time: f64) -> Option<([f64; WIDTH
     Some((energies, forces))
 }
 
-/// Σ |fᵢ| |xᵢ − yᵢ| with the rest shape moved as a whole to its best fit yᵢ, and the ways of led nodes where these are longer [J].
+/// Σ |fᵢ| |xᵢ − yᵢ| [J], where yᵢ is the rest shape moved as a rigid body to its best fit; for nodes moved by pins, the length of their path is used
+/// if it is longer.
 fn accounted(nodes: &[Node], dimension: usize) -> f64 {
     let (mut forces, mut mass) = (0.0, 0.0);
     for node in nodes {
@@ -216,7 +216,7 @@ fn accounted(nodes: &[Node], dimension: usize) -> f64 {
         add(&mut now, w, &node.now);
     }
     let (rest, now) = (rest.map(|x| x / all), now.map(|x| x / all));
-    // Σ w X xᵀ about the centres.
+    // Σ w X xᵀ about the centres of mass.
     let mut moments = [[0.0; 3]; 3];
     for node in nodes {
         let (from, to) = (less(&node.rest, &rest), less(&node.now, &now));
@@ -232,7 +232,7 @@ fn accounted(nodes: &[Node], dimension: usize) -> f64 {
     nodes.iter().map(|node| length(&node.force) * distance(node).larger(FALLEN * node.led)).sum()
 }
 
-/// The rotation in the plane that brings X nearest to x, from Σ w X xᵀ.
+/// The rotation in the plane that takes X closest to x, from Σ w X xᵀ.
 pub(crate) fn turn_in_plane(moments: &[[f64; 3]; 3]) -> [Vector; 3] {
     let (along, across) = (moments[0][0] + moments[1][1], moments[0][1] - moments[1][0]);
     let size = (along * along + across * across).sqrt();
@@ -240,8 +240,8 @@ pub(crate) fn turn_in_plane(moments: &[[f64; 3]; 3]) -> [Vector; 3] {
     [[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]
 }
 
-/// The rotation in space that brings X nearest to x, from Σ w X xᵀ: its quaternion belongs to the largest eigenvalue of Horn's
-/// matrix (Horn 1987).
+/// The rotation in space that takes X closest to x, from Σ w X xᵀ. Its quaternion is the eigenvector of Horn's matrix with the largest eigenvalue
+/// (Horn 1987).
 pub(crate) fn turn_in_space(m: &[[f64; 3]; 3]) -> [Vector; 3] {
     let trace = m[0][0] + m[1][1] + m[2][2];
     let mut matrix = [0.0; 16];
@@ -269,7 +269,7 @@ pub(crate) fn turn_in_space(m: &[[f64; 3]; 3]) -> [Vector; 3] {
     })
 }
 
-/// The kinetic energy beyond that of the motion as a whole that is nearest to the velocities [J].
+/// The kinetic energy beyond that of the rigid motion nearest to the velocities [J].
 fn beyond_whole(nodes: &[Node], dimension: usize) -> f64 {
     let (mut mass, mut center, mut speed) = (0.0, [0.0; 3], [0.0; 3]);
     for node in nodes {
@@ -290,7 +290,7 @@ fn beyond_whole(nodes: &[Node], dimension: usize) -> f64 {
         }
     }
     let (values, vectors) = symmetric_eigen(&inertia, 3);
-    // A body on a line has no inertia about it.
+    // A body on a line has no moment of inertia about it.
     let least = 1e-9 * values.last().copied().unwrap_or(0.0);
     let mut spin = [0.0; 3];
     for (value, vector) in values.iter().zip(&vectors).filter(|(value, _)| **value > least) {

@@ -1,10 +1,10 @@
-//! The second derivatives of what acts between bodies: a matrix for each pair, over the coordinates of its nodes.
+//! The second derivatives of the energies between bodies: a matrix for each pair, over the coordinates of its nodes.
 //!
 //! ```text
 //! y += Gᵀ S G x,   S = κ m b″ n nᵀ, or ∂²D/∂s² of friction
 //! ```
 //!
-//! G takes the coordinates to the relative motion of a pair.
+//! G maps the coordinates to the relative motion of a pair.
 
 use opruga_collide::{Pressed, Rubbing, Surface};
 
@@ -12,23 +12,23 @@ use opruga_collide::{Pressed, Rubbing, Surface};
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PairStiffness<const D: usize> {
     pairs: Vec<Pair<D>>,
-    /// First coordinates of nodes and their weights, pair by pair.
+    /// First coordinates of nodes and their weights, ordered by pair.
     nodes: Vec<(u32, f64)>,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Pair<const D: usize> {
-    /// The end of its nodes.
+    /// The end of its range of nodes.
     end: u32,
     /// S [N/m].
     matrix: [[f64; D]; D],
-    /// How its points of obstacles still move relative to one another [m].
+    /// The remaining relative displacement of its points on obstacles [m].
     obstacles: [f64; D],
 }
 
 impl<const D: usize> PairStiffness<D> {
-    /// Takes the pairs that press, and their friction after these displacements [m]. `coordinates` gives the body and the first coordinate of a point,
-    /// and `ahead` how far points of obstacles still have to go [m].
+    /// Takes the pairs under pressure, and their friction after these displacements [m]. `coordinates` contains the body and first coordinate of each
+    /// point, and `ahead` the remaining displacements of points on obstacles [m].
     pub(crate) fn take(
         &mut self,
         (pressed, rubbing): (&[Pressed<D>], &[Rubbing<D>]),
@@ -63,7 +63,7 @@ impl<const D: usize> PairStiffness<D> {
         }
     }
 
-    /// y += Gᵀ S G x; `with_obstacles` adds what obstacles do to the motion.
+    /// y += Gᵀ S G x; `with_obstacles` includes the motion of obstacles.
     pub(crate) fn multiply(&self, x: &[f64], with_obstacles: bool, y: &mut [f64]) {
         let mut first = 0;
         for pair in &self.pairs {

@@ -1,17 +1,17 @@
-//! The boxes through which the bodies of an island go.
+//! The boxes that the bodies of an island pass through.
 
 use opruga_core::state::{Columns, Layout};
 use opruga_core::system::System;
 use opruga_math::{Lane, Pack, Strip, WIDTH, Work, lanes};
 
-/// A box, by its lowest and highest corner [m].
+/// A box, given by its lowest and highest corner [m].
 pub(crate) type Bounds<const D: usize> = [[f64; D]; 2];
 
-/// The least and the greatest of vectors of nodes: of a body alone in eight parts, of bodies side by side for each lane.
+/// The minimum and maximum of vectors of nodes: for a single body in eight parts, for a batch in each lane.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Path<const D: usize> {
     box_of_lanes: [[[f64; WIDTH]; D]; 2],
-    /// Zero while all were numbers.
+    /// Zero while all numbers are finite.
     unsound: [f64; WIDTH],
 }
 
@@ -23,13 +23,13 @@ impl<const D: usize> Default for Path<D> {
 }
 
 impl<const D: usize> Path<D> {
-    /// Takes in vectors of all nodes.
+    /// Includes the vectors of all nodes.
     pub(crate) fn include(&mut self, system: &System<D>, vectors: &Columns<D>) {
         let end = system.nodes * system.layout.stride();
         system.simd.run(Include { path: self, vectors, end });
     }
 
-    /// Takes in one vector, of the node at an index into the columns.
+    /// Includes the vector of the node at an index into the columns.
     pub(crate) fn include_one(&mut self, index: usize, x: &[f64; D]) {
         let (lane, [low, high]) = (index % WIDTH, &mut self.box_of_lanes);
         for d in 0..D {
@@ -38,7 +38,7 @@ impl<const D: usize> Path<D> {
         }
     }
 
-    /// Whether all vectors were numbers.
+    /// Whether all numbers were finite.
     pub(crate) fn is_sound(&self) -> bool {
         self.unsound.iter().all(|sum| *sum == 0.0)
     }
@@ -75,10 +75,10 @@ impl<const D: usize> Work for Include<'_, D> {
             for d in 0..D {
                 let mut x: P = vectors.load(d, k);
                 if k + WIDTH > self.end {
-                    // Behind the last node: the first one of the pack.
+                    // After the last node: the first one of the pack.
                     x = P::select(P::first(self.end - k), x, P::splat(x.to_array()[0]));
                 }
-                // Zero times a number is zero, times anything else it is not.
+                // Zero times a finite number is zero; zero times infinity or NaN is not.
                 sum += x * P::zero();
                 (least[d], most[d]) = (x.smaller(least[d]), x.larger(most[d]));
             }
@@ -90,7 +90,7 @@ impl<const D: usize> Work for Include<'_, D> {
     }
 }
 
-/// A box, larger by a distance [m] on all sides.
+/// A box enlarged by a distance [m] on all sides.
 pub(crate) fn wider<const D: usize>([low, high]: Bounds<D>, distance: f64) -> Bounds<D> {
     [low.map(|c| c - distance), high.map(|c| c + distance)]
 }

@@ -1,4 +1,4 @@
-//! What does not fit where a program or a command names a part of a world, and what is wrong with snapshots, as messages.
+//! Messages about names of parts of a world, given by a program or a command, that are not valid, and about errors in snapshots.
 
 use opruga_core::spec::AllowedValues;
 use opruga_math::words::number;
@@ -9,13 +9,13 @@ pub(crate) const FORMS: &str = "body.NAME.models.KIND.FIELD, body.NAME.integrato
                      world.largest_force, world.largest_velocity, world.largest_distance, \
                      world.unfold, time.substeps";
 
-/// The hint that names the nearest word; empty where there is none.
+/// The hint that names the nearest word; empty if there is none.
 fn did_you_mean(word: &Option<String>) -> String {
     word.as_ref().map_or_else(String::new, |word| format!("did you mean `{word}`?"))
 }
 
 messages! {
-    /// Why a path, a name or a value does not fit a world.
+    /// Reasons why a path, a name or a value does not fit a world.
     #[derive(Clone, Debug, PartialEq)]
     pub enum PathFault {
         "part.path" #[error("there is no such body")]
@@ -90,7 +90,7 @@ messages! {
         NoFacets {},
     }
 
-    /// What is wrong with a snapshot.
+    /// Errors in a snapshot.
     #[derive(Clone, Debug, PartialEq)]
     pub enum SnapshotFault {
         "part.snapshot" #[error("it promises {count} {what}, more than it holds")]
@@ -159,11 +159,11 @@ messages! {
 }
 
 terms! {
-    /// What a snapshot promises.
+    /// The content that a snapshot announces.
     pub enum Promised = "part.promised" { Bytes = "bytes", Numbers = "numbers", Letters = "bytes of a text" }
 }
 
 terms! {
-    /// What a snapshot holds of a kind that is unknown.
+    /// The content of a snapshot that is of an unknown kind.
     pub enum Content = "part.content" { Body = "a body", Mass = "a mass", Pin = "a pin", Command = "a command" }
 }

@@ -1,13 +1,13 @@
-//! How far pins have led the nodes that they hold, beyond a motion of all of them as one.
+//! The lengths of the paths along which pins have moved their nodes, beyond a rigid motion of all pins.
 
 use opruga_core::system::Pin;
 use opruga_solve::dense::symmetric_eigen;
 
-/// Turns that the positions of the pins do not show, as a part of those that they do.
+/// Rotations that the positions of the pins do not determine have eigenvalues below this, relative to the largest.
 const NO_TURN: f64 = 1e-9;
 
-/// How far pins have travelled from the start of their motions to a time [m]: along the axes that they hold, and less what a rigid
-/// motion has, in every piece of the motions the nearest one. What is carried or turned as a whole has gone no way.
+/// The lengths of the paths of pins from the start of their motions to a time [m], along the axes that they hold. From every piece of the motions the
+/// nearest rigid motion is subtracted, so pins that are moved or rotated as a whole have zero length.
 pub(crate) fn travel_lengths<const D: usize>(pins: &[&Pin<D>], time: f64) -> Vec<f64> {
     let mut out = vec![0.0; pins.len()];
     if pins.iter().all(|pin| pin.motion.is_empty()) {
@@ -28,7 +28,7 @@ pub(crate) fn travel_lengths<const D: usize>(pins: &[&Pin<D>], time: f64) -> Vec
             .zip(before.iter().zip(&after))
             .map(|(pin, (from, to))| along_pinned_axes(pin, core::array::from_fn(|d| to[d] - from[d])))
             .collect();
-        // A chord of a turn is perpendicular to the arm to its middle.
+        // A chord of a rotation is perpendicular to the radius to its middle.
         let middles: Vec<[f64; D]> =
             before.iter().zip(&after).map(|(from, to)| core::array::from_fn(|d| 0.5 * (from[d] + to[d]))).collect();
         let whole = nearest_rigid(&middles, &steps);
@@ -41,7 +41,7 @@ pub(crate) fn travel_lengths<const D: usize>(pins: &[&Pin<D>], time: f64) -> Vec
     out
 }
 
-/// The steps of the small rigid motion of points that is nearest to given steps of theirs.
+/// The displacements of points in the small rigid motion that is nearest to their given displacements.
 fn nearest_rigid<const D: usize>(points: &[[f64; D]], steps: &[[f64; D]]) -> Vec<[f64; D]> {
     let mean = |all: &[[f64; D]]| -> [f64; D] {
         core::array::from_fn(|d| all.iter().map(|x| x[d]).sum::<f64>() / all.len() as f64)
@@ -93,7 +93,7 @@ mod tests {
     use super::*;
     use std::sync::Arc;
 
-    /// A pin that goes round the x axis with steps of a few degrees, begins at an angle, and is moved along by a speed.
+    /// A pin that rotates about the x axis in steps of a few degrees from a start angle, and also moves with a constant speed.
     fn turning(x: f64, start: f64, degrees: f64, speed: [f64; 3]) -> Pin<3> {
         let at = |angle: f64| [x, libm::cos(angle.to_radians()), libm::sin(angle.to_radians())];
         let anchor = at(start);
@@ -120,7 +120,7 @@ mod tests {
         }
         for (time, part) in [(0.0, 0.0), (0.5, 0.5), (1.0, 1.0), (7.0, 1.0)] {
             for travel in of(&ends([0.0, 1080.0]), time) {
-                // Half of three turns at a radius of 1 m, by chords.
+                // Half of three turns at a radius of 1 m, measured by chords.
                 assert!((travel - part * 3.0 * core::f64::consts::PI).abs() < 1e-3, "{travel} at {time}");
             }
         }

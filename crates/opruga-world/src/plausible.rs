@@ -1,4 +1,4 @@
-//! What a scene may well say, but hardly means: units that do not go together, bodies that begin inside an obstacle.
+//! Valid but implausible scenes: units that do not fit together, bodies that start inside an obstacle.
 
 use crate::blueprint::{BodyBlueprint, Mass};
 use crate::error::{Part, WorldError};
@@ -17,23 +17,23 @@ use opruga_mesh::{Measure, Mesh, Share};
 /// The code of the warning of [`sag`].
 pub(crate) const SAG: &str = "units.sag";
 
-/// Warns of a body that its own weight would stretch by more than its size: millimetres among metres, grams among
-/// kilograms, or a stiffness per metre that was meant per millimetre.
+/// Warns about a body that its own weight would stretch by more than its size: millimetres mixed with metres, grams with kilograms, or a stiffness
+/// per metre that was meant per millimetre.
 ///
-/// In a chain of springs k between nodes of mass m the fastest oscillation is ω = 2 √(k/m), so k ≈ m ω²/4 stands for the
-/// springs of one node, whatever the models are. A body of N nodes carries its weight M g with as many springs side by
-/// side as one after the other if it is a surface, with N^⅓ times as many if it is a solid: sag ≈ M g / (k N^⅓) or M g / k.
-/// An outline sags more; what holds it up is usually gas, so it is taken for a surface.
+/// In a chain of springs k between nodes of mass m the fastest oscillation is ω = 2 √(k/m), so k ≈ m ω²/4 represents the springs of one node,
+/// whatever the models are. The springs that carry the weight M g of a body of N nodes are as many side by side as in a row if it is a surface, and
+/// N^⅓ times as many side by side if it is a solid: sag ≈ M g / k or M g / (k N^⅓). An outline sags more, but gas usually supports it, so it is
+/// treated as a surface.
 ///
-/// The boundary of a solid is another matter: its stiffness grows with the wave number, μ per metre of it, and not with its square, so the
-/// fastest motion of a node is that of one spring to its surroundings, k ≈ m ω². A cube of n × n × n springs has N = 6 n² nodes on its
-/// boundary: sag ≈ M g / (k √(N/6)) in space.
+/// For the boundary of a solid, the stiffness grows in proportion to the wave number, μ per metre of it, and not to its square. The fastest motion of
+/// a node is therefore that of one spring to its surroundings, k ≈ m ω². A cube of n × n × n springs has N = 6 n² nodes on its boundary: sag ≈ M g /
+/// (k √(N/6)) in space.
 pub(crate) fn sag<const D: usize>(body: &BodyBlueprint<D>, gravity: &[f64; D], spectrum: &Spectrum) -> Option<Warning> {
     let masses = node_masses(body);
     let (nodes, mass) = (masses.len() as f64, masses.iter().sum::<f64>());
     let is_boundary = body.models.iter().any(|model| model.spec().has_role(Role::InsideOfBoundary));
     let across = match body.mesh.measure() {
-        // The measure of what has no cells is that of its surface.
+        // Without cells, the measure is that of the surface.
         _ if is_boundary && D == 3 => (nodes / 6.0).sqrt(),
         Ok(Measure::Volume(_)) => libm::cbrt(nodes),
         _ => 1.0,
@@ -43,16 +43,16 @@ pub(crate) fn sag<const D: usize>(body: &BodyBlueprint<D>, gravity: &[f64; D], s
     let g = gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
     let size = longest_side(&body.mesh);
     let sag = mass * g / stiffness;
-    // Without models there is nothing to sag; not a number where all is zero.
+    // Without models nothing sags; if all values are zero, the sag is NaN.
     let implausible = stiffness > 0.0 && sag.is_finite() && sag > size && size > 0.0;
     implausible.then(|| Warning::new(WorldWarning::Sag { body: body.common_name().into(), mass, sag, size }, 1))
 }
 
-/// Positions are rounded by at most this part of the distance between neighbouring nodes.
+/// The largest rounding error of positions, relative to the distance between neighbouring nodes.
 const ROUNDING: f64 = 1e-6;
 
-/// How far from the origin along an axis the positions of a body keep their digits [m]: where they are rounded by 1e-6 of the
-/// distance between its nodes at rest, so that strains have an error of that size. Without an extent there is no limit.
+/// The distance from the origin along an axis up to which the positions of a body keep their digits [m]. At this distance they are rounded by 1e-6 of
+/// the distance between its nodes at rest, so that strains have an error of that size. A body without extent has no limit.
 pub(crate) fn range<const D: usize>(mesh: &Mesh<D>) -> f64 {
     let nodes = mesh.positions.len() as f64;
     let apart = match mesh.measure() {
@@ -64,7 +64,7 @@ pub(crate) fn range<const D: usize>(mesh: &Mesh<D>) -> f64 {
     if apart > 0.0 { ROUNDING * apart / f64::EPSILON } else { f64::INFINITY }
 }
 
-/// Refuses a body that lies beyond its [`range`].
+/// Refuses a body beyond its [`range`].
 pub(crate) fn check_range<const D: usize>(x: &[[f64; D]], range: f64) -> Result<(), BuildError> {
     let farthest = x.iter().flatten().fold(0.0, |most: f64, c| if c.abs() > most { c.abs() } else { most });
     if farthest <= range {
@@ -73,20 +73,20 @@ pub(crate) fn check_range<const D: usize>(x: &[[f64; D]], range: f64) -> Result<
     Err(BuildError::of("position", Refusal::FarBody { farthest, range }))
 }
 
-/// Refuses a body that goes farther in a step of h [s] than its [`range`] reaches.
+/// Refuses a body that moves farther in a step of h [s] than its [`range`].
 pub(crate) fn check_speed<const D: usize>(v: &[[f64; D]], range: f64, h: f64) -> Result<(), BuildError> {
     let fastest = v.iter().flatten().fold(0.0, |most: f64, c| if c.abs() > most { c.abs() } else { most });
-    // Written so that what is no number is too fast.
+    // This form treats NaN as too fast.
     if fastest * h <= range {
         return Ok(());
     }
     Err(BuildError::of("velocity", Refusal::FastBody { fastest, h, range }))
 }
 
-/// The largest number whose square has a place among the finite numbers.
+/// The largest number whose square is finite.
 const LARGEST: f64 = 1e154;
 
-/// The words of a scene that the masses of a body come from, with their numbers; the one that is farthest from 1 first.
+/// The fields of a scene that determine the masses of a body, with their values; the value farthest from 1 comes first.
 fn words_of_masses<const D: usize>(body: &BodyBlueprint<D>) -> Vec<(&'static str, f64)> {
     let thickness = ("thickness", body.thickness);
     let mut words = match &body.mass {
@@ -102,14 +102,14 @@ fn words_of_masses<const D: usize>(body: &BodyBlueprint<D>) -> Vec<(&'static str
     words
 }
 
-/// Refuses a body with a node that has a part of its mass and none that a number can hold: it would stand still for ever.
+/// Refuses a body with a node that should have mass, but whose mass is too small for a number: it would never move.
 pub(crate) fn check_masses<const D: usize>(body: &BodyBlueprint<D>, masses: &[f64]) -> Result<(), BuildError> {
-    // Below that numbers lose digits, and 1/m has no place.
+    // Below this, numbers lose digits and 1/m is not finite.
     let weighs = |mass: &f64| *mass >= f64::MIN_POSITIVE && mass.is_finite();
     if masses.iter().all(weighs) {
         return Ok(());
     }
-    // A node that belongs to no element has no part.
+    // A node that belongs to no element has no share.
     let shares = body.mesh.lumped_measures(Share::Proportional).unwrap_or_else(|_| vec![1.0; masses.len()]);
     let Some(node) = (0..masses.len()).find(|node| shares[*node] > 0.0 && !weighs(&masses[*node])) else {
         return Ok(());
@@ -120,7 +120,7 @@ pub(crate) fn check_masses<const D: usize>(body: &BodyBlueprint<D>, masses: &[f6
 }
 
 impl<const D: usize> World<D> {
-    /// Refuses a scene whose energy or momentum is beyond the finite numbers before its first step, at what makes it so.
+    /// Refuses a scene whose energy or momentum is not finite before its first step; the error names the cause.
     pub(crate) fn check_sums(&self) -> Result<(), WorldError> {
         if self.energy.is_finite() && self.momentum.is_finite() {
             return Ok(());
@@ -151,12 +151,12 @@ impl<const D: usize> World<D> {
     }
 }
 
-/// Depths below this part of the size of a body are rounding of the scene's numbers.
+/// Depths below this fraction of the size of a body are rounding errors in the numbers of the scene.
 const SHALLOW: f64 = 1e-6;
 
 impl<const D: usize> World<D> {
-    /// Warns of bodies whose free nodes begin inside an obstacle: the first step puts them on its surface, which may fold
-    /// or throw them. One warning for copies in the same obstacle, with the deepest of them.
+    /// Warns about bodies whose free nodes start inside an obstacle: the first step puts them on its surface, which may fold the body or throw it
+    /// away. Copies in the same obstacle get one warning, with the deepest of them.
     pub(crate) fn warn_of_buried_bodies(&mut self) {
         let Some(colliders) = self.colliders.clone() else { return };
         let mut found: Vec<(String, f64, Warning, usize)> = Vec::new();
@@ -168,7 +168,7 @@ impl<const D: usize> World<D> {
             if !colliders.reach(0.0, 0.0, &box_at(&low), &box_at(&high)) {
                 continue;
             }
-            // What is held does not move, wherever it is.
+            // Pinned nodes do not move, wherever they are.
             let pinned = self.pinned_nodes(body);
             let nodes: Vec<u32> =
                 (0..self.node_count(body) as u32).filter(|node| pinned.binary_search(node).is_err()).collect();
@@ -202,7 +202,7 @@ impl<const D: usize> World<D> {
     }
 }
 
-/// A shift as it is typed: a little longer rather than shorter, to five digits.
+/// A displacement for the user to type: rounded up rather than down, to five digits.
 fn out_of<const D: usize>(shift: &[f64; D], slack: f64) -> String {
     let typed = |x: f64| match x {
         x if x.abs() <= slack => "0".into(),

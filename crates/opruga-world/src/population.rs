@@ -1,4 +1,4 @@
-//! Bodies come and go.
+//! Adds and removes bodies.
 
 use crate::blueprint::{Action, BodyBlueprint};
 use crate::changes::{Before, Source};
@@ -15,15 +15,15 @@ use opruga_core::spec::Values;
 use opruga_math::Lane;
 use std::collections::BTreeMap;
 
-/// So many bodies whose commands ended with them are named in warnings; the commands of all others are counted together.
+/// The maximum number of warnings that name a body whose commands ended with it; the commands of all other bodies are counted together.
 const MOST_NAMED: usize = 16;
 
 impl<const D: usize> World<D> {
-    /// Adds a body; returns its number. Once it was removed nothing is kept of it, and its number may be given to another body
-    /// that the program adds: [`World::handle`] tells one from the other.
+    /// Adds a body; returns its number. After its removal nothing is kept of it, and the program may add another body with the same number;
+    /// [`World::handle`] distinguishes them.
     ///
     /// # Errors
-    /// [`WorldError`] if its name is taken, it is none that a scene could hold, or a model refuses; the world stays as it was.
+    /// [`WorldError`] if its name is taken, if a scene could not contain it, or if a model refuses it; the world is then unchanged.
     pub fn add_body(&mut self, body: BodyBlueprint<D>) -> Result<usize, WorldError> {
         let name = body.name.clone();
         let number = self.include(body, Source::Program)?;
@@ -36,7 +36,7 @@ impl<const D: usize> World<D> {
         let origins = || self.slots.origin.iter().enumerate().skip(self.slots.initial);
         let end = self.slots.len();
         match source {
-            // Commands of the scene name the bodies that others of them add by the numbers behind those at the start.
+            // Commands of the scene refer to bodies that other commands add by the numbers after those of the bodies at the start.
             Source::Command(_) => {
                 origins().find(|(_, origin)| **origin == Origin::Reserved).map_or(end, |(slot, _)| slot)
             }
@@ -45,7 +45,7 @@ impl<const D: usize> World<D> {
                     Origin::Free(like) => Some((slot, *like)),
                     _ => None,
                 };
-                // Rather beside bodies like it, where a batch keeps a seat.
+                // Prefer a seat in a batch of bodies of the same kind.
                 let beside = |(_, like): &(usize, Option<usize>)| {
                     like.is_some_and(|other| alike(&self.blueprint.bodies[other], body))
                 };
@@ -62,7 +62,7 @@ impl<const D: usize> World<D> {
         crate::validity::body(&body)?;
         crate::memory::check(std::slice::from_ref(&body), &*self.integrator, &self.registry, self.options.most_bytes)?;
         if source == Source::Program {
-            // Slots of bodies that the scene is yet to add stay theirs.
+            // Slots of bodies that the scene will add stay reserved.
             let coming = self.blueprint.commands.iter().filter(|c| matches!(c.action, Action::Add(_))).count();
             if coming > 0 {
                 self.reserve(self.slots.initial + coming - 1, Origin::Reserved);
@@ -101,7 +101,7 @@ impl<const D: usize> World<D> {
         Ok(number)
     }
 
-    /// Takes a body away.
+    /// Removes a body.
     ///
     /// # Errors
     /// [`WorldError::Path`] if there is no body of that name.
@@ -112,7 +112,7 @@ impl<const D: usize> World<D> {
         Ok(())
     }
 
-    /// Takes a body away, for the program or for a command.
+    /// Removes a body on behalf of the program or of a command.
     pub(crate) fn remove_now(&mut self, name: &str) -> Result<(), WorldError> {
         let Some(body) = self.body(name) else {
             return Err(WorldError::path(name, PathFault::NoBody {}));
@@ -120,8 +120,8 @@ impl<const D: usize> World<D> {
         self.take_away(&[body])
     }
 
-    /// Gives a body other models or another integrator. Positions and velocities stay; what a model remembers stays with
-    /// the first of its kind, and a kind that the body did not have begins as at the start of a scene.
+    /// Gives a body other models or another integrator. Positions and velocities stay the same. The memory of a model is kept by the first model of
+    /// the same kind; a kind that the body did not have starts as at the start of a scene.
     pub(crate) fn become_other(
         &mut self,
         body: usize,
@@ -151,7 +151,7 @@ impl<const D: usize> World<D> {
         Ok(())
     }
 
-    /// Exchanges models and integrator of a body in the blueprint alone; returns what they were.
+    /// Exchanges the models and integrator of a body in the blueprint only; returns the previous ones.
     pub(crate) fn exchange(
         &mut self,
         number: usize,
@@ -199,13 +199,13 @@ impl<const D: usize> World<D> {
         }
     }
 
-    /// Takes bodies away that lie wholly beyond `world.largest_distance`.
+    /// Removes bodies that lie entirely beyond `world.largest_distance`.
     pub(crate) fn take_away_what_is_far(&mut self) -> Result<(), WorldError> {
         let Some(limit) = self.blueprint.surroundings.largest_distance else { return Ok(()) };
         let square = |x: [f64; D]| x.iter().map(|c| c * c).sum::<f64>();
         let mut gone = Vec::new();
         for island in &self.islands {
-            // The corner of its box that is farthest from the origin: mostly it is near.
+            // The corner of the box that is farthest from the origin; usually it is near.
             let [low, high] = island.survey.position;
             let corner = core::array::from_fn(|d| low[d].abs().larger(high[d].abs()));
             if square(corner) <= limit * limit {
@@ -225,7 +225,7 @@ impl<const D: usize> World<D> {
         Ok(())
     }
 
-    /// Bodies that commands will add, in the order of time.
+    /// Bodies that commands will add, in order of time.
     pub fn coming_bodies(&self) -> impl Iterator<Item = &BodyBlueprint<D>> {
         let present = &self.blueprint.bodies;
         self.blueprint.commands.iter().filter_map(move |command| match &command.action {
@@ -236,7 +236,7 @@ impl<const D: usize> World<D> {
 }
 
 impl<const D: usize> World<D> {
-    /// Makes sure that there is a slot, without a body so far.
+    /// Creates a slot without a body if it does not exist.
     pub(crate) fn reserve(&mut self, slot: usize, origin: Origin) {
         while self.slots.len() <= slot {
             self.blueprint.bodies.push(BodyBlueprint::nobody());
@@ -247,7 +247,7 @@ impl<const D: usize> World<D> {
         }
     }
 
-    /// Forgets the bodies of the program that are gone, and gives their slots free; those at the end of the list are given up.
+    /// Forgets removed bodies of the program and frees their slots; free slots at the end of the list are dropped.
     pub(crate) fn free_slots(&mut self) {
         for slot in self.slots.initial..self.slots.len() {
             if self.slots.alive[slot] || self.slots.origin[slot] != Origin::Program {

@@ -1,4 +1,4 @@
-//! Everything that a world would refuse, found part by part: what [`World::new`] stops at is only the first of it.
+//! All errors that a world would return, found part by part; [`World::new`] stops at the first of them.
 
 use crate::blueprint::{Blueprint, BodyBlueprint, LoadBlueprint};
 use crate::error::{Part, WorldError};
@@ -7,12 +7,12 @@ use crate::world::{Options, World};
 use opruga_core::spec::Values;
 use std::sync::Arc;
 
-/// More problems than this help nobody.
+/// The maximum number of problems: a longer list helps nobody.
 const MOST_PROBLEMS: usize = 200;
 
 impl<const D: usize> World<D> {
-    /// What building a world of this blueprint would refuse: the integrator, every obstacle, and every kind of body with
-    /// its models, loads and stable step, each by itself. Copies of a body are one kind. Empty where nothing is refused.
+    /// The errors from building a world of this blueprint: the integrator, every obstacle, and every kind of body with its models, loads and stable
+    /// step, each separately. Copies of a body are one kind. Empty if there are no errors.
     pub fn problems(blueprint: &Blueprint<D>, options: &Options, registry: &Arc<Registry<D>>) -> Vec<WorldError> {
         let options = Options { threads: 1, ..options.clone() };
         let part = |bodies, colliders, loads| blueprint.part(bodies, colliders, loads);
@@ -25,7 +25,7 @@ impl<const D: usize> World<D> {
         let mut obstacles = Vec::new();
         for (number, collider) in blueprint.colliders.iter().enumerate() {
             if let Some(mut error) = refused(part(Vec::new(), vec![collider.clone()], Vec::new())) {
-                // Built alone it was number 0.
+                // In its own world it has number 0.
                 if let WorldError::Build { part: Part::Collider { index }, .. } = &mut error {
                     *index = number;
                 }
@@ -43,27 +43,27 @@ impl<const D: usize> World<D> {
                 body.models.as_slice(),
                 body.integrator.as_ref(),
             );
-            // Copies stand one after the other.
+            // Copies are adjacent.
             if last.replace(kind) == Some(kind) || problems.len() >= MOST_PROBLEMS {
                 continue;
             }
             let loads = blueprint.loads.iter().filter(|l| l.body == number);
             let loads = loads.map(|l| LoadBlueprint { body: 0, ..l.clone() }).collect();
-            // A pin that selects what is not there holds nothing. Who reads a scene has said so at its line.
+            // A pin that selects missing nodes holds nothing; the reader of a scene has already reported it at its line.
             let mut body = body.clone();
             body.pins = body.pins.iter().filter(|pin| pin.select.fault(&body).is_none()).cloned().collect();
             let body = &body;
-            // With the obstacles, which may hold it.
+            // Obstacles are included because they may hold it.
             let Some(first) = refused(part(vec![body.clone()], obstacles.clone(), loads)) else { continue };
             if !all_obstacles && first.code().starts_with("static.") {
-                // What one of those that are refused would hold is not known.
+                // A refused obstacle might have held it, which is not known.
                 continue;
             }
-            // Building stops at the first model that refuses; each of the others is asked by itself.
+            // Building stops at the first model that refuses; each of the other models is tested alone.
             let start = problems.len();
             for model in &body.models {
                 let alone = BodyBlueprint { models: vec![model.clone()], pins: Vec::new(), ..body.clone() };
-                // Cells that it leaves to the others are no fault of its own.
+                // Cells that it leaves to the other models are not its error.
                 let own = |error: &WorldError| {
                     matches!(error, WorldError::Build { source, .. } if source.kind == model.kind())
                         && error.code() != "model.uncovered_cells"
@@ -79,7 +79,7 @@ impl<const D: usize> World<D> {
 }
 
 impl<const D: usize> BodyBlueprint<D> {
-    /// The name in the scene: that of copies without their number, `ball` for `ball[3]`.
+    /// The name in the scene. For copies this is the name without the number: `ball` for `ball[3]`.
     pub fn common_name(&self) -> &str {
         self.name.split('[').next().unwrap_or(&self.name)
     }

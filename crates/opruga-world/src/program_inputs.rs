@@ -1,5 +1,4 @@
-//! What a program does to a world from outside of its scene: it moves nodes and adds forces. All of it is written down on request, and done
-//! again.
+//! Inputs of a program to a world that are not part of its scene: moved nodes and added forces. They are recorded on request and can be repeated.
 
 use crate::error::WorldError;
 use crate::inputs::Input;
@@ -10,12 +9,12 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 impl<const D: usize> World<D> {
-    /// Writes down from now on what the program does, for [`World::take_inputs`].
+    /// Records the inputs of the program from now on, for [`World::take_inputs`].
     pub fn keep_inputs(&mut self) {
         self.inputs.get_or_insert_default();
     }
 
-    /// What the program has done since the last call, in its order; empty without [`World::keep_inputs`].
+    /// The inputs of the program since the last call, in order; empty without [`World::keep_inputs`].
     pub fn take_inputs(&mut self) -> Vec<Input<D>> {
         self.inputs.as_mut().map(std::mem::take).unwrap_or_default()
     }
@@ -26,10 +25,10 @@ impl<const D: usize> World<D> {
         }
     }
 
-    /// Does again what a program did.
+    /// Repeats an input of a program.
     ///
     /// # Errors
-    /// Those of the call that it stands for; the world stays as it was.
+    /// The errors of the original call; the world is then unchanged.
     pub fn repeat(&mut self, input: &Input<D>) -> Result<(), WorldError> {
         match input {
             Input::Command(command) => self.command(command.clone()),
@@ -40,10 +39,10 @@ impl<const D: usize> World<D> {
         }
     }
 
-    /// Moves a node and gives it a velocity, from outside of the physics.
+    /// Moves a node and gives it a velocity, from outside the physics.
     ///
     /// # Errors
-    /// [`WorldError::Path`] if there is no such node, or a number is not finite; the world stays as it was.
+    /// [`WorldError::Path`] if there is no such node, or if a number is not finite; the world is then unchanged.
     pub fn set_node(
         &mut self,
         body: usize,
@@ -63,19 +62,19 @@ impl<const D: usize> World<D> {
         let index = island.system.layout.index(node as usize, lane);
         island.system.state.x.set(index, position);
         island.system.state.v.set(index, velocity);
-        // What an integrator remembers does not lead to here.
+        // The history of an integrator does not fit the new state.
         island.system.history.reset();
         island.refresh();
-        // Nobody's work or loss.
+        // The change of energy counts as neither work nor loss.
         let before = self.energy.total();
         self.flows.start += self.stock_energy() - before;
         self.refresh_ledger();
         self.write_down(|| Input::SetNode { body, node, position, velocity });
         Ok(())
     }
-    /// Adds a force on every node of a body by a user's law of (node, position, velocity, time).
+    /// Adds a force on every node of a body, given by a user's law of (node, position, velocity, time).
     ///
-    /// The law runs while the world is stepped, on any thread, so it cannot change the world; this does not compile:
+    /// The law runs during a step, on any thread, so it cannot change the world. This does not compile:
     ///
     /// ```compile_fail,E0502
     /// # use opruga_world::World; use std::sync::Arc;
@@ -87,7 +86,7 @@ impl<const D: usize> World<D> {
     /// ```
     ///
     /// # Errors
-    /// [`WorldError`] if there is no such body or its island cannot be built anew; the world stays as it was.
+    /// [`WorldError`] if there is no such body or if its island cannot be rebuilt; the world is then unchanged.
     pub fn add_force(&mut self, body: usize, law: Arc<ForceLaw<D>>) -> Result<(), WorldError> {
         let Some(handle) = self.handle(body) else {
             return Err(WorldError::path(format!("body.{body}"), PathFault::NoBody {}));

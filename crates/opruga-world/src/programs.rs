@@ -10,7 +10,7 @@ use opruga_math::message::AnyMessage;
 use opruga_mesh::Mesh;
 use std::sync::Arc;
 
-/// The values of one kind: its defaults, and the fields that the program sets.
+/// The values of one kind: its defaults, replaced by the fields that the program sets.
 fn values<const D: usize>(
     kind: &str,
     what: &'static str,
@@ -40,14 +40,14 @@ fn values<const D: usize>(
 }
 
 impl<const D: usize> Registry<D> {
-    /// The values of a model: its defaults, and these fields.
+    /// The values of a model: its defaults, replaced by the given fields.
     ///
     /// # Errors
-    /// [`WorldError::Build`] where there is no such model or field, a value is not allowed, or a required field is missing.
+    /// [`WorldError::Build`] if there is no such model or field, if a value is not allowed, or if a required field is missing.
     pub fn model_values(&self, kind: &str, fields: &[(&str, Value)]) -> Result<Values, WorldError> {
         values::<D>(kind, "model", &self.models(), fields)
     }
-    /// The values of an integrator: its defaults, and these fields.
+    /// The values of an integrator: its defaults, replaced by the given fields.
     ///
     /// # Errors
     /// As [`Registry::model_values`].
@@ -87,7 +87,7 @@ impl<const D: usize> Blueprint<D> {
 }
 
 impl<const D: usize> BodyBlueprint<D> {
-    /// A body at rest where its mesh lies, with the integrator of the scene.
+    /// A body at rest at the position of its mesh, with the integrator of the scene.
     pub fn new(name: &str, mesh: Mesh<D>, mass: Mass, models: Vec<Values>) -> BodyBlueprint<D> {
         BodyBlueprint {
             name: name.into(),
@@ -108,7 +108,7 @@ impl<const D: usize> BodyBlueprint<D> {
 }
 
 impl ColliderBlueprint {
-    /// An obstacle of a scene in `D` dimensions: the defaults of its kind, and these fields.
+    /// An obstacle of a scene in `D` dimensions: the defaults of its kind, replaced by the given fields.
     ///
     /// # Errors
     /// As [`Registry::model_values`].

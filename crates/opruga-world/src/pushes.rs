@@ -1,4 +1,4 @@
-//! Bodies that solve for the end of a step, and the forces of contact on them.
+//! Contact forces on bodies with implicit integrators.
 //!
 //! ```text
 //! step      x₁(f): the end of a step in which the forces f = p/h act on the nodes, p the impulses of contact
@@ -6,7 +6,8 @@
 //! contact   p from the gaps, the free motion x₁(f) − A⁻¹ f/θ and the answer
 //! ```
 //!
-//! Steps and contact are solved in turn until they agree on the end of the step: Newton's method for f. The forces of a substep are those of the one before at first: bodies at rest on one another take one step.
+//! Steps and contact are solved in turn until they agree on the end of the step; this is Newton's method for f. The forces of the previous substep
+//! are the initial values, so bodies at rest on one another need one step.
 //!
 //! Source: M. Otaduy, R. Tamstorf, D. Steinemann, M. Gross, Implicit contact handling for deformable objects, Computer Graphics Forum 28 (2009)
 //! 559–568.
@@ -17,18 +18,18 @@ use opruga_collide::{Obstacles, Respond, Touching, Trouble};
 use opruga_core::system::Workspace;
 use opruga_math::{Lane, WIDTH};
 
-/// Steps and contact agree where no point ends farther than this from where impulses were to lead it, relative to the thickness of surfaces,
-/// in the rounds before the given one. Exact steps reach the first in two or three rounds, those of a budget the second; what changes who
-/// touches, or how obstacles hold nodes, in every round is good enough within the last, with which overlap begins.
+/// Steps and contact agree if no point ends farther than this from the position that the impulses should give it, relative to the thickness of
+/// surfaces, in rounds before the given one. Exact steps reach the first tolerance in two or three rounds, steps with a budget the second. If
+/// contacts, or the nodes that obstacles hold, change in every round, the last tolerance is sufficient; surfaces begin to overlap at this size.
 const AGREED: [(usize, f64); 3] = [(3, 1e-7), (6, 1e-4), (MOST_ROUNDS, 1e-2)];
 
-/// The same where all bodies have a budget: half of the thickness stays between surfaces that keep it.
+/// The same if all bodies have a budget: surfaces with a thickness keep half of it between them.
 const AGREED_IN_BUDGET: [(usize, f64); 1] = [(MOST_ROUNDS, 0.5)];
 
-/// The most rounds.
+/// The maximum number of rounds.
 const MOST_ROUNDS: usize = 12;
 
-/// Asks bodies for their answers.
+/// Obtains the responses of bodies to impulses.
 struct Answers<'a, 'b, const D: usize> {
     islands: &'a mut [&'b mut Island<D>],
     pushed: &'a mut [Pushed<D>],
@@ -38,7 +39,8 @@ struct Answers<'a, 'b, const D: usize> {
 }
 
 impl<const D: usize> Answers<'_, '_, D> {
-    /// The displacements of the end of the step by impulses on points of a body, node by node in `self.vector`; says whether it answers.
+    /// The displacements at the end of the step that impulses on points of a body cause, node by node in `self.vector`. Returns whether the body
+    /// responds.
     fn displace(&mut self, body: usize, impulses: impl Iterator<Item = (usize, [f64; D])>) -> bool {
         if self.matrix(body).is_none() {
             return false;
@@ -91,18 +93,18 @@ impl<const D: usize> Respond<D> for Answers<'_, '_, D> {
 }
 
 impl<const D: usize> Meeting<D> {
-    /// Begins a frame, without anything of the last one.
+    /// Begins a frame and discards everything of the last one.
     pub(crate) fn begin(&mut self) {
         self.touching.begin();
         self.mixed.clear();
     }
 
-    /// Ends a frame: what is asked of bodies between frames knows of no pushes.
+    /// Ends a frame: readings of bodies between frames do not include contact forces.
     pub(crate) fn end(&mut self, islands: &mut [&mut Island<D>]) {
         self.pushed.iter().for_each(|pushed| islands[pushed.island].system.pushes = None);
     }
 
-    /// Keeps the states to which bodies go back within the substep.
+    /// Keeps the states that bodies return to within the substep.
     pub(crate) fn mark(&mut self, islands: &mut [&mut Island<D>]) {
         for (body, pushed) in self.pushed.iter_mut().enumerate() {
             let island = &mut islands[pushed.island];
@@ -111,14 +113,14 @@ impl<const D: usize> Meeting<D> {
             if pushed.applied.is_empty() {
                 island.system.pushes = None;
             }
-            // Velocities are those of the body, not the mean ones of its last step.
+            // The velocities are those of the body, not the mean velocities of its last step.
             for (p, index) in self.touching.coupled.points_of(body).zip(&pushed.indices) {
                 self.touching.before[1][p] = island.system.state.v.at(*index as usize);
             }
         }
     }
 
-    /// Repeats steps and the solution of contact until both agree; says whether they do.
+    /// Repeats steps and the solution of contact until they agree; returns whether they do.
     pub(crate) fn iterate_with_contact(
         &mut self,
         islands: &mut [&mut Island<D>],
@@ -137,7 +139,7 @@ impl<const D: usize> Meeting<D> {
             if !free_motion(touching, &mut answers) || !touching.find_impulses(h, obstacles, Some(&mut answers))? {
                 return Ok(false);
             }
-            // In the end nothing passes in what the last step came to: what it misses is left to the next one.
+            // The last round must only prevent penetration at the end of the last step; the remaining error is left to the next substep.
             let agreed: &[_] = if self.touching.has_budget { &AGREED_IN_BUDGET } else { &AGREED };
             let agreed = agreed.iter().find(|(before, _)| round < *before);
             let enough = agreed.map_or(f64::INFINITY, |(_, part)| part * thickness);
@@ -148,7 +150,7 @@ impl<const D: usize> Meeting<D> {
                 if nobody_pushes {
                     return Ok(true);
                 }
-                // Where they agree, they do so nearly: what they agree on must not pass either.
+                // The agreement has an error, so the agreed motion must also be free of penetration.
                 self.take(islands, step.time);
                 self.take_mean_velocities(h);
                 if !self.touching.passes(h) {
@@ -162,7 +164,7 @@ impl<const D: usize> Meeting<D> {
         Ok(false)
     }
 
-    /// Makes the step of bodies again that do not end where the impulses were to lead them; says whether there are any.
+    /// Repeats the steps of bodies that do not end where the impulses should take them; returns whether there are any.
     fn step_again(&mut self, islands: &mut [&mut Island<D>], step: &Substep<'_, D>, enough: f64) -> bool {
         let mut most: f64 = 0.0;
         for (body, Pushed { island, indices, .. }) in self.pushed.iter().enumerate() {
@@ -175,7 +177,7 @@ impl<const D: usize> Meeting<D> {
         if most <= enough && (as_before || enough == f64::INFINITY) {
             return false;
         }
-        // All whose impulses have changed: what one gives is what another one takes.
+        // All bodies whose impulses have changed, because impulses act in pairs.
         for (body, pushed) in self.pushed.iter_mut().enumerate() {
             let impulses: Vec<_> = self.touching.coupled.impulses_on(body).collect();
             if impulses == pushed.applied {
@@ -191,8 +193,9 @@ impl<const D: usize> Meeting<D> {
         true
     }
 
-    /// Lets contact change velocities after the steps, where steps and contact do not agree. Bodies that push only one another keep what they
-    /// have come to, which is near; where others answer by the impulses too, or a step failed, all go back to a step without pushes.
+    /// Lets contact change velocities after the steps if steps and contact do not agree. If all bodies of the meeting are implicit, they keep their
+    /// last result, which is close. If explicit bodies have responded to the impulses too, or a step failed, all return to a step without contact
+    /// forces.
     pub(crate) fn part(&mut self, islands: &mut [&mut Island<D>], step: &Substep<'_, D>) {
         let failed = self.pushed.iter().any(|pushed| islands[pushed.island].outcome.is_err());
         let back = failed || self.pushed.len() < self.bodies.len();
@@ -220,7 +223,7 @@ impl<const D: usize> Meeting<D> {
         self.take(islands, step.time);
     }
 
-    /// Velocities of bodies that are pushed are the mean ones of the step.
+    /// The velocities of pushed bodies are the mean velocities of the step.
     fn take_mean_velocities(&mut self, h: f64) {
         let Touching { coupled, before: [from, _], after: [x, v], .. } = &mut self.touching;
         for p in (0..coupled.count()).flat_map(|body| coupled.points_of(body)) {
@@ -228,9 +231,9 @@ impl<const D: usize> Meeting<D> {
         }
     }
 
-    /// Ends a substep: gives what is left of impulses, and moves what overlap is taken apart by.
+    /// Ends a substep: applies the remaining impulses, and the displacements that separate overlapping bodies.
     pub(crate) fn end_pushes(&mut self, islands: &mut [&mut Island<D>], h: f64) {
-        // Others have answered by the impulses that were found last: what the step was made with differs from them by what is left.
+        // Explicit bodies have responded to the impulses of the last solution. The impulses of the step differ from these by a remainder.
         let mixed = self.pushed.len() < self.bodies.len();
         for (body, pushed) in self.pushed.iter().enumerate() {
             let system = &mut islands[pushed.island].system;
@@ -239,7 +242,7 @@ impl<const D: usize> Meeting<D> {
             let given = pushed.applied.iter().map(|(point, impulse)| (*point, *impulse, -1.0));
             for (point, impulse, sign) in found.map(|(point, impulse)| (point, impulse, 1.0)).chain(given) {
                 let (p, index) = (first + point, pushed.indices[point] as usize);
-                // Contact has entered what was found, along the motion that was expected.
+                // Contact has recorded the work of the impulses of the solution, along the expected motion.
                 let mean = if sign > 0.0 { self.touching.velocity_found(p) } else { self.touching.after[1][p] };
                 let mut entered = 0.0;
                 for d in 0..D {
@@ -272,7 +275,7 @@ impl<const D: usize> Meeting<D> {
     }
 }
 
-/// Takes what pushes have added to the motion out of it, to first order; says whether bodies answer.
+/// Subtracts from the motion what pushes have added to it, to first order; returns whether bodies respond.
 fn free_motion<const D: usize>(touching: &mut Touching<D>, answers: &mut Answers<'_, '_, D>) -> bool {
     for body in 0..answers.pushed.len() {
         let applied = std::mem::take(&mut answers.pushed[body].applied);

@@ -1,4 +1,4 @@
-//! Where a ray meets the bodies, and which point of them is nearest: for programs.
+//! Queries of programs: the first body that a ray hits, and the nearest point of the bodies.
 
 use crate::error::WorldError;
 use crate::path_faults::PathFault;
@@ -14,18 +14,18 @@ pub struct SurfacePoint<const D: usize> {
     pub body: usize,
     /// The nodes of its edge (2D) or triangle (3D). A wire in space has two: the second one is repeated with weight 0.
     pub nodes: [u32; D],
-    /// The shares of these nodes in the point; their sum is 1.
+    /// The weights of these nodes at the point; their sum is 1.
     pub weights: [f64; D],
-    /// Where it is [m].
+    /// Its position [m].
     pub position: [f64; D],
-    /// The unit normal: out of a closed boundary; of an open surface and a wire towards where the question came from.
+    /// The unit normal. It points out of a closed boundary; for an open surface or a wire it points towards the origin of the query.
     pub normal: [f64; D],
-    /// The distance along the ray, or from the point that was asked about [m]. Negative where that point lies within a closed boundary.
+    /// The distance along the ray, or from the given point [m]. Negative if that point is inside a closed boundary.
     pub distance: f64,
 }
 
 impl<const D: usize> SurfacePoint<D> {
-    /// The same in space; an edge of the plane repeats its second node with weight 0.
+    /// The same point in space; an edge in the plane repeats its second node with weight 0.
     pub(crate) fn in_space(self) -> SurfacePoint<3> {
         let lift = |a: [f64; D]| core::array::from_fn(|d| if d < D { a[d] } else { 0.0 });
         let nodes = core::array::from_fn(|k| self.nodes[if k < D { k } else { D - 1 }]);
@@ -58,13 +58,13 @@ fn dot<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// A vector of length 1; the vector itself where it has no direction.
+/// The vector scaled to length 1; unchanged if it has no direction.
 fn unit<const D: usize>(a: [f64; D]) -> [f64; D] {
     let length = dot(&a, &a).sqrt();
     if length > 0.0 { a.map(|c| c / length) } else { a }
 }
 
-/// Where a ray meets a facet: the length along the ray, and the shares of the corners. Points on an edge belong to both its facets.
+/// The intersection of a ray and a facet: the length along the ray, and the weights of the corners. Points on an edge belong to both of its facets.
 fn meet<const D: usize>(origin: &[f64; D], direction: &[f64; D], at: &[[f64; D]; D]) -> Option<(f64, [f64; D])> {
     let normal = facet_normal(at);
     let slope = dot(direction, &normal);
@@ -87,7 +87,7 @@ fn meet<const D: usize>(origin: &[f64; D], direction: &[f64; D], at: &[[f64; D];
         let whole: f64 = weights.iter().sum();
         weights = weights.map(|w| w / whole);
     }
-    // Rounding lets no ray through between two facets.
+    // With this tolerance, rounding lets no ray pass between two facets.
     weights.iter().all(|w| *w >= -1e-12).then_some((length, weights))
 }
 
@@ -97,11 +97,11 @@ fn signed_area<const D: usize>(at: &[[f64; D]; D], normal: &[f64; D]) -> f64 {
 }
 
 impl<const D: usize> World<D> {
-    /// The first point of a body that a ray meets, at most `reach` [m] from its origin; none where it meets nothing. Wires in space are
-    /// too thin to be met. Of points at the same distance, that of the first body and facet.
+    /// The first point of a body that a ray hits, at most `reach` [m] from its origin; none if it hits nothing. Wires in space are too thin to be
+    /// hit. If points have the same distance, the first body and facet win.
     ///
     /// # Errors
-    /// [`WorldError::Path`] for an origin, direction or reach that is not finite, and a direction without length.
+    /// [`WorldError::Path`] for an origin, direction or reach that is not finite, and for a direction of length zero.
     pub fn cast_ray(
         &self,
         origin: [f64; D],
@@ -124,7 +124,7 @@ impl<const D: usize> World<D> {
             let (mut enter, mut leave) = (0.0, farthest);
             for d in 0..D {
                 let [a, b] = [low[d], high[d]].map(|bound| (bound - origin[d]) / direction[d]);
-                // Not a number where the ray runs along a face of the box: then it says nothing.
+                // NaN if the ray runs along a face of the box; the comparisons then ignore it.
                 let (a, b) = if a < b { (a, b) } else { (b, a) };
                 enter = if a > enter { a } else { enter };
                 leave = if b < leave { b } else { leave };
@@ -146,8 +146,8 @@ impl<const D: usize> World<D> {
         Ok(best)
     }
 
-    /// The point of the surfaces of all bodies that is nearest to a point, at most `reach` [m] away; none where there is none. Of points at
-    /// the same distance, that of the first body and facet.
+    /// The point nearest to a given point on the surfaces of all bodies, at most `reach` [m] away; none if there is no such point. If points have the
+    /// same distance, the first body and facet win.
     ///
     /// # Errors
     /// [`WorldError::Path`] for a point or reach that is not finite.
@@ -201,7 +201,7 @@ impl<const D: usize> World<D> {
         SurfacePoint { body: piece.body, nodes: piece.nodes, weights, position, normal, distance }
     }
 
-    /// Visits boundaries, open surfaces and wires of a body, in this order.
+    /// Visits the boundary, open surfaces and wires of a body, in this order.
     fn pieces(&self, body: usize, visit: &mut dyn FnMut(Piece<D>)) {
         let mesh = &self.blueprint.bodies[body].mesh;
         let mut piece = |nodes: [u32; D], closed: bool, wire: bool| {

@@ -1,4 +1,4 @@
-//! What can be read of a world: places, energies, volumes, probes, warnings, hash.
+//! Readings of a world: positions, energies, volumes, probes, warnings, hash.
 
 use crate::blueprint::Recorded;
 use crate::build::rest_volume;
@@ -17,11 +17,11 @@ impl<const D: usize> World<D> {
     pub fn energy(&self) -> Energy {
         self.energy
     }
-    /// Whether every body is in statics, which knows no time.
+    /// Whether every body uses statics, which has no time.
     pub fn is_static(&self) -> bool {
         !self.islands.is_empty() && self.islands.iter().all(|island| island.integrator.is_static())
     }
-    /// The kinds of integrators in use: that of the scene, then those that bodies have of their own.
+    /// The kinds of integrators in use: that of the scene, then those of individual bodies.
     pub fn integrators(&self) -> Vec<&'static str> {
         let mut out = Vec::new();
         let bodies: Vec<_> = self.bodies().map(|b| &self.blueprint.bodies[b].integrator).collect();
@@ -35,11 +35,11 @@ impl<const D: usize> World<D> {
         }
         out
     }
-    /// What implicit integrators did since the start: iterations, products, the largest residual.
+    /// The work of implicit integrators since the start: iterations, products, and the largest residual.
     pub fn solver_work(&self) -> SolverWork {
         self.flows.solver
     }
-    /// Whether the same bits come out on every processor, and not only on those of one class.
+    /// Whether the results have the same bits on every processor, not only on those of one class.
     pub fn same_bits_everywhere(&self) -> bool {
         self.islands.iter().all(|island| {
             let mut members = island.system.members.iter();
@@ -47,11 +47,11 @@ impl<const D: usize> World<D> {
                 && island.integrator.same_bits_everywhere(&island.system)
         })
     }
-    /// How many islands there are: bodies that are stepped together.
+    /// The number of islands, each of which contains bodies that are stepped together.
     pub fn islands(&self) -> usize {
         self.islands.len()
     }
-    /// How many islands were built since the start: a command builds those of its bodies anew, no others.
+    /// The number of islands built since the start. A command rebuilds only the islands of its bodies.
     pub fn islands_built(&self) -> u64 {
         self.islands_built
     }
@@ -63,7 +63,7 @@ impl<const D: usize> World<D> {
     pub fn stability(&self) -> &[(String, Stability)] {
         &self.stability
     }
-    /// Numbers of the bodies that are there.
+    /// The numbers of the present bodies.
     pub fn bodies(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.slots.len()).filter(|body| self.slots.alive[*body])
     }
@@ -71,40 +71,40 @@ impl<const D: usize> World<D> {
     pub fn body(&self, name: &str) -> Option<usize> {
         self.bodies().find(|b| self.blueprint.bodies[*b].name == name)
     }
-    /// A handle of a body, which tells when the body is gone: its number may be given to another one that the program adds.
+    /// A handle to a body. It becomes stale when the body is removed, because its number may be given to another body that the program adds.
     pub fn handle(&self, body: usize) -> Option<BodyHandle> {
         self.slots.handle(body)
     }
-    /// The island of a body that is there, and its lane in it.
+    /// The island of a present body, and its lane in it.
     pub(crate) fn island_of_body(&self, body: usize) -> Option<(&Island<D>, usize)> {
         let (island, lane) = *self.locations.get(body).filter(|_| self.slots.is_there(body))?;
         Some((self.islands.get(island)?, lane))
     }
-    /// The system of a body that is there, and the index of one of its nodes in the columns.
+    /// The system of a present body, and the index of one of its nodes in the columns.
     fn index_of(&self, body: usize, node: u32) -> Option<(&System<D>, usize)> {
         let (island, lane) = self.island_of_body(body)?;
         let system = &island.system;
         ((node as usize) < system.nodes).then(|| (system, system.layout.index(node as usize, lane)))
     }
-    /// The number of nodes of a body; 0 where there is no such body.
+    /// The number of nodes of a body; 0 if there is no such body.
     pub fn node_count(&self, body: usize) -> usize {
         self.island_of_body(body).map_or(0, |(island, _)| island.system.nodes)
     }
-    /// The position of a node [m]; NaN where there is no such body or node. [`World::view`] says which.
+    /// The position of a node [m]; NaN if there is no such body or node. [`World::view`] distinguishes these cases.
     pub fn position(&self, body: usize, node: u32) -> [f64; D] {
         self.index_of(body, node).map_or([f64::NAN; D], |(system, index)| system.state.x.at(index))
     }
-    /// The velocity of a node [m/s]; NaN where there is no such body or node.
+    /// The velocity of a node [m/s]; NaN if there is no such body or node.
     pub fn velocity(&self, body: usize, node: u32) -> [f64; D] {
         self.index_of(body, node).map_or([f64::NAN; D], |(system, index)| system.state.v.at(index))
     }
-    /// The mass of a node [kg]; NaN where there is no such body or node.
+    /// The mass of a node [kg]; NaN if there is no such body or node.
     pub fn node_mass(&self, body: usize, node: u32) -> f64 {
         self.index_of(body, node).map_or(f64::NAN, |(system, index)| system.mass.at(index))
     }
-    /// What models say of a body: `volume`, `pressure`, `chamber1.pressure` and others.
+    /// The readings of the models of a body: `volume`, `pressure`, `chamber1.pressure` and others.
     ///
-    /// A body that is not there says nothing.
+    /// Empty if there is no such body.
     pub fn readings(&mut self, body: usize) -> Vec<Reading> {
         if self.handle(body).is_none() {
             return Vec::new();
@@ -113,7 +113,7 @@ impl<const D: usize> World<D> {
         let time = self.time();
         self.islands[island].readings(lane, time)
     }
-    /// The pressure [Pa] of the gas that each node of a body bounds, chamber by chamber; empty where there is no gas.
+    /// The pressure [Pa] of the gas that each node of a body bounds, chamber by chamber; empty if there is no gas.
     pub fn node_pressures(&mut self, body: usize) -> Vec<(u32, f64)> {
         if self.handle(body).is_none() {
             return Vec::new();
@@ -124,13 +124,13 @@ impl<const D: usize> World<D> {
     }
     /// Stress and volume ratio of the cells of a body, in the order of its cells.
     ///
-    /// Empty where the body is not there or no model of it has cells.
+    /// Empty if there is no such body or if none of its models has cells.
     pub fn cell_states(&self, body: usize) -> Vec<CellState> {
         self.states_by(body, |potential, view, lane| potential.cell_states(view, lane))
     }
     /// Stress and volume ratio of the facets of a body, in the order of its facets.
     ///
-    /// Empty where the body is not there or no model of it knows its boundary alone.
+    /// Empty if there is no such body or if none of its models describes its boundary alone.
     pub fn facet_states(&self, body: usize) -> Vec<CellState> {
         self.states_by(body, |potential, view, lane| potential.facet_states(view, lane))
     }
@@ -150,12 +150,12 @@ impl<const D: usize> World<D> {
         out.sort_by_key(|state| state.cell);
         out
     }
-    /// The enclosed volume of a body at rest [m³] (area times thickness in 2D); NaN where there is no such body.
+    /// The enclosed volume of a body at rest [m³] (area times thickness in 2D); NaN if there is no such body.
     pub fn rest_volume(&self, body: usize) -> f64 {
         if self.slots.is_there(body) { rest_volume(&self.blueprint.bodies[body]) } else { f64::NAN }
     }
-    /// The values of a probe now: names of columns and numbers, which are NaN while its body is not there. Empty where there is no
-    /// probe of that number.
+    /// The present values of a probe: names of columns and numbers, which are NaN while its body does not exist. Empty if there is no probe of that
+    /// number.
     pub fn probe(&mut self, number: usize) -> Vec<(String, f64)> {
         let Some(probe) = self.blueprint.probes.get(number).cloned() else { return Vec::new() };
         let there = self.handle(probe.body).is_some();
@@ -216,13 +216,13 @@ impl<const D: usize> World<D> {
             made if made < 0.0 => WorldWarning::MadeByRules { energy: -made },
             energy => WorldWarning::TakenByRules { energy },
         };
-        // A body that begins at rest has so little in motion in its first frames that any rule takes much of that.
+        // A body that starts at rest has so little energy in motion in its first frames that any integrator dissipates a large part of it.
         add(by_rules, if self.energy.is_damped_by_rules() { self.flows.damped_frames } else { 0 });
         let (energy, difference) = match self.energy.loss_integrator {
             lost if lost < 0.0 => (-lost, Difference::Gained),
             lost => (lost, Difference::Lost),
         };
-        // Contact begins and ends within steps, whatever the order of a rule.
+        // Contact begins and ends within steps, whatever the order of an integrator.
         let every = |of: &dyn Fn(&Island<D>) -> bool| self.islands.iter().all(of);
         let help = if every(&|island| island.integrator.measures_its_damping()) {
             ErrorHint::Implicit
@@ -236,7 +236,7 @@ impl<const D: usize> World<D> {
         add(WorldWarning::Unexplained { energy, difference, help }, self.flows.open_frames);
         let solver = &self.flows.solver;
         add(WorldWarning::Accepted {}, solver.accepted);
-        // No step is halved more often than an integrator may.
+        // No step is halved more often than an integrator allows.
         let parts = 1u64 << solver.deepest.min(63);
         add(WorldWarning::Halved { h: self.h(), shortest: self.h() / parts as f64, parts }, solver.halved);
         add(WorldWarning::CutOff { left: solver.left }, solver.cut_off);
@@ -253,11 +253,11 @@ impl<const D: usize> World<D> {
         out.extend(self.counted(|_, member| member.potential.counts(&member.memory)));
         out
     }
-    /// What models find odd about the shapes of their bodies in the present state.
+    /// Warnings of models about the shapes of their bodies in the present state.
     pub(crate) fn shape_warnings(&self) -> Vec<Warning> {
         self.counted(|system, member| member.potential.shape_counts(&system.view(Stage::Current, system.time)))
     }
-    /// Counts of all models, those of one thing together.
+    /// The counts of all models, with counts of the same kind added up.
     fn counted(&self, of: impl Fn(&System<D>, &Member<D>) -> Vec<Count>) -> Vec<Warning> {
         let mut counts: Vec<Count> = Vec::new();
         for island in &self.islands {
@@ -270,17 +270,17 @@ impl<const D: usize> World<D> {
         }
         counts.into_iter().filter(|new| new.count > 0).map(|new| Warning::new(new.what, new.count)).collect()
     }
-    /// How many laws of force of the program act on a body.
+    /// The number of force laws of the program that act on a body.
     pub(crate) fn laws_on(&self, body: usize) -> u64 {
         let own = |(handle, _): &&(BodyHandle, _)| handle.index == body && self.slots.is_of(*handle);
         self.user_forces.iter().filter(own).count() as u64
     }
-    /// How many laws of force of the program acted on bodies when the snapshot was taken that was restored last, and do not now.
+    /// The number of force laws of the program that acted on bodies in the last restored snapshot, but do not act now.
     fn missing_laws(&self) -> u64 {
         let there = self.laws_saved.iter().filter(|(body, _)| self.slots.is_there(**body));
         there.map(|(body, saved)| saved.saturating_sub(self.laws_on(*body))).sum()
     }
-    /// At the end: how many bodies stand in balance under a part of their load only, the least of these parts, and the body.
+    /// At the end of the run: the number of bodies in equilibrium under only a part of their load, the smallest of these parts, and its body.
     fn load_left(&self) -> Option<(u64, f64, String)> {
         let time = &self.blueprint.time;
         if self.frames == 0 || self.time() < time.seconds - 0.5 * time.frame {
@@ -298,7 +298,7 @@ impl<const D: usize> World<D> {
         }
         least.map(|(part, body)| (bodies, part, self.blueprint.bodies[body].name.clone()))
     }
-    /// The cell that is farthest from its volume.
+    /// The cell whose volume differs most from its volume at rest.
     fn worst_cell(&self) -> Option<WorstCell> {
         let mut worst: Option<(f64, WorstCell)> = None;
         for body in self.bodies() {

@@ -1,4 +1,4 @@
-//! Islands are built anew where the scene changed; all others stay as they are.
+//! Rebuilds the islands that a change of the scene affects; all others stay as they are.
 
 use crate::blueprint::{Blueprint, BodyBlueprint};
 use crate::build::{Builder, build_integrator};
@@ -12,10 +12,10 @@ use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, PoisonError};
 
-/// The bodies whose physics a change touches.
+/// The bodies whose physics a change affects.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Touched {
-    /// These; of none where the list is empty.
+    /// These bodies; an empty list means none.
     Bodies(Vec<usize>),
     /// All of them: gravity, drag.
     All,
@@ -31,7 +31,7 @@ impl Touched {
 }
 
 impl<const D: usize> World<D> {
-    /// The state of a body that is there.
+    /// The state of a present body.
     pub(crate) fn state_of(&self, body: usize) -> BodyState<D> {
         let (island, lane) = self.locations[body];
         let system = &self.islands[island].system;
@@ -48,15 +48,15 @@ impl<const D: usize> World<D> {
         }
     }
 
-    /// Whether bodies like one may be stepped side by side.
+    /// Whether bodies of this kind may be stepped side by side.
     fn batches(&self, body: &BodyBlueprint<D>) -> bool {
         let kind = body.integrator.as_ref().unwrap_or(&self.blueprint.integrator).kind();
-        // A body is displaced by itself.
+        // Unfolding displaces bodies one by one.
         let alone = !self.options.batches || self.blueprint.surroundings.unfold;
         !alone && self.registry.integrator(kind).is_none_or(|integrator| integrator.batches())
     }
 
-    /// Builds the islands of some bodies anew after commands on them began or ended; who lies beside whom stays.
+    /// Rebuilds the islands of some bodies after commands on them began or ended. The grouping of bodies in lanes does not change.
     ///
     /// On failure the old islands stay.
     pub(crate) fn rebuild(&mut self, bodies: &BTreeSet<usize>) -> Result<(), WorldError> {
@@ -78,8 +78,8 @@ impl<const D: usize> World<D> {
         Ok(())
     }
 
-    /// Groups the bodies anew after some came, went or changed, and builds the islands that are touched by that or have
-    /// other members than before. `fresh` holds the states of bodies that are in no island yet.
+    /// Groups the bodies again after some were added, removed or changed. Builds the islands that are affected or that have other members than
+    /// before. `fresh` contains the states of bodies that are not in an island yet.
     ///
     /// On failure the old islands stay.
     pub(crate) fn regroup(
@@ -92,7 +92,7 @@ impl<const D: usize> World<D> {
             build_integrator(&self.registry, &self.blueprint.integrator, || Part::Section { path: "integrator" })?
                 .into();
         let groups = group(&self.blueprint.bodies, &self.slots, |body| self.batches(body));
-        // For every group its old island, or one that is new.
+        // For every group its old island, or a new one.
         let mut found: Vec<Result<usize, Box<Island<D>>>> = Vec::with_capacity(groups.len());
         for members in &groups {
             let old = self.locations.get(members[0]).map(|location| location.0).filter(|number| {
@@ -124,7 +124,7 @@ impl<const D: usize> World<D> {
         Ok(())
     }
 
-    /// Builds the island of some bodies in the states they have, or that `fresh` gives them.
+    /// Builds the island of some bodies in their present states, or in the states that `fresh` contains.
     pub(crate) fn island_of(
         &self,
         members: &[usize],
@@ -136,7 +136,7 @@ impl<const D: usize> World<D> {
         self.builder(&self.blueprint, integrator).island(members, &states.iter().collect::<Vec<_>>(), self.time())
     }
 
-    /// Puts an island that was just built in its place; what commands do at present is added to it.
+    /// Puts a newly built island in its place, and adds the effects of active commands to it.
     fn put(&mut self, number: usize, mut island: Island<D>) {
         island.system.break_off = Arc::clone(&self.options.break_off);
         if number < self.islands.len() {
@@ -151,8 +151,8 @@ impl<const D: usize> World<D> {
         self.apply_running(number);
     }
 
-    /// What a change of the scene does to the energy is the work of whoever changed it. It moves the energy from which motion is
-    /// counted: a body that is added high up has not fallen from the ground.
+    /// Records the change of energy by a change of the scene as work of its author. The reference of the energy in motion changes by the same amount,
+    /// so that the height of an added body does not count as motion.
     fn shift_start(&mut self, before: f64) {
         let change = self.stock_energy() - before;
         self.flows.start += change;
@@ -160,19 +160,19 @@ impl<const D: usize> World<D> {
         self.refresh_ledger();
     }
 
-    /// What a reader sees of a body that is not there yet: the names of its readings.
+    /// The names of the readings of a body that is not present yet.
     ///
     /// # Errors
-    /// [`WorldError`] where a model refuses the body.
+    /// [`WorldError`] if a model refuses the body.
     pub fn reading_names(&self, body: &BodyBlueprint<D>) -> Result<Vec<Cow<'static, str>>, WorldError> {
         let mut island = self.island_alone(body)?;
         Ok(island.readings(0, self.time()).into_iter().map(|(name, _)| name).collect())
     }
 
-    /// The pairs of nodes that springs of a body tie to each other, also of one that is not there yet.
+    /// The pairs of nodes that springs of a body join, also for a body that is not present yet.
     ///
     /// # Errors
-    /// [`WorldError`] where a model refuses the body.
+    /// [`WorldError`] if a model refuses the body.
     pub fn springs(&self, body: &BodyBlueprint<D>) -> Result<Vec<[u32; 2]>, WorldError> {
         let island = self.island_alone(body)?;
         Ok(island.system.members.iter().flat_map(|member| member.potential.bonds()).copied().collect())
@@ -187,7 +187,7 @@ impl<const D: usize> World<D> {
         Builder { blueprint, registry: &self.registry, simd: self.simd, integrator, break_off }
     }
 
-    /// A body by itself as it would start now.
+    /// An island with this body alone, as it would start now.
     fn island_alone(&self, body: &BodyBlueprint<D>) -> Result<Island<D>, WorldError> {
         let blueprint = self.blueprint.part(vec![body.clone()], Vec::new(), Vec::new());
         self.builder(&blueprint, &self.integrator).island(&[0], &[&crate::build::initial_state(body)], self.time())

@@ -1,17 +1,17 @@
-//! Why a world refuses its bodies, models and integrators together, as messages.
+//! Messages for bodies, models and integrators that a world cannot combine.
 
 use opruga_core::error::StepError;
 use opruga_math::message::AnyMessage;
 use opruga_math::messages;
 use opruga_math::words::{number, rounded};
 
-/// Why a model lacks something, behind what it lacks.
+/// The reason why a model lacks something, to be added to the message.
 fn because(why: &Option<AnyMessage>) -> String {
     why.as_ref().map_or_else(String::new, |why| format!(": {why}"))
 }
 
 messages! {
-    /// Why a world refuses what does not go together.
+    /// Reasons why a world refuses a combination.
     #[derive(Clone, Debug, PartialEq)]
     pub enum Refusal {
         "scene.unknown_name" #[error("there is no such model")]

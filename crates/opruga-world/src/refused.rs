@@ -1,19 +1,19 @@
-//! What a scene is told of a command that could not begin.
+//! Information for a scene about a command that could not begin.
 
 use crate::blueprint::{Action, Blueprint, CommandBlueprint};
 
-/// A command that could not begin, as far as its scene can be told what to change.
+/// A command that could not begin, with the parts from which the scene can find out what to change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RefusedCommand<'w> {
     /// When it begins [s].
     pub at: f64,
-    /// The word of a scene for what it does.
+    /// The word for its action in scene files.
     pub word: &'static str,
     /// The parameter that it sets.
     pub sets: Option<&'w str>,
     /// The name of the body that it adds or removes.
     pub body: Option<&'w str>,
-    /// Whether a command of the scene has set the substeps by then.
+    /// Whether a command of the scene had set the substeps by then.
     pub substeps_were_set: bool,
 }
 

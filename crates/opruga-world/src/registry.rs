@@ -1,28 +1,28 @@
-//! Which models and integrators a world can name.
+//! The models and integrators that a world can use by name.
 
 use opruga_core::integrator::IntegratorKind;
 use opruga_core::potential::Model;
 use opruga_core::spec::{Role, Spec, Values};
 use std::sync::Arc;
 
-/// Models and integrators by name. A user's crate adds its own.
+/// Models and integrators by name. A user's crate can add its own.
 #[derive(Clone)]
 pub struct Registry<const D: usize> {
     models: Vec<Arc<dyn Model<D>>>,
     integrators: Vec<Arc<dyn IntegratorKind<D>>>,
 }
 
-/// The models and integrators of the plane and those of space: what a program hands on where a scene may have either dimension.
+/// The models and integrators for the plane and those for space, for programs whose scenes may have either dimension.
 #[derive(Clone, Debug)]
 pub struct Registries {
-    /// Those of scenes in the plane.
+    /// For scenes in the plane.
     pub plane: Arc<Registry<2>>,
-    /// Those of scenes in space.
+    /// For scenes in space.
     pub space: Arc<Registry<3>>,
 }
 
 impl Default for Registries {
-    /// Those of this library.
+    /// The registries of this library.
     fn default() -> Self {
         Registries { plane: Arc::new(Registry::default()), space: Arc::new(Registry::default()) }
     }
@@ -54,23 +54,23 @@ impl<const D: usize> Registry<D> {
     pub fn add_integrator(&mut self, integrator: Box<dyn IntegratorKind<D>>) {
         self.integrators.insert(0, integrator.into());
     }
-    /// The model of a name.
+    /// The model with a name.
     pub fn model(&self, kind: &str) -> Option<&dyn Model<D>> {
         self.models.iter().find(|m| m.spec().kind == kind).map(|m| &**m)
     }
-    /// The first model with a role.
+    /// The first model with the given role.
     pub fn model_with(&self, role: Role) -> Option<&dyn Model<D>> {
         self.models.iter().find(|m| m.spec().has_role(role)).map(|m| &**m)
     }
-    /// The first integrator with a role.
+    /// The first integrator with the given role.
     pub fn integrator_with(&self, role: Role) -> Option<&dyn IntegratorKind<D>> {
         self.integrators.iter().find(|m| m.spec().has_role(role)).map(|m| &**m)
     }
-    /// The integrator of a name.
+    /// The integrator with a name.
     pub fn integrator(&self, kind: &str) -> Option<&dyn IntegratorKind<D>> {
         self.integrators.iter().find(|m| m.spec().kind == kind).map(|m| &**m)
     }
-    /// Every model with every integrator, and whether the one can be stepped by the other: what it needs the model has.
+    /// Every model with every integrator, and whether the integrator can step the model because the model has what it needs.
     pub fn pairs(&self) -> Vec<(&'static str, &'static str, bool)> {
         let mut out = Vec::new();
         for model in &self.models {

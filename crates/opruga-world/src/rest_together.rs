@@ -1,17 +1,17 @@
-//! Bodies at rest that touch: their common balance.
+//! The common equilibrium of bodies at rest that touch.
 //!
 //! ```text
 //! correction   (K + σM) d = F(x) + f',   x' = x + d        of every body; K the matrix at x, f' the forces of contact at the end of d
 //! contact      f' from the gaps at x and the answers (K + σM)⁻¹ of all bodies, as of implicit rules
 //! ```
 //!
-//! Newton's method for the balance of all bodies at once: positions and forces of contact are unknowns of the same linear problem, so a body that only
-//! lies on others is held by them within every correction. Where forces were given to bodies instead, each of which then finds its own end, errors of the
-//! forces would lead it as far as σ lets them.
+//! Newton's method for the equilibrium of all bodies at once. Positions and contact forces are unknowns of the same linear problem, so a body that
+//! only lies on others is supported by them in every correction. If the bodies instead received given forces and each found its own end, errors of
+//! the forces would move them as far as σ permits.
 //!
-//! σ ([`Staying`]) falls as the forces at the end of corrections become those that were foreseen. Friction opposes the slide of each correction.
+//! σ ([`Staying`]) falls as the forces at the end of corrections approach the predicted ones. Friction opposes the sliding of each correction.
 //!
-//! Source of the contact within a correction: that of implicit rules (`pushes.rs`).
+//! The contact within a correction has the same source as that of implicit integrators (`pushes.rs`).
 
 use crate::barrier_search::{Opened, Refused};
 use crate::island::Island;
@@ -24,60 +24,61 @@ use opruga_core::integrator::next_matrix_number;
 use opruga_core::system::{System, Workspace};
 use opruga_math::Lane;
 
-/// The part of the forces that act in a correction by which those at its end may differ from what was foreseen, and the one below which σ falls.
+/// The largest error of the predicted forces at the end of a correction, relative to the forces that act in it, and the error below which σ falls.
 const FORESEEN: f64 = 0.5;
 const WELL_FORESEEN: f64 = 0.1;
 
-/// By how much σ grows where a correction was not foreseen, and up to where: then nodes hardly move.
+/// The factor by which σ grows if a correction was not predicted well, and the largest σ; nodes then hardly move.
 const HARDER: f64 = 16.0;
 const MOST: f64 = 1e6;
 
-/// Corrections at most, those that were refused included. Stacks of five bodies take less than forty; what slides without an end would take all.
+/// The maximum number of corrections, including refused ones. Stacks of five bodies need fewer than forty; a body that slides without end would use
+/// all.
 const MOST_CORRECTIONS: usize = 200;
 
 /// The longest correction, in extents of the body.
 const LONGEST: f64 = 0.5;
 
-/// The last correction at most, relative to the thickness of surfaces.
+/// The largest last correction, relative to the thickness of surfaces.
 const AT_REST: f64 = 1e-7;
 
-/// What is out of balance in the end, relative to the forces on a body, where rounding leaves no less in so many corrections.
+/// The final residual, relative to the forces on a body, that is accepted if rounding keeps it from falling further in this many corrections.
 const NEARLY_BALANCED: f64 = 1e-6;
 const MOST_AT_REST: usize = 10;
 
 /// The forces of other bodies, by nodes [N].
 type Pushes<const D: usize> = Vec<(usize, [f64; D])>;
 
-/// A body on its way to the balance.
+/// A body on its way to equilibrium.
 struct Body<const D: usize> {
     open: Opened<D>,
-    /// Where its points stand among the coordinates of its nodes, from the first point on.
+    /// The range of its points, and the index of the first coordinate of each point among the coordinates of its nodes.
     points: std::ops::Range<usize>,
     coordinates: Vec<usize>,
     /// Its extent [m].
     extent: f64,
-    /// What is out of balance, and the size of the forces that balance [N].
+    /// The residual, and the size of the forces that balance [N].
     rest: f64,
     size: f64,
-    /// What rounding of positions makes of these [N]. Without a floor rounding is compared with itself in a body on which no force acts, and keeps all
-    /// others from their balance (`bodies_without_forces_do_not_keep_others_from_their_balance`).
+    /// The part of these that is due to rounding of positions [N]. Without this floor, a body without forces would compare rounding errors with each
+    /// other and keep all others from equilibrium (`bodies_without_forces_do_not_keep_others_from_their_balance`).
     rounding: f64,
-    /// Whether obstacles hold other nodes than before, or in another way.
+    /// Whether obstacles hold other nodes than before, or hold them differently.
     constraints_changed: bool,
 }
 
-/// The search for the common balance.
+/// The search for the common equilibrium.
 struct Search<'a, 'b, const D: usize> {
     islands: &'a mut [&'b mut Island<D>],
     touching: &'a mut Touching<D>,
     bodies: Vec<Body<D>>,
     h: f64,
     staying: Staying,
-    /// The number of the matrices at hand.
+    /// The number of the present matrices.
     matrix: u64,
 }
 
-/// Asks bodies for their answers.
+/// Obtains the responses of bodies to impulses.
 struct Answers<'a, const D: usize> {
     bodies: &'a [Body<D>],
     vector: Vec<f64>,
@@ -93,14 +94,14 @@ impl<const D: usize> Body<D> {
         self.open.step.filter(vector);
     }
 
-    /// The forces that other bodies exert, as [`System::pushes`] has them, from the impulses on all points [N].
+    /// The forces of other bodies in the form of [`System::pushes`], from the impulses on all points [N].
     fn pushes(&self, impulses: &[[f64; D]], h: f64) -> Pushes<D> {
         let own = self.coordinates.iter().zip(&impulses[self.points.clone()]);
         own.filter(|(_, impulse)| **impulse != [0.0; D]).map(|(at, p)| (at / D, p.map(|c| c / h))).collect()
     }
 
-    /// Takes forces and the matrix where it is, and makes of them the correction with the forces of contact as they are; says whether the matrix has
-    /// a factor.
+    /// Computes forces and the matrix at the present positions, and from them the correction with the present contact forces; returns whether the
+    /// matrix can be factored.
     fn begin_correction(&mut self, system: &mut System<D>, sigma: f64) -> Result<bool, StepError> {
         system.go_on()?;
         let step = &mut self.open.step;
@@ -126,8 +127,8 @@ impl<const D: usize> Body<D> {
         Ok(true)
     }
 
-    /// Adds to the correction what other forces of contact make of it, and looks at the forces at its end: how far it goes at most [m], and the part of the
-    /// forces that was not foreseen. None where it goes too far, or a model has no meaning there.
+    /// Adds the effect of new contact forces to the correction, and computes the forces at its end. Returns the largest displacement [m] and the part
+    /// of the forces that was not predicted; none if the correction is too long or if a model is not defined there.
     fn end_correction(&mut self, system: &mut System<D>, pushes: Pushes<D>) -> Option<(f64, f64)> {
         let mut change = vec![0.0; self.open.step.displacements().len()];
         for (of, sign) in [(&pushes, 1.0), (system.pushes.as_ref().unwrap_or(&Vec::new()), -1.0)] {
@@ -140,7 +141,7 @@ impl<const D: usize> Body<D> {
         if !self.is_short() {
             return None;
         }
-        // What holds nodes takes the forces between bodies too.
+        // Constraints on nodes also take up the forces between bodies.
         let step = &mut self.open.step;
         let without: Vec<f64> = change.iter().map(|c| -c).collect();
         self.constraints_changed = step.follow(system, &without, BALANCED, &mut added);
@@ -148,7 +149,7 @@ impl<const D: usize> Body<D> {
         step.evaluate(system, 1.0).ok()?;
         step.filter(&mut change);
         let acting = self.rest + norm(&change);
-        // The right side of another correction is what is out of balance, and what is prescribed, which this one has done.
+        // The right-hand side of another correction is the residual plus the prescribed motion, which this correction has already made.
         let (mut left, mut done) = (vec![0.0; change.len()], vec![0.0; change.len()]);
         step.multiply(system, step.prescribed(), &mut done);
         step.filter(&mut done);
@@ -159,7 +160,7 @@ impl<const D: usize> Body<D> {
         Some((self.longest_displacement(), if self.is_balance(left, BALANCED) { 0.0 } else { left / acting }))
     }
 
-    /// Whether what is left of the forces is at most such a part of those on the body, or rounding.
+    /// Whether a residual is at most the given fraction of the forces on the body, or rounding.
     fn is_balance(&self, left: f64, part: f64) -> bool {
         left <= part * self.size || left <= self.rounding
     }
@@ -169,7 +170,7 @@ impl<const D: usize> Body<D> {
         self.open.step.correction().iter().all(|c| c.abs() <= most)
     }
 
-    /// How far the correction goes at most [m].
+    /// The largest displacement of the correction [m].
     fn longest_displacement(&mut self) -> f64 {
         self.open.step.correction().iter().fold(0.0, |most: f64, c| c.abs().larger(most))
     }
@@ -197,7 +198,7 @@ impl<const D: usize> Respond<D> for Answers<'_, D> {
 }
 
 impl<const D: usize> Meeting<D> {
-    /// Brings bodies at rest into their common balance. Where there is none, the outcome of an island says so.
+    /// Brings bodies at rest into their common equilibrium. If there is none, the outcome of an island contains the error.
     pub(crate) fn come_to_balance(
         &mut self,
         islands: &mut [&mut Island<D>],
@@ -225,7 +226,7 @@ impl<const D: usize> Meeting<D> {
 }
 
 impl<const D: usize> Search<'_, '_, D> {
-    /// Begins the steps of all bodies, and takes where their points are.
+    /// Begins the steps of all bodies, and reads the positions of their points.
     fn begin(&mut self, pushed: &[Pushed<D>], step: &Substep<'_, D>) -> Result<(), Refused> {
         let [x0, v0] = &mut self.touching.before;
         for v in v0.iter_mut() {
@@ -235,7 +236,7 @@ impl<const D: usize> Search<'_, '_, D> {
             let island = &mut self.islands[pushed.island];
             island.system.pushes = Some(Vec::new());
             island.begin_as_one(step.plan, step.number);
-            // Bodies whose integrator does not solve for the end of a step are refused before the run.
+            // Bodies with explicit integrators are refused before the run.
             let Some(begun) = island.integrator.open(&mut island.system, self.h) else { continue };
             let points = self.touching.coupled.points_of(number);
             let mut extent: f64 = 0.0;
@@ -263,7 +264,7 @@ impl<const D: usize> Search<'_, '_, D> {
         Ok(())
     }
 
-    /// Finds the balance; gives the number of corrections.
+    /// Finds the equilibrium; returns the number of corrections.
     fn find_balance(&mut self) -> Result<u32, Refused> {
         let goal = AT_REST * self.touching.laws.largest_thickness()[0];
         let (mut moved, mut at_rest) = (f64::INFINITY, 0);
@@ -298,7 +299,7 @@ impl<const D: usize> Search<'_, '_, D> {
         Err(StepError::of("contact", Refusal::NoCommonBalance { steps: MOST_CORRECTIONS, moved }).into())
     }
 
-    /// Takes forces and matrices where bodies are; says whether the matrices have factors.
+    /// Computes forces and matrices at the present positions; returns whether the matrices can be factored.
     fn begin_correction(&mut self) -> Result<bool, Refused> {
         self.matrix = next_matrix_number();
         for (number, body) in self.bodies.iter_mut().enumerate() {
@@ -309,8 +310,8 @@ impl<const D: usize> Search<'_, '_, D> {
         Ok(true)
     }
 
-    /// Finds the correction of all bodies, with the forces of contact at its end: how far it goes at most [m], and the part of the forces that was
-    /// not foreseen. None where it cannot be gone.
+    /// Finds the correction of all bodies, with the contact forces at its end. Returns the largest displacement [m] and the part of the forces that
+    /// was not predicted; none if the correction is not possible.
     fn correct(&mut self) -> Result<Option<(f64, f64)>, Refused> {
         let Search { islands, touching, bodies, h, matrix, .. } = &mut *self;
         let (h, matrix) = (*h, *matrix);
@@ -343,7 +344,7 @@ impl<const D: usize> Search<'_, '_, D> {
         Ok(Some((displacement, unforeseen)))
     }
 
-    /// Goes the corrections.
+    /// Applies the corrections.
     fn go(&mut self) {
         let (h, touching) = (self.h, &mut *self.touching);
         let mut given = Vec::new();
@@ -366,14 +367,14 @@ impl<const D: usize> Search<'_, '_, D> {
             }
         }
         touching.given = given;
-        // Obstacles are where they are at the end.
+        // Obstacles have their positions at the end.
         let Touching { surface, before: [x0, _], after: [x1, _], .. } = &mut *touching;
         for p in (0..x0.len()).filter(|p| surface.is_of_obstacle(*p as u32)) {
             x0[p] = x1[p];
         }
     }
 
-    /// Gives bodies the forces again with which a correction began that was refused.
+    /// Restores the contact forces at the beginning of a refused correction.
     fn put_pushes_back(&mut self) {
         for body in &self.bodies {
             let mut pushes = Vec::new();
@@ -408,7 +409,7 @@ impl<const D: usize> Search<'_, '_, D> {
     }
 }
 
-/// Exchanges what bodies work in for what is lent to each.
+/// Exchanges the workspaces of bodies for those that are lent to each.
 fn exchange<const D: usize>(pushed: &[Pushed<D>], islands: &mut [&mut Island<D>], lent: &mut [Workspace<D>]) {
     for (pushed, workspace) in pushed.iter().zip(lent) {
         islands[pushed.island].system.exchange(workspace);

@@ -1,4 +1,4 @@
-//! What contact of a scene consists of, whoever meets whom.
+//! The data for contact in a scene that do not depend on which bodies meet.
 
 use crate::blueprint::Blueprint;
 use crate::contact_laws::{edges_of, laws, reach_of};
@@ -9,39 +9,39 @@ use opruga_core::spec::Values;
 use opruga_math::Lane;
 use std::sync::Arc;
 
-/// The margin of the search for candidates, relative to the mean edge: half of that is what points go between two searches, a quarter of
-/// an edge, about as far as gaps are taken at all.
+/// The margin of the search for candidates, relative to the mean edge. Points may move half of it between two searches, a quarter of an edge; this is
+/// about the size of the gaps that are considered at all.
 const MARGIN_OF_EDGE: f64 = 0.5;
 
-/// The bodies of a scene that may touch, and how.
+/// The bodies of a scene that may touch, and their contact laws.
 #[derive(Debug)]
 pub(crate) struct SceneContact<const D: usize> {
     made_for: MadeFor<D>,
-    /// The bodies, by their place in the scene, ascending: the numbers in what follows count these.
+    /// The bodies, by their index in the scene, ascending. The numbers in the other fields refer to this list.
     pub(crate) bodies: Vec<usize>,
     /// Island and lane of each.
     pub(crate) seats: Vec<(usize, usize)>,
-    /// Their integrators: the same number, the same integrator.
+    /// Their integrators: equal numbers mean the same integrator.
     pub(crate) rules: Vec<u32>,
     /// Corners and edges of obstacles; their numbers follow those of the bodies.
     pub(crate) outlines: Vec<Arc<Outline<D>>>,
     pub(crate) laws: Laws,
     /// The margin of the search for candidates [m].
     pub(crate) margin: f64,
-    /// The most candidates.
+    /// The maximum number of candidates.
     pub(crate) most: usize,
-    /// The reach of the barrier [m]; none: impulses keep bodies apart.
+    /// The reach of the barrier [m]; none if impulses keep bodies apart.
     pub(crate) reach: Option<f64>,
-    /// How far from where they are bodies may touch others [m].
+    /// The distance from their present positions within which bodies may touch others [m].
     distance: f64,
 }
 
-/// What it was made for: it is made anew where that has changed.
+/// The state of the scene that it was made for; it is rebuilt if this changes.
 #[derive(Clone, Debug)]
 pub(crate) struct MadeFor<const D: usize> {
-    /// How many islands were built by then.
+    /// The number of islands built by then.
     pub(crate) built: u64,
-    /// How many there were.
+    /// The number of islands.
     pub(crate) islands: usize,
     /// The obstacles.
     pub(crate) colliders: Option<Arc<Colliders<D>>>,
@@ -59,10 +59,10 @@ impl<const D: usize> MadeFor<D> {
 }
 
 impl<const D: usize> SceneContact<D> {
-    /// That of a scene as it is now; none without `[contact]`, and where no two bodies may touch.
+    /// The contact of a scene in its present state; none without `[contact]`, or if no two bodies may touch.
     pub(crate) fn of(scene: &Blueprint<D>, islands: &[Island<D>], made_for: MadeFor<D>) -> Option<SceneContact<D>> {
         let contact = scene.contact.as_ref()?;
-        // In the order of the bodies: results depend on no batches.
+        // In the order of the bodies, so that results do not depend on batches.
         let mut seated: Vec<(usize, (usize, usize))> = Vec::new();
         for (number, island) in islands.iter().enumerate() {
             seated.extend(island.bodies.iter().enumerate().map(|(lane, body)| (*body, (number, lane))));
@@ -116,7 +116,7 @@ impl<const D: usize> SceneContact<D> {
         self.made_for.colliders.as_ref()
     }
 
-    /// What a body or an obstacle is called.
+    /// The name of a body or an obstacle.
     pub(crate) fn name_of(&self, number: u32, blueprint: &Blueprint<D>) -> String {
         let number = number as usize;
         match (self.bodies.get(number), self.outlines.get(number.saturating_sub(self.bodies.len()))) {
@@ -131,7 +131,7 @@ impl<const D: usize> SceneContact<D> {
         self.laws.meet(number as u32, number as u32)
     }
 
-    /// The outlines that bodies may meet that stay within a box during a frame.
+    /// The outlines that bodies in a box may meet during a frame.
     fn visit_outlines(&self, plan: &FramePlan<'_, D>, [low, high]: &Bounds<D>, mut visit: impl FnMut(u32)) {
         let Some(colliders) = self.colliders() else { return };
         let end = plan.start + f64::from(plan.substeps) * plan.h;
@@ -143,27 +143,27 @@ impl<const D: usize> SceneContact<D> {
     }
 }
 
-/// Which bodies go through a frame together: those that may touch one another, directly or by others between them.
+/// The partition of bodies into those that are stepped through a frame together: bodies that may touch one another, directly or through other bodies.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Partition {
     /// Another body of the same cluster, or the body itself.
     parent: Vec<u32>,
-    /// Bodies and the outlines that they may meet, ascending.
+    /// Pairs of a body and an outline that it may meet, ascending.
     outlines: Vec<(u32, u32)>,
 }
 
-/// Bodies that go through a frame together, and outlines that they may meet; ascending.
+/// Bodies that are stepped through a frame together, and outlines that they may meet; ascending.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Cluster {
     pub(crate) bodies: Vec<u32>,
     pub(crate) outlines: Vec<u32>,
 }
 
-/// The most corners of an obstacle that bodies may meet in clusters of their own: about as many as a small body has points.
+/// The maximum number of corners of an obstacle that several clusters may meet separately: about as many as a small body has points.
 const MOST_COPIED: usize = 64;
 
 impl Partition {
-    /// All bodies by themselves.
+    /// Puts every body into a cluster of its own.
     pub(crate) fn begin(&mut self, bodies: usize) {
         self.parent.clear();
         self.parent.extend(0..bodies as u32);
@@ -177,8 +177,8 @@ impl Partition {
         body
     }
 
-    /// Joins bodies that go through boxes which come close to one another, and lists the obstacles that are close to them; says whether there
-    /// are new ones. `order` is for use within.
+    /// Joins bodies whose swept boxes come close to one another, and lists the obstacles close to them; returns whether there are new ones. `order`
+    /// is a workspace.
     pub(crate) fn join<const D: usize>(
         &mut self,
         scene: &SceneContact<D>,
@@ -188,7 +188,7 @@ impl Partition {
     ) -> bool {
         let mut any = false;
         let wide = |number: u32| wider(boxes[number as usize], scene.distance);
-        // Along the axis along which the bodies are spread most, in the order of their lower ends.
+        // Along the axis with the largest extent of the bodies, in the order of their lower ends.
         let extent = |d: usize| {
             let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
             for one in boxes {
@@ -213,7 +213,7 @@ impl Partition {
             }
             scene.visit_outlines(plan, &own, |outline| any |= self.add_outline(scene, *first, outline));
         }
-        // Every body by the lowest one of its cluster.
+        // Refer every body to the lowest body of its cluster.
         for body in 0..self.parent.len() {
             self.parent[body] = self.parent[self.parent[body] as usize];
         }
@@ -223,7 +223,7 @@ impl Partition {
     fn add_outline<const D: usize>(&mut self, scene: &SceneContact<D>, body: u32, outline: u32) -> bool {
         let Err(at) = self.outlines.binary_search(&(body, outline)) else { return false };
         self.outlines.insert(at, (body, outline));
-        // Every cluster has its own copy of the corners of an obstacle, which costs more than it spares where these are many.
+        // Every cluster has its own copy of the corners of an obstacle. If there are many corners, the copies cost more than they save.
         if scene.outlines[outline as usize].mesh.positions.len() > MOST_COPIED {
             let other = self.outlines.iter().find(|(other, number)| *number == outline && *other != body);
             if let Some((other, _)) = other.copied() {

@@ -1,4 +1,4 @@
-//! What snapshots tell of the scene: where it differs from the scene at the start, and bodies that have come since.
+//! The scene in snapshots: its differences from the scene at the start, and bodies that were added since.
 
 use crate::blueprint::{Action, BodyBlueprint, Surroundings};
 use crate::build::build_colliders;
@@ -20,7 +20,7 @@ fn refused<T>(fault: SnapshotFault) -> Result<T, WorldError> {
 }
 
 impl<const D: usize> World<D> {
-    /// Writes where the scene differs from that at the start. The same differences give the same bytes.
+    /// Writes the differences between the scene and the scene at the start. Equal differences give equal bytes.
     pub(crate) fn write_delta(&self, out: &mut Writer<'_>) {
         let (now, then) = (&self.blueprint, &self.at_start);
         let integrator = then.integrator.as_ref().filter(|values| **values != now.integrator);
@@ -64,11 +64,11 @@ impl<const D: usize> World<D> {
         }
     }
 
-    /// Bodies that have come since the start, slot by slot; a mesh that an earlier body has too is given by the slot of that.
+    /// Bodies added since the start, slot by slot. A mesh that an earlier body also has is given by the slot of that body.
     fn write_added(&self, out: &mut Writer<'_>) {
         let bodies = &self.blueprint.bodies;
         out.count((bodies.len() - self.slots.initial) as u64);
-        // Most scenes: then a snapshot looks at no body for this.
+        // The usual case, in which a snapshot need not examine the bodies.
         if bodies.len() == self.slots.initial {
             return;
         }
@@ -99,8 +99,7 @@ impl<const D: usize> World<D> {
         }
     }
 
-    /// Makes the scene that of the start, and then differ from it as these bytes tell. Bodies that commands add are those of
-    /// the commands at hand.
+    /// Restores the scene at the start and applies the differences in these bytes. Bodies that commands add are those of the given commands.
     pub(crate) fn take_delta(&mut self, reader: &mut Reader<'_>, commands: &[Running<D>]) -> Result<(), WorldError> {
         let known: Vec<Arc<Mesh<D>>> = self.blueprint.bodies.iter().map(|body| Arc::clone(&body.mesh)).collect();
         self.undo_all();
@@ -188,7 +187,7 @@ impl<const D: usize> World<D> {
                     let mesh = match reader.count()? {
                         0 => {
                             let mesh = reader.mesh::<D>()?;
-                            // One that is here already is shared with the bodies that have it.
+                            // A mesh that is already present is shared.
                             let same = known.iter().find(|known| ***known == mesh);
                             same.map_or_else(|| Arc::new(mesh), Arc::clone)
                         }

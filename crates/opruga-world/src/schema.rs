@@ -1,8 +1,8 @@
-//! The fixed sections of a scene, described once: the reader, the error messages, the reference page and the JSON
-//! Schema are all made from these constants.
+//! The fixed sections of a scene, described once. The reader, the error messages, the reference page and the JSON Schema are all generated from these
+//! constants.
 //!
-//! A [`Section`] is a [`Spec`] (plain fields) and its [`Child`]ren (what a plain field cannot hold: tables, lists of
-//! tables, selectors, references to bodies).
+//! A [`Section`] consists of a [`Spec`] (plain fields) and its [`Child`]ren, for everything that a plain field cannot contain: tables, lists of
+//! tables, selectors, references to bodies.
 
 mod actions;
 mod contact;
@@ -12,28 +12,28 @@ pub use contact::{BODY_CONTACT, CONTACT, CONTACT_PAIR};
 
 use opruga_core::spec::{Allowed, Bound, Condition, Default, Field, Spec};
 
-/// The most steps of the integrator in a frame.
+/// The maximum number of substeps in a frame.
 pub const MOST_SUBSTEPS: u32 = 1_000_000;
 
 /// One table of a scene: its plain fields and its structured ones.
 #[derive(Clone, Copy, Debug)]
 pub struct Section {
-    /// The plain fields; `kind` is the word in the scene (a key, or the value of the tag).
+    /// The plain fields; `kind` is the word in the scene file (a key, or the value of the tag).
     pub spec: &'static Spec,
     /// The structured fields.
     pub children: &'static [Child],
 }
 
-/// A field that holds more than a plain value.
+/// A field that contains more than a plain value.
 #[derive(Clone, Copy, Debug)]
 pub struct Child {
     /// The word in the scene file.
     pub name: &'static str,
-    /// What it holds.
+    /// Its content.
     pub holds: Holds,
-    /// Whether the scene must say it.
+    /// Whether it is required.
     pub required: bool,
-    /// One sentence in words of physics.
+    /// One sentence about its physical meaning.
     pub documentation: &'static str,
 }
 
@@ -44,7 +44,7 @@ pub enum Holds {
     Table(&'static Section),
     /// A list of tables.
     List(&'static Section),
-    /// A list of tables, each of the section whose `spec.kind` is the value of its key `tag`.
+    /// A list of tables. The value of the key `tag` in each table is the `spec.kind` of its section.
     Tagged {
         /// The key that names the section: `kind` or `do`.
         tag: &'static str,
@@ -53,7 +53,7 @@ pub enum Holds {
     },
     /// A table whose `kind` names a shape.
     Shape,
-    /// A table whose `kind` names an integrator, or that word alone.
+    /// A table whose `kind` names an integrator, or only that word.
     Integrator,
     /// A list of tables whose `kind` names a model.
     Models,
@@ -69,11 +69,11 @@ pub enum Holds {
     BodyReference,
     /// A node by number, `"nearest"` or `"nearest_facet"`.
     Node,
-    /// A list of words out of these, each once.
+    /// A list of these words, each at most once.
     Words(&'static [&'static str]),
-    /// As many whole numbers from 1 as the scene has dimensions (fewer: the rest is 1).
+    /// One whole number from 1 for each dimension of the scene (if there are fewer, the rest are 1).
     Counts,
-    /// A value of any type; what fits depends on the parameter that it is for.
+    /// A value of any type; the parameter that it is for determines what is allowed.
     AnyValue,
 }
 
@@ -93,13 +93,13 @@ const fn child(name: &'static str, holds: Holds, required: bool, documentation: 
     Child { name, holds, required, documentation }
 }
 
-/// The largest whole number that every reader of numbers keeps exactly: 2⁵³.
+/// The largest whole number up to which every number format is exact: 2⁵³.
 pub const LARGEST_WHOLE: i64 = 1 << 53;
 
 /// The value of `format` that this version reads and writes.
 pub const FORMAT: &str = "opruga-1";
 
-/// The top of a scene.
+/// The top level of a scene.
 pub const SCENE: Section = Section {
     spec: &section(
         "scene",
@@ -481,7 +481,7 @@ pub const SELECTORS: &[Spec] = &[
     section("not", "Nodes that are not in the set", "`{ not = { … } }`", &[]),
 ];
 
-/// The number of a positive bound, where a field has one: for editors and panels.
+/// The lower bound of a field, if it has one; for editors and panels.
 pub fn least_of(allowed: &Allowed) -> Option<f64> {
     match allowed {
         Allowed::Number { least: Bound::Closed(x) | Bound::Open(x), .. } => Some(*x),

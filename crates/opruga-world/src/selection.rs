@@ -1,15 +1,15 @@
-//! From a [`Selector`] to node numbers.
+//! Converts a [`Selector`] to node numbers.
 
 use crate::blueprint::Selector;
 use opruga_mesh::Mesh;
 
-/// Nodes count as inside up to this part of the body's extent, so that rounded coordinates do not decide.
+/// The tolerance of selections relative to the extent of the body, so that rounding of coordinates does not decide.
 const TOLERANCE: f64 = 1e-9;
 
 impl<const D: usize> Selector<D> {
-    /// The numbers of the selected nodes, rising. Node i lies at `mesh.positions[i] + translation`.
+    /// The numbers of the selected nodes, ascending. Node i is at `mesh.positions[i] + translation`.
     ///
-    /// A number beyond the last node and a group that the mesh does not have select nothing.
+    /// Numbers beyond the last node, and groups that the mesh does not have, select nothing.
     pub fn resolve(&self, mesh: &Mesh<D>, translation: &[f64; D]) -> Vec<u32> {
         let (low, high) = extent(mesh);
         let reach = (0..D).map(|a| high[a] - low[a]).fold(0.0, |m, x| if x > m { x } else { m }) * TOLERANCE;
@@ -17,7 +17,7 @@ impl<const D: usize> Selector<D> {
         mask.iter().enumerate().filter(|(_, inside)| **inside).map(|(k, _)| k as u32).collect()
     }
 
-    /// The same set for a body that was moved: places move along, numbers and names stay.
+    /// The same set for a body that was moved: positions move with it, numbers and names stay the same.
     #[must_use]
     pub fn moved(&self, by: [f64; D]) -> Selector<D> {
         let add = |x: &[f64; D]| core::array::from_fn(|a| x[a] + by[a]);
@@ -96,7 +96,7 @@ impl<const D: usize> Selector<D> {
     }
 }
 
-/// Axis and end of a side of the bounding box, by its name.
+/// Axis and end of a side of the bounding box, given by its name.
 pub fn side_of(name: &str) -> Option<(usize, bool)> {
     Some(match name {
         "left" => (0, false),
@@ -109,8 +109,7 @@ pub fn side_of(name: &str) -> Option<(usize, bool)> {
     })
 }
 
-/// The nodes of the boundary: of the facets; of an open surface, of its edges that belong to one triangle; of a chain, its
-/// free ends.
+/// The nodes of the boundary: those of the facets; for an open surface, those of edges with only one triangle; for a chain, its free ends.
 fn boundary<const D: usize>(mesh: &Mesh<D>) -> Vec<u32> {
     let mut nodes: Vec<u32> = mesh.facets.iter().flatten().copied().collect();
     let mut edges: Vec<[u32; 2]> = mesh
@@ -132,7 +131,7 @@ fn group<'m, const D: usize>(mesh: &'m Mesh<D>, name: &str) -> &'m [u32] {
     mesh.groups.get(name).map_or(&[], Vec::as_slice)
 }
 
-/// The corners of the bounding box of a mesh; zeros where it has no nodes.
+/// The corners of the bounding box of a mesh; zeros if it has no nodes.
 pub fn extent<const D: usize>(mesh: &Mesh<D>) -> ([f64; D], [f64; D]) {
     let Some(first) = mesh.positions.first() else { return ([0.0; D], [0.0; D]) };
     let (mut low, mut high) = (*first, *first);
@@ -149,7 +148,7 @@ pub fn extent<const D: usize>(mesh: &Mesh<D>) -> ([f64; D], [f64; D]) {
     (low, high)
 }
 
-/// The longest side of the bounding box of a mesh [m]; zero where it has no nodes.
+/// The longest side of the bounding box of a mesh [m]; zero if it has no nodes.
 pub fn longest_side<const D: usize>(mesh: &Mesh<D>) -> f64 {
     let (low, high) = extent(mesh);
     (0..D).map(|a| high[a] - low[a]).fold(0.0, |most, side| if side > most { side } else { most })

@@ -1,4 +1,4 @@
-//! The shapes that a scene can name: their parameters, how many nodes they have, and their meshes.
+//! The shapes that a scene can name: their parameters, numbers of nodes, and meshes.
 
 mod filling;
 mod from_files;
@@ -236,7 +236,7 @@ pub fn all() -> Vec<&'static Spec> {
     made.into_iter().chain(from_files::all()).collect()
 }
 
-/// How many nodes a shape will have, before it is made: exactly as far as whole numbers go.
+/// The number of nodes that a shape will have, before it is built; exact as far as a floating-point number can be.
 pub fn node_count(shape: &Values, dimension: usize) -> f64 {
     match (shape.text("filling"), shape.number("spacing")) {
         (Some("lattice" | "tetrahedra"), Some(spacing)) => filling_estimate(shape, spacing),
@@ -244,7 +244,7 @@ pub fn node_count(shape: &Values, dimension: usize) -> f64 {
     }
 }
 
-/// About how many nodes a filling of a generated surface has: two in every cube of the lattice, and a layer about the surface.
+/// The approximate number of nodes of a filling of a generated surface: two in every cube of the lattice, and a layer around the surface.
 fn filling_estimate(shape: &Values, spacing: f64) -> f64 {
     let pi = core::f64::consts::PI;
     let (radius, tube) = (shape.number("radius").unwrap_or(0.0), shape.number("tube_radius").unwrap_or(0.0));
@@ -281,30 +281,30 @@ fn surface_node_count(shape: &Values, dimension: usize) -> f64 {
     }
 }
 
-/// What is done to a shape before it is moved to the place of its body.
+/// The transform of a shape before it is moved to the position of its body.
 #[derive(Clone, Copy, Debug)]
 pub struct Transform<'a> {
     /// A factor on all lengths.
     pub scale: f64,
-    /// An angle in 2D, an axis times its angle in 3D [rad].
+    /// The rotation: an angle in 2D, an axis times its angle in 3D [rad].
     pub rotation: &'a [f64],
 }
 
-/// A shape that was made.
+/// A shape that has been built.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Made<const D: usize> {
     /// Its mesh.
     pub mesh: Mesh<D>,
-    /// Whether its points ran clockwise, so that its edges run against them.
+    /// Whether its points ran clockwise, so that its edges run in the opposite direction.
     pub flipped: bool,
-    /// What its filling has lost of the volume, if that is worth telling.
+    /// The volume that its filling has lost, if that is worth a report.
     pub loss: Option<Loss>,
 }
 
-/// Makes the mesh of a shape, scaled and turned about the origin of its own coordinates.
+/// Builds the mesh of a shape, scaled and rotated about the origin of its own coordinates.
 ///
 /// # Errors
-/// What the generator refuses: crossing edges, too few points, a tube as wide as its circle …
+/// The errors of the generator: crossing edges, too few points, a tube as wide as its circle …
 pub fn mesh<const D: usize>(shape: &Values, transform: &Transform<'_>) -> Result<Made<D>, MeshError> {
     if D == 2 {
         let Made { mesh, flipped, loss } = plane(shape, transform)?;
@@ -315,7 +315,7 @@ pub fn mesh<const D: usize>(shape: &Values, transform: &Transform<'_>) -> Result
     }
 }
 
-/// The same mesh under the name that its type has where the dimension is a parameter, or the other way round.
+/// The same mesh as a type whose dimension is a parameter, or the other way round.
 fn renamed<const A: usize, const B: usize>(mesh: Mesh<A>) -> Result<Mesh<B>, MeshError> {
     if A != B {
         return Err(MeshError::Size { what: Quantity::Dimension, value: B as f64, must: Must::TwoOrThree });
@@ -348,12 +348,12 @@ fn renamed<const A: usize, const B: usize>(mesh: Mesh<A>) -> Result<Mesh<B>, Mes
     })
 }
 
-/// The whole number of a field, as a count.
+/// The integer value of a field, as a count.
 fn number(shape: &Values, name: &str) -> u32 {
     shape.integer(name).and_then(|n| u32::try_from(n).ok()).unwrap_or(0)
 }
 
-/// Exactly as many counts as there are axes.
+/// The counts of cells, one for each axis.
 fn cells<const N: usize>(shape: &Values) -> Result<[u32; N], MeshError> {
     let given = shape.integers("cells");
     <[u32; N]>::try_from(given).map_err(|_| MeshError::Count {
@@ -438,7 +438,7 @@ fn moved(mut mesh: Mesh<3>, by: [f64; 3]) -> Mesh<3> {
     mesh
 }
 
-/// Scales a mesh and turns it about the origin of its own coordinates.
+/// Scales a mesh and rotates it about the origin of its own coordinates.
 ///
 /// # Errors
 /// Factors and angles that are not finite.
@@ -457,7 +457,7 @@ pub fn apply_transform<const D: usize>(mesh: &mut Mesh<D>, transform: &Transform
     }
 }
 
-/// Turns a mesh whose dimension is a parameter as one whose dimension is known.
+/// Rotates a mesh whose dimension is a parameter as one whose dimension is known.
 fn turn<const D: usize, const E: usize>(
     mesh: &mut Mesh<D>,
     rotate: impl FnOnce(&mut Mesh<E>) -> Result<(), MeshError>,

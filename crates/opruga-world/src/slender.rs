@@ -1,9 +1,10 @@
-//! Cells that are long for the thickness of their body, and bend and twist too stiffly.
+//! Cells that are too long for the thickness of their body, and therefore too stiff in bending and torsion.
 //!
-//! A cell whose shape functions lack what bending needs pays for it with a strain that is none, in proportion to its length: a body of the
-//! thickness T bends too stiffly by a part of about (L/T)², however many cells lie across. Measured on beams and plates
-//! (`tests/all/slender_cells.rs`, docs/finite-elements.md): linear cells are 45 % too high in the first frequencies where their longest edge
-//! is T; quadratic tetrahedra, which lack a part of twisting alone, 10 % where it is 8.5 T. Quadratic triangles and boxes have no limit.
+//! A cell whose shape functions cannot represent bending has a spurious strain in proportion to its length. A body of thickness T is then too stiff
+//! in bending by a relative error of about (L/T)², however many cells there are across it. Measurements on beams and plates
+//! (`tests/all/slender_cells.rs`, docs/finite-elements.md) show that the first frequencies are 45 % too high for linear cells with a longest edge of
+//! T, and 10 % too high for quadratic tetrahedra with a longest edge of 8.5 T, which only lack a part of torsion. Quadratic triangles and boxes have
+//! no limit.
 
 use crate::blueprint::BodyBlueprint;
 use crate::warnings::{BendingHint, Warning, WorldWarning};
@@ -12,13 +13,13 @@ use opruga_core::spec::Role;
 use opruga_mesh::{Element, Mesh};
 use opruga_solve::dense::symmetric_eigen;
 
-/// What was measured of a kind of cells.
+/// The measured limit of a kind of cells.
 struct Limit {
-    /// The longest edge of cells in thicknesses of their body.
+    /// The longest edge of cells, in thicknesses of their body.
     length: f64,
-    /// By how much the first frequencies are too high there [%].
+    /// The relative error of the first frequencies at this length [%].
     error: f64,
-    /// What bends better.
+    /// A better choice for bending.
     hint: BendingHint,
 }
 
@@ -35,8 +36,8 @@ fn limit(element: Element) -> Option<&'static Limit> {
 }
 
 impl<const D: usize> World<D> {
-    /// Warns of bodies of finite elements more than half of whose volume lies in cells beyond the limit of their kind. One warning, with
-    /// the body that is farthest beyond; copies count.
+    /// Warns about bodies of finite elements with more than half of their volume in cells beyond the limit of their kind. There is one warning, with
+    /// the body that is farthest beyond; copies are counted.
     pub(crate) fn warn_of_slender_cells(&mut self) {
         let mut worst: Option<(usize, Slender)> = None;
         let mut count = 0;
@@ -95,7 +96,7 @@ fn slender<const D: usize>(body: &BodyBlueprint<D>) -> Option<Slender> {
         let Some(limit) = limit(element).filter(|limit| cell.longest > limit.length * thickness) else { continue };
         beyond += cell.whole;
         lengths += cell.whole * cell.longest;
-        // Of several kinds the one with the lower limit is named.
+        // If several kinds are beyond their limits, the one with the lowest limit is named.
         if kind.is_none_or(|(length, _)| limit.length < length) {
             kind = Some((limit.length, limit));
         }
@@ -104,8 +105,8 @@ fn slender<const D: usize>(body: &BodyBlueprint<D>) -> Option<Slender> {
     (beyond > 0.5 * volume).then(|| Slender { length: lengths / beyond, thickness, limit })
 }
 
-/// How thick a body is where it is thinnest [m]: its extent along its shortest axis of inertia, or, where it is curved or hollow, twice its
-/// volume over its surface, which is the thickness of a plate and of a shell. A block has 2D times its volume over its surface at most.
+/// The thickness of a body at its thinnest [m]: its extent along its shortest axis of inertia, or, if it is curved or hollow, twice its volume over
+/// its surface, which is the thickness of a plate and of a shell. The shortest extent of a block is at most 2D times its volume over its surface.
 fn thickness<const D: usize>(mesh: &Mesh<D>, volume: f64) -> Option<f64> {
     let mut surface = 0.0;
     for facet in &mesh.facets {
@@ -133,7 +134,7 @@ fn thickness<const D: usize>(mesh: &Mesh<D>, volume: f64) -> Option<f64> {
     (thickness > 0.0 && thickness.is_finite()).then_some(thickness)
 }
 
-/// The extent along the axis about which the nodes spread least [m].
+/// The extent along the axis with the smallest spread of nodes [m].
 fn shortest_extent<const D: usize>(mesh: &Mesh<D>) -> f64 {
     let count = mesh.positions.len() as f64;
     let center: [f64; D] = core::array::from_fn(|d| mesh.positions.iter().map(|x| x[d]).sum::<f64>() / count);

@@ -1,49 +1,48 @@
-//! The list of bodies: who is in which slot of it, and handles that tell a body from another one in its slot.
+//! The list of bodies with its slots, and handles that distinguish successive bodies in the same slot.
 
 use crate::blueprint::{BodyBlueprint, Mass};
 use opruga_mesh::Mesh;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// A body of one world by number and generation.
+/// A body of one world, by number and generation.
 ///
-/// No two bodies that a program or a user adds to a world have the same generation, also where one takes the slot of another, and
-/// where a restored snapshot has taken the world back to before one of them came. So a handle means its body or none, never
-/// another one.
+/// No two bodies that a program or a user adds to a world have the same generation, even if one takes the slot of another, or if a restored snapshot
+/// has taken the world back to a time before one of them was added. A handle therefore refers to its own body or to none, never to another one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BodyHandle {
     /// The slot in the list of bodies.
     pub index: usize,
-    /// Which of the bodies that have been there it is; bodies of the scene have 0, for their slots are given to no others.
+    /// Distinguishes the bodies that have been in the slot. Bodies of the scene have 0, because their slots are not reused.
     pub generation: u64,
     /// The world.
     world: u64,
 }
 
 impl BodyHandle {
-    /// Whether its body belongs to the scene: at the start, or added by a command of it.
+    /// Whether its body belongs to the scene: it was there at the start, or a command of the scene added it.
     pub(crate) fn is_of_scene(self) -> bool {
         self.generation == 0 || self.generation >= ACTED
     }
 }
 
-/// Where the body in a slot came from.
+/// The origin of the body in a slot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Origin {
-    /// The scene: there at the start.
+    /// The scene; the body was there at the start.
     Scene,
-    /// The command of this number, which belongs to the scene.
+    /// The command with this number, which belongs to the scene.
     Command(usize),
-    /// A call of the program. Once the body is gone nothing is kept of it, and its slot is free for another one.
+    /// A call of the program. Once the body is removed, nothing is kept of it, and its slot is free for another one.
     Program,
-    /// Nobody: the slot is free. Where a body lay in a batch, it is kept a seat beside bodies like this one.
+    /// None: the slot is free. If its body was in a batch, its seat is kept for bodies of the same kind as this one.
     Free(Option<usize>),
-    /// Nobody yet: the slot of a body that a command of the scene will add, which names it by its number.
+    /// None yet: the slot is reserved for a body that a command of the scene will add and that is referred to by its number.
     Reserved,
 }
 
 impl Origin {
-    /// Whether there is a body, or was one of the scene.
+    /// Whether the slot contains a body, or contained one of the scene.
     pub(crate) fn is_taken(self) -> bool {
         !matches!(self, Origin::Free(_) | Origin::Reserved)
     }
@@ -55,21 +54,21 @@ pub(crate) struct Slots {
     pub(crate) alive: Vec<bool>,
     pub(crate) generation: Vec<u64>,
     pub(crate) origin: Vec<Origin>,
-    /// How many bodies the scene has at the start.
+    /// The number of bodies of the scene at the start.
     pub(crate) initial: usize,
-    /// The generation of the next body that the program adds: it never goes back.
+    /// The generation of the next body that the program adds; it never decreases.
     pub(crate) next: u64,
-    /// How many commands were given by [`World::act`]: their bodies have generations of their own.
+    /// The number of commands given by [`World::act`]; their bodies have generations of their own.
     pub(crate) acted: u64,
-    /// Tells worlds apart in handles. No result depends on it.
+    /// Distinguishes worlds in handles. No result depends on it.
     world: u64,
 }
 
-/// Where the generations of bodies begin that commands of [`World::act`] add: apart from those that snapshots tell.
+/// The first generation of bodies that commands of [`World::act`] add; these do not overlap with generations in snapshots.
 pub(crate) const ACTED: u64 = 1 << 63;
 
 impl Slots {
-    /// Those of a scene with so many bodies.
+    /// The slots of a scene with this many bodies.
     pub(crate) fn of_scene(bodies: usize) -> Slots {
         static WORLDS: AtomicU64 = AtomicU64::new(0);
         Slots {
@@ -96,7 +95,7 @@ impl Slots {
         self.is_there(body).then(|| self.named(body))
     }
 
-    /// The handle of a body that was in a slot last, whether it is there or not.
+    /// The handle of the last body in a slot, whether or not it still exists.
     pub(crate) fn named(&self, body: usize) -> BodyHandle {
         BodyHandle { index: body, generation: self.generation[body], world: self.world }
     }
@@ -111,13 +110,13 @@ impl Slots {
         self.next - 1
     }
 
-    /// The generation of a body that a command adds which is given now by [`World::act`].
+    /// The generation of a body that a command of [`World::act`] adds now.
     pub(crate) fn next_of_act(&mut self) -> u64 {
         self.acted += 1;
         ACTED | self.acted
     }
 
-    /// Puts a body into a slot, the next one or one that is free.
+    /// Puts a body into a slot: the next one, or a free one.
     pub(crate) fn put(&mut self, slot: usize, origin: Origin, generation: u64) {
         if slot == self.len() {
             self.alive.push(true);
@@ -136,7 +135,7 @@ impl Slots {
 }
 
 impl<const D: usize> BodyBlueprint<D> {
-    /// What stands in a slot without a body: no name, no nodes.
+    /// The content of a slot without a body: no name, no nodes.
     pub(crate) fn nobody() -> BodyBlueprint<D> {
         BodyBlueprint {
             name: String::new(),

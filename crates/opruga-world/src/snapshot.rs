@@ -1,4 +1,4 @@
-//! The whole state of a world in bytes, and back.
+//! The whole state of a world as bytes, and its restoration.
 
 use crate::blueprint::Action;
 use crate::bytes::{Reader, Writer};
@@ -17,21 +17,21 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
 const VERSION: u64 = 10;
-/// The version before it, which kept nothing of contact; and the one before that, which named no channels of a history: it is read where no
-/// integrator kept anything.
+/// Earlier versions that can be read: the previous version, without state of contact; and the version before it, without names of the channels of a
+/// history, if no integrator kept anything.
 const BEFORE: [u64; 2] = [9, 8];
 
 impl<const D: usize> World<D> {
-    /// The whole state: time, positions, velocities, what models remember, how far commands have come, the ledger.
+    /// The whole state: time, positions, velocities, memory of models, progress of commands, the ledger.
     ///
-    /// A world built from the same blueprint that restores it goes on bit for bit, on any number of threads.
+    /// A world built from the same blueprint that restores it continues bit for bit, on any number of threads.
     pub fn snapshot(&self) -> Vec<u8> {
         let mut out = Vec::new();
         self.snapshot_into(&mut out);
         out
     }
 
-    /// Appends the bytes of [`World::snapshot`]: for those who take one every frame.
+    /// Appends the bytes of [`World::snapshot`], for callers that take a snapshot every frame.
     pub fn snapshot_into(&self, out: &mut Vec<u8>) {
         let mut out = Writer(out);
         out.count(VERSION);
@@ -65,7 +65,7 @@ impl<const D: usize> World<D> {
         out.count(of_scene.clone().count() as u64);
         for running in of_scene {
             match &running.progress {
-                // It ended before it began, with its body: that follows from what is there.
+                // It ended with its body before it began; this follows from the rest of the state.
                 Progress::Done if running.command.at > self.time() => out.count(0),
                 progress => write_progress(&mut out, progress),
             }
@@ -80,18 +80,18 @@ impl<const D: usize> World<D> {
         self.contact_memory.write(&mut out);
     }
 
-    /// Goes to the state of a snapshot of a world with the same blueprint. Bodies that a program had added and commands that it had
-    /// given come back with it; those of since then are forgotten, and handles of them are stale. Laws of force of the
-    /// program are no part of a snapshot: a body that comes back lacks its law, and a warning (`restore.no_force`) says so.
+    /// Restores the state of a snapshot of a world with the same blueprint. Bodies that a program had added and commands that it had given are
+    /// restored too; later ones are forgotten, and their handles become stale. Force laws of the program are not part of a snapshot: a restored body
+    /// lacks its law, and a warning (`restore.no_force`) reports it.
     ///
     /// # Errors
-    /// [`WorldError::Snapshot`] if the bytes belong to another scene or are damaged; the world stays as it was.
+    /// [`WorldError::Snapshot`] if the bytes belong to another scene or are damaged; the world is then unchanged.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
         self.restored(bytes, false)
     }
 
-    /// Goes to the state of a snapshot of a world whose commands up to then were the same: those that had not begun may
-    /// be others, and more or fewer.
+    /// Restores the state of a snapshot of a world that had the same commands up to that time. Commands that had not begun may differ in content and
+    /// number.
     ///
     /// # Errors
     /// As [`World::restore`].
@@ -101,7 +101,7 @@ impl<const D: usize> World<D> {
 
     fn restored(&mut self, bytes: &[u8], other_future: bool) -> Result<(), WorldError> {
         self.forget_contacts();
-        // Those that the program had given are in the snapshot.
+        // Commands of the program are in the snapshot.
         let commands: Vec<Running<D>> = self.running.iter().filter(|r| !r.given).map(Running::anew).collect();
         if self.go_to_alike(bytes, &commands, other_future)? {
             return Ok(());
@@ -120,7 +120,7 @@ impl<const D: usize> World<D> {
         outcome
     }
 
-    /// Reads what a snapshot says before its bodies.
+    /// Reads the part of a snapshot before its bodies.
     fn read_head<'b>(reader: &mut Reader<'b>) -> Result<Head<'b>, WorldError> {
         let refuse = |fault: SnapshotFault| Err(WorldError::snapshot(fault));
         let version = reader.count()?;
@@ -133,8 +133,8 @@ impl<const D: usize> World<D> {
         Ok(Head { version, frames: reader.count()?, delta: reader.bytes()? })
     }
 
-    /// What a snapshot says of the bodies of the blueprint, the commands, and the ledger; those are known, and
-    /// with another future those that had not begun may be others.
+    /// Reads the bodies of the blueprint, the commands, and the ledger from a snapshot. The commands are known; with `other_future`, those that had
+    /// not begun may differ.
     fn read_rest(
         &self,
         reader: &mut Reader<'_>,
@@ -155,7 +155,7 @@ impl<const D: usize> World<D> {
         Ok(rest)
     }
 
-    /// Which bodies are alive, their states, and how many laws of force they had.
+    /// Reads which bodies are alive, their states, and the numbers of their force laws.
     fn read_bodies(&self, reader: &mut Reader<'_>, version: u64, rest: &mut Rest<D>) -> Result<(), WorldError> {
         let refuse = |fault: SnapshotFault| Err(WorldError::snapshot(fault));
         if reader.count()? != self.blueprint.bodies.len() as u64 {
@@ -206,7 +206,7 @@ impl<const D: usize> World<D> {
         Ok(())
     }
 
-    /// How far the commands of the scene had come, and the commands of the program, all of which hold nodes that there are.
+    /// Reads the progress of the commands of the scene, and the commands of the program, and checks that their nodes exist.
     fn read_commands(
         &self,
         reader: &mut Reader<'_>,
@@ -223,7 +223,7 @@ impl<const D: usize> World<D> {
             rest.progress.push(read_progress(reader)?);
         }
         if other_future {
-            // Commands stand in the order of time: those that have begun come first.
+            // Commands are ordered by time, so those that have begun come first.
             if rest.progress.iter().skip(commands.len()).any(|progress| *progress != Progress::Waiting) {
                 return refuse(SnapshotFault::CommandCount {});
             }
@@ -247,10 +247,10 @@ impl<const D: usize> World<D> {
         Ok(())
     }
 
-    /// Commands with how far they had come, as far as that is known; behind those of the scene those of the program.
+    /// The commands with their progress in the snapshot, as far as it is known; those of the program follow those of the scene.
     fn commands_then(&self, commands: &[Running<D>], rest: &Rest<D>) -> Vec<Running<D>> {
         let running = |(known, progress): (&Running<D>, &Progress<D>)| {
-            // Not one whose body is still to come.
+            // Bodies that will be added later do not count as gone.
             let is_gone = |body: usize| rest.alive.get(body) == Some(&false) && self.slots.origin[body].is_taken();
             let gone = known.command.action.body().is_some_and(is_gone);
             let progress = if gone && *progress == Progress::Waiting { Progress::Done } else { progress.clone() };
@@ -259,7 +259,7 @@ impl<const D: usize> World<D> {
         commands.iter().zip(&rest.progress).map(running).chain(rest.given.iter().cloned()).collect()
     }
 
-    /// Goes to a snapshot that differs in motion alone: the islands stay as they are. False where more differs.
+    /// Restores a snapshot that differs only in motion; the islands are kept. Returns false if more differs.
     fn go_to_alike(&mut self, bytes: &[u8], commands: &[Running<D>], other_future: bool) -> Result<bool, WorldError> {
         let mut reader = Reader(bytes);
         let Head { version, frames, delta } = Self::read_head(&mut reader)?;
@@ -318,7 +318,7 @@ impl<const D: usize> World<D> {
         self.flows = rest.flows;
         self.contact_memory = rest.contact;
         self.refresh_ledger();
-        // What is in motion now is not measured again: the time of a frame and of its last substep differ by rounding.
+        // The energy in motion is not measured again, because the time of a frame and that of its last substep differ by rounding.
         self.flows.largest = rest.flows.largest;
         Ok(true)
     }
@@ -344,7 +344,7 @@ impl<const D: usize> World<D> {
         if changed {
             self.check_stability()?;
         }
-        // Bodies of the scene come again where a command adds them, and keep the laws that they had.
+        // Bodies of the scene return when a command adds them, and keep their laws.
         let slots = &self.slots;
         self.user_forces.retain(|(handle, _)| handle.is_of_scene() || slots.is_of(*handle));
         self.laws_saved = rest.laws;
@@ -352,34 +352,34 @@ impl<const D: usize> World<D> {
         self.flows = rest.flows;
         self.contact_memory = rest.contact;
         self.refresh_ledger();
-        // What is in motion now is not measured again: the time of a frame and of its last substep differ by rounding.
+        // The energy in motion is not measured again, because the time of a frame and that of its last substep differ by rounding.
         self.flows.largest = rest.flows.largest;
         Ok(())
     }
 }
 
-/// What a snapshot says before its bodies.
+/// The part of a snapshot before its bodies.
 struct Head<'b> {
     version: u64,
     frames: u64,
-    /// How the scene differs from that at the start.
+    /// The differences between the scene and the scene at the start.
     delta: &'b [u8],
 }
 
-/// What a snapshot says behind its head.
+/// The part of a snapshot after its head.
 #[derive(Debug, Default)]
 struct Rest<const D: usize> {
     alive: Vec<bool>,
     states: BTreeMap<usize, BodyState<D>>,
     progress: Vec<Progress<D>>,
-    /// Commands of the program that were not over.
+    /// Commands of the program that were not finished.
     given: Vec<Running<D>>,
     /// The generation of the next body of the program.
     next: u64,
-    /// How many laws of force of the program bodies had.
+    /// The number of force laws of the program on each body.
     laws: BTreeMap<usize, u64>,
     flows: Flows,
-    /// What contact kept.
+    /// The state of contact.
     contact: ContactMemory<D>,
 }
 

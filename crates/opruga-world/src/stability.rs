@@ -1,4 +1,4 @@
-//! The stable step of every kind of body, estimated before it is stepped.
+//! Estimates the stable step of every kind of body before it is stepped.
 
 use crate::blueprint::BodyBlueprint;
 use crate::error::{Part, WorldError};
@@ -12,19 +12,19 @@ use opruga_core::error::{BuildError, StepError};
 use opruga_core::stability::{Stability, estimate};
 use std::sync::Arc;
 
-/// How many islands are looked at again when energy comes from nowhere.
+/// The maximum number of islands that are examined again when energy appears without a source.
 const MOST_LOOKED_AT: usize = 8;
 
 impl<const D: usize> World<D> {
-    /// Estimates the stable step of every kind of body that was built anew, and compares all steps with their limits.
+    /// Estimates the stable step of every kind of body that was rebuilt, and compares all steps with their limits.
     ///
-    /// Bodies are of one kind where nothing that the estimate depends on differs. Islands that were left alone keep their
-    /// estimate: a change of one body refuses no step for the state that another has meanwhile come to.
+    /// Bodies are of one kind if they agree in everything that the estimate depends on. Unchanged islands keep their estimate, so that a change of
+    /// one body does not refuse a step because of the present state of another.
     pub(crate) fn check_stability(&mut self) -> Result<(), WorldError> {
         let mut seen: Vec<(usize, PinnedAxes)> = Vec::new();
         let mut first_of_kind = Vec::new();
         for (number, island) in self.islands.iter().enumerate() {
-            // Loads, pulls and users' forces belong to one body: such an island is of a kind of its own.
+            // Loads, pulls and users' forces belong to one body; such an island is a kind of its own.
             let mut known = !self.has_more_than_models(island);
             for (lane, body) in island.bodies.iter().enumerate() {
                 let pinned = pinned_axes(island, lane);
@@ -57,7 +57,7 @@ impl<const D: usize> World<D> {
         self.compare_steps(estimates)
     }
 
-    /// Refuses a step above the limit of a body, and warns where there is no limit.
+    /// Refuses a step above the limit of a body, and warns if there is no stable step.
     fn compare_steps(&mut self, estimates: Vec<(usize, String, Stability)>) -> Result<(), WorldError> {
         let h = self.h();
         let mut warnings: Vec<Warning> = Vec::new();
@@ -110,9 +110,8 @@ impl<const D: usize> World<D> {
         Ok(())
     }
 
-    /// Where energy has come from nowhere (`ledger.closure`), looks whether the step is still stable in the present
-    /// state, and warns (`step.outgrown`) if it is not; says whether there was anything to look for. Stepping goes on
-    /// as it would without.
+    /// If energy has appeared without a source (`ledger.closure`), checks whether the step is still stable in the present state, and warns
+    /// (`step.outgrown`) if it is not. Returns whether there was anything to check. Stepping is not affected.
     pub fn look_at_steps_again(&mut self) -> bool {
         if self.flows.open_frames == 0 {
             return false;
@@ -123,7 +122,7 @@ impl<const D: usize> World<D> {
         let (h, time) = (self.h(), self.time());
         for number in order.into_iter().take(MOST_LOOKED_AT) {
             let island = &self.islands[number];
-            // What was unstable from the start has been said.
+            // A step that was unstable from the start has already been reported.
             if island.stability.is_some_and(|s| s.largest_stable_step.is_none_or(|limit| h > limit)) {
                 continue;
             }
@@ -147,7 +146,7 @@ impl<const D: usize> World<D> {
         island.system.members.len() > models + drag
     }
 
-    /// Whether two bodies differ in nothing but place and motion.
+    /// Whether two bodies differ only in position and motion.
     fn same_kind(&self, a: usize, b: usize) -> bool {
         let (a, b) = (&self.blueprint.bodies[a], &self.blueprint.bodies[b]);
         Arc::ptr_eq(&a.mesh, &b.mesh)
@@ -158,7 +157,7 @@ impl<const D: usize> World<D> {
     }
 }
 
-/// The pinned nodes of a body and their axes, a bit each.
+/// The pinned nodes of a body and their axes, one bit each.
 type PinnedAxes = Vec<(usize, u8)>;
 
 fn pinned_axes<const D: usize>(island: &Island<D>, lane: usize) -> PinnedAxes {
@@ -167,7 +166,7 @@ fn pinned_axes<const D: usize>(island: &Island<D>, lane: usize) -> PinnedAxes {
     own.map(|pin| (pin.index / stride, pin.axes.iter().fold(0, |bits, axis| bits * 2 + u8::from(*axis)))).collect()
 }
 
-/// Why there is no estimate, with the numbers of a body that most likely lie behind forces or frequencies that are not finite.
+/// The reason why there is no estimate, with the numbers of the body that most likely cause forces or frequencies that are not finite.
 fn no_estimate<const D: usize>(error: StepError, body: &BodyBlueprint<D>) -> Refusal {
     let cause = match error {
         StepError::Model { about, .. } => about,

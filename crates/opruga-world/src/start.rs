@@ -1,4 +1,4 @@
-//! The beginning of a world: from a scene to islands and the first ledger.
+//! The start of a world: from a scene to islands and the first ledger.
 
 use crate::at_start::AtStart;
 use crate::blueprint::Blueprint;
@@ -23,11 +23,11 @@ use std::sync::{Arc, Mutex};
 impl<const D: usize> World<D> {
     /// Builds a world from a blueprint with the models and integrators of this library.
     ///
-    /// A blueprint that a program has made keeps to what a scene file could say: see [`crate::validity`]. Commands are an exception:
-    /// whether their body is there is seen when they begin.
+    /// A blueprint that a program has created must satisfy the rules of a scene file: see [`crate::validity`]. Commands are an exception: the
+    /// existence of their bodies is checked when they begin.
     ///
     /// # Errors
-    /// [`WorldError`] where the blueprint holds what no scene could say, a model or obstacle refuses, or the step is unstable.
+    /// [`WorldError`] if the blueprint contains what no scene file could, if a model or obstacle refuses, or if the step is unstable.
     pub fn new(blueprint: Blueprint<D>, options: Options) -> Result<World<D>, WorldError> {
         World::with_registry(blueprint, options, Arc::new(Registry::default()))
     }
@@ -98,7 +98,7 @@ impl<const D: usize> World<D> {
         world.check_stability()?;
         world.warn_of_buried_bodies();
         world.warn_of_slender_cells();
-        // The ledger starts from here.
+        // The ledger starts here.
         world.flows.start = 0.0;
         let start = world.stock_energy();
         (world.flows.start, world.flows.changed) = (start, 0.0);

@@ -1,4 +1,4 @@
-//! Steps a world through a frame, and takes back a frame that fails.
+//! Steps a world through a frame, and reverts a frame that fails.
 
 use crate::clusters::Clusters;
 use crate::error::WorldError;
@@ -16,7 +16,7 @@ impl<const D: usize> World<D> {
     /// Steps through one frame.
     ///
     /// # Errors
-    /// [`WorldError`] names body, node and substep; the world is at its last good frame.
+    /// [`WorldError`] names the body, node and substep. The world is then at its last good frame.
     pub fn frame(&mut self) -> Result<(), WorldError> {
         self.begin_what_is_due()?;
         (self.looks.flows, self.looks.fresh) = (self.flows, false);
@@ -27,7 +27,7 @@ impl<const D: usize> World<D> {
             return Err(self.trouble(trouble, time));
         }
         if let Some(first) = self.islands.iter().position(|i| i.outcome.is_err()) {
-            // All islands go back to the same frame; those that failed are there.
+            // All islands return to the same frame; the failed ones are already there.
             self.restore_islands(|island| island.outcome.is_ok());
             return Err(self.failure_of(first));
         }
@@ -44,7 +44,7 @@ impl<const D: usize> World<D> {
         }
         let islands = &self.islands;
         let members = || islands.iter().flat_map(|island| &island.system.members);
-        // Derivatives of forces that have an energy are symmetric.
+        // Forces with an energy have symmetric derivatives.
         let has_energy =
             || members().map(|member| member.potential.properties().views).all(|v| v.symmetric || !v.hessian);
         self.flows.count_frame(&self.energy, has_energy);
@@ -54,7 +54,7 @@ impl<const D: usize> World<D> {
         self.take_away_what_is_far()
     }
 
-    /// Makes contact between bodies anew where islands or obstacles are not those for which it was made.
+    /// Rebuilds the contact between bodies if islands or obstacles have changed since it was made.
     fn find_clusters(&mut self) {
         let (built, colliders) = (self.islands_built, self.colliders.clone());
         let made_for = MadeFor { built, islands: self.islands.len(), colliders };
@@ -64,8 +64,8 @@ impl<const D: usize> World<D> {
         }
     }
 
-    /// Steps all islands through the frame, on the threads that there are. Every island keeps its own outcome; an error is
-    /// that of bodies that touch, with its time.
+    /// Steps all islands through the frame, on the available threads. Every island keeps its own outcome; an error is that of bodies that touch, with
+    /// its time.
     fn step_islands(&mut self) -> Result<(), (Trouble, f64)> {
         let plan = FramePlan {
             colliders: self.colliders.as_ref(),
@@ -78,7 +78,7 @@ impl<const D: usize> World<D> {
         };
         let islands = &mut self.islands;
         let workspaces = &mut self.workspaces;
-        // One small body has nothing to share: waking threads for it would cost more than its frame.
+        // A single small body has no work to share: waking threads for it would cost more than its frame.
         let alone = |island: &[Island<D>]| matches!(island, [one] if !one.is_shared_by(self.options.threads, 1));
         let pool = self.pool.as_ref().filter(|_| !alone(islands));
         if let Some(clusters) = &mut self.clusters {
@@ -93,8 +93,8 @@ impl<const D: usize> World<D> {
         match pool {
             None => islands.iter_mut().for_each(|island| island.frame(&plan, &mut lock(&workspaces[0]))),
             Some(pool) => pool.install(|| {
-                // Large bodies one after the other, each on all threads; then the others, one a thread. A body that waits for
-                // its threads must not be handed another one, whose workspace would be its own.
+                // Large bodies one after another, each on all threads; then the others, one per thread. A body that waits for its threads must not be
+                // given another body that uses the same workspace.
                 let (number, count) = (pool.current_num_threads(), islands.len());
                 for island in islands.iter_mut().filter(|island| island.is_shared_by(number, count)) {
                     island.system.threads = number;
@@ -110,7 +110,7 @@ impl<const D: usize> World<D> {
         Ok(())
     }
 
-    /// Takes islands back to the last good frame, and forgets what all of them did since then.
+    /// Restores the last good frame of islands, and discards the flows of all of them since then.
     fn restore_islands(&mut self, is_ahead: impl Fn(&Island<D>) -> bool) {
         for island in &mut self.islands {
             if is_ahead(island) {
@@ -121,7 +121,7 @@ impl<const D: usize> World<D> {
         }
     }
 
-    /// Why an island could not go through a frame.
+    /// The reason why an island could not be stepped through a frame.
     fn failure_of(&self, island: usize) -> WorldError {
         let island = &self.islands[island];
         let body = |local: usize| self.blueprint.bodies[island.bodies[local]].name.clone();
@@ -135,12 +135,12 @@ impl<const D: usize> World<D> {
                 WorldError::NotConverged { body: body(0), cause: Box::new(cause.clone()) }
             }
             Err(cause) => WorldError::Step { body: body(0), cause: Box::new(cause.clone()) },
-            // It is one that has failed.
+            // Not reached: the island has failed.
             Ok(()) => WorldError::Overflow { last: self.time() },
         }
     }
 
-    /// Adds to the ledger what the islands did in the frame.
+    /// Adds the flows of the islands in the frame to the ledger.
     fn sum_flows(&mut self) {
         for island in &mut self.islands {
             let work = std::mem::take(&mut island.work);
@@ -150,7 +150,7 @@ impl<const D: usize> World<D> {
         self.refresh_ledger();
     }
 
-    /// Refuses surfaces that cross, which a barrier would keep so.
+    /// Refuses surfaces that cross, because a barrier would keep them crossed.
     fn refuse_what_meets(&self) -> Result<(), WorldError> {
         if self.clusters.as_ref().is_none_or(|clusters| clusters.scene.reach.is_none()) {
             return Ok(());
@@ -160,7 +160,7 @@ impl<const D: usize> World<D> {
         Err(WorldError::Meet { first, second, time: self.time() })
     }
 
-    /// Why bodies that touch could not go through a frame.
+    /// The error for bodies that touch and could not be stepped through a frame.
     fn trouble(&self, trouble: Trouble, time: f64) -> WorldError {
         let scene = self.clusters.as_ref().map(|clusters| &clusters.scene);
         let name = |number: u32| scene.map_or(String::new(), |scene| scene.name_of(number, &self.blueprint));
@@ -173,14 +173,14 @@ impl<const D: usize> World<D> {
                 WorldError::Meet { first: name(bodies[0]), second: name(bodies[1]), time }
             }
             Trouble::LedThrough { mut bodies } => {
-                // Obstacles have the highest numbers: a body is named first.
+                // Obstacles have the highest numbers, so a body is named first.
                 bodies.sort_unstable();
                 WorldError::LedThrough { first: name(bodies[0]), second: name(bodies[1]), time }
             }
         }
     }
 
-    /// Goes back to the last good frame, from one whose states are sound and whose sums are not.
+    /// Reverts to the last good frame, from a frame whose states are finite but whose sums are not.
     fn take_back_frame(&mut self) -> WorldError {
         self.restore_islands(|_| true);
         self.frames -= 1;

@@ -1,4 +1,4 @@
-//! A frame of bodies that may touch: clusters of them go through it substep by substep, all others as if alone.
+//! A frame of bodies that may touch: their clusters are stepped through it substep by substep, all others as if alone.
 
 use crate::blueprint::Blueprint;
 use crate::clusters::{Clusters, Group, Progress};
@@ -12,35 +12,35 @@ use opruga_core::threads;
 use rayon::prelude::*;
 use std::sync::{Arc, Mutex};
 
-/// Nodes from which on a group is worth more than one thread within a substep.
+/// The number of nodes from which a group uses more than one thread within a substep.
 const SHARED_FROM: usize = 1000;
 
-/// A group on its way through the frame.
+/// A group that is being stepped through the frame.
 struct Job<'a, const D: usize> {
     islands: Vec<&'a mut Island<D>>,
     group: &'a mut Group<D>,
 }
 
-/// How threads are at hand.
+/// The available threads and workspaces.
 #[derive(Clone, Copy)]
 struct Hands<'a, const D: usize> {
-    /// What contact kept of the last frame.
+    /// The state of contact of the last frame.
     memory: &'a ContactMemory<D>,
     workspaces: &'a [Mutex<Workspace<D>>],
-    /// Whether this runs in the pool of the world.
+    /// Whether this runs in the thread pool of the world.
     pooled: bool,
-    /// Whether several may work on a substep.
+    /// Whether several threads may work on a substep.
     threaded: bool,
     /// All islands of the world.
     islands: usize,
 }
 
-/// Steps islands through a frame. Where one fails, its outcome says so, and the others are wherever they were.
+/// Steps islands through a frame. If one fails, its outcome contains the error, and the others stay wherever they are.
 ///
-/// Bodies that come close to others which were not with them take both back to the start of the frame, and through it together.
+/// If bodies of different groups come close to one another, both groups return to the start of the frame and are stepped through it together.
 ///
 /// # Errors
-/// [`Trouble`] where more pairs may touch than the scene allows, or pins and obstacles lead bodies through one another; with the time [s].
+/// [`Trouble`] if more pairs may touch than the scene allows, or if pins and obstacles move bodies through one another; with the time [s].
 pub(crate) fn frame<const D: usize>(
     clusters: &mut Clusters<D>,
     (blueprint, memory, reported): (&Blueprint<D>, &ContactMemory<D>, bool),
@@ -67,11 +67,11 @@ pub(crate) fn frame<const D: usize>(
         Progress::Stuck(trouble, time) => Some((trouble, time)),
         _ => None,
     });
-    // The first in time; of several the first in the order of the bodies.
+    // The first in time; if several are equal, the first in the order of the bodies.
     stuck.reduce(|first, other| if other.1 < first.1 { other } else { first }).map_or(Ok(()), Err)
 }
 
-/// Lets all groups that have yet to do so go through the frame.
+/// Steps all waiting groups through the frame.
 fn go_through<const D: usize>(
     clusters: &mut Clusters<D>,
     islands: &mut [Island<D>],
@@ -88,8 +88,8 @@ fn go_through<const D: usize>(
         jobs.iter_mut().for_each(|job| job.run(plan, hands));
         return;
     }
-    // Groups with large bodies one after the other, each of these on all threads; then the others side by side. A body that waits for
-    // its threads must not be handed another one, whose workspace would be its own.
+    // Groups with large bodies one after another, each large body on all threads; then the others in parallel. A body that waits for its threads must
+    // not be given another body that uses the same workspace.
     let number = rayon::current_num_threads();
     let is_shared = |job: &Job<'_, D>| job.islands.iter().any(|island| island.is_shared_by(number, hands.islands));
     jobs.iter_mut().filter(|job| is_shared(job)).for_each(|job| job.run(plan, hands));
@@ -150,7 +150,7 @@ impl<const D: usize> Job<'_, D> {
             for meeting in meetings.iter_mut() {
                 meeting.take(islands, time);
             }
-            // What leaves its range ends the frame, and is refused there: contact would look at every pair of it.
+            // A body that leaves its range ends the frame, and is refused there: contact would have to examine every pair of it.
             if !islands.iter().all(|island| island.is_in_range()) {
                 break;
             }
@@ -165,7 +165,7 @@ impl<const D: usize> Job<'_, D> {
     }
 }
 
-/// Lets the bodies of every cluster touch after a substep that each made by itself.
+/// Solves the contact of the bodies of every cluster after a substep that each made independently.
 fn touch<const D: usize>(
     islands: &mut [&mut Island<D>],
     meetings: &mut [Meeting<D>],
@@ -199,7 +199,7 @@ impl<const D: usize> Hands<'_, D> {
         if self.threaded { rayon::current_num_threads() } else { 1 }
     }
 
-    /// Does something with an island in the workspace of the thread; of a large one on all threads.
+    /// Runs work on an island in the workspace of the thread; for a large island, on all threads.
     fn lend(&self, island: &mut Island<D>, work: impl Fn(&mut Island<D>, &mut Workspace<D>) + Sync) {
         let thread = if self.pooled { rayon::current_thread_index().unwrap_or(0) } else { 0 };
         let number = self.threads();
@@ -211,7 +211,7 @@ impl<const D: usize> Hands<'_, D> {
         island.system.threads = 1;
     }
 
-    /// One substep without contact between bodies, of those that did not make it together.
+    /// One substep without contact between bodies, for bodies that did not make it jointly.
     fn step_freely(
         &self,
         islands: &mut [&mut Island<D>],

@@ -1,8 +1,8 @@
-//! Cells of the law `linear` that have turned.
+//! Cells of the law `linear` that have rotated.
 //!
-//! The strain of small motions is ε = sym F − 1. A rotation by θ has sym F = cos θ 1 across its axis: the law takes it for a strain of
-//! cos θ − 1, whose pressure makes the body grow. What counts is the rotation of every cell, that nearest to its F (polar decomposition):
-//! a bar that is bent far turns its tip, though as a whole it hardly turns.
+//! The strain of small motions is ε = sym F − 1. A rotation by θ has sym F = cos θ 1 across its axis. The law treats this as a strain of cos θ − 1,
+//! whose pressure makes the body grow. The criterion is the rotation of every cell, which is the rotation nearest to its F (polar decomposition): the
+//! tip of a bar under large bending rotates, although the bar as a whole hardly does.
 
 use crate::other_balances::{in_space, turn_in_plane, turn_in_space};
 use crate::warnings::{Warning, WorldWarning};
@@ -12,13 +12,13 @@ use opruga_core::spec::Role;
 /// The code of the warning.
 const TURNED: &str = "law.turned";
 
-/// The cosine of 20°, from where on a rotation counts: it is taken for a strain of 6 %, more than the law is good for.
+/// The cosine of 20°, above which a rotation counts: the law treats it as a strain of 6 %, which is beyond its range.
 const FAR: f64 = 0.939_692_620_785_908_4;
 
 /// |R − 1|² of a rotation by 20°: 4 (1 − cos θ).
 const FAR_SQUARED: f64 = 4.0 * (1.0 - FAR);
 
-/// The cell of a body that has turned farthest.
+/// The cell of a body with the largest rotation.
 #[derive(Clone, Copy, Debug)]
 struct Turned {
     cell: u32,
@@ -26,8 +26,8 @@ struct Turned {
 }
 
 impl<const D: usize> World<D> {
-    /// Warns of bodies with cells of the law `linear` that have turned by more than 20°: once, with the farthest so far, counted per
-    /// frame and body. Nothing is allocated unless there is a warning.
+    /// Warns about bodies with cells of the law `linear` that have rotated by more than 20°. The warning is issued once, with the largest rotation so
+    /// far, and counts frames and bodies. Nothing is allocated unless there is a warning.
     pub(crate) fn warn_of_turned_cells(&mut self) {
         let (mut worst, mut count): (Option<(usize, Turned)>, u64) = (None, 0);
         for body in 0..self.blueprint.bodies.len() {
@@ -64,7 +64,7 @@ impl<const D: usize> World<D> {
         }
     }
 
-    /// The cell of a body under the law `linear` that has turned farthest, if that is far.
+    /// The cell of a body under the law `linear` with the largest rotation, if that is large.
     fn farthest_turned(&self, body: usize) -> Option<Turned> {
         let own = &self.blueprint.bodies[body];
         let mut worst: Option<Turned> = None;
@@ -91,7 +91,7 @@ impl<const D: usize> World<D> {
     }
 }
 
-/// The axes of a cell, as rows: of triangles and tetrahedra sides from the first corner, of boxes the mean sides.
+/// The axes of a cell, as rows: for triangles and tetrahedra the sides from the first corner, for boxes the mean sides.
 fn axes<const D: usize>(nodes: &[u32], at: impl Fn(u32) -> [f64; D]) -> [[f64; 3]; 3] {
     let mut out = [[0.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 1.0]];
     if nodes.len() == 1 << D {
@@ -114,7 +114,7 @@ fn axes<const D: usize>(nodes: &[u32], at: impl Fn(u32) -> [f64; D]) -> [[f64; 3
     out
 }
 
-/// F, row by row, from the axes of a cell at rest and now; none of a cell without volume at rest.
+/// F, row by row, from the axes of a cell at rest and now; none for a cell without volume at rest.
 fn gradient(rest: &[[f64; 3]; 3], now: &[[f64; 3]; 3]) -> Option<[[f64; 3]; 3]> {
     let cross = |a: &[f64; 3], b: &[f64; 3]| -> [f64; 3] {
         core::array::from_fn(|d| a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3])
@@ -126,9 +126,9 @@ fn gradient(rest: &[[f64; 3]; 3], now: &[[f64; 3]; 3]) -> Option<[[f64; 3]; 3]> 
     (volume != 0.0).then_some(f)
 }
 
-/// The cosine of the angle of the rotation nearest to F, where that is more than 20°.
+/// The cosine of the angle of the rotation nearest to F, if the angle is more than 20°.
 fn turned_far<const D: usize>(f: &[[f64; 3]; 3]) -> Option<f64> {
-    // No rotation is nearer to F than R, so |R − 1| ≤ 2 |F − 1|: most cells need no decomposition.
+    // No rotation is nearer to F than R, so |R − 1| ≤ 2 |F − 1|, and most cells need no decomposition.
     let mut off = 0.0;
     for (i, row) in f.iter().enumerate() {
         for (j, x) in row.iter().enumerate() {
@@ -136,7 +136,7 @@ fn turned_far<const D: usize>(f: &[[f64; 3]; 3]) -> Option<f64> {
             off += difference * difference;
         }
     }
-    // What is no number has no rotation.
+    // NaN has no rotation.
     let may_be_far = 4.0 * off > FAR_SQUARED;
     if !(may_be_far && off.is_finite()) {
         return None;

@@ -1,37 +1,37 @@
-//! Recovery of bodies that rest in a degenerate shape: flat, inverted or folded. It acts where the scene says `[world] unfold = true`.
+//! Recovery of bodies that rest in a degenerate shape: flat, inverted or folded. It is active if the scene contains `[world] unfold = true`.
 //!
-//! A body that was squeezed onto a plane, a line or a point, or inverted, may be in equilibrium there by symmetry alone: no force leads
-//! out of the plane, though the energy falls on both sides of it. No solver may leave such a shape by itself, since it follows the forces.
-//! So the world looks at the bodies from time to time. Where one rests while cells are degenerate or inverted, or strained though nothing
-//! acts on the body, its free nodes are displaced at random, the same in every run: first by 10⁻⁴ of its size, then, each time after it
-//! had time to leave, by a hundredth and a tenth. Every time is counted. A shape that is left after the last time is counted, too.
+//! A body that was squeezed onto a plane, a line or a point, or that was inverted, may be in equilibrium there by symmetry alone: no force leads out
+//! of the plane, although the energy falls on both sides of it. No solver can leave such a shape by itself, because solvers follow the forces. The
+//! world therefore checks the bodies from time to time. If a body is at rest with degenerate or inverted cells, or is strained although nothing acts
+//! on it, its free nodes are displaced at random, in the same way in every run: first by 10⁻⁴ of its size, then, each time after it had time to leave
+//! the shape, by a hundredth and by a tenth. Every displacement is counted. A shape that remains after the last one is counted too.
 //!
-//! In statics a frame that ends so is solved again: first from its start, with pins and loads led in parts, since what one large step folds
-//! smaller ones may not; then from shapes that are displaced, up to three times.
+//! In statics a frame that ends like this is solved again: first from its start, with the motion of pins and the loads divided into parts, because
+//! smaller steps may avoid a fold that one large step makes; then from displaced shapes, up to three times.
 //!
-//! A body has left such a shape when it kept another one for as long as leaving takes. One that goes to and fro about the limit goes on
-//! where it was, and comes to the last time.
+//! A body has left such a shape when it has kept another one for as long as leaving takes. A body that alternates about the limit continues with the
+//! count where it was, and eventually comes to the last displacement.
 //!
-//! Strained bodies on which something acts, a pin, an obstacle or a load, are left alone, as those are that were meant to snap
-//! through: `cells.other_balance` reports at the end that they hold more energy than what acts on them accounts for.
+//! Strained bodies on which a pin, an obstacle or a load acts are left alone, because they may have been meant to snap through. At the end
+//! `cells.other_balance` reports that they contain more energy than what acts on them accounts for.
 //!
-//! A body rests when its kinetic energy and its forces out of balance are small against the energy U that its cells hold,
-//! ½ Σ m v² ≪ U and Σ m |a| L ≪ U, and when damping does not take that energy: one that creeps against its viscosity is on its way. The
-//! time to leave is a multiple of L √(M/U), where L is its size and M its mass.
+//! A body is at rest if its kinetic energy and its unbalanced forces are small compared with the energy U of its cells, ½ Σ m v² ≪ U and Σ m |a| L ≪
+//! U, and if damping does not dissipate that energy: a body that creeps against its viscosity is still moving. The time to leave is a multiple of L
+//! √(M/U), where L is its size and M its mass.
 //!
-//! A body all of whose cells are flat has a motion along its plane or line that may go on for ever, and leads nowhere. It is displaced
-//! once it had time to leave, whatever it does there.
+//! A body whose cells are all flat may move along its plane or line forever without leaving it. It is therefore displaced once it has had time to
+//! leave, whatever its motion.
 //!
 //! Bodies of models without cells, such as springs, are left alone.
 //!
 //! | constant | what breaks without it | test |
 //! |---|---|---|
-//! | `REST`, `BALANCED` | a body that creeps or swings is displaced on its way | `robust_steps::a_body_that_creeps_back…` |
-//! | `PERIODS` | every frame pays for a look, and a body is displaced before it swings freely | `flat_bodies::bodies_on_a_line_leave…` |
+//! | `REST`, `BALANCED` | a body that creeps or oscillates is displaced on its way | `robust_steps::a_body_that_creeps_back…` |
+//! | `PERIODS` | every frame pays for a check, and a body is displaced before it oscillates freely | `flat_bodies::bodies_on_a_line_leave…` |
 //! | `PATIENCE` | a body is displaced again before it could leave | `flat_bodies::disturbances_end…` |
-//! | `PARTS` | a plate that one step folds stays folded, though smaller steps lead it upright | `torn_by_pins::plates_that_are_pressed_at_once_and_may_unfold…` |
-//! | `SIZES` | one displacement alone leaves no flat shape that is stable against it | `robust_steps::bodies_that_symmetry_holds…` |
-//! | `STRAINED` | folded bodies with sound cells stay | `robust_steps::every_rule_brings…` |
+//! | `PARTS` | a plate that one step folds stays folded, though smaller steps keep it upright | `torn_by_pins::plates_that_are_pressed_at_once_and_may_unfold…` |
+//! | `SIZES` | a single displacement does not leave a flat shape that is stable against it | `robust_steps::bodies_that_symmetry_holds…` |
+//! | `STRAINED` | folded bodies with sound cells stay folded | `robust_steps::every_rule_brings…` |
 
 use crate::island::{FramePlan, Island, Saved};
 use crate::ledger::{survey, take_stock};
@@ -44,55 +44,55 @@ use opruga_math::{Lane, sum_in_fixed_order};
 use opruga_mesh::{Mesh, least_jacobian};
 use opruga_solve::dense::symmetric_eigen;
 
-/// How often a body was displaced since it left its last degenerate shape, one more where that was in vain.
+/// The number of displacements since the body left its last degenerate shape, plus one if they were in vain.
 const TIMES: PerBody<u64> = PerBody::new("unfold.times");
-/// When it was displaced last [s].
+/// The time of its last displacement [s].
 const LAST: PerBody<f64> = PerBody::new("unfold.last");
-/// At how many looks in a row all of it was flat.
+/// The number of consecutive checks at which all of its cells were flat.
 const FLAT_LOOKS: PerBody<u64> = PerBody::new("unfold.flat_looks");
-/// Frames since the last look.
+/// Frames since the last check.
 const SINCE: PerBody<u64> = PerBody::new("unfold.since");
-/// Whether the last look found nothing.
+/// Whether the last check found nothing.
 const SOUND: PerBody<bool> = PerBody::new("unfold.sound");
-/// Until when another shape does not count as having left the degenerate one [s].
+/// The time until which another shape does not count as having left the degenerate one [s].
 const UNTIL: PerBody<f64> = PerBody::new("unfold.until");
 
-/// What is kept of every body.
+/// The data that are kept for every body.
 pub(crate) fn channels() -> [Channel; 6] {
     [TIMES.declared(), LAST.declared(), FLAT_LOOKS.declared(), UNTIL.declared(), SINCE.declared(), SOUND.declared()]
 }
 
-/// Frames between two looks, and between two looks at a body that was sound: a look costs about as much as evaluating forces.
+/// Frames between two checks, and between two checks of a sound body: a check costs about as much as an evaluation of the forces.
 const PERIODS: [u64; 2] = [24, 96];
 
-/// Kinetic energy, and what damping takes in the time to leave, that count as rest, as parts of the stored energy.
+/// The kinetic energy, and the dissipation in the time to leave, below which a body counts as being at rest, relative to the stored energy.
 const REST: f64 = 1e-3;
 
-/// Forces out of balance times the size that count as rest, as a part of the stored energy: a tremble with 10⁻⁷ of it has a
-/// thousandth.
+/// The unbalanced force times the size below which a body counts as being at rest, relative to the stored energy. A vibration with 10⁻⁷ of that
+/// energy has a value of one thousandth.
 const BALANCED: f64 = 1e-2;
 
-/// How long a displaced body has to leave, in units of L √(M/U).
+/// The time that a displaced body has to leave, in units of L √(M/U).
 const PATIENCE: f64 = 12.0;
 
-/// By how much nodes are displaced, in sizes of the body: the cube root of its volume, the square root of its area.
+/// The largest displacement of nodes, in sizes of the body: the cube root of its volume, or the square root of its area.
 const SIZES: [f64; 3] = [1e-4, 1e-2, 0.1];
 
-/// In how many parts statics goes through a frame again that ended folded.
+/// The number of parts in which statics repeats a frame that ended folded.
 const PARTS: u32 = 8;
 
-/// Cells of a body on which nothing acts are strained where their volume has changed by more than this part of it.
+/// A cell of a body on which nothing acts counts as strained if its volume has changed by more than this fraction.
 const STRAINED: f64 = 1e-3;
 
 /// The axes of space.
 const UNITS: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 impl<const D: usize> Island<D> {
-    /// Looks at a body after the substeps of a frame, now and then, and displaces it where it rests in a degenerate shape. `v0` holds the velocities
-    /// at the start of the frame.
+    /// Checks a body after the substeps of a frame, at intervals, and displaces it if it is at rest in a degenerate shape. `v0` contains the
+    /// velocities at the start of the frame.
     ///
     /// # Errors
-    /// [`StepError`] where a model refuses the state.
+    /// [`StepError`] if a model refuses the state.
     pub(crate) fn unfold(&mut self, plan: &FramePlan<D>, v0: &Columns<D>) -> Result<(), StepError> {
         let Some(mesh) = plan.unfold.map(|bodies| &bodies[self.bodies[0]].mesh) else { return Ok(()) };
         let system = &mut self.system;
@@ -116,7 +116,7 @@ impl<const D: usize> Island<D> {
         let energy = stored(system)?;
         let Motion { kinetic, push, mass, fading } = motion(system, v0, frame)?;
         let patience = PATIENCE * size * (mass / energy).sqrt();
-        // Numbers of the state are finite; what holds no energy has for ever to leave.
+        // Numbers of the state must be finite; a body without energy has unlimited time to leave.
         let until = system.time + patience;
         system.history.set(UNTIL, if until.is_finite() { until } else { f64::MAX });
         if times > SIZES.len() as u64 {
@@ -139,18 +139,18 @@ impl<const D: usize> Island<D> {
         Ok(())
     }
 
-    /// Solves a frame of statics again from displaced shapes, as long as it ends in a degenerate one; `start` is the energy at the start
-    /// of the frame [J]. Where no other equilibrium is found, the first one stays.
+    /// Solves a frame of statics again from displaced shapes, as long as it ends in a degenerate one. `start` is the energy at the start of the frame
+    /// [J]. If no other equilibrium is found, the first one is kept.
     ///
     /// # Errors
     /// [`StepError::BrokenOff`].
     pub(crate) fn unfold_statics(&mut self, plan: &FramePlan<D>, meets: bool, start: f64) -> Result<(), StepError> {
-        // Along the curve of equilibria every point counts.
+        // Every point of the curve of equilibria counts.
         if self.integrator.part_of_load(&self.system).is_some() {
             return Ok(());
         }
         let Some(mesh) = plan.unfold.map(|bodies| &bodies[self.bodies[0]].mesh) else { return Ok(()) };
-        // What one step folds, smaller ones may not: pins and loads go the same way in parts, and nothing is displaced.
+        // Smaller steps may avoid a fold that one step makes: pins and loads take the same path in parts, without any displacement.
         if degenerate_size(&self.system, mesh).is_some() {
             let found = Saved::of(&self.system, self.system.time);
             self.restore();
@@ -159,12 +159,12 @@ impl<const D: usize> Island<D> {
         for (times, part) in SIZES.iter().enumerate() {
             let Some(size) = degenerate_size(&self.system, mesh) else { return Ok(()) };
             let found = Saved::of(&self.system, self.system.time);
-            // Displaced at the end of the frame: pins are where they lead to, and tear no cells on their way there once more.
+            // The shape at the end of the frame is displaced: the pins have reached their ends, and do not distort the cells on their way again.
             displace(&mut self.system, part * size, times as u64);
             let shape = self.system.state.x.clone();
             self.restore();
             self.system.state.x = shape;
-            // Statics enters the change of energy since it began; what displacing gave is work, too.
+            // Statics records the change of energy since its start; the energy of the displacement is work too.
             let given = self.energy_here() - start;
             if self.solve_again(plan, meets, found)? {
                 self.system.work.user[0] += given;
@@ -175,8 +175,8 @@ impl<const D: usize> Island<D> {
         Ok(())
     }
 
-    /// Solves a frame again from the present state, and says whether that ended in an equilibrium; otherwise the one that was found
-    /// before stays. The solver's work on both counts.
+    /// Solves a frame again from the present state, and returns whether this ended in an equilibrium; otherwise the previous one is kept. The
+    /// solver's work counts for both.
     fn solve_again(&mut self, plan: &FramePlan<D>, meets: bool, found: Saved<D>) -> Result<bool, StepError> {
         let before = found.work.solver;
         match self.attempt(plan, meets) {
@@ -201,29 +201,29 @@ impl<const D: usize> Island<D> {
     }
 }
 
-/// The energy that the cells and springs of a body hold [J].
+/// The energy stored in the cells and springs of a body [J].
 fn stored<const D: usize>(system: &mut System<D>) -> Result<f64, StepError> {
-    // Evaluating the forces prepares the models.
+    // The evaluation of the forces prepares the models.
     system.forces(true)?;
     let view = system.view(Stage::Current, system.time);
     let elastic = system.members.iter().filter(|member| member.potential.properties().account == Account::Elastic);
     Ok(elastic.map(|member| sum_in_fixed_order(&member.potential.energy(system.simd, &view, &member.scratch))).sum())
 }
 
-/// How a body moves.
+/// Measures of the motion of a body.
 struct Motion {
     /// The kinetic energy [J].
     kinetic: f64,
-    /// The sum of the forces that change velocities [N].
+    /// The sum of the magnitudes of the forces that change velocities [N].
     push: f64,
     /// The mass [kg].
     mass: f64,
-    /// The energy that damping takes [W].
+    /// The power dissipated by damping [W].
     fading: f64,
 }
 
-/// The motion of a body; of a free one as seen from its centre of mass, and from axes that turn with it: what spins rests, too.
-/// Accelerations are means over the frame, since the forces of obstacles are in them.
+/// The motion of a body. For a free body it is relative to its centre of mass and to axes that rotate with it, so a spinning body counts as being at
+/// rest. Accelerations are means over the frame, because they include the forces of obstacles.
 fn motion<const D: usize>(system: &mut System<D>, v0: &Columns<D>, frame: f64) -> Result<Motion, StepError> {
     let damping = if system.members.iter().any(|member| member.potential.properties().views.damping) {
         let (all, undamped) = (system.forces(true)?, system.forces(false)?);
@@ -257,7 +257,7 @@ fn motion<const D: usize>(system: &mut System<D>, v0: &Columns<D>, frame: f64) -
         core::array::from_fn(|d| v[d] - speed[d] / mass)
     };
     let spin = if free { rotation(system, &velocity, &arm) } else { [0.0; 3] };
-    // What a body that tumbles has of accelerations: those that keep it together and turn its axis.
+    // Subtracts the accelerations of a rigid rotation: the centripetal ones and those that change the axis.
     let acceleration = |node: usize| -> [f64; D] {
         let (v, old, inward) = (system.state.v.at(node), v0.at(node), turned(&spin, &turned(&spin, &arm(node))));
         core::array::from_fn(|d| (v[d] - old[d] - change[d] / mass) / frame - inward[d])
@@ -272,7 +272,7 @@ fn motion<const D: usize>(system: &mut System<D>, v0: &Columns<D>, frame: f64) -
             let own = own[d] - turning[d];
             kinetic += 0.5 * m * own * own;
             push += m * (left[d] - turned_more[d]).abs();
-            // Pinned nodes are led by others.
+            // The motion of pinned nodes is prescribed.
             if let Some((all, undamped)) = damping.as_ref().filter(|_| !pinned[node][d]) {
                 fading -= (all.0[d][node] - undamped.0[d][node]) * own;
             }
@@ -281,8 +281,8 @@ fn motion<const D: usize>(system: &mut System<D>, v0: &Columns<D>, frame: f64) -
     Ok(Motion { kinetic, push, mass, fading })
 }
 
-/// The angular velocity [rad/s] of the rotation about the centre that is nearest to the velocities of a body beyond their mean; of
-/// accelerations the angular acceleration [rad/s²].
+/// The angular velocity [rad/s] of the rotation about the centre that is nearest to the velocities of a body relative to their mean; for
+/// accelerations, the angular acceleration [rad/s²].
 fn rotation<const D: usize>(
     system: &System<D>,
     field: &dyn Fn(usize) -> [f64; D],
@@ -303,7 +303,7 @@ fn rotation<const D: usize>(
             }
         }
     }
-    // A body on a line has no inertia about it.
+    // A body on a line has no moment of inertia about it.
     let (values, vectors) = symmetric_eigen(&inertia, n);
     let least = 1e-9 * values.last().copied().unwrap_or(0.0);
     let mut out = [0.0; 3];
@@ -327,10 +327,10 @@ fn turned<const D: usize>(spin: &[f64; 3], arm: &[f64; D]) -> [f64; D] {
     })
 }
 
-/// The size of a body that is degenerate, inverted or strained by nothing [m]; none where its shape is one of its own.
+/// The size of a body that is degenerate, inverted, or strained without cause [m]; none if its shape is regular.
 fn degenerate_size<const D: usize>(system: &System<D>, mesh: &Mesh<D>) -> Option<f64> {
     let (alone, cells) = (nothing_acts(system), cells(system));
-    // Models without cells know no degenerate ones.
+    // Models without cells have no degenerate ones.
     let mut degenerate = !cells.is_empty() && is_folded(system, mesh);
     let mut volume = 0.0;
     for cell in cells {
@@ -340,7 +340,7 @@ fn degenerate_size<const D: usize>(system: &System<D>, mesh: &Mesh<D>) -> Option
     degenerate.then(|| if D == 2 { volume.sqrt() } else { Lane::exp(Lane::ln(volume) / 3.0) })
 }
 
-/// Whether a cell of a body is certainly inverted somewhere, be it between its integration points, that is upright at rest.
+/// Whether a cell of a body that is upright at rest is certainly inverted somewhere, even if only between its integration points.
 fn is_folded<const D: usize>(system: &System<D>, mesh: &Mesh<D>) -> bool {
     let (mut now, mut rest) = (Vec::new(), Vec::new());
     mesh.cells.iter().any(|(_, _, nodes)| {
@@ -359,14 +359,14 @@ fn cells<const D: usize>(system: &System<D>) -> Vec<CellState> {
     system.members.iter().flat_map(|member| member.potential.cell_states(&view, 0)).collect()
 }
 
-/// Whether every cell of a body has no volume.
+/// Whether all cells of a body are without volume.
 fn is_flat<const D: usize>(system: &System<D>) -> bool {
     cells(system)
         .iter()
         .all(|cell| CellState { smallest_volume_ratio: cell.volume_ratio.abs(), ..*cell }.is_degenerate())
 }
 
-/// Whether nothing acts on the cells of a body but themselves.
+/// Whether the cells of a body are subject only to their own forces.
 fn nothing_acts<const D: usize>(system: &System<D>) -> bool {
     let view = system.view(Stage::Current, system.time);
     system.pins.is_empty()
@@ -378,7 +378,7 @@ fn nothing_acts<const D: usize>(system: &System<D>) -> bool {
         })
 }
 
-/// Displaces the nodes of a body at random by up to `size` [m]; pins stay where they are.
+/// Displaces the nodes of a body at random by up to `size` [m]; pinned nodes stay in place.
 fn displace<const D: usize>(system: &mut System<D>, size: f64, times: u64) {
     for node in 0..system.nodes {
         let x = system.state.x.at(node);
@@ -387,7 +387,7 @@ fn displace<const D: usize>(system: &mut System<D>, size: f64, times: u64) {
     system.hold(Stage::Current, 0.0);
 }
 
-/// The same; the energy that this takes is work from outside. Nothing happens where a law has no meaning in the displaced shape.
+/// The same; the energy that this takes is work from outside. Nothing happens if a law is not defined in the displaced shape.
 fn displace_with_work<const D: usize>(system: &mut System<D>, size: f64, times: u64) {
     let (x, before) = (system.state.x.clone(), system.stored_energy(Stage::Current, 0.0));
     displace(system, size, times);
@@ -398,15 +398,15 @@ fn displace_with_work<const D: usize>(system: &mut System<D>, size: f64, times: 
     }
     let given = system.stored_energy(Stage::Current, 0.0) - before;
     system.work.user[0] += given;
-    // The rule had no part in it.
+    // The integrator did not contribute to it.
     system.work.numerical[0] += given;
 }
 
-/// A number from −1 to 1 that belongs to a coordinate and a time of asking.
+/// A number from −1 to 1 that depends on a coordinate and on the number of the displacement.
 fn random(coordinate: usize, times: u64) -> f64 {
     let mut state = (coordinate as u64 + 1) ^ (times << 48);
     for _ in 0..3 {
-        // Knuth's linear congruential generator, and the mixing of its upper bits into the lower ones.
+        // Knuth's linear congruential generator, with its upper bits mixed into the lower ones.
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         state ^= state >> 29;
     }

@@ -1,5 +1,5 @@
-//! What a blueprint must keep to, whoever made it: the ranges of [`crate::schema`], names, indices, finite numbers. The reader of
-//! scenes asks the same questions, and adds lines and columns.
+//! The rules that every blueprint must satisfy, whoever made it: the ranges of [`crate::schema`], names, indices, finite numbers. The reader of
+//! scenes applies the same rules, and adds lines and columns.
 
 use crate::blueprint::{
     Action, Blueprint, BodyBlueprint, CommandBlueprint, LoadBlueprint, LoadKind, Mass, PinBlueprint, Selector,
@@ -14,20 +14,20 @@ use opruga_mesh::outline::OutlineError;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// The largest coordinate of a shape [m]: powers of lengths up to the fourth are numbers then.
+/// The largest coordinate of a shape [m]; powers of lengths up to the fourth are then finite.
 pub const LONGEST: f64 = 1e70;
 
-/// The most frames of a run.
+/// The maximum number of frames of a run.
 const MOST_FRAMES: f64 = 1e12;
 
 pub use crate::faults::{BlueprintFault, NameFault};
 
-/// What is wrong with a field of a part of the blueprint.
+/// An error in a field of a part of the blueprint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
     /// The field.
     pub field: &'static str,
-    /// What is wrong.
+    /// The error.
     pub about: AnyMessage,
 }
 
@@ -35,13 +35,13 @@ impl Fault {
     fn new(field: &'static str, about: impl Into<AnyMessage>) -> Fault {
         Fault { field, about: about.into() }
     }
-    /// The error about it in a part of the blueprint.
+    /// Converts it to the error of a part of the blueprint.
     fn at(self, part: Part) -> WorldError {
         WorldError::Build { part, source: BuildError::of(self.field, self.about) }
     }
 }
 
-/// A field of a section, by its range there.
+/// Checks a field of a section against its range.
 fn field<const D: usize>(section: &Section, name: &'static str, value: Value) -> Result<(), Fault> {
     let Some(field) = section.spec.fields.iter().find(|field| field.name == name) else { return Ok(()) };
     range::<D>(&field.range, name, value)
@@ -58,8 +58,8 @@ pub fn unprintable(c: char) -> bool {
         || matches!(c, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{61c}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}')
 }
 
-/// What is wrong with a name: names stand in paths and in the heads of tables, and keep clear of what separates those. The number
-/// of a copy, `name[3]`, is no part of its name.
+/// The fault of a name, if it has one. Names occur in paths and in the headers of tables, so they must not contain the separators of these. The
+/// number of a copy, `name[3]`, is not part of its name.
 pub fn name_fault(name: &str) -> Option<NameFault> {
     let bad = name.chars().find(|c| unprintable(*c) || ".,[]\"'=".contains(*c));
     if name.is_empty() {
@@ -73,7 +73,7 @@ pub fn name_fault(name: &str) -> Option<NameFault> {
     number.then_some(NameFault::Number {})
 }
 
-/// What is wrong with how time passes, beyond the ranges of its fields: the frames would not end, or time would stand still.
+/// The fault of time settings beyond the ranges of their fields: the frames would not end, or time would not advance.
 pub fn time_fault(time: &Time) -> Option<Fault> {
     let Time { seconds, frame, substeps } = *time;
     let h = frame / f64::from(substeps);
@@ -90,10 +90,10 @@ pub fn time_fault(time: &Time) -> Option<Fault> {
     Some(Fault::new("frame", about))
 }
 
-/// How a set of nodes does not fit a body.
+/// The reasons why a set of nodes does not fit a body.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SelectorFault {
-    /// It names a node that is not there.
+    /// It contains a node that does not exist.
     NoNode(u32),
     /// It names a group that the mesh does not have.
     NoGroup(String),
@@ -102,7 +102,7 @@ pub enum SelectorFault {
 }
 
 impl SelectorFault {
-    /// It in words; `shown` makes names fit to be printed.
+    /// The fault as a message; `shown` makes names printable.
     pub fn about<const D: usize>(&self, body: &BodyBlueprint<D>, shown: &dyn Fn(&str) -> String) -> BlueprintFault {
         let name = shown(&body.name);
         match self {
@@ -123,7 +123,7 @@ impl SelectorFault {
 }
 
 impl<const D: usize> Selector<D> {
-    /// Why the set cannot be one of nodes of a body; none where it can.
+    /// The reason why the set is not valid for a body; none if it is.
     pub fn fault(&self, body: &BodyBlueprint<D>) -> Option<SelectorFault> {
         let (mut node, mut group) = (None, None);
         self.visit(&mut |part| match part {
@@ -159,10 +159,10 @@ fn select<const D: usize>(select: &Selector<D>, body: &BodyBlueprint<D>) -> Resu
     }
 }
 
-/// Refuses what a scene file could not say.
+/// Refuses a blueprint that a scene file could not express.
 ///
 /// # Errors
-/// [`WorldError::Build`] of the first fault, with the code that the reader of scenes gives it.
+/// [`WorldError::Build`] for the first fault, with the code that the reader of scenes uses.
 pub(crate) fn blueprint<const D: usize>(scene: &Blueprint<D>) -> Result<(), WorldError> {
     time::<D>(&scene.time)?;
     surroundings(&scene.surroundings)?;
@@ -204,7 +204,7 @@ pub(crate) fn blueprint<const D: usize>(scene: &Blueprint<D>) -> Result<(), Worl
     Ok(())
 }
 
-/// Refuses a body that no scene file could describe, whose parts do not fit one another, or whose numbers are none.
+/// Refuses a body that no scene file could describe, whose parts do not fit one another, or whose numbers are not finite.
 ///
 /// # Errors
 /// As [`blueprint`].
@@ -212,7 +212,7 @@ pub(crate) fn body<const D: usize>(body: &BodyBlueprint<D>) -> Result<(), WorldE
     mesh(body).and_then(|()| numbers(body)).map_err(|fault| fault.at(Part::body(&body.name)))
 }
 
-/// Refuses pairs of groups that no body is in.
+/// Refuses pairs of groups without bodies.
 fn contact<const D: usize>(scene: &Blueprint<D>, bodies: &[&BodyBlueprint<D>]) -> Result<(), WorldError> {
     let groups: BTreeSet<&str> = bodies.iter().map(|body| body.contact_group()).collect();
     for (k, pair) in scene.contact.iter().flat_map(|contact| contact.pairs.iter().enumerate()) {
@@ -265,13 +265,13 @@ pub(crate) fn surroundings<const D: usize>(all: &Surroundings<D>) -> Result<(), 
     check().map_err(|fault: Fault| fault.at(Part::Section { path: "world" }))
 }
 
-/// What the mesh of a body must keep to, so that nobody who reads it goes astray.
+/// Checks the mesh of a body, so that all code that reads it can rely on it.
 fn mesh<const D: usize>(body: &BodyBlueprint<D>) -> Result<(), Fault> {
     if body.mesh.positions.is_empty() {
         return Err(Fault::new("shape", BlueprintFault::NoNodes {}));
     }
     body.mesh.validate().map_err(|error| Fault::new("shape", OutlineError::Mesh { error }))?;
-    // Written so that what is no number is too far.
+    // This form treats NaN as too far.
     let far = |x: &f64| (x.abs() <= LONGEST).then_some(()).is_none();
     match body.mesh.positions.iter().position(|x| x.iter().any(far)) {
         Some(node) => {
@@ -282,9 +282,9 @@ fn mesh<const D: usize>(body: &BodyBlueprint<D>) -> Result<(), Fault> {
     }
 }
 
-/// The numbers of a body.
+/// Checks the numbers of a body.
 fn numbers<const D: usize>(body: &BodyBlueprint<D>) -> Result<(), Fault> {
-    // That of copies ends in their number.
+    // The name of a copy ends in its number.
     let common = body.name.strip_suffix(']').and_then(|name| name.rsplit_once('['));
     let common = common.filter(|(_, copy)| !copy.is_empty() && copy.bytes().all(|b| b.is_ascii_digit()));
     let name = common.map_or(body.name.as_str(), |(name, _)| name);
@@ -350,7 +350,7 @@ fn load<const D: usize>(load: &LoadBlueprint<D>, bodies: &[&BodyBlueprint<D>]) -
     select(&load.select, body)
 }
 
-/// What a command must keep to by itself; whether its body is there is seen when it begins.
+/// Checks a command by itself; the existence of its body is checked when it begins.
 pub(crate) fn command<const D: usize>(command: &CommandBlueprint<D>) -> Result<(), Fault> {
     range::<D>(&Allowed::ANY, "at", Value::Number(command.at))?;
     range::<D>(&Allowed::ANY, "until", Value::Number(command.until))?;
@@ -367,7 +367,7 @@ pub(crate) fn command<const D: usize>(command: &CommandBlueprint<D>) -> Result<(
     }
 }
 
-/// Refuses a command that a program gives.
+/// Refuses an invalid command of a program.
 ///
 /// # Errors
 /// As [`blueprint`].

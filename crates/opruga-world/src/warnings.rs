@@ -1,4 +1,4 @@
-//! What deserves attention in a world: warnings as values.
+//! Warnings of a world as values.
 
 use crate::error::{Part, WorldError};
 use crate::faults::{BlueprintFault, NameFault};
@@ -32,33 +32,33 @@ pub const MESSAGES: &[&[opruga_math::message::Variant]] = &[
     BlueprintFault::VARIANTS,
 ];
 
-/// Something that deserves attention, and how often it happened.
+/// A warning, and how often it occurred.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Warning {
     /// A stable code.
     pub code: String,
     /// What happened, in English.
     pub message: String,
-    /// How often.
+    /// The number of times that it happened.
     pub count: u64,
-    /// What happened, as a value; none where the text is all there is.
+    /// What happened, as a value; none if there is only the text.
     pub about: Option<AnyMessage>,
 }
 
 impl Warning {
-    /// A warning of a message.
+    /// A warning with a message.
     pub fn new(about: impl Into<AnyMessage>, count: u64) -> Warning {
         let about = about.into();
         Warning { code: about.code().into(), message: about.in_full(), count, about: Some(about) }
     }
 
-    /// What the field of this name says, in the same words in all languages.
+    /// The text of the field with this name, which is the same in all languages.
     pub fn field(&self, name: &str) -> Option<String> {
         let fields = self.about.as_ref()?.fields();
         fields.iter().find(|(known, _)| *known == name).map(|(_, value)| value.to_string())
     }
 
-    /// Whether it has this code, and the field of this name says this.
+    /// Whether it has this code, and the field with this name has this text.
     pub fn is_about(&self, code: &str, name: &str, value: &str) -> bool {
         self.code == code && self.field(name).as_deref() == Some(value)
     }
@@ -70,7 +70,7 @@ terms! {
 }
 
 terms! {
-    /// What makes the error of an integrator smaller.
+    /// Measures against the error of an integrator.
     pub enum ErrorHint = "part.error_hint" {
         Implicit = "implicit rules leave unexplained what their equations are left out of balance: a smaller `tolerance`, or `accuracy = \"exact\"`",
         Contact = "bodies met obstacles, and there it falls in proportion to the step by every rule: more substeps",
@@ -80,7 +80,7 @@ terms! {
 }
 
 terms! {
-    /// What turns inverted cells back.
+    /// Measures against inverted cells.
     pub enum CellHint = "part.cell_hint" {
         Smaller = "smaller cells, or less that crushes them",
         Farther = "smaller cells, or a material that pushes such cells back from farther (`fixed_corotated`)",
@@ -89,7 +89,7 @@ terms! {
 }
 
 terms! {
-    /// Which cells bend better.
+    /// Cells that are better in bending.
     pub enum BendingHint = "part.bending_hint" {
         Quadratic = "quadratic cells (`order = 2`), quadrilaterals or hexahedra",
         Hexahedra = "hexahedra, or shorter cells",
@@ -97,12 +97,12 @@ terms! {
 }
 
 terms! {
-    /// That a scene may unfold bodies.
+    /// The hint that a scene may unfold bodies.
     pub enum UnfoldHint = "part.unfold_hint" { Unfold = ", or `unfold = true` in `[world]`" }
 }
 
 messages! {
-    /// How many cells are inverted.
+    /// The number of inverted cells.
     #[derive(Clone, Debug, PartialEq)]
     pub enum InvertedCells {
         "part.inverted_cells" #[error("{}", cells_are(*count))]
@@ -113,7 +113,7 @@ messages! {
         Both { count: u64, perhaps: u64 },
     }
 
-    /// Where a node lies that obstacles leave no room.
+    /// The position of a node for which obstacles leave no space.
     #[derive(Clone, Debug, PartialEq)]
     pub enum Lay {
         "part.lay" #[error("lay {} m inside the first", number(*depth))]
@@ -122,7 +122,7 @@ messages! {
         Between {},
     }
 
-    /// What would free a body that begins inside an obstacle.
+    /// Measures that free a body that starts inside an obstacle.
     #[derive(Clone, Debug, PartialEq)]
     pub enum Remedy {
         "part.remedy" #[error("moved by ({shift}) m it would be free")]
@@ -131,7 +131,7 @@ messages! {
         Nowhere {},
     }
 
-    /// The cell that is farthest from its volume.
+    /// The cell whose volume differs most from its volume at rest.
     #[derive(Clone, Debug, PartialEq)]
     pub enum WorstCell {
         "part.worst_cell" #[error("; now the cell farthest from its volume is {cell} of body `{body}`, J = {ratio:.4}")]

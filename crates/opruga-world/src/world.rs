@@ -27,21 +27,21 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 /// The largest number of threads.
 pub(crate) const MOST_THREADS: usize = 256;
 
-/// How a world is run; none of it changes results.
+/// Options that control how a world is run; none of them changes results.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// Threads, 1 to 256; 1 runs everything on the calling one.
+    /// The number of threads, 1 to 256; 1 runs everything on the calling thread.
     pub threads: usize,
-    /// Vector instructions; none: the best that the processor has.
+    /// Vector instructions; none: the best that the processor supports.
     pub simd: Option<Simd>,
-    /// Steps above the estimated limit are a warning and not an error.
+    /// Whether steps above the estimated limit cause a warning instead of an error.
     pub allow_unstable: bool,
-    /// Alike bodies are stepped eight at a time.
+    /// Whether alike bodies are stepped eight at a time.
     pub batches: bool,
-    /// What ends a frame that takes long within a substep, with [`WorldError::BrokenOff`] and at the last good frame: asked for, and
-    /// no longer asked for, from outside.
+    /// A request from outside to cancel a frame that takes long. The frame then ends within a substep with [`WorldError::BrokenOff`], and the world
+    /// is at its last good frame. The request can be withdrawn.
     pub break_off: Arc<BreakOff>,
-    /// What its bodies may take together, by an estimate before they are built [bytes]; none: what the machine gives.
+    /// The limit for the memory of all bodies together, estimated before they are built [bytes]; none: what the system provides.
     pub most_bytes: Option<u64>,
 }
 
@@ -64,28 +64,28 @@ pub struct World<const D: usize> {
     pub(crate) registry: Arc<Registry<D>>,
     pub(crate) options: Options,
     pub(crate) simd: Simd,
-    /// That of the scene; a body may have its own.
+    /// The integrator of the scene; a body may have its own.
     pub(crate) integrator: Arc<dyn Integrator<D>>,
     pub(crate) colliders: Option<Arc<Colliders<D>>>,
     pub(crate) islands: Vec<Island<D>>,
     /// Bodies that may touch, and their contacts; none without `[contact]`.
     pub(crate) clusters: Option<Box<Clusters<D>>>,
-    /// What contact keeps from frame to frame.
+    /// The state of contact that is kept from frame to frame.
     pub(crate) contact_memory: ContactMemory<D>,
-    /// The contacts of the last frame; none where they are not reported.
+    /// The contacts of the last frame; none if they are not reported.
     pub(crate) contacts: Option<Vec<Contact<D>>>,
-    /// How many islands were built since the start.
+    /// The number of islands built since the start.
     pub(crate) islands_built: u64,
     /// Island and lane of every body.
     pub(crate) locations: Vec<(usize, usize)>,
-    /// Who is where in the list of bodies.
+    /// The slots of the list of bodies.
     pub(crate) slots: Slots,
-    /// Commands of the scene and those that act as if it had held them; behind them those of the program that are not over.
+    /// Commands of the scene, including those that act as if it had contained them; after them, unfinished commands of the program.
     pub(crate) running: Vec<Running<D>>,
     /// The first command that could not begin in the last frame.
     pub(crate) refused: Option<Box<CommandBlueprint<D>>>,
     pub(crate) user_forces: Vec<(BodyHandle, Arc<ForceLaw<D>>)>,
-    /// How many laws of force bodies had in the snapshot that was restored last, which cannot hold the laws themselves.
+    /// The number of force laws of each body in the last restored snapshot, which cannot contain the laws themselves.
     pub(crate) laws_saved: BTreeMap<usize, u64>,
     pub(crate) limited_pulls: Arc<AtomicU64>,
     pub(crate) flows: Flows,
@@ -98,16 +98,16 @@ pub struct World<const D: usize> {
     pub(crate) warnings: Vec<Warning>,
     /// The parts of the blueprint that have changed since the start, as they were.
     pub(crate) at_start: AtStart<D>,
-    /// The cosine of the farthest turn of cells under the law `linear` that was warned of.
+    /// The cosine of the largest rotation of a cell under the law `linear` that was reported.
     pub(crate) farthest_turn: f64,
-    /// What the program has done since it was last asked for; none: it is not written down.
+    /// The inputs of the program since the last request; none if they are not recorded.
     pub(crate) inputs: Option<Vec<Input<D>>>,
     /// One for each thread.
     pub(crate) workspaces: Vec<Mutex<Workspace<D>>>,
     pub(crate) pool: Option<rayon::ThreadPool>,
 }
 
-/// A workspace holds nothing between steps: one that a panic left behind is as good as any.
+/// Locks a workspace. It contains nothing between steps, so one that a panic has poisoned can still be used.
 pub(crate) fn lock<const D: usize>(workspace: &Mutex<Workspace<D>>) -> MutexGuard<'_, Workspace<D>> {
     workspace.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -136,7 +136,7 @@ impl<const D: usize> World<D> {
     pub fn frames(&self) -> u64 {
         self.frames
     }
-    /// The substep [s].
+    /// The substep h [s].
     pub fn h(&self) -> f64 {
         self.blueprint.time.frame / f64::from(self.blueprint.time.substeps)
     }
@@ -148,11 +148,11 @@ impl<const D: usize> World<D> {
     pub fn colliders(&self) -> Option<&Colliders<D>> {
         self.colliders.as_deref()
     }
-    /// What contact between bodies has cost since the bodies were put together; none where there is none.
+    /// The work of contact between bodies since the bodies were grouped; none without contact.
     pub fn contact_counts(&self) -> Option<opruga_collide::Counts> {
         self.clusters.as_ref().map(|clusters| clusters.counts())
     }
-    /// The vector instructions in force.
+    /// The vector instructions in use.
     pub fn simd(&self) -> Simd {
         self.simd
     }

@@ -1,4 +1,4 @@
-//! The contract of a frame: after a few frames to warm up, none asks for memory; and what a world keeps per vertex.
+//! The contract of a frame: after a few frames no frame allocates memory. Also the memory of a world per vertex.
 #![allow(unsafe_code)] // an allocator that counts cannot be written without; nothing of it reaches the library
 
 use opruga_core::spec::{Spec, Value, Values};
@@ -9,18 +9,18 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::sync::Arc;
 
-/// Counts what the calling thread asks for.
+/// Counts the allocations of the calling thread.
 struct Counting;
 
 thread_local! {
     static REQUESTS: Cell<u64> = const { Cell::new(0) };
     static LIVE: Cell<i64> = const { Cell::new(0) };
-    /// Whether the next request stops the test where it is made, to show where.
+    /// Whether the next allocation stops the test, to show where it is made.
     static FORBIDDEN: Cell<bool> = const { Cell::new(false) };
 }
 
 fn requested(bytes: i64) {
-    // At the end of a thread its counters are gone; nobody looks at them any more.
+    // At the end of a thread its counters are gone; nothing reads them any more.
     let _ = REQUESTS.try_with(|n| n.set(n.get() + 1));
     let _ = LIVE.try_with(|n| n.set(n.get() + bytes));
     if FORBIDDEN.try_with(|f| f.replace(false)).unwrap_or(false) {
@@ -28,7 +28,7 @@ fn requested(bytes: i64) {
     }
 }
 
-// SAFETY: every request is passed on to the allocator of the system as it is.
+// SAFETY: every request is passed unchanged to the system allocator.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         requested(layout.size() as i64);
@@ -134,11 +134,11 @@ fn scene<const D: usize>(
     }
 }
 
-/// Requests of every frame after ten frames.
+/// Allocations in every frame after ten frames.
 fn requests<const D: usize>(name: &str, blueprint: Blueprint<D>) {
-    // Explicit Euler has a stable step by the drag alone, a shorter one.
+    // The stable step of explicit Euler follows from the drag alone, and is shorter.
     let options = Options { allow_unstable: true, ..Options::default() };
-    // Without looks into the frame, and with them.
+    // Without and with kept states within the frame.
     for look_every in [0, 7] {
         let mut world = World::new(blueprint.clone(), options.clone()).expect("a world");
         world.keep_looks(look_every);
@@ -178,7 +178,7 @@ fn a_ball_with_gas_on_the_floor_under_a_pull_asks_for_no_memory() {
     }
 }
 
-/// Implicit rules, exact and in real time, with conjugate gradients and with the sparse factor.
+/// Implicit integrators, exact and in real time, with conjugate gradients and with the sparse factor.
 #[test]
 fn a_net_that_falls_on_the_floor_in_implicit_steps_asks_for_no_memory() {
     let text = |text: &str| Value::Text(text.into());
@@ -226,7 +226,7 @@ fn a_balloon_in_space_asks_for_no_memory() {
     requests("a balloon", scene(sphere, 1, &models, "symplectic_euler", Some(path)));
 }
 
-/// Bytes on the heap per vertex of a ring of 100,000, its blueprint and rest shape included.
+/// Bytes on the heap per vertex of a ring of 100,000, including its blueprint and rest shape.
 #[test]
 fn a_large_ring_takes_at_most_two_hundred_bytes_a_vertex() {
     let before = live();
@@ -249,7 +249,7 @@ fn a_large_ring_takes_at_most_two_hundred_bytes_a_vertex() {
     assert!(stepped <= 200.0, "{stepped:.1} bytes a vertex after a frame");
 }
 
-/// Torture row 74: worlds come and go, and memory with them.
+/// Torture row 74: worlds are created and dropped, and their memory with them.
 #[test]
 fn worlds_leave_nothing_behind() {
     let models = [
@@ -273,8 +273,8 @@ fn worlds_leave_nothing_behind() {
     assert_eq!(live(), before, "bytes left behind by a thousand worlds");
 }
 
-/// Torture row 74: bodies of the program and its commands come and go, and nothing is kept of them: neither memory, nor bytes in
-/// snapshots, nor work for those that come later.
+/// Torture row 74: bodies and commands of the program are added and removed, and nothing is kept of them: no memory, no bytes in snapshots, no work
+/// for later ones.
 #[test]
 fn bodies_and_commands_that_are_over_leave_nothing_behind() {
     let models = [model::<2>("mass_spring", &[("stiffness", 1600.0), ("damping", 1.0)])];
@@ -306,7 +306,7 @@ fn bodies_and_commands_that_are_over_leave_nothing_behind() {
         world.frame().expect("a frame");
         (added, world.snapshot().len(), world.blueprint().bodies.len())
     };
-    // Those whose commands end with them are named in warnings, the first of them.
+    // The first bodies whose commands end with them are named in warnings.
     let first = (0..40).map(|_| cycle()).last();
     let before = live();
     let last = (0..5000).map(|_| cycle()).last();

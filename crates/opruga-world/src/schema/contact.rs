@@ -1,4 +1,4 @@
-//! `[contact]`, `[[contact.pair]]`, and what a body says of its own contact.
+//! `[contact]`, `[[contact.pair]]`, and the contact settings of a body.
 
 use super::{Child, Holds, Section, child, section};
 use opruga_core::spec::{Allowed, Bound, Condition, Default, Field};
@@ -127,6 +127,6 @@ pub const BODY_CONTACT: Section = Section {
     children: &[],
 };
 
-/// What a body says of its contact, as a child of its section.
+/// The contact settings of a body, as a child of its section.
 pub(super) const OF_BODY: Child =
     child("contact", Holds::Table(&BODY_CONTACT), false, "How it touches other bodies, where not as `[contact]` says.");

@@ -1,43 +1,43 @@
-//! What fills a closed surface, and how much of its volume that has.
+//! The filling of a closed surface, and the part of its volume that the filling keeps.
 
 use opruga_core::spec::Values;
 use opruga_mesh::{Mesh, MeshError};
 
-/// A loss of this part of an area or a volume is reported.
+/// The relative loss of an area or a volume above which it is reported.
 pub const REPORTED_LOSS: f64 = 0.05;
-/// A filling that loses or wins more than this part of the volume is refused.
+/// The relative loss or gain of volume above which a filling is refused.
 const REFUSED: f64 = 0.25;
-/// Spacings that are tried for a hint, each this part of the one before, and how many.
+/// The ratio between successive spacings that are tried for a hint, and their number.
 const FINER: (f64, usize) = (0.85, 6);
-/// The most nodes that a filling may have that is tried for a hint: an answer shall not take much longer than the body.
+/// The maximum number of nodes of a filling that is tried for a hint: the answer should not take much longer than the body.
 const LARGEST_TRIED: f64 = 10_000.0;
 
-/// What fills a closed surface: how, and with cubes of which side [m].
+/// The filling of a closed surface: its method, and the side of its cubes [m].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Filling {
-    /// Equal tetrahedra that reach a little beyond the surface and carry it as a skin.
+    /// Equal tetrahedra that extend slightly beyond the surface and carry it as a skin.
     Lattice(f64),
     /// Tetrahedra whose boundary follows the surface.
     Tetrahedra(f64),
 }
 
-/// What of the volume of a surface its filling has not, since it cuts edges off and leaves thin parts out.
+/// The volume of a surface that its filling lacks, because the filling cuts off edges and omits thin parts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Loss {
-    /// The volume of the filling over that of the surface.
+    /// The volume of the filling divided by that of the surface.
     pub kept: f64,
     /// A spacing that keeps the volume within [`REPORTED_LOSS`], if one was found.
     pub finer: Option<f64>,
 }
 
 impl Filling {
-    /// The filled body; and what it has lost of the volume, where that is more than [`REPORTED_LOSS`].
+    /// The filled body, and its loss of volume if that is more than [`REPORTED_LOSS`].
     ///
     /// # Errors
-    /// What [`Mesh::lattice_filling`] and [`Mesh::tetrahedra_filling`] refuse; [`MeshError::Lost`] for tetrahedra that lose more than a quarter.
+    /// The errors of [`Mesh::lattice_filling`] and [`Mesh::tetrahedra_filling`]; [`MeshError::Lost`] for tetrahedra that lose more than a quarter.
     pub fn of(self, surface: &Mesh<3>) -> Result<(Mesh<3>, Option<Loss>), MeshError> {
         let spacing = match self {
-            // It reaches beyond the surface, and carries it as it is.
+            // It extends beyond the surface, and carries the surface unchanged.
             Filling::Lattice(spacing) => return Ok((surface.lattice_filling(spacing)?, None)),
             Filling::Tetrahedra(spacing) => spacing,
         };
@@ -65,13 +65,13 @@ fn kept(filling: &Mesh<3>, surface: &Mesh<3>) -> f64 {
     filling.enclosed_volume() / surface.enclosed_volume()
 }
 
-/// A spacing that keeps the volume, of two digits. What is cut off falls with the square of the spacing: the first that is tried follows from that.
+/// A spacing of two digits that keeps the volume. The loss falls with the square of the spacing, which gives the first spacing to try.
 fn finer(surface: &Mesh<3>, spacing: f64, now: f64) -> Option<f64> {
     let (step, most) = FINER;
     let square = (REPORTED_LOSS / (now - 1.0).abs()).sqrt();
     let mut next = spacing * if square < step { square } else { step };
     for _ in 0..most {
-        // As it will be written.
+        // The number as it will be printed.
         let shown: f64 = format!("{next:.1e}").parse().ok()?;
         if surface.lattice_estimate(shown) > LARGEST_TRIED {
             return None;
@@ -85,7 +85,7 @@ fn finer(surface: &Mesh<3>, spacing: f64, now: f64) -> Option<f64> {
     None
 }
 
-/// The filling that a shape in space asks for.
+/// The filling that a shape in space requests.
 ///
 /// # Errors
 /// [`MeshError::NoSpacing`] for a filling without `spacing`.

@@ -1,4 +1,4 @@
-//! Shapes that are read from files: drawings, maps, texts, pictures, surfaces, meshes.
+//! Shapes that are read from files: drawings, maps, texts, images, surfaces, meshes.
 
 use super::CENTER;
 use opruga_core::spec::{Allowed, Bound, Condition, Default, Field, Role, Spec};
@@ -242,12 +242,12 @@ static MESH: Spec = Spec {
     roles: &[Role::CellsFromFile],
 };
 
-/// All of them.
+/// All shapes from files.
 pub(super) fn all() -> Vec<&'static Spec> {
     vec![&SVG, &MAP, &TEXT, &BITMAP, &SURFACE, &MESH]
 }
 
-/// Whether a shape of this kind is made from a file, which only its reader can do.
+/// Whether a shape of this kind is built from a file, which only the reader of that file can do.
 pub fn is_from_file(kind: &str) -> bool {
     all().iter().any(|spec| spec.kind == kind)
 }

@@ -1,13 +1,13 @@
-//! Several round outlines in one body, and which of them may lie where.
+//! Several circular outlines in one body, and the rules for their positions.
 
 use super::{number, points};
 use opruga_core::spec::Values;
 use opruga_mesh::{Mesh, MeshError, Quantity};
 
-/// Circles closer than this share of their radii touch: their nodes are rounded.
+/// Circles that are closer than this fraction of their radii touch, because their nodes are rounded.
 const TOUCHING: f64 = 1e-9;
 
-/// Rings one after the other; those of negative radius run clockwise.
+/// Rings, one after another; those with negative radius run clockwise.
 pub(super) fn rings(shape: &Values) -> Result<Mesh<2>, MeshError> {
     let (centers, radii) = (points::<2>(shape.rows("centers")), shape.numbers("radii").unwrap_or(&[]));
     if radii.len() != centers.len() {
@@ -41,13 +41,13 @@ struct Circle<'a> {
     nodes: &'a [[f64; 2]],
 }
 
-/// How two rings lie to one another.
+/// The relative position of two rings.
 enum Lying {
     Apart,
     Meeting,
-    /// The second in the first.
+    /// The second is inside the first.
     Within,
-    /// The first in the second.
+    /// The first is inside the second.
     Around,
 }
 
@@ -68,7 +68,7 @@ impl Circle<'_> {
         if outer.holds(inner, distance, sum * TOUCHING) { found } else { Lying::Meeting }
     }
 
-    /// Whether a smaller ring at a distance lies inside this one, and is farther than `gap` from its sides.
+    /// Whether a smaller ring at a given distance of centres lies inside this one and is farther than `gap` from its sides.
     fn holds(&self, inner: &Circle<'_>, distance: f64, gap: f64) -> bool {
         if distance + inner.size() >= self.size() - gap {
             return false;
@@ -79,7 +79,8 @@ impl Circle<'_> {
         if distance + inner.size() < (middle[0] * middle[0] + middle[1] * middle[1]).sqrt() - gap {
             return true;
         }
-        // The circle of the inner one crosses a side, which cuts the outer circle short; its own sides may be as short.
+        // The circle of the inner ring crosses a side of the outer polygon, which is inside its circle. The inner polygon may still lie inside,
+        // because it is smaller than its circle too.
         (0..self.nodes.len()).all(|k| {
             let (a, b) = side(k);
             let along = [b[0] - a[0], b[1] - a[1]];
@@ -89,7 +90,7 @@ impl Circle<'_> {
     }
 }
 
-/// Refuses rings that meet, that lie in one of their own kind, and holes in nothing.
+/// Refuses rings that meet, rings directly inside a ring of their own kind, and holes outside any ring.
 fn check(circles: &[Circle<'_>]) -> Result<(), MeshError> {
     let spread = |axis: usize| {
         let coordinates = circles.iter().map(|circle| circle.center[axis]);
@@ -98,7 +99,7 @@ fn check(circles: &[Circle<'_>]) -> Result<(), MeshError> {
         });
         high - low
     };
-    // Along the axis on which they lie farther apart, each is compared with those that it overlaps there.
+    // Sort along the axis with the larger extent; compare each ring with those that overlap it there.
     let axis = usize::from(spread(1) > spread(0));
     let ends = |k: usize| {
         let size = circles[k].size() * (1.0 + TOUCHING);
@@ -106,7 +107,7 @@ fn check(circles: &[Circle<'_>]) -> Result<(), MeshError> {
     };
     let mut order: Vec<usize> = (0..circles.len()).collect();
     order.sort_by(|a, b| ends(*a).0.total_cmp(&ends(*b).0));
-    // The smallest ring around each.
+    // The smallest ring around each ring.
     let mut around: Vec<Option<usize>> = vec![None; circles.len()];
     let mut meeting: Option<(usize, usize)> = None;
     let mut overlapping: Vec<usize> = Vec::new();

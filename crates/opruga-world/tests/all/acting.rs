@@ -1,4 +1,4 @@
-//! Commands that are given while the world runs are those of a scene that held them from the start.
+//! Commands given while the world runs have the same effect as commands that the scene contained from the start.
 #![allow(missing_docs)]
 
 use opruga_core::spec::{Spec, Value, Values};
@@ -79,7 +79,7 @@ fn frames(world: &mut World<2>, count: u32) {
     (0..count).for_each(|_| world.frame().expect("a frame"));
 }
 
-/// A command of the scene that comes after those of the person.
+/// A command of the scene after those of the user.
 fn late() -> CommandBlueprint<2> {
     let push = Action::Push { body: 1, select: Selector::Nodes(vec![3]), force: [2.0, 1.0] };
     CommandBlueprint { at: 1.2, until: 1.4, action: push }

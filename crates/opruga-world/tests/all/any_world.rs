@@ -1,4 +1,4 @@
-//! A world without a dimension in its type shows the same numbers as the world behind it, and does the same.
+//! A world without a dimension in its type shows the same numbers and has the same effects as the underlying world.
 
 use crate::common::{solid, text};
 use opruga_core::spec::Value;
@@ -6,7 +6,7 @@ use opruga_mesh::Mesh;
 use opruga_world::blueprint::{AnyBlueprint, Blueprint};
 use opruga_world::{AnyWorld, Options, World};
 
-/// Three alike bodies, which are stepped side by side, and one of another shape; all of them move and turn.
+/// Three alike bodies, which are stepped side by side, and one of another shape. All of them move and rotate.
 fn scene<const D: usize>() -> Blueprint<D> {
     let grid = |cells: u32| Mesh::<D>::grid([0.0; D], [1.0; D], [cells; D]).expect("a grid");
     let material =
@@ -15,7 +15,7 @@ fn scene<const D: usize>() -> Blueprint<D> {
     let mut scene = solid(grid(1), "symplectic_euler", &[], &material);
     scene.time.substeps = 64;
     scene.surroundings.gravity[1] = -9.81;
-    // Copies share their rest shape: only such bodies are stepped side by side.
+    // Copies share their rest shape; only such bodies are stepped side by side.
     let copy = body(1);
     scene.bodies = vec![copy.clone(), copy.clone(), copy, body(2)];
     for (number, body) in scene.bodies.iter_mut().enumerate() {
@@ -27,7 +27,7 @@ fn scene<const D: usize>() -> Blueprint<D> {
     scene
 }
 
-/// A vector with 0 for the coordinates that it lacks.
+/// The vector in space, with 0 for the coordinates that it lacks.
 fn three<const D: usize>(vector: [f64; D]) -> [f64; 3] {
     core::array::from_fn(|d| vector.get(d).copied().unwrap_or(0.0))
 }
@@ -48,7 +48,7 @@ fn shows_the_same<const D: usize>(of: fn(Blueprint<D>) -> AnyBlueprint) {
         let (positions, velocities) = (any.positions(body), any.velocities(body));
         assert_eq!([positions.len(), velocities.len(), positions.iter().len()], [count; 3]);
         assert_eq!(positions.columns().len(), D);
-        // Bodies that are stepped side by side lie so in memory too, and a body alone lies in one piece.
+        // Bodies that are stepped side by side are interleaved in memory too; a single body is contiguous.
         assert_eq!(positions.columns()[0].as_slice().is_some(), body == 3);
         for node in 0..count {
             let of_node = (world.position(body, node as u32), world.velocity(body, node as u32));
@@ -78,7 +78,7 @@ fn a_body_that_is_gone_has_empty_columns() {
     assert_eq!((any.body("body 1"), any.body("body 3")), (None, Some(3)));
 }
 
-/// What a program does through the face is written down, repeated and taken back as on the world itself.
+/// Inputs of a program through the trait are recorded, repeated and undone as those of the world itself.
 #[test]
 fn what_a_program_does_is_written_down_and_done_again() {
     let build = || AnyBlueprint::Space(scene()).build(Options::default()).expect("a world");

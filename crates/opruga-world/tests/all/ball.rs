@@ -152,7 +152,7 @@ fn a_free_ring_keeps_its_momentum_and_falls_like_a_stone() {
     blueprint.colliders.clear();
     let world = run(blueprint, Options::default(), 60);
     let momentum = world.momentum();
-    // m v: 1 kg at 0.3 m/s to the side, −9.81 m/s after one second of fall.
+    // m v: 1 kg at 0.3 m/s sideways and −9.81 m/s after one second of free fall.
     assert!((momentum.linear.0[0] - 0.3).abs() < 1e-12);
     assert!((momentum.linear.0[1] + 9.81).abs() < 1e-11);
     // Symplectic Euler after n steps: y = −g h² n (n + 1) / 2.
@@ -208,7 +208,7 @@ fn parameters_change_in_flight_and_bad_ones_are_refused() {
     let error = world.set("body.bal[0].models.pressure.nRT", Value::Number(80.0)).expect_err("misspelt");
     assert!(error.in_full().contains("did you mean `ball[0]`"), "{error}");
     assert!(world.set("body.ball[0].models.mass_spring.stiffness", Value::Number(-1.0)).is_err());
-    // A stiffness for which the step is too long is refused; the old one stays.
+    // A stiffness for which the step is too long is refused; the old one is kept.
     assert!(world.set("body.ball[0].models.mass_spring.stiffness", Value::Number(1e9)).is_err());
     world.frame().expect("goes on");
 }
@@ -233,7 +233,7 @@ fn command(at: f64, action: Action<2>) -> CommandBlueprint<2> {
     CommandBlueprint { at, until: at, action }
 }
 
-/// Two rings whose parameters change, of which one is taken away while a third comes and is pulled.
+/// Two rings whose parameters change; one of them is removed, and a third is added and pulled.
 fn changing() -> Blueprint<2> {
     let mut blueprint = rings(2, 36, "symplectic_euler");
     blueprint.surroundings.largest_velocity = Some(50.0);
@@ -262,7 +262,7 @@ fn changing() -> Blueprint<2> {
     blueprint
 }
 
-/// What commands have changed before a snapshot is part of it: in a new world, and in one that has gone on.
+/// Changes by commands before a snapshot are part of it, in a new world and in one that has continued.
 #[test]
 fn a_snapshot_of_a_changed_scene_can_be_restored() {
     let whole = run(changing(), Options::default(), 60);
@@ -279,7 +279,7 @@ fn a_snapshot_of_a_changed_scene_can_be_restored() {
         }
         assert_eq!(second.state_hash(), whole.state_hash(), "interrupted after {frames} frames");
         assert_eq!(second.energy(), whole.energy());
-        // The same world, back again.
+        // The same world, after restoring.
         second.restore(&bytes).expect("back");
         assert_eq!(second.state_hash(), first.state_hash());
         while second.frames() < 60 {
@@ -335,7 +335,7 @@ fn parameters_of_obstacles_limits_and_copies_change_in_flight() {
     world.frame().expect("goes on");
 }
 
-/// Bodies may all be gone, and commands may name bodies that are not there: no panic, and it is said.
+/// All bodies may be removed, and commands may name bodies that do not exist: nothing panics, and it is reported.
 #[test]
 fn an_empty_world_goes_on_and_commands_on_lost_bodies_are_told() {
     let mut blueprint = rings(1, 36, "symplectic_euler");
@@ -368,7 +368,7 @@ fn an_empty_world_goes_on_and_commands_on_lost_bodies_are_told() {
     world.restore(&bytes).expect("an empty world too");
 }
 
-/// Torture row 61: what is not finite does not get in, whatever the path.
+/// Torture row 61: values that are not finite are refused on every path.
 #[test]
 fn numbers_that_are_not_finite_stay_outside() {
     let mut world = run(rings(1, 36, "symplectic_euler"), Options::default(), 2);
@@ -381,7 +381,7 @@ fn numbers_that_are_not_finite_stay_outside() {
     assert!(world.set("world.gravity", Value::Numbers(vec![0.0, f64::NAN])).is_err());
     assert!(world.set("body.ball[0].models.pressure.nRT", Value::Number(f64::INFINITY)).is_err());
     assert_eq!(world.state_hash(), hash);
-    // A force law of the program's own that fails: the frame is refused and undone.
+    // A force law of the program fails: the frame is refused and undone.
     world
         .add_force(
             0,

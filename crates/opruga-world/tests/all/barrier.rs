@@ -22,7 +22,7 @@ fn pinned(side: &str, body: BodyBlueprint<2>) -> BodyBlueprint<2> {
     BodyBlueprint { pins: vec![pin], ..body }
 }
 
-/// A block that falls onto a held one rests there on its weight, apart from it by less than the reach.
+/// A block that falls onto a pinned one rests there under its weight, at a distance below the reach.
 #[test]
 fn a_block_rests_on_another_one_by_its_weight() {
     for rule in RULES {
@@ -43,7 +43,7 @@ fn a_block_rests_on_another_one_by_its_weight() {
     }
 }
 
-/// Free bodies that meet keep their momentum, part, and no energy is made.
+/// Free bodies that meet keep their momentum and separate, without a gain of energy.
 #[test]
 fn bodies_keep_momentum_and_part() {
     for rule in RULES {
@@ -73,7 +73,7 @@ fn bodies_keep_momentum_and_part() {
     }
 }
 
-/// A body that is pushed out of where it was going meets others within the same frame.
+/// A body that is pushed off its course meets others within the same frame.
 #[test]
 fn a_body_that_is_hit_meets_the_next_one_within_the_frame() {
     let bodies = vec![
@@ -91,7 +91,7 @@ fn a_body_that_is_hit_meets_the_next_one_within_the_frame() {
     assert!(mean > 1.0, "{mean}");
 }
 
-/// A small body that goes many times its size in a step does not pass a thin wall; where no end of the step is found, nothing has moved.
+/// A small body that moves many times its size in a step does not pass through a thin wall. If no end of the step is found, nothing has moved.
 #[test]
 fn fast_bodies_do_not_tunnel() {
     for speed in [1.0, 30.0, 300.0, 3000.0] {
@@ -112,7 +112,7 @@ fn fast_bodies_do_not_tunnel() {
     }
 }
 
-/// A block on a slope that friction just holds does not creep; one that it does not hold slides as Coulomb says.
+/// A block on a slope that friction just holds does not creep; one that friction does not hold slides according to Coulomb's law.
 #[test]
 fn what_sticks_on_a_body_does_not_creep() {
     let slope = 0.5_f64;
@@ -121,7 +121,7 @@ fn what_sticks_on_a_body_does_not_creep() {
         let base = pinned("bottom", block("base", [6.0, 0.5], [12, 2], [-1.0, -0.5], 10.0, 1e7));
         let mut scene =
             heavy("backward_euler", vec![base, block("rider", [0.5, 0.5], [2, 2], [0.1, 0.011], 1.0, 1e7)], 1);
-        // Gravity is turned in place of the slope.
+        // Gravity is rotated instead of the slope.
         scene.surroundings.gravity = [-9.81 * along[1], -9.81 * along[0]];
         scene.contact = contact::<2>(&[("response", "barrier".into()), ("friction", friction.into())]);
         let mut world = world(&scene);
@@ -143,7 +143,7 @@ fn what_sticks_on_a_body_does_not_creep() {
     }
 }
 
-/// A square of springs falls onto its corner, where springs give way sideways.
+/// A square of springs falls onto its corner, where springs buckle sideways.
 #[test]
 fn bodies_that_buckle_find_an_end() {
     let mut world = world(&square_over_a_box("barrier"));
@@ -153,7 +153,7 @@ fn bodies_that_buckle_find_an_end() {
     }
 }
 
-/// Bodies at rest come to their common balance by a barrier: each is carried by its weight, where a constraint would leave it.
+/// Bodies at rest reach their common equilibrium with a barrier. Each is supported against its weight, at the position that a constraint would give.
 #[test]
 fn stacks_come_to_their_balance() {
     for (bodies, friction) in [(2, 0.0), (2, 0.5), (3, 0.3), (3, 0.5), (3, 0.8)] {
@@ -173,12 +173,12 @@ fn stacks_come_to_their_balance() {
             let wrong = ((force[1] - wanted).abs() + force[0].abs()) / wanted.abs();
             assert!(wrong < 1e-6, "{bodies}, {friction}: {body}: {force:?} instead of {wanted}");
         }
-        // With friction there are many balances.
+        // With friction there are many equilibria.
         if friction == 0.0 {
             let change = (still.position(1, 40)[1] - by("constraint").position(1, 40)[1]).abs();
             assert!(change < 2e-3, "{change}");
         }
-        // Nothing changes in a second frame.
+        // A second frame changes nothing.
         let before = still.position(1, 40);
         still.frame().expect("the same balance");
         let change = (still.position(1, 40)[1] - before[1]).abs();
@@ -186,7 +186,7 @@ fn stacks_come_to_their_balance() {
     }
 }
 
-/// A substep whose end is not found is made in halves where the scene asks for that, by all bodies of the cluster.
+/// If the end of a substep is not found and the scene allows it, all bodies of the cluster make the substep in halves.
 #[test]
 fn substeps_without_an_end_are_halved_where_that_is_asked_for() {
     let fall = |otherwise: &str| {
@@ -230,7 +230,7 @@ fn a_barrier_refuses_explicit_rules_and_surfaces_that_meet() {
     assert_eq!(world.position(0, 0), before);
 }
 
-/// In space, with edges across one another and a sheet over them, by exact steps and in real time.
+/// In space, with crossing edges and a sheet over them, with exact steps and in real time.
 #[test]
 fn solids_and_a_sheet_rest_in_space() {
     for accuracy in ["exact", "real_time"] {

@@ -1,4 +1,4 @@
-//! A blueprint that a program makes keeps to what a scene file could say; all else is refused with the code of the reader.
+//! A blueprint of a program must satisfy the rules of a scene file; everything else is refused with the code of the reader.
 
 use crate::common;
 use opruga_math::message::Message;
@@ -108,7 +108,7 @@ fn what_no_scene_could_say_is_refused_with_the_code_of_the_reader() {
     assert_eq!(world.snapshot(), before, "the world stays as it was");
 }
 
-/// Copies are told by their number, which is no part of their name.
+/// Copies are distinguished by a number that is not part of their name.
 #[test]
 fn names_of_copies_are_names() {
     let mut blueprint = sound();

@@ -1,4 +1,4 @@
-//! Clusters: bodies that may touch go through a frame together, all others by themselves.
+//! Clusters: bodies that may touch are stepped through a frame together, all others on their own.
 
 use crate::contact::{ball, contact, model, scene};
 use crate::implicit_contact::heavy;
@@ -22,7 +22,7 @@ fn end(scene: &Blueprint<2>, bodies: &[usize], frames: u32, threads: usize, batc
         .collect()
 }
 
-/// A thin diagonal far above some bodies, whose box covers them: it takes them into one cluster, and touches none.
+/// A thin diagonal far above some bodies, whose bounding box covers them. It joins them into one cluster without touching any of them.
 fn link() -> BodyBlueprint<2> {
     let wire = Mesh { positions: vec![[-30.0, 60.0], [30.0, -60.0]], wires: vec![[0, 1]], ..Mesh::default() };
     let models = vec![model::<2>("mass_spring", &[("stiffness", 1.0)])];
@@ -33,7 +33,7 @@ fn with_self(scene: &mut Blueprint<2>, itself: bool) {
     scene.contact = contact::<2>(&[("self", itself.into()), ("friction", 0.3.into()), ("thickness", 0.002.into())]);
 }
 
-/// Two rings full of gas that burst open within one frame, far beyond the boxes in which they were to stay, and meet.
+/// Two rings full of gas that burst open within one frame, far beyond their predicted boxes, and meet.
 fn bursting() -> Vec<BodyBlueprint<2>> {
     let full = |name: &str, x: [f64; 2], v: [f64; 2]| {
         let mut body = ball(name, 24, x, v);
@@ -43,7 +43,8 @@ fn bursting() -> Vec<BodyBlueprint<2>> {
     vec![full("a", [0.0, 0.0], [0.0; 2]), full("b", [2.0, 0.1], [0.0; 2])]
 }
 
-/// Bodies that leave their boxes and meet do the same, to the bit, as when they go together from the start; on any number of threads.
+/// Bodies that leave their boxes and meet have the same motion, to the bit, as bodies that are stepped together from the start, on any number of
+/// threads.
 #[test]
 fn bodies_that_meet_unexpectedly_go_through_the_frame_together() {
     for rule in ["symplectic_euler", "verlet", "backward_euler"] {
@@ -57,7 +58,7 @@ fn bodies_that_meet_unexpectedly_go_through_the_frame_together() {
             world.frame().expect("a frame");
             world.contact_counts().expect("contact").steps
         };
-        // Each of them has no contact of its own: these are steps of both together, in a second attempt.
+        // Alone, neither has contact: these steps belong to both together, in a second attempt.
         assert_eq!(steps(&alone), 64, "{rule}");
         let known = end(&linked, &[0, 1], 3, 1, true);
         for (threads, batches) in [(1, true), (2, true), (3, true), (8, true), (1, false), (3, false)] {
@@ -74,7 +75,7 @@ fn bodies_that_meet_unexpectedly_go_through_the_frame_together() {
     }
 }
 
-/// What pairs of bodies do does not depend on others elsewhere.
+/// The motion of a pair of bodies does not depend on bodies elsewhere.
 #[test]
 fn bodies_elsewhere_change_nothing() {
     let square = |name: &str, x: [f64; 2], v: [f64; 2]| {
@@ -115,7 +116,7 @@ fn bodies_elsewhere_change_nothing() {
     }
 }
 
-/// Bodies that are far apart and do not touch themselves go through frames as without contact.
+/// Bodies that are far apart and do not touch themselves are stepped as without contact.
 #[test]
 fn bodies_far_apart_step_alone() {
     for rule in ["symplectic_euler", "implicit_midpoint"] {
@@ -133,7 +134,7 @@ fn bodies_far_apart_step_alone() {
     }
 }
 
-/// An obstacle finer than the mesh that nobody was expected to reach is met all the same.
+/// An obstacle finer than the mesh is met even if no body was expected to reach it.
 #[test]
 fn obstacles_that_bodies_reach_unexpectedly_are_met() {
     let mut bodies = bursting();
@@ -141,7 +142,7 @@ fn obstacles_that_bodies_reach_unexpectedly_are_met() {
     let mut scene = scene("symplectic_euler", bodies);
     scene.time = Time { seconds: 1.0, frame: 1.0 / 60.0, substeps: 64 };
     with_self(&mut scene, false);
-    // Below the middle of an edge of the ring.
+    // Below the midpoint of an edge of the ring.
     let angle = 0.5 * std::f64::consts::TAU / 24.0;
     let tip = [0.75 * libm::cos(angle), 0.75 * libm::sin(angle)];
     let corners = vec![tip.to_vec(), vec![5.0, -0.4], vec![5.0, 2.0]];
@@ -158,7 +159,7 @@ fn obstacles_that_bodies_reach_unexpectedly_are_met() {
     assert_eq!(inside.count() % 2, 0, "the tip is in the ring");
 }
 
-/// Bodies of different integrators that touch are reported once, and counted per frame and pair.
+/// Contact between bodies with different integrators is reported once; frames and pairs are counted.
 #[test]
 fn contact_of_different_integrators_is_counted() {
     let values = |rule: &str| Registry::<2>::default().integrator_values(rule, &[]).expect("a rule");
@@ -190,7 +191,7 @@ fn contact_of_different_integrators_is_counted() {
     assert_eq!(run("symplectic_euler").1, None);
 }
 
-/// Impulses go from frame to frame with the state: a world that restores a snapshot goes on bit for bit, with as many turns.
+/// Impulses are part of the state: a world that restores a snapshot continues bit for bit, with the same number of iterations.
 #[test]
 fn impulses_are_part_of_the_state() {
     let square = |name: &str, x: [f64; 2]| {
@@ -224,7 +225,7 @@ fn impulses_are_part_of_the_state() {
             assert_eq!(turns(&mut other), own, "{rule} {response}");
             assert_eq!(other.frame_hash(), hash, "{rule} {response}");
         }
-        // Damaged bytes at its end are refused, and leave the world as it is.
+        // Damaged bytes at its end are refused, and the world is unchanged.
         let mut damaged = kept.clone();
         let end = damaged.len();
         damaged[end - 1] ^= 0xff;

@@ -15,7 +15,7 @@ fn text(value: &str) -> Value {
     Value::Text(value.into())
 }
 
-/// A body of finite elements that nothing pulls at, with ν = 0.
+/// A body of finite elements without external forces, with ν = 0.
 fn body<const D: usize>(mesh: Mesh<D>, mass: &str, integrator: &str) -> Blueprint<D> {
     let registry = Registry::<D>::default();
     let spec = registry.model("fem").expect("a model").spec();
@@ -74,7 +74,7 @@ fn world<const D: usize>(blueprint: Blueprint<D>) -> World<D> {
     World::new(blueprint, Options::default()).expect("a world")
 }
 
-/// Lateral motion held everywhere: what is left at low frequencies is the bar, clamped at x = 0.
+/// A bar clamped at x = 0: lateral motion is pinned everywhere, so only axial motion remains at low frequencies.
 fn bar<const D: usize>(mesh: Mesh<D>, mass: &str) -> Blueprint<D> {
     let mut bar = body(mesh, mass, "implicit_midpoint");
     let lateral = core::array::from_fn(|d| d > 0);
@@ -85,8 +85,8 @@ fn bar<const D: usize>(mesh: Mesh<D>, mass: &str) -> Blueprint<D> {
     bar
 }
 
-/// ω of the j-th mode of n linear bar elements of the length h: (2c/h) sin(kh/2) with lumped masses, and √(3/(2 + cos kh)) of
-/// that more with consistent ones; k = (2j − 1)π/2L (Hughes, *The finite element method*, 7.3).
+/// ω of the j-th mode of n linear bar elements of length h: (2c/h) sin(kh/2) with lumped masses, and this times √(3/(2 + cos kh)) with consistent
+/// ones; k = (2j − 1)π/2L (Hughes, *The finite element method*, 7.3).
 fn closed_form(consistent: bool, j: usize, length: f64, cells: usize) -> f64 {
     let (h, speed) = (length / cells as f64, (MODULUS / DENSITY).sqrt());
     let phase = (2 * j - 1) as f64 * PI / (2.0 * length) * h;
@@ -116,7 +116,7 @@ fn waves_in_bars_are_too_slow_with_lumped_and_too_fast_with_consistent_masses() 
     bar_has_the_frequencies_of_the_closed_form(space, 2.0, 8);
 }
 
-/// Cells of two models add up, and cells of none have no stiffness: both are refused where groups are named.
+/// Cells of two models would add up, and cells of no model have no stiffness: both are refused if groups are named.
 #[test]
 fn every_cell_has_one_material() {
     let refusal = |groups: &[&str]| {
@@ -144,8 +144,7 @@ fn every_cell_has_one_material() {
     assert!(refusal(&["", ""]).contains("would add up"));
 }
 
-/// The weight of a body of consistent masses is that of its shape functions: it falls
-/// as one.
+/// The weight of a body with consistent masses follows from its shape functions: it falls without deformation.
 #[test]
 fn a_body_of_consistent_masses_falls_without_being_deformed() {
     let mesh =
@@ -168,7 +167,7 @@ fn a_body_of_consistent_masses_falls_without_being_deformed() {
     }
 }
 
-/// A bar let go in its first mode is back after the period that this mode says; average acceleration keeps the energy.
+/// A bar released in its first mode returns after the period of this mode; average acceleration conserves the energy.
 #[test]
 fn steps_follow_the_frequencies_of_the_same_masses() {
     for (integrator, mass) in [("newmark", "consistent"), ("implicit_midpoint", "consistent"), ("newmark", "lumped")] {
@@ -193,14 +192,14 @@ fn steps_follow_the_frequencies_of_the_same_masses() {
         }
         for (node, x) in start.iter().enumerate() {
             let way = (bar.position(0, node as u32)[0] - x[0]).abs();
-            // The rule's own error of phase is (hω)²/12 of a period: 5e-4 of a turn, of which the cosine sees the square.
+            // The phase error of the integrator is (hω)²/12 of a period: 5e-4 of a turn, which enters the cosine squared.
             assert!(way < 1e-3 * 1e-5, "{integrator}, {mass}, node {node}: {way}");
         }
         assert!((bar.energy().total() / energy - 1.0).abs() < 1e-5, "{integrator}, {mass}: {:?}", bar.energy());
     }
 }
 
-/// A square plate of few cells has the moment of inertia of the plate, m (a² + b²)/12, and keeps its momenta as it turns.
+/// A square plate of few cells has the moment of inertia of the continuum, m (a² + b²)/12, and conserves its momenta while it rotates.
 #[test]
 fn a_turning_plate_has_the_kinetic_energy_and_the_momenta_of_the_continuum() {
     let quadratic = Mesh::<2>::grid([-0.5, -0.25], [1.0, 0.5], [2, 1]).unwrap().into_simplices().unwrap();
@@ -229,7 +228,7 @@ fn a_turning_plate_has_the_kinetic_energy_and_the_momenta_of_the_continuum() {
     }
 }
 
-/// Every implicit rule and every way to solve its equations uses the same masses.
+/// All implicit integrators and all solvers of their equations use the same masses.
 #[test]
 fn solvers_agree_on_consistent_masses() {
     let mesh = Mesh::<3>::grid([0.0; 3], [1.0, 0.3, 0.3], [4, 2, 2]).unwrap().into_simplices().unwrap();
@@ -261,7 +260,7 @@ fn solvers_agree_on_consistent_masses() {
     }
 }
 
-/// A floor at a height.
+/// A floor at a given height.
 fn floor<const D: usize>(height: f64) -> ColliderBlueprint {
     let spec = opruga_collide::all(D).into_iter().find(|s| s.kind == "half_space").expect("a floor");
     let mut values = Values::defaults(spec, D);
@@ -272,8 +271,8 @@ fn floor<const D: usize>(height: f64) -> ColliderBlueprint {
     ColliderBlueprint { values }
 }
 
-/// In statics masses are weights alone, so obstacles go with consistent ones: a beam that sags onto a floor, of cells whose
-/// corners weigh nothing or less, lies on it as with lumped masses.
+/// In statics masses serve only as weights, so obstacles can be combined with consistent ones. A beam that sags onto a floor, with cells whose
+/// corners have zero or negative weight, lies on it as with lumped masses.
 #[test]
 fn a_beam_lies_on_a_floor_as_deep_with_consistent_as_with_lumped_masses() {
     fn lies<const D: usize>(mesh: &Mesh<D>, mass: &str) -> (f64, f64, usize) {
@@ -302,7 +301,7 @@ fn a_beam_lies_on_a_floor_as_deep_with_consistent_as_with_lumped_masses() {
     agrees(&plane.into_simplices().expect("triangles").into_quadratic().expect("quadratic ones"));
 }
 
-/// Statics has no inertia: whatever the masses, a beam sags as far, and swings about there with frequencies of its own.
+/// Statics has no inertia: a beam sags equally with all kinds of mass matrices, but oscillates about this state with different frequencies.
 #[test]
 fn a_balance_is_the_same_with_consistent_and_lumped_masses() {
     let sag = |mass: &str, material: &str| {

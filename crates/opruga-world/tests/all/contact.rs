@@ -21,7 +21,7 @@ pub(crate) fn model<const D: usize>(kind: &str, fields: &[(&str, f64)]) -> Value
     Registry::<D>::default().model_values(kind, &fields).expect("a model")
 }
 
-/// A scene without gravity, stepped by an explicit rule.
+/// A scene without gravity, stepped by an explicit integrator.
 pub(crate) fn scene<const D: usize>(rule: &str, bodies: Vec<BodyBlueprint<D>>) -> Blueprint<D> {
     let registry = Registry::<D>::default();
     let mut scene = Blueprint::new("contact", registry.integrator_values(rule, &[]).expect("a rule"));
@@ -30,7 +30,7 @@ pub(crate) fn scene<const D: usize>(rule: &str, bodies: Vec<BodyBlueprint<D>>) -
     scene
 }
 
-/// Gas balls of the plane.
+/// A ball of gas in the plane.
 pub(crate) fn ball(name: &str, vertices: u32, x: [f64; 2], v: [f64; 2]) -> BodyBlueprint<2> {
     let ring = Mesh::ring(0.5, vertices, [0.0; 2], 0.0).expect("a ring");
     let models = vec![
@@ -44,7 +44,7 @@ pub(crate) fn world<const D: usize>(scene: &Blueprint<D>) -> World<D> {
     World::new(scene.clone(), Options::default()).expect("a world")
 }
 
-/// How deep the deepest node of each body lies in another: by the even-odd rule, to the nearest side.
+/// The largest depth of a node of one body inside another: by the even-odd rule, measured to the nearest side.
 pub(crate) fn deepest(world: &World<2>) -> f64 {
     let bodies: Vec<usize> = (0..world.blueprint().bodies.len()).collect();
     let outline = |b: usize| -> Vec<[[f64; 2]; 2]> {
@@ -119,7 +119,7 @@ fn fast_bodies_far_apart_are_within_the_limit_of_pairs() {
     }
 }
 
-/// Each body has a range of its own, by its edges, and obstacles have none: a frame is a whole one beside a fine body and a huge obstacle.
+/// Each body has its own range, which depends on its edges, and obstacles have none: a fine body or a huge obstacle does not shorten a frame.
 #[test]
 fn ranges_of_other_bodies_and_obstacles_cut_no_frame_short() {
     let fine = |x: f64| {
@@ -161,7 +161,7 @@ fn points_bounce_by_the_restitution() {
         let mut world = world(&scene);
         (0..60).for_each(|_| world.frame().expect("a frame"));
         let [a, b] = [0, 1].map(|b| world.velocity(b, 0)[0]);
-        // Of masses 1 and 2 at 3 and −1 m/s: the centre goes at 1/3 m/s.
+        // Masses 1 and 2 at 3 and −1 m/s: the centre of mass moves at 1/3 m/s.
         let exact = [1.0 / 3.0 - restitution * 8.0 / 3.0, 1.0 / 3.0 + restitution * 4.0 / 3.0];
         assert!((a - exact[0]).abs() < 1e-9 && (b - exact[1]).abs() < 1e-9, "{rule} {restitution}: {a} {b} {exact:?}");
         let lost = 0.5 * 2.0 / 3.0 * 16.0 * (1.0 - restitution * restitution);
@@ -171,8 +171,8 @@ fn points_bounce_by_the_restitution() {
     }
 }
 
-/// Whether a point passes through an edge while all three move evenly: the area that they span is a quadratic function of time, and
-/// where it vanishes the point is on the line of the edge.
+/// Whether a point passes through an edge while all three points move uniformly. The area that they span is a quadratic function of time; where it
+/// vanishes, the point is on the line of the edge.
 pub(crate) fn passes(point: [[f64; 2]; 2], edge: [[[f64; 2]; 2]; 2]) -> bool {
     let at = |x: &[[f64; 2]; 2], t: f64| -> [f64; 2] { core::array::from_fn(|d| x[0][d] + t * (x[1][d] - x[0][d])) };
     let cross = |a: [f64; 2], b: [f64; 2]| a[0] * b[1] - a[1] * b[0];
@@ -192,7 +192,7 @@ pub(crate) fn passes(point: [[f64; 2]; 2], edge: [[[f64; 2]; 2]; 2]) -> bool {
     })
 }
 
-/// A thin wire, and a small one that comes to it at a speed [m/s].
+/// A thin wire, and a small one that approaches it at a given speed [m/s].
 pub(crate) fn wall_and_dot(speed: f64) -> Vec<BodyBlueprint<2>> {
     let wire = Mesh::<2>::line([0.0, -1.0], [0.0, 1.0], 40).expect("a wire");
     let springs = vec![model::<2>("mass_spring", &[("stiffness", 2000.0)])];
@@ -202,7 +202,7 @@ pub(crate) fn wall_and_dot(speed: f64) -> Vec<BodyBlueprint<2>> {
     vec![wall, BodyBlueprint { translation: [-0.3, 0.013], velocity: [speed, 0.0], ..dot }]
 }
 
-/// Nothing passes through a thin wire, at up to sixteen edges in a step; between two steps all points move evenly.
+/// Nothing passes through a thin wire, at up to sixteen edges in a step. Between two steps all points move uniformly.
 #[test]
 fn fast_bodies_do_not_tunnel() {
     for speed in [1.0, 30.0, 300.0, 3000.0] {
@@ -233,7 +233,7 @@ fn fast_bodies_do_not_tunnel() {
     }
 }
 
-/// Two walls that pins lead through one another, and a ball between them.
+/// Two walls that pins move through one another, and a ball between them.
 #[test]
 fn pins_that_lead_bodies_through_one_another_end_the_run_with_the_pair_and_the_time() {
     let led = |name: &str, x: f64, motion: Vec<Vec<f64>>| {
@@ -260,7 +260,7 @@ fn pins_that_lead_bodies_through_one_another_end_the_run_with_the_pair_and_the_t
     assert_eq!(world.crossed_surfaces(), [], "the world is at its last good frame");
 }
 
-/// Without the section bodies pass through one another, which is reported once.
+/// Without the section `[contact]` bodies pass through one another, which is reported once.
 #[test]
 fn bodies_that_pass_through_one_another_without_contact_are_reported_once() {
     let bodies = || vec![ball("a", 24, [-1.5, 0.0], [4.0, 0.0]), ball("b", 24, [1.5, 0.1], [-4.0, 0.0])];
@@ -278,7 +278,7 @@ fn bodies_that_pass_through_one_another_without_contact_are_reported_once() {
     assert_eq!(codes(&scene), ["contact.none"]);
 }
 
-/// The same bits on any number of threads, alone or side by side, and after going back.
+/// The same bits on any number of threads, alone or side by side, and after rewinding.
 #[test]
 fn contact_has_the_same_bits() {
     let mut bodies = Vec::new();
@@ -324,7 +324,7 @@ fn what_contact_cannot_do_is_refused() {
         body.pins.push(PinBlueprint { select: Selector::Nodes(vec![0, 1]), axes: [true; 2], motion: Vec::new() });
     }
     assert!(World::new(implicit.clone(), Options::default()).is_ok());
-    // Bodies at rest beside moving ones, and under a load that comes in parts.
+    // Bodies in statics beside moving ones, under a load that is applied in parts.
     let registry = Registry::<2>::default();
     let rule = |name: &str, fields: &[(&str, Value)]| registry.integrator_values(name, fields).expect("a rule");
     let mut mixed = implicit.clone();
@@ -368,7 +368,7 @@ fn what_contact_cannot_do_is_refused() {
     assert!(deepest(&through) > 0.1);
 }
 
-/// Without contact, and with contact of bodies that never meet, a scene has the same bits.
+/// A scene without contact and a scene whose bodies never meet have the same bits.
 #[test]
 fn contact_that_never_happens_changes_nothing() {
     let bodies = vec![ball("a", 12, [-4.0, 0.1], [0.2, 0.0]), ball("b", 24, [4.0, 0.0], [-0.1, 0.3])];
@@ -382,7 +382,7 @@ fn contact_that_never_happens_changes_nothing() {
     assert_eq!(run(&with), run(&without));
 }
 
-/// Bodies that begin inside one another part at the speed of recovery, and the energy that this makes is entered.
+/// Bodies that start inside one another separate at the recovery speed, and the energy of this is recorded.
 #[test]
 fn overlap_is_taken_apart() {
     let bodies = vec![ball("a", 36, [-0.47, 0.0], [0.0; 2]), ball("b", 36, [0.47, 0.01], [0.0; 2])];
@@ -398,7 +398,7 @@ fn overlap_is_taken_apart() {
     assert!(deepest(&world) < 1e-4, "{}", deepest(&world));
 }
 
-/// A tetrahedral cube falls onto another: 3D, with edges.
+/// A cube of tetrahedra falls onto another: 3D, with edges.
 #[test]
 fn cubes_stack() {
     let mesh = Arc::new(Mesh::<3>::grid([0.0; 3], [1.0; 3], [2, 2, 2]).expect("a cube"));
@@ -423,7 +423,7 @@ fn cubes_stack() {
     assert!(world.energy().kinetic < 1e-3, "{:?}", world.energy());
 }
 
-/// Two balls that meet and part: the contact begins once, ends once, and its impulses are the change of momentum, on any number of threads.
+/// Two balls meet and separate: the contact begins once and ends once, and its impulses equal the change of momentum, on any number of threads.
 #[test]
 fn contacts_begin_persist_and_end() {
     let mut seen = Vec::new();
@@ -472,7 +472,7 @@ fn contacts_begin_persist_and_end() {
     assert_eq!(seen[0], seen[1]);
 }
 
-/// A ball that lies on another one presses on it with its weight: the forces on its nodes say so, and those on the other are opposite.
+/// A ball that lies on another one presses on it with its weight: the contact forces on its nodes show it, and those on the other ball are opposite.
 #[test]
 fn forces_of_contact_carry_what_lies_on_a_body() {
     let lower = BodyBlueprint { pins: vec![], ..ball("lower", 36, [0.0, 0.5], [0.0; 2]) };
@@ -489,7 +489,7 @@ fn forces_of_contact_carry_what_lies_on_a_body() {
     (0..240).for_each(|_| world.frame().expect("a frame"));
     let sum = |forces: Vec<[f64; 2]>| forces.iter().fold(0.0, |sum, f| sum + f[1]);
     let (below, above) = (sum(world.contact_forces(0)), sum(world.contact_forces(1)));
-    // The floor carries both, and the lower ball the upper one.
+    // The floor supports both balls, and the lower ball supports the upper one.
     assert!((above - 9.81).abs() < 0.5, "the lower ball carries the upper one: {above} N");
     assert!((below - 9.81).abs() < 0.5, "from the floor two weights, from above one: {below} N");
     let kept = world.snapshot();
@@ -497,7 +497,7 @@ fn forces_of_contact_carry_what_lies_on_a_body() {
     assert!(sum(world.contact_forces(1)).abs() < 1e-9, "nothing is known of a step that was not made");
 }
 
-/// How bodies touch can change while they move; snapshots know of it.
+/// Contact settings can change during a run; snapshots include them.
 #[test]
 fn contact_changes_while_bodies_move() {
     let bodies = vec![ball("a", 24, [-0.52, 0.1], [0.4, 1.0]), ball("b", 24, [0.52, 0.0], [-0.4, 0.0])];
@@ -516,7 +516,7 @@ fn contact_changes_while_bodies_move() {
     assert_eq!(smooth.energy().loss_friction, 0.0);
     assert!(rough.energy().loss_friction > 1e-3, "{:?}", rough.energy());
     let end = rough.frame_hash();
-    // Back in the same world, and in one of the scene as it was.
+    // Restored in the same world, and in a world of the original scene.
     for world in [&mut rough, &mut smooth] {
         world.restore(&kept).expect("a snapshot of the scene");
         (0..30).for_each(|_| world.frame().expect("a frame"));

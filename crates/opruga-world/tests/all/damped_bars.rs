@@ -1,4 +1,5 @@
-//! Bars that pins draw to five lengths against the law and the damping of their cells, at the closed form of Kelvin and Voigt.
+//! Bars that pins stretch to five times their length against the elasticity and damping of their cells, compared with the closed form of Kelvin and
+//! Voigt.
 
 use crate::common;
 
@@ -12,10 +13,10 @@ const STIFFNESS: f64 = 1e4;
 const RATIO: f64 = 0.3;
 /// The retardation time [s].
 const DAMPING: f64 = 0.05;
-/// Stretches a second.
+/// Change of the stretch per second.
 const RATE: f64 = 2.0;
 
-/// What the right side of a bar of 4 m takes along x [N], while it is drawn and after; nothing moves across.
+/// The force on the right side of a bar of 4 m along x [N], during and after stretching; lateral motion is pinned.
 fn drawn<const D: usize>(mesh: &Mesh<D>, rule: &str) -> Vec<f64> {
     let mut world = bar(mesh, rule, "st_venant_kirchhoff", DAMPING);
     let right: Vec<usize> = (0..mesh.positions.len()).filter(|k| mesh.positions[*k][0] == 4.0).collect();
@@ -36,7 +37,7 @@ fn bar<const D: usize>(mesh: &Mesh<D>, rule: &str, material: &str, damping: f64)
         ("damping", Value::Number(damping)),
     ];
     let mut blueprint = solid(mesh.clone(), rule, &[], &fields);
-    // So light that forces balance at any time.
+    // So light that forces balance at all times.
     blueprint.bodies[0].mass = Mass::Density(1e-3);
     blueprint.time = Time { seconds: 1e3, frame: 1.0 / 60.0, substeps: 1 };
     let row = |t: f64, way: f64| [t, way].into_iter().chain(core::iter::repeat_n(0.0, D - 1)).collect();
@@ -54,12 +55,12 @@ fn bar<const D: usize>(mesh: &Mesh<D>, rule: &str, material: &str, damping: f64)
     World::new(blueprint, Options::default()).expect("a world")
 }
 
-/// Uniform stretch λ with nothing across: Green's strain E₁₁ = (λ² − 1)/2, its rate λ λ̇, so P = (2μ + λₗ) (λ (λ² − 1)/2 + τ λ² λ̇).
+/// Uniform stretch λ without lateral strain: Green's strain E₁₁ = (λ² − 1)/2, its rate λ λ̇, so P = (2μ + λₗ) (λ (λ² − 1)/2 + τ λ² λ̇).
 fn at_the_closed_form<const D: usize>(mesh: &Mesh<D>, name: &str) {
     let modulus = STIFFNESS * (1.0 - RATIO) / ((1.0 + RATIO) * (1.0 - 2.0 * RATIO));
     for rule in ["backward_euler", "bdf2"] {
         let force = drawn(mesh, rule);
-        // Not while the kick at the start and at the end of the motion dies away.
+        // Skip the transients at the start and at the end of the motion.
         for (frame, force) in force.iter().enumerate().filter(|(k, _)| (30..118).contains(k) || *k > 145) {
             let time = (frame + 1) as f64 / 60.0;
             let (stretch, rate) = if time < 2.0 { (1.0 + RATE * time, RATE) } else { (5.0, 0.0) };
@@ -83,7 +84,7 @@ fn damped_bars_drawn_to_five_lengths_take_what_kelvin_and_voigt_say() {
     at_the_closed_form(&tetrahedra.into_quadratic().expect("quadratic tetrahedra"), "quadratic tetrahedra");
 }
 
-/// Without damping such a bar stays even, to five times its volume: no shape of its boxes is worth less to any law.
+/// Without damping such a bar stays uniform up to five times its volume: no law has a lower energy for a nonuniform shape of its boxes.
 #[test]
 fn boxes_drawn_to_five_times_their_volume_stay_even() {
     let boxes = Mesh::<3>::grid([0.0; 3], [4.0, 1.0, 1.0], [8, 2, 2]).expect("a grid");

@@ -1,4 +1,4 @@
-//! Bodies where positions have lost six of their digits.
+//! Bodies at positions that have lost six of their digits.
 
 #![allow(clippy::disallowed_methods, reason = "shapes, and no bits")]
 
@@ -9,7 +9,7 @@ use opruga_core::spec::Value;
 use opruga_mesh::Mesh;
 use opruga_world::{Options, World};
 
-/// How far the tip of a bar of 1 m by 0.1 m sinks under its weight, with its corner so far from the origin along both axes [m].
+/// The sag of the tip of a bar of 1 m by 0.1 m under its weight, if its corner is at this distance from the origin along both axes [m].
 fn sinks(mesh: &Mesh<2>, stiffness: f64, far: f64) -> f64 {
     let fields = [
         ("material", text("neo_hookean")),
@@ -29,8 +29,8 @@ fn sinks(mesh: &Mesh<2>, stiffness: f64, far: f64) -> f64 {
     before - world.position(0, corner)[1]
 }
 
-/// By Euler and Bernoulli it is 12 ρ g L⁴/(8 E t²): about a millimetre and a decimetre. What is allowed is several times the resolution
-/// of positions at 1e6 m, 6e-11 m, in a bar that is a hundred times as stiff along as across.
+/// According to Euler and Bernoulli it is 12 ρ g L⁴/(8 E t²): about a millimetre and a decimetre. The tolerance is several times the resolution of
+/// positions at 1e6 m, 6e-11 m, because a bar is a hundred times stiffer along its axis than across it.
 #[test]
 fn bars_bend_alike_a_thousand_kilometres_away() {
     let boxes = Mesh::<2>::grid([0.0; 2], [1.0, 0.1], [10, 1]).expect("a grid");
@@ -44,7 +44,7 @@ fn bars_bend_alike_a_thousand_kilometres_away() {
     }
 }
 
-/// Where the corner of a soft bar is after a fifth of a second of its fall, from where it began, with its corner so far from the origin [m].
+/// The displacement of the corner of a soft bar after a fifth of a second of free fall, if its corner starts at this distance from the origin [m].
 fn falls(rule: &'static str, far: f64) -> [f64; 2] {
     let boxes = Mesh::<2>::grid([0.0; 2], [1.0, 0.25], [8, 2]).expect("a grid");
     let mesh = boxes.into_simplices().expect("triangles").into_quadratic().expect("quadratic triangles");
@@ -67,7 +67,7 @@ fn falls(rule: &'static str, far: f64) -> [f64; 2] {
     [0, 1].map(|d| after[d] - before[d])
 }
 
-/// Coordinates of this mesh are whole multiples of 2⁻⁴ m: they lose nothing at 2¹⁷ m, where positions have 1.5e-11 m.
+/// Coordinates of this mesh are integer multiples of 2⁻⁴ m: they are exact at 2¹⁷ m, where the resolution of positions is 1.5e-11 m.
 #[test]
 fn bars_fall_alike_a_hundred_kilometres_away() {
     for rule in ["backward_euler", "bdf2", "implicit_midpoint", "newmark"] {

@@ -1,4 +1,4 @@
-//! Bodies that begin without volume, or tangled, and never come to rest: they leave that shape, or it is said that they stay.
+//! Bodies that start without volume, or tangled, and never come to rest: either they leave that shape, or a warning reports that they do not.
 
 use crate::common;
 
@@ -7,7 +7,7 @@ use opruga_core::spec::Value;
 use opruga_mesh::Mesh;
 use opruga_world::{Options, World};
 
-/// A free cube of 1 m of 2 × 2 × 2 cells that begins in a shape.
+/// A free cube of 1 m with 2 × 2 × 2 cells that starts in a given shape.
 fn cube(material: &str, simplices: bool, unfold: bool, shape: &dyn Fn([f64; 3], usize) -> [f64; 3]) -> World<3> {
     let boxes = Mesh::<3>::grid([0.0; 3], [1.0; 3], [2; 3]).expect("a grid");
     let mesh = if simplices { boxes.into_simplices().expect("tetrahedra") } else { boxes };
@@ -31,7 +31,7 @@ fn cube(material: &str, simplices: bool, unfold: bool, shape: &dyn Fn([f64; 3], 
     world
 }
 
-/// The twin of the test below: nobody displaces a body that does not ask for it, and a warning names body, cells and the word.
+/// The counterpart of the test below: a body is not displaced unless the scene asks for it, and a warning names the body, the cells and the option.
 #[test]
 fn bodies_on_a_line_stay_there_and_are_warned_of_where_the_scene_does_not_unfold() {
     for simplices in [true, false] {
@@ -54,7 +54,7 @@ fn volume_ratio(world: &World<3>) -> f64 {
     cells.iter().map(|c| c.volume_ratio * c.measure).sum::<f64>() / cells.iter().map(|c| c.measure).sum::<f64>()
 }
 
-/// What lies on a line swings along it for a long time, which is no way out of it. What folds on its way says so.
+/// A body on a line oscillates along it for a long time without leaving it. A body that folds while leaving is reported.
 #[test]
 fn bodies_on_a_line_leave_it_though_they_swing_along_it() {
     for (simplices, seconds) in [(true, 12), (false, 90)] {
@@ -72,7 +72,7 @@ fn bodies_on_a_line_leave_it_though_they_swing_along_it() {
     }
 }
 
-/// By how much the free nodes of a held cube of 2 × 2 × 2 boxes are displaced at the start [m].
+/// The initial displacements of the free nodes of a clamped cube of 2 × 2 × 2 boxes [m].
 const SCATTERED: [[f64; 3]; 18] = [
     [0.103920, 0.625720, 0.065529],
     [-0.986832, 0.837469, 0.259354],
@@ -94,8 +94,9 @@ const SCATTERED: [[f64; 3]; 18] = [
     [-0.281560, -0.669046, -0.119095],
 ];
 
-/// A held cube that begins scattered: one of its boxes comes to rest inside out at its points, though its mean keeps a thousandth of its
-/// volume, now a little more and now a little less. It is disturbed three times and no more, and it is said that this was in vain.
+/// A clamped cube with randomly displaced nodes: one of its boxes comes to rest inverted at its integration points, although its mean keeps a
+/// thousandth of its volume, sometimes slightly more and sometimes slightly less. It is displaced exactly three times, and a warning reports that
+/// this was in vain.
 #[test]
 fn disturbances_end_though_a_box_goes_to_and_fro_about_flatness() {
     let mesh = Mesh::<3>::grid([0.0; 3], [1.0; 3], [2; 3]).expect("a grid");

@@ -1,5 +1,5 @@
-//! Bodies by number and by handle: what is not there is told, and never another body; bodies of the program come and go, and
-//! snapshots hold them whole.
+//! Bodies by number and by handle. A missing body is reported, and another body is never used instead. Bodies of the program are added and removed,
+//! and snapshots contain them completely.
 
 use crate::common;
 
@@ -19,7 +19,7 @@ fn model(kind: &str, fields: &[(&str, f64)]) -> Values {
     values
 }
 
-/// Rings side by side in the air.
+/// Rings side by side, in free space.
 fn rings(count: usize) -> Blueprint<2> {
     let mut blueprint =
         common::solid(Mesh::ring(0.5, 12, [0.0; 2], 0.0).expect("a ring"), "symplectic_euler", &[], &[]);
@@ -44,7 +44,7 @@ fn world(blueprint: &Blueprint<2>) -> World<2> {
     World::new(blueprint.clone(), Options::default()).expect("a world")
 }
 
-/// A body of the program, like the rings but of a shape of its own.
+/// A body of the program, similar to the rings but with a shape of its own.
 fn guest(name: &str, vertices: u32, x: f64) -> BodyBlueprint<2> {
     let mesh = Arc::new(Mesh::ring(0.4, vertices, [0.0; 2], 0.1).expect("a ring"));
     BodyBlueprint { name: name.into(), mesh, translation: [x, 7.0], ..rings(1).bodies[0].clone() }
@@ -115,11 +115,11 @@ fn a_handle_means_its_body_or_none() {
         (b.index, true, true),
         "the place is used again"
     );
-    // Back to when `a` was there: its handle means it again, that of `b` nothing.
+    // Restored to a time when `a` was present: its handle is valid again, that of `b` is not.
     world.restore(&with_a).expect("its own snapshot");
     assert_eq!(world.blueprint().bodies[world.resolve(a).expect("back")].name, "a");
     assert!(world.resolve(b).is_err());
-    // Back to before both: whoever comes now is neither.
+    // Restored to a time before both: a body that is added now is neither of them.
     world.restore(&empty).expect("its own snapshot");
     let c = add(&mut world, "c");
     assert_eq!([a, b, c].map(|handle| world.resolve(handle).is_ok()), [false, false, true]);
@@ -129,7 +129,7 @@ fn a_handle_means_its_body_or_none() {
     assert_eq!(other.resolve(first).expect_err("of another world").code(), "stale_handle");
 }
 
-/// A fresh world needs nothing but the scene: bodies of the program, their changed parameters and commands come with the snapshot.
+/// A new world needs only the scene: bodies of the program, their changed parameters and commands are restored from the snapshot.
 #[test]
 fn bodies_and_commands_of_the_program_come_back_with_a_snapshot() {
     let blueprint = rings(3);
@@ -193,7 +193,7 @@ fn bodies_and_commands_of_the_program_come_back_with_a_snapshot() {
     }
 }
 
-/// Damage in any place is refused or gives a world that steps or says why not; nothing panics.
+/// Damage at any position is refused, or gives a world that steps or returns an error; nothing panics.
 #[test]
 fn damaged_snapshots_of_bodies_of_the_program_never_panic() {
     let blueprint = rings(1);
@@ -229,14 +229,14 @@ fn laws_of_force_do_not_pass_to_the_next_body_in_a_place() {
     assert_eq!(world.add_body(guest("second", 9, 4.0)).expect("a body"), number, "the same place");
     frames(&mut world, 2);
     assert!(world.momentum().linear.0[0].abs() < 1e-12, "nothing pushes it");
-    // The first is back without its law, and that is said until it has one.
+    // The first body is restored without its law, which is reported until it has one.
     world.restore(&bytes).expect("its own snapshot");
     assert!(codes(&world).contains(&"restore.no_force".to_string()));
     world.add_force(number, Arc::new(|_, _, _, _| [5.0, 0.0])).expect("a law");
     assert!(!codes(&world).contains(&"restore.no_force".to_string()));
 }
 
-/// A body that a command of the scene adds is the one that its commands name, whoever came before it.
+/// Commands of the scene find the body that another of its commands added, whatever bodies the program added before.
 #[test]
 fn commands_of_the_scene_find_their_bodies_beside_those_of_the_program() {
     let mut blueprint = rings(1);
@@ -265,7 +265,7 @@ fn commands_of_the_scene_find_their_bodies_beside_those_of_the_program() {
     assert!(beside.1.expect("a guest").abs() < 1e-12, "nobody pushed the guest");
 }
 
-/// A batch keeps the seat of a body of the program that is gone: no other island is built anew.
+/// A batch keeps the seat of a removed body of the program, so no other island is rebuilt.
 #[test]
 fn bodies_keep_their_seats_when_those_of_the_program_go() {
     let mut world = world(&rings(1));

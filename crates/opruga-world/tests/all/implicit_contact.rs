@@ -1,4 +1,4 @@
-//! Contact of bodies whose integrators solve for the end of a step: it is part of the balance of forces.
+//! Contact of bodies with implicit integrators is part of the balance of forces.
 
 use crate::contact::{ball, contact, deepest, model, passes, scene, wall_and_dot, world};
 use opruga_core::spec::Value;
@@ -31,7 +31,7 @@ pub(crate) fn heavy(rule: &str, bodies: Vec<BodyBlueprint<2>>, substeps: u32) ->
     scene
 }
 
-/// The force of bodies on a body [N].
+/// The contact force of other bodies on a body [N].
 pub(crate) fn force_on<const D: usize>(world: &mut World<D>, body: usize) -> [f64; D] {
     let mut sum = [0.0; D];
     for force in world.contact_forces(body) {
@@ -40,7 +40,7 @@ pub(crate) fn force_on<const D: usize>(world: &mut World<D>, body: usize) -> [f6
     sum
 }
 
-/// A block that falls onto a held one comes to rest there; what holds it is its weight, at steps of a sixtieth of a second.
+/// A block that falls onto a pinned one comes to rest there; the contact force equals its weight, with steps of a sixtieth of a second.
 #[test]
 fn blocks_come_to_rest_on_one_another_at_the_steps_of_a_game() {
     for rule in RULES {
@@ -64,7 +64,7 @@ fn blocks_come_to_rest_on_one_another_at_the_steps_of_a_game() {
     }
 }
 
-/// Free bodies under the same and under different rules: no momentum is made, nobody passes, and the ledger closes.
+/// Free bodies with the same and with different integrators: momentum is conserved, no body passes through another, and the ledger closes.
 #[test]
 fn bodies_of_all_rules_meet_and_keep_momentum() {
     let rules = || RULES.into_iter().chain(["symplectic_euler"]);
@@ -132,7 +132,7 @@ pub(crate) fn square_over_a_box(response: &str) -> Blueprint<2> {
     scene
 }
 
-/// The last round of a step finds impulses that no round was made with.
+/// The last round of a step finds impulses with which no round has been made.
 #[test]
 fn a_square_of_springs_does_not_sink_into_a_box() {
     let mut world = world(&square_over_a_box("constraint"));
@@ -142,7 +142,7 @@ fn a_square_of_springs_does_not_sink_into_a_box() {
     }
 }
 
-/// A corner of an obstacle under an edge whose nodes the obstacle holds: the edge cannot answer, and nothing is asked of it.
+/// A corner of an obstacle below an edge whose nodes the obstacle holds: the edge cannot respond, and no response is requested.
 #[test]
 fn a_ring_rests_on_a_line_with_a_corner_in_its_middle() {
     let ring = Mesh::ring(0.4, 36, [0.0; 2], 0.0).expect("a ring");
@@ -163,7 +163,7 @@ fn a_ring_rests_on_a_line_with_a_corner_in_its_middle() {
     assert!(lowest.abs() < 1e-3, "{lowest}");
 }
 
-/// A small body that goes many times its size in a step meets a thin wall.
+/// A small body that moves many times its size in a step hits a thin wall.
 #[test]
 fn fast_bodies_do_not_tunnel_through_bodies_of_implicit_rules() {
     for speed in [1.0, 30.0, 300.0, 3000.0] {
@@ -190,7 +190,7 @@ fn fast_bodies_do_not_tunnel_through_bodies_of_implicit_rules() {
     }
 }
 
-/// The same bits on any number of threads, and after going back.
+/// The same bits on any number of threads, and after rewinding.
 #[test]
 fn contact_of_implicit_rules_has_the_same_bits() {
     let mut bodies = Vec::new();
@@ -229,7 +229,7 @@ fn solids_and_sheets_of_space_rest_on_one_another_by_steps_of_a_budget_whole_swe
     solids_and_sheets_rest("real_time");
 }
 
-/// In space, and with all that may hold a body: an obstacle below, a pin aside, a sheet that folds onto itself.
+/// In space, with everything that may support a body: an obstacle below, a pin at the side, a sheet that folds onto itself.
 fn solids_and_sheets_rest(accuracy: &str) {
     let registry = opruga_world::Registry::<3>::default();
     let rule = registry.integrator_values("backward_euler", &[("accuracy", accuracy.into())]).expect("a rule");
@@ -274,8 +274,8 @@ fn solids_and_sheets_rest(accuracy: &str) {
     assert!(energy.in_motion < 20.0, "{accuracy}: no body gets more energy than its fall: {energy:?}");
 }
 
-/// Light and stiff blocks that begin nearer than their surfaces keep are taken apart by what they lack, whatever the rule: displacements move points
-/// one by one, where impulses would move a whole body.
+/// Light and stiff blocks that start closer than the distance of their surfaces are separated only by what is missing, with every integrator:
+/// displacements move points individually, whereas impulses would move the whole body.
 #[test]
 fn light_and_stiff_bodies_that_begin_too_near_part_by_no_more_than_they_lack() {
     for rule in RULES {

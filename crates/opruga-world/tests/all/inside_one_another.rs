@@ -1,4 +1,4 @@
-//! Contact of bodies that begin inside one another.
+//! Contact of bodies that start inside one another.
 
 use crate::contact::{model, scene, world};
 use crate::implicit_contact::{block, fixed, heavy};
@@ -11,7 +11,7 @@ fn lowest(world: &World<2>, body: usize) -> f64 {
     heights.fold(f64::INFINITY, |low, y| if y < low { y } else { low })
 }
 
-/// All nodes of the lowest row begin deeper than they could touch anything: they come out through the nearest side, and no energy is made.
+/// All nodes of the lowest row start deeper than contact reaches: they come out through the nearest side, without a gain of energy.
 #[test]
 fn a_block_that_begins_inside_a_floor_comes_out() {
     for (rule, substeps) in [("symplectic_euler", 32), ("backward_euler", 8)] {
@@ -30,8 +30,8 @@ fn a_block_that_begins_inside_a_floor_comes_out() {
     }
 }
 
-/// Four cubes that overlap by a tenth of their size, a little out of line: points beside an edge of another cube do not leave sideways, and edges
-/// do not lock the cubes in one another.
+/// Four cubes that overlap by a tenth of their size, slightly misaligned: points beside an edge of another cube do not leave sideways, and edges do
+/// not lock the cubes together.
 #[test]
 fn cubes_that_begin_inside_one_another_part() {
     let solid = vec![model::<3>("fem", &[("youngs_modulus", 1e4), ("poissons_ratio", 0.3), ("damping", 0.01)])];

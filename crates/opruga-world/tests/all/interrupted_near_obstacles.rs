@@ -1,5 +1,5 @@
-//! Resumed is uninterrupted for a body that hardly moves beside an obstacle: whether obstacles are looked at within a frame follows
-//! from what a snapshot holds.
+//! A resumed run equals an uninterrupted one for a body that hardly moves near an obstacle: whether obstacles are checked within a frame depends only
+//! on data in the snapshot.
 
 use crate::common;
 
@@ -10,7 +10,7 @@ use opruga_mesh::{Cut, Mesh};
 use opruga_world::blueprint::{Blueprint, ColliderBlueprint};
 use opruga_world::{Options, World};
 
-/// A cube that is clamped at x = 0 and bends under its weight, above a floor at a height [m].
+/// A cube that is clamped at x = 0 and bends under its weight, above a floor at a given height [m].
 fn above_a_floor(rule: &str, accuracy: &[(&str, Value)], substeps: u32, height: f64) -> Blueprint<3> {
     let mesh = Mesh::grid([0.0; 3], [1.0; 3], [3; 3]).unwrap().into_simplices_by(Cut::Five).unwrap();
     let material = [
@@ -30,13 +30,12 @@ fn above_a_floor(rule: &str, accuracy: &[(&str, Value)], substeps: u32, height: 
     blueprint
 }
 
-/// The lowest place of a node [m].
+/// The lowest position of a node [m].
 fn lowest(world: &World<3>) -> f64 {
     (0..world.node_count(0) as u32).map(|node| world.position(0, node)[1]).fold(f64::INFINITY, Lane::smaller)
 }
 
-/// The gaps lie within the margins with which bodies at rest, slow ones and those that were just built look for obstacles, and
-/// beyond them.
+/// The gaps include values inside and outside the margins within which resting, slow and newly built bodies check obstacles.
 #[test]
 fn a_slow_body_beside_an_obstacle_goes_on_from_a_snapshot_bit_for_bit() {
     let real_time = [("accuracy", text("real_time"))];

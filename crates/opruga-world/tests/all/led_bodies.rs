@@ -1,5 +1,5 @@
-//! Bodies that pins have turned and drawn far rest in a balance that these pins have paid for: nothing is told of them. Folded ones
-//! are told of all the same, also where pins carry them along.
+//! Bodies that pins have rotated and stretched far rest in an equilibrium that the work of these pins accounts for, so they are not reported. Folded
+//! bodies are reported, even if pins move them.
 
 #![allow(clippy::disallowed_methods, reason = "shapes, and no bits")]
 
@@ -11,13 +11,14 @@ use opruga_mesh::Mesh;
 use opruga_world::blueprint::{Blueprint, PinBlueprint, Selector, Time};
 use opruga_world::{Options, World};
 
-/// Frames in which pins move, and in which they rest after that.
+/// The number of frames in which pins move, and of frames in which they rest after that.
 const LED: u32 = 60;
 const AT_REST: u32 = 20;
 
 const MATERIALS: [&str; 3] = ["corotated", "neo_hookean", "st_venant_kirchhoff"];
 
-/// A bar whose right end pins turn about a point by so many degrees, in the plane of the last two axes, and draw to so many lengths.
+/// A bar whose right end pins rotate about a point by the given number of degrees, in the plane of the last two axes, and stretch to the given number
+/// of lengths.
 fn led<const D: usize>(
     mesh: Mesh<D>,
     rule: &str,
@@ -61,7 +62,7 @@ fn led<const D: usize>(
     out
 }
 
-/// Looks at a bar at every tenth frame, while it is led and after; statics may find no balance beyond half a turn, where the bar buckles.
+/// Checks a bar at every tenth frame, during and after the motion. Statics may find no equilibrium beyond half a turn, where the bar buckles.
 fn nothing_is_told<const D: usize>(blueprint: Blueprint<D>, name: &str) {
     let statics = blueprint.integrator.kind() == "equilibrium";
     let mut world = World::new(blueprint, Options::default()).expect("a world");
@@ -71,7 +72,8 @@ fn nothing_is_told<const D: usize>(blueprint: Blueprint<D>, name: &str) {
             break;
         }
         if name.contains("st_venant_kirchhoff") && world.inverted_cells().is_some() {
-            // A law that gives way under pressure, and holds as much inside out: that is told, and is no balance of its own shape.
+            // A law that softens under compression and has the same energy when inverted: this is reported, and is not an equilibrium of its own
+            // shape.
             return;
         }
         if frame % 10 == 9 {
@@ -109,7 +111,7 @@ fn bars_turned(materials: &[&str]) {
     }
 }
 
-/// In the plane an end that turns in its place winds the bar up; about the other end it carries the bar through itself.
+/// In the plane, an end that rotates in place winds up the bar; an end that rotates about the other end carries the bar through itself.
 #[test]
 fn bars_of_the_plane_whose_ends_pins_have_turned_are_accounted_for() {
     let boxes = Mesh::<2>::grid([0.0; 2], [4.0, 0.25], [32, 2]).expect("a grid");
@@ -128,7 +130,7 @@ fn bars_of_the_plane_whose_ends_pins_have_turned_are_accounted_for() {
     }
 }
 
-/// Pins that carry a folded body far, and turn it, have not folded it.
+/// Pins that carry a folded body far and rotate it have not folded it.
 #[test]
 fn folded_bodies_that_pins_carry_and_turn_as_a_whole_are_told_of() {
     let mesh = Mesh::<2>::grid([0.0; 2], [1.0; 2], [3, 3]).expect("a grid").into_simplices().expect("triangles");
@@ -140,7 +142,7 @@ fn folded_bodies_that_pins_carry_and_turn_as_a_whole_are_told_of() {
     ];
     let mut blueprint = solid(mesh.clone(), "backward_euler", &[("when_not_converged", text("halve"))], &fields);
     for (node, x) in mesh.positions.iter().enumerate().filter(|(_, x)| x[0] == 0.0) {
-        // Slowly, once it is at rest, round about a point 2 m from the side, and 5 m along.
+        // Slowly, after it is at rest, around a point 2 m from the side, and along by 5 m.
         let row = |k: u32| {
             let (s, c) = (f64::from(k).to_radians().sin(), f64::from(k).to_radians().cos());
             let (dx, dy) = (x[0] + 2.0, x[1]);

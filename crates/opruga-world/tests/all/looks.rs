@@ -1,4 +1,4 @@
-//! Looks into the middle of a frame change nothing, and show what a world of shorter frames would have shown.
+//! States kept within a frame change nothing, and show what a world with shorter frames would have shown.
 
 use opruga_core::spec::{Spec, Value, Values};
 use opruga_mesh::Mesh;
@@ -14,7 +14,7 @@ fn values(spec: &'static Spec, fields: &[(&str, Value)]) -> Values {
     values
 }
 
-/// Rings over a floor; with `substeps` of 1/1920 s in a frame.
+/// Rings over a floor, with `substeps` of 1/1920 s in a frame.
 fn rings(count: usize, substeps: u32) -> Blueprint<2> {
     let registry = Registry::<2>::default();
     let spec = |kind: &str| registry.model(kind).expect("a model").spec();
@@ -70,7 +70,7 @@ fn rings(count: usize, substeps: u32) -> Blueprint<2> {
     }
 }
 
-/// What a look shows.
+/// The data of a kept state.
 #[derive(Clone, Debug, PartialEq)]
 struct Seen {
     time: f64,
@@ -109,7 +109,7 @@ fn looks_change_no_bit() {
 
 #[test]
 fn a_look_shows_what_shorter_frames_show() {
-    // A quarter of a power of two is exact: both worlds count the same times.
+    // A quarter of a power of two is exact, so both worlds have the same times.
     let mut long = World::new(rings(3, 32), Options::default()).expect("a world");
     let mut short = World::new(rings(3, 8), Options::default()).expect("a world");
     long.keep_looks(8);
@@ -148,7 +148,7 @@ fn gas_pushes_every_node_outwards_with_its_pressure() {
     for body in [0, 3, 10] {
         let pressure = world.readings(body).iter().find(|(name, _)| *name == "pressure").expect("a pressure").1;
         let forces = world.node_forces(body, Some(opruga_core::potential::Account::Gas));
-        // P ∂V/∂x: the pressure times half of the chord between the neighbours, across it.
+        // P ∂V/∂x: the pressure times half of the chord between the neighbours, perpendicular to it.
         let (before, after) = (world.position(body, 23), world.position(body, 1));
         let chord = [after[0] - before[0], after[1] - before[1]];
         let expected = 0.5 * pressure * (chord[0] * chord[0] + chord[1] * chord[1]).sqrt();

@@ -1,4 +1,4 @@
-//! Bodies of many chambers of gas, each of which adds a part of rank one to the matrix.
+//! Bodies with many chambers of gas, each of which adds a term of rank one to the matrix.
 
 use crate::common;
 use common::{clamp, solid, text};
@@ -8,7 +8,7 @@ use opruga_world::blueprint::Blueprint;
 use opruga_world::{Options, Registry, World};
 use std::time::Instant;
 
-/// A square of so many by so many chambers, with walls as wide as they are, each of `fine` by `fine` cells; clamped at the left.
+/// A square of `across` by `across` chambers, with walls of the same width, each of `fine` by `fine` cells; clamped at the left.
 fn porous(across: u32, fine: u32, rule: &str, solver: &str) -> Blueprint<2> {
     let side = (2 * across + 1) * fine;
     let grid = Mesh::<2>::grid([0.0; 2], [1.0; 2], [side; 2]).expect("a grid");
@@ -38,7 +38,7 @@ fn porous(across: u32, fine: u32, rule: &str, solver: &str) -> Blueprint<2> {
     body
 }
 
-/// Where the last node of such a body is after so many frames, and how long they took [ms each].
+/// The position of the last node of such a body after the frames, and the time that they took [ms each].
 fn run(across: u32, fine: u32, rule: &str, solver: &str, frames: u32) -> ([f64; 2], usize, f64) {
     let options = Options { threads: 1, ..Options::default() };
     let mut world = World::new(porous(across, fine, rule, solver), options).expect("a world");
@@ -49,7 +49,7 @@ fn run(across: u32, fine: u32, rule: &str, solver: &str, frames: u32) -> ([f64; 
     (world.position(0, nodes as u32 - 1), nodes, spent)
 }
 
-/// Nine by nine chambers are more parts than a sparse factor is chosen for.
+/// Nine by nine chambers have more terms than the limit for a sparse factor.
 #[test]
 fn every_solver_finds_the_same_balance_of_a_body_of_many_chambers() {
     let solvers = ["auto", "cholesky", "conjugate_gradients", "matrix_free"];

@@ -1,4 +1,4 @@
-//! Obstacles whose motion changes all the time, and what they carry along: by `bdf2`, which remembers how nodes moved before.
+//! Obstacles whose motion changes all the time, and the bodies that they carry, with `bdf2`, which depends on the previous motion of nodes.
 
 use crate::common;
 use common::solid;
@@ -16,8 +16,8 @@ fn world<const D: usize>(mut blueprint: Blueprint<D>, ground: &[(&str, Value)]) 
     World::new(blueprint, Options::default()).expect("a world")
 }
 
-/// A block of 300 kg on a platform that speeds up by 4 m/s², in rows of motion that are much shorter than a step: the platform carries its
-/// weight and speeds it up. A block that was struck in every step got a quarter of that from its rule.
+/// A block of 300 kg on a platform that accelerates at 4 m/s², with rows of motion much shorter than a step: the platform supports its weight and
+/// accelerates it. If it had been hit in every step, the integrator would have supplied a quarter of this work.
 #[test]
 fn a_platform_that_speeds_up_does_all_the_work_on_what_it_carries() {
     let (speeding_up, mass) = (4.0, 300.0);
@@ -36,13 +36,13 @@ fn a_platform_that_speeds_up_does_all_the_work_on_what_it_carries() {
     assert!(lost.iter().all(|loss| loss.abs() < 1e-3 * wanted), "{wanted} J: {energy:?}");
 }
 
-/// A cube of 27 kg and 25 J that turns with a turntable, on which it sticks.
+/// A cube of 27 kg and 25 J that sticks on a turntable and rotates with it.
 #[test]
 fn a_turntable_takes_nothing_by_friction_of_what_sticks_on_it() {
     let spin = 2.0;
     let mut cube = solid(Mesh::<3>::grid([0.5, 0.0, 0.0], [0.3; 3], [2; 3]).unwrap(), "bdf2", &[], &MATERIAL);
     cube.bodies[0].angular_velocity = vec![0.0, spin, 0.0];
-    // That of its centre, at (0.65, 0.15, 0.15) m.
+    // The velocity of its centre, at (0.65, 0.15, 0.15) m.
     cube.bodies[0].velocity = [0.15 * spin, 0.0, -0.65 * spin];
     let table = [("normal", [0.0, 1.0, 0.0].into()), ("friction", 1.0.into()), ("spin", [0.0, spin, 0.0].into())];
     let mut turned = world(cube, &table);

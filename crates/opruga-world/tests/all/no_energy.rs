@@ -1,11 +1,12 @@
-//! Models whose forces have no energy.
+//! Models whose forces do not have an energy.
 
 use opruga_core::spec::Value;
 use opruga_mesh::Mesh;
 use opruga_world::blueprint::*;
 use opruga_world::{Options, Registry, World};
 
-/// A beam that sinks by its own weight: the ledger of finite volumes on quadrilaterals lacks their work, which is no error of the integrator.
+/// A beam that sags under its own weight: the ledger of finite volumes on quadrilaterals lacks the work of their forces, which is not an error of the
+/// integrator.
 #[test]
 fn what_has_no_energy_is_no_error_of_the_integrator() {
     let registry = Registry::<2>::default();

@@ -1,5 +1,5 @@
-//! Bodies that end in another balance than that of their own shape are told of, whatever acts on them; what loads, pins and gas
-//! deform is not.
+//! Bodies that end in another equilibrium than that of their own shape are reported, whatever acts on them. Bodies that loads, pins and gas deform
+//! are not.
 
 #![allow(clippy::disallowed_methods, reason = "shapes, and no bits")]
 
@@ -16,7 +16,7 @@ use opruga_world::{Options, Registry, World};
 const MATERIALS: [&str; 6] =
     ["stable_neo_hookean", "fixed_corotated", "neo_hookean", "corotated", "mooney_rivlin", "st_venant_kirchhoff"];
 
-/// A body of 10 kPa, damped a little.
+/// A body of 10 kPa with little damping.
 fn body<const D: usize>(mesh: Mesh<D>, material: &str) -> Blueprint<D> {
     let fields = [
         ("material", text(material)),
@@ -27,21 +27,21 @@ fn body<const D: usize>(mesh: Mesh<D>, material: &str) -> Blueprint<D> {
     solid(mesh, "backward_euler", &[("when_not_converged", text("halve"))], &fields)
 }
 
-/// Places the nodes of the only body by their places at rest.
+/// Moves the nodes of the only body to positions that depend on their rest positions.
 fn place<const D: usize>(world: &mut World<D>, positions: &[[f64; D]], shape: &dyn Fn([f64; D]) -> [f64; D]) {
     for (node, at) in positions.iter().enumerate() {
         world.set_node(0, node as u32, shape(*at), [0.0; D]).expect("placed");
     }
 }
 
-/// What is told of a body in a shape.
+/// The warning about a body in a given shape.
 fn told<const D: usize>(mesh: &Mesh<D>, material: &str, shape: &dyn Fn([f64; D]) -> [f64; D]) -> Option<String> {
     let mut world = World::new(body(mesh.clone(), material), Options::default()).expect("a world");
     place(&mut world, &mesh.positions, shape);
     world.other_balances().map(|warning| warning.message)
 }
 
-/// Boxes, tetrahedra of first order, and of second.
+/// Boxes, and tetrahedra of first and second order.
 fn bars(size: [f64; 3], cells: [u32; 3]) -> Vec<(&'static str, Mesh<3>)> {
     let boxes = Mesh::<3>::grid([0.0; 3], size, cells).expect("a grid");
     let simplices = boxes.clone().into_simplices().expect("tetrahedra");
@@ -51,7 +51,7 @@ fn bars(size: [f64; 3], cells: [u32; 3]) -> Vec<(&'static str, Mesh<3>)> {
 
 type Shape = Box<dyn Fn([f64; 3]) -> [f64; 3]>;
 
-/// Whatever holds such shapes, it holds them from outside: their energies are accounted for.
+/// External forces hold such shapes, so their energies are accounted for.
 #[test]
 fn what_is_stretched_squeezed_bent_or_twisted_from_outside_is_accounted_for() {
     accounted_for(&MATERIALS[..1]);
@@ -104,7 +104,7 @@ fn accounted_for(materials: &[&str]) {
     }
 }
 
-/// The same places of the ends belong to a bar that is not twisted: what pins have turned once round rests in another balance. Small
+/// The ends of the bar are where they would be without twist, but after one full turn by pins it rests in another equilibrium. The law of small
 /// strain has none.
 #[test]
 fn what_is_twisted_once_round_or_drawn_to_a_point_is_told_of() {
@@ -128,12 +128,12 @@ fn what_is_twisted_once_round_or_drawn_to_a_point_is_told_of() {
         );
     }
     let [(_, boxes), ..] = &bars([1.0; 3], [2; 3])[..] else { panic!("boxes") };
-    // In a point this law has no force.
+    // At a point this law has no force.
     let said = told(boxes, "stable_neo_hookean", &|_| [0.5; 3]).expect("a body in a point");
     assert!(said.contains("0 J of it accounted for, V/V₀ = 0, and cell 0 at J = 0;"), "{said}");
 }
 
-/// What moves within itself is on its way, and says nothing; as a whole it may fly and spin.
+/// A body with internal motion is still moving and is not reported; rigid flight and rotation do not matter.
 #[test]
 fn bodies_that_move_within_themselves_are_not_told_of() {
     let [(_, boxes), ..] = &bars([1.0; 3], [2; 3])[..] else { panic!("boxes") };
@@ -148,7 +148,7 @@ fn bodies_that_move_within_themselves_are_not_told_of() {
     }
 }
 
-/// Eight alike bodies side by side are judged one by one.
+/// Eight alike bodies side by side are judged individually.
 #[test]
 fn copies_are_counted_and_the_first_is_named() {
     let mesh = plate([2, 2], [1.0, 1.0]);
@@ -174,7 +174,7 @@ fn copies_are_counted_and_the_first_is_named() {
     assert!(told.message.contains("the first of them is body `body[2]` with"), "{}", told.message);
 }
 
-/// Steps of a body, so that it comes to rest.
+/// Steps a body so that it comes to rest.
 fn settle<const D: usize>(world: &mut World<D>, frames: usize) {
     (0..frames).for_each(|_| world.frame().expect("a frame"));
 }
@@ -187,7 +187,7 @@ fn codes<const D: usize>(world: &World<D>) -> Vec<String> {
     world.warnings_at_the_end().into_iter().map(|warning| warning.code).collect()
 }
 
-/// A held square whose free nodes begin in one point comes to rest folded, with all cells right side out: nothing else tells.
+/// A clamped square whose free nodes start in one point comes to rest folded, without inverted cells, so no other warning reports it.
 #[test]
 fn a_held_body_that_rests_folded_is_told_of() {
     let mesh = plate([3, 3], [1.0, 1.0]);
@@ -204,7 +204,7 @@ fn a_held_body_that_rests_folded_is_told_of() {
     }
 }
 
-/// A box has the volume of its mean, and may be inside out at its points all the same.
+/// A box has the volume of its mean deformation, but may be inverted at its integration points.
 #[test]
 fn boxes_inside_out_at_a_point_are_odd() {
     let mesh = Mesh::<2>::grid([0.0; 2], [1.0; 2], [1, 1]).expect("a square");
@@ -216,9 +216,9 @@ fn boxes_inside_out_at_a_point_are_odd() {
     assert!(cell.volume_ratio > 0.1, "{cell:?}");
     assert!((cell.smallest_volume_ratio - (1.0 - 1.4 * corner)).abs() < 1e-12, "{cell:?}");
     let told = world.inverted_cells().expect("a cell inside out").message;
-    // What is warned of is the least over the whole cell, at the corner.
+    // The warning contains the minimum over the whole cell, at the corner.
     assert!(told.contains("1 cell is inside out, the first of them cell 0 of body `body` with J = -0.4"), "{told}");
-    // Skewed boxes are as they are at rest.
+    // Skewed boxes are undeformed at rest.
     let mut mesh = Mesh::<3>::grid([0.0; 3], [1.0; 3], [2; 3]).expect("a grid");
     mesh.positions
         .iter_mut()
@@ -227,7 +227,7 @@ fn boxes_inside_out_at_a_point_are_odd() {
     assert!(world.cell_states(0).iter().all(|cell| (cell.smallest_volume_ratio - 1.0).abs() < 1e-12));
 }
 
-/// An arch between two walls that has snapped through is as good a balance as its own, but not its own.
+/// An arch between two walls that has snapped through is in a valid equilibrium, but not in that of its own shape.
 #[test]
 fn an_arch_that_snapped_through_is_told_of_and_not_shaken() {
     let mut mesh = plate([40, 2], [2.0, 0.05]).into_quadratic().expect("quadratic triangles");
@@ -246,7 +246,7 @@ fn an_arch_that_snapped_through_is_told_of_and_not_shaken() {
     assert_eq!(codes(&world), ["cells.other_balance"]);
 }
 
-/// What hangs, stands or bends under its weight ends in the balance of its own shape, also on the way.
+/// A body that hangs, stands or bends under its weight ends in the equilibrium of its own shape; it is not reported during its motion either.
 #[test]
 fn bodies_under_their_weight_are_not_told_of() {
     for (name, down, stiffness, size) in [
@@ -268,7 +268,7 @@ fn bodies_under_their_weight_are_not_told_of() {
     }
 }
 
-/// A thick tube that gas blows up to several times its area holds what the gas accounts for.
+/// A thick tube that gas inflates to several times its area has an energy that the gas accounts for.
 #[test]
 fn a_thick_balloon_full_of_gas_is_not_told_of() {
     let mesh = tube(24).into_simplices().expect("triangles").into_quadratic().expect("quadratic triangles");
@@ -282,19 +282,19 @@ fn a_thick_balloon_full_of_gas_is_not_told_of() {
     let mut world = World::new(blueprint, Options::default()).expect("a world");
     for _ in 0..5 {
         settle(&mut world, 60);
-        // It comes to rest by what the rule dissipates; nothing else is odd.
+        // It comes to rest by the dissipation of the integrator; there is no other warning.
         assert_eq!(codes(&world), ["ledger.numerical_damping"], "at {} s", world.time());
     }
     let widest = (0..world.node_count(0)).map(|n| world.position(0, n as u32)[0]).fold(0.0, Lane::larger);
-    // Then the cavity is about twice as wide as at rest.
+    // The cavity is then about twice as wide as at rest.
     assert!(widest > 1.25, "it was blown up to {widest} m");
 }
 
-/// A tube of the radii 0.5 and 1 m, of so many quadrilaterals around.
+/// A tube with radii of 0.5 and 1 m, with `around` quadrilaterals in the circumference.
 fn tube(around: u32) -> Mesh<2> {
     let mut mesh = Mesh::<2>::grid([0.0; 2], [1.0; 2], [around, 2]).expect("a grid");
     let row = around + 1;
-    // Around and inwards: the last column of nodes is the first one.
+    // Around and inwards: the last column of nodes coincides with the first.
     let kept = |node: u32| node % row % around + node / row * around;
     let positions = (0..3 * around).map(|k| {
         let (angle, radius) =

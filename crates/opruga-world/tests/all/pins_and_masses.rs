@@ -1,8 +1,8 @@
-//! What pins do to the motion of nodes beside theirs, with consistent masses and with lumped ones, and with what force.
+//! The effect of pins on the motion of neighbouring nodes, with consistent and lumped masses, and the forces of the pins.
 //!
-//! All bodies here are a bar of one square cell, 1 m and 2 kg, of stiffness 1 N/m between its ends: one coordinate u_f at the
-//! free end and one u_p at the held one, both of two nodes. With consistent masses M_ff = M_pp = 2/3 kg and M_fp = 1/3 kg, so ω² =
-//! 3/2 of the free end; with lumped ones 1 kg, 1 kg and 0, so ω² = 1.
+//! All bodies here are a bar of one square cell, 1 m and 2 kg, of stiffness 1 N/m between its ends. It has one coordinate u_f at the free end and one
+//! u_p at the pinned end, each for two nodes. With consistent masses M_ff = M_pp = 2/3 kg and M_fp = 1/3 kg, so ω² = 3/2 for the free end; with
+//! lumped ones 1 kg, 1 kg and 0, so ω² = 1.
 
 #![allow(clippy::disallowed_methods)] // expected values of the tests' own
 
@@ -14,7 +14,7 @@ use opruga_mesh::Mesh;
 use opruga_world::blueprint::*;
 use opruga_world::{Options, Registry, World};
 
-/// Every implicit rule of motion: its kind and its spectral radius.
+/// Every implicit integrator of motion: its kind and its spectral radius.
 const RULES: [(&str, Option<f64>); 6] = [
     ("backward_euler", None),
     ("bdf2", None),
@@ -24,12 +24,12 @@ const RULES: [(&str, Option<f64>); 6] = [
     ("newmark", Some(0.0)),
 ];
 
-/// The mass of the free end and that between the ends [kg].
+/// The mass of the free end, and the coupling mass between the ends [kg].
 fn masses(mass: &str) -> (f64, f64) {
     if mass == "consistent" { (2.0 / 3.0, 1.0 / 3.0) } else { (1.0, 0.0) }
 }
 
-/// The bar with its left end held along the axis, and everything across it, in steps of `h`.
+/// The bar with its left end pinned along the axis and all nodes pinned across it, in steps of `h`.
 fn bar((rule, radius): (&str, Option<f64>), mass: &str, damping: f64, h: f64) -> Blueprint<2> {
     let mesh = Mesh::<2>::grid([0.0; 2], [1.0; 2], [1, 1]).unwrap();
     let spec = Registry::<2>::default().integrator(rule).unwrap().spec();
@@ -59,7 +59,7 @@ fn hold(blueprint: &mut Blueprint<2>, motion: Vec<Vec<f64>>) {
     blueprint.bodies[0].pins.push(PinBlueprint { select: left(), axes: [true, false], motion });
 }
 
-/// Displacements of the held and of the free end.
+/// Displacements of the pinned and of the free end.
 fn ends(world: &World<2>) -> [f64; 2] {
     [world.position(0, 0)[0], world.position(0, 1)[0] - 1.0]
 }
@@ -68,7 +68,7 @@ fn mechanical(world: &World<2>) -> f64 {
     world.energy().kinetic + world.energy().elastic
 }
 
-/// The largest stretch of the bar until a time, and what its energy was at most.
+/// The largest stretch of the bar until a given time, and its largest energy.
 fn swing(world: &mut World<2>, until: f64) -> (f64, f64) {
     let (mut stretch, mut most) = (0.0f64, 0.0f64);
     while world.time() < until {
@@ -80,9 +80,9 @@ fn swing(world: &mut World<2>, until: f64) -> (f64, f64) {
     (stretch, most)
 }
 
-/// A bar in flight at 1 m/s whose end is held from the first step on. The impulse acts on the held nodes alone, so the free row
-/// of M Δv is zero: v_f = 1 + M_fp/M_ff = 3/2 with consistent masses, 1 with lumped ones, and the amplitude is v_f/ω. The
-/// energy is ½ M_ff v_f² from then on, 3/4 J and 1/2 J of the 1 J before.
+/// A bar that flies at 1 m/s and whose end is pinned from the first step. The impulse acts only on the pinned nodes, so the free row of M Δv is zero:
+/// v_f = 1 + M_fp/M_ff = 3/2 with consistent masses, 1 with lumped ones, and the amplitude is v_f/ω. The energy is then ½ M_ff v_f², 3/4 J and 1/2 J
+/// of the initial 1 J.
 fn swings_as_one_that_is_caught(world: &mut World<2>, rule: (&str, Option<f64>), mass: &str) {
     let (own, between) = masses(mass);
     let (speed, omega) = (1.0 + between / own, 1.0 / f64::sqrt(own));
@@ -91,7 +91,7 @@ fn swings_as_one_that_is_caught(world: &mut World<2>, rule: (&str, Option<f64>),
     assert!((amplitude / wanted - 1.0).abs() < 4e-3, "{rule:?}, {mass}: {amplitude}, not {wanted}");
     let energy = 0.5 * own * speed * speed;
     assert!(most < 1.001 * energy, "{rule:?}, {mass}: {most} J of {energy} J");
-    // Rules that damp nothing keep it.
+    // Integrators without dissipation conserve it.
     if matches!(rule, ("implicit_midpoint", _) | ("newmark", None)) {
         let end = mechanical(world);
         assert!((end / energy - 1.0).abs() < 1e-3, "{rule:?}, {mass}: {end} J of {energy} J");
@@ -131,8 +131,8 @@ fn every_rule_gives_a_bar_that_a_command_catches_the_same_motion_and_never_more_
     }
 }
 
-/// A base that moves on at 1/2 m/s from one moment to the next, on a step or within one: the free end is thrown back by M_fp/M_ff
-/// of that, and swings about the base with the sum over ω.
+/// A base that suddenly moves at 1/2 m/s, at or within a step. The free end is thrown back at M_fp/M_ff of that speed, and oscillates about the base
+/// with the sum of both over ω.
 #[test]
 fn every_rule_gives_a_bar_whose_base_sets_off_at_once_the_same_motion() {
     for rule in RULES {
@@ -149,7 +149,7 @@ fn every_rule_gives_a_bar_whose_base_sets_off_at_once_the_same_motion() {
                     "{rule:?}, {mass}, {start}: {amplitude}, not {wanted}"
                 );
                 let energy = world.energy();
-                // Rules that damp nothing lose nothing: the pin's impulse and its work within steps are all in the ledger.
+                // Integrators without dissipation lose nothing: the ledger contains the impulse of the pin and its work within steps.
                 if matches!(rule, ("implicit_midpoint", _) | ("newmark", None)) && mass == "consistent" {
                     assert!(energy.loss_integrator.abs() < 1e-6, "{rule:?}, {mass}: {energy:?}");
                 }
@@ -158,8 +158,8 @@ fn every_rule_gives_a_bar_whose_base_sets_off_at_once_the_same_motion() {
     }
 }
 
-/// A base that accelerates at a = 0.1 m/s², as a table with a row for every step: at rest in its frame the bar hangs back by
-/// (M_ff + M_fp) a/k = 0.1 m whatever the masses, and the pin draws 2 kg, with 0.2 N. What it gives is work of the user.
+/// A base that accelerates at a = 0.1 m/s², as a table with a row for every step. At rest in its frame the bar lags by (M_ff + M_fp) a/k = 0.1 m with
+/// either kind of masses, and the pin accelerates 2 kg with 0.2 N. Its work counts as work of the user.
 #[test]
 fn every_rule_lets_a_bar_hang_back_behind_its_accelerated_base_by_its_mass_and_tells_the_force_on_the_base() {
     hangs_back(&[0.02]);
@@ -175,7 +175,7 @@ fn every_rule_lets_a_bar_hang_back_behind_its_accelerated_base_by_its_mass_and_t
 fn hangs_back(steps: &[f64]) {
     let explicit = [("symplectic_euler", None), ("verlet", None)];
     for rule in RULES.into_iter().chain(explicit) {
-        // What is allowed falls with the step: an error that stayed would be found by the shorter one.
+        // The tolerance falls with the step, so that the shorter step reveals a constant error.
         for (mass, h) in steps.iter().flat_map(|h| [("lumped", *h), ("consistent", *h)]) {
             if mass == "consistent" && explicit.contains(&rule) {
                 continue;
@@ -195,8 +195,8 @@ fn hangs_back(steps: &[f64]) {
                 given += world.reaction(0, &[0, 2])[0] * (ends(&world)[0] - before);
             }
             let [held, free] = ends(&world);
-            // The base is led by corners, one for every step, so that within a step the velocities of its ends differ by up to
-            // a h, which the damper feels: an error of the first order in the step.
+            // The velocity of the base jumps once in every step, so within a step the velocities at its ends differ by up to a h, which acts on the
+            // damper: a first-order error in the step.
             let ahead = damping * a * h;
             assert!((free - held + a).abs() < ahead + 1e-4, "{rule:?}, {mass}: {}", free - held);
             let force = world.reaction(0, &[0, 2])[0];
@@ -206,14 +206,14 @@ fn hangs_back(steps: &[f64]) {
                 (given / work - 1.0).abs() < 2e-3 + ahead / (2.0 * a),
                 "{rule:?}, {mass}: {given} J by the force, {work} J in the ledger"
             );
-            // ½ · 2 kg · (4 m/s)² and what the stretch takes.
+            // ½ · 2 kg · (4 m/s)² plus the energy of the stretch.
             assert!((work / 16.0 - 1.0).abs() < 5e-3 + ahead / (2.0 * a), "{rule:?}, {mass}: {work}");
         }
     }
 }
 
-/// A clamped bar at rest under a weight that acts at once, g = 0.1 m/s² along it: u = g (M_ff + M_fp) (1 − cos ωt)/k, and the clamp gives what
-/// the change of momentum wants besides the weight of 2 kg, R = (M_ff + M_fp) u″ − 2 g.
+/// A clamped bar at rest under a weight that acts suddenly, g = 0.1 m/s² along it: u = g (M_ff + M_fp) (1 − cos ωt)/k. The clamp supplies the change
+/// of momentum beyond the weight of 2 kg, R = (M_ff + M_fp) u″ − 2 g.
 #[test]
 fn the_force_on_a_clamp_and_the_weight_change_the_momentum() {
     for mass in ["lumped", "consistent"] {
@@ -231,7 +231,7 @@ fn the_force_on_a_clamp_and_the_weight_change_the_momentum() {
     }
 }
 
-/// Over statics nothing accelerates: a moving pin bears what the bar weighs and pulls.
+/// In statics nothing accelerates: a moving pin supports only the weight and tension of the bar.
 #[test]
 fn in_statics_a_moving_pin_bears_the_forces_alone() {
     let mut led = bar(("equilibrium", None), "consistent", 0.0, 0.1);

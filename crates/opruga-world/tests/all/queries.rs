@@ -1,4 +1,4 @@
-//! Rays and nearest points on bodies as they are now.
+//! Rays and nearest points on the present shapes of bodies.
 
 use opruga_core::spec::Value;
 use opruga_math::message::Message as _;
@@ -18,13 +18,13 @@ fn world<const D: usize>(meshes: Vec<(Mesh<D>, [f64; D])>) -> World<D> {
     World::new(scene, Options::default()).expect("a world")
 }
 
-/// Numbers that look like chance, between -1 and 1.
+/// Pseudo-random numbers between −1 and 1.
 fn noise(seed: &mut u64) -> f64 {
     *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
     (*seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
 }
 
-/// Rays from all around meet a cube where its planes say, and none slips through an edge or a corner.
+/// Rays from all directions hit a cube at its planes, and none passes through an edge or a corner.
 #[test]
 fn rays_meet_a_cube_where_its_planes_are() {
     let cube = Mesh::<3>::grid([-1.0; 3], [2.0; 3], [3, 3, 3]).expect("a cube");
@@ -56,7 +56,7 @@ fn rays_meet_a_cube_where_its_planes_are() {
     }
 }
 
-/// The nearest point of a cube, from outside and from within.
+/// The nearest point of a cube, from outside and from inside.
 #[test]
 fn nearest_points_of_a_cube_are_those_of_its_planes() {
     let cube = Mesh::<3>::grid([-1.0; 3], [2.0; 3], [2, 3, 4]).expect("a cube");
@@ -77,7 +77,7 @@ fn nearest_points_of_a_cube_are_those_of_its_planes() {
     }
 }
 
-/// In the plane, of several bodies the first that is met; where bodies are now, and not where they began.
+/// In the plane the ray hits the first of several bodies, at their present positions and not at the initial ones.
 #[test]
 fn queries_see_bodies_where_they_are() {
     let ring = || Mesh::<2>::ring(0.5, 48, [0.0; 2], 0.0).expect("a ring");
@@ -100,7 +100,7 @@ fn queries_see_bodies_where_they_are() {
     }
     assert_eq!(ray(&world, 0.0).expect("the first ring").body, 0);
     assert_eq!(ray(&world, 3.0).expect("the second ring").body, 1);
-    // The same by the world without a dimension.
+    // The same in the world without a dimension.
     let any: &dyn AnyWorld = &world;
     let hit = any.cast_ray([0.0, 3.0, 0.0], [1.0, 0.0, 0.0], 100.0).expect("a ray").expect("the second ring");
     assert_eq!((hit.body, hit.position[2], hit.weights[2]), (1, 0.0, 0.0));

@@ -1,5 +1,5 @@
-//! The real-time setting of implicit rules: how far it is from the exact one, that threads and interruptions leave no trace
-//! in it, and (`-- --ignored --nocapture`) how long it takes.
+//! The real-time setting of implicit integrators: its difference from the exact setting, its independence of threads and interruptions, and (`--
+//! --ignored --nocapture`) its computing time.
 
 use crate::common;
 use opruga_math::message::Message;
@@ -13,7 +13,7 @@ use opruga_world::blueprint::Blueprint;
 use opruga_world::{Options, Registry, World};
 use std::time::Instant;
 
-/// A body of one material that is clamped at x = 0 and let go.
+/// A body of one material that is clamped at x = 0 and released.
 fn clamped(mesh: Mesh<3>, rule: &str, accuracy: &str, modulus: f64, more: &[(&str, Value)]) -> Blueprint<3> {
     let mut material = vec![("youngs_modulus", Value::Number(modulus)), ("poissons_ratio", Value::Number(0.4))];
     material.push(("material", text("corotated")));
@@ -34,14 +34,14 @@ fn world(blueprint: Blueprint<3>, threads: usize) -> World<3> {
     World::new(blueprint, Options { threads, ..Options::default() }).expect("a world")
 }
 
-/// Mean height of the nodes that are farthest from the clamp at rest, less that at rest.
+/// Mean height of the nodes that are farthest from the clamp at rest, minus their height at rest.
 fn tip(world: &World<3>, at_rest: &[[f64; 3]]) -> f64 {
     let far = at_rest.iter().map(|p| p[0]).fold(0.0, Lane::larger);
     let nodes: Vec<usize> = (0..at_rest.len()).filter(|n| at_rest[*n][0] > far - 1e-9).collect();
     nodes.iter().map(|n| world.position(0, *n as u32)[1] - at_rest[*n][1]).sum::<f64>() / nodes.len() as f64
 }
 
-/// The tip after every frame.
+/// The height of the tip after every frame.
 fn swing(mut world: World<3>, mesh: &Mesh<3>, frames: usize) -> (Vec<f64>, World<3>) {
     let path = (0..frames)
         .map(|_| {
@@ -52,7 +52,7 @@ fn swing(mut world: World<3>, mesh: &Mesh<3>, frames: usize) -> (Vec<f64>, World
     (path, world)
 }
 
-/// The lowest point of the first swing, and the time between it and the next one, by parabolas [frames].
+/// The lowest point of the first oscillation, and the time between it and the next one, from parabolas [frames].
 fn amplitude_and_period(path: &[f64]) -> (f64, f64) {
     let mut lows = (1..path.len() - 1).filter(|k| path[*k] < path[k - 1] && path[*k] <= path[k + 1]).map(|k| {
         let (a, b, c) = (path[k - 1], path[k], path[k + 1]);
@@ -63,8 +63,8 @@ fn amplitude_and_period(path: &[f64]) -> (f64, f64) {
     (first.0, second.1 - first.1)
 }
 
-/// First-swing amplitude within 3 %, period within 1 % of the exact steps, and at rest within 1 % of the static solution on
-/// the same mesh, with a mean of few iterations: soft, so that the cube bends by a quarter of its length, and stiff.
+/// The amplitude of the first oscillation is within 3 % and the period within 1 % of exact steps. At rest the position is within 1 % of the static
+/// solution on the same mesh, with a small mean number of iterations: for a soft cube, which bends by a quarter of its length, and for a stiff one.
 #[test]
 fn a_clamped_cube_swings_and_rests_as_with_exact_steps() {
     let mesh = cube(4);
@@ -76,7 +76,7 @@ fn a_clamped_cube_swings_and_rests_as_with_exact_steps() {
         let ((exact, _), (quick, mut world_at_rest)) = (run("exact"), run("real_time"));
         let (a, b) = (amplitude_and_period(&quick), amplitude_and_period(&exact));
         assert!((a.0 / b.0 - 1.0).abs() < 0.03 && (a.1 / b.1 - 1.0).abs() < 0.01, "E = {modulus}: {a:?} {b:?}");
-        // Backward Euler takes its time to calm the soft cube down.
+        // Backward Euler needs a long time to damp the soft cube.
         for _ in 0..1500 {
             world_at_rest.frame().unwrap();
         }
@@ -89,7 +89,7 @@ fn a_clamped_cube_swings_and_rests_as_with_exact_steps() {
     }
 }
 
-/// The matrix that is kept is part of what a snapshot holds, and so is the velocity before the last step.
+/// A snapshot contains the stored matrix and the velocity before the last step.
 #[test]
 fn neither_threads_nor_interruptions_nor_instructions_leave_a_trace() {
     let mesh = cube(10);
@@ -119,7 +119,7 @@ fn neither_threads_nor_interruptions_nor_instructions_leave_a_trace() {
     }
 }
 
-/// Forces of one solid are shared by threads, also in explicit steps and in exact ones, with several parts and damping.
+/// Threads share the forces of one solid, in explicit and exact steps too, with several parts and damping.
 #[test]
 fn one_large_solid_has_the_same_bits_on_any_number_of_threads() {
     let quadratic = Mesh::grid([0.0; 3], [1.0; 3], [5; 3]).unwrap().into_simplices().unwrap().into_quadratic().unwrap();
@@ -129,7 +129,7 @@ fn one_large_solid_has_the_same_bits_on_any_number_of_threads() {
         (boxes, "verlet", "", 6),
         (quadratic, "backward_euler", "exact", 1),
         (cube(10), "newmark", "exact", 1),
-        // With volumes of nodes.
+        // With nodal volumes.
         (cube(10), "verlet", "nodal_volume", 6),
     ] {
         assert!(mesh.nodes() >= 1000, "{} nodes are not shared", mesh.nodes());
@@ -158,7 +158,7 @@ fn one_large_solid_has_the_same_bits_on_any_number_of_threads() {
     }
 }
 
-/// A small stiff body takes the sparse factor, and keeps it.
+/// A small stiff body uses the sparse factor, and keeps it.
 #[test]
 fn a_stiff_beam_of_quadratic_tetrahedra_hangs_as_its_statics_say() {
     let mesh = Mesh::grid([0.0; 3], [1.0, 0.1, 0.1], [8, 1, 1]).unwrap();
@@ -174,7 +174,7 @@ fn a_stiff_beam_of_quadratic_tetrahedra_hangs_as_its_statics_say() {
     assert!(work.iterations < 2 * work.steps, "{work:?}");
 }
 
-/// Its equations take more products than those of a cube: a solution cut off too early once let it gain energy without end.
+/// Its equations need more products than those of a cube: when the solution was cut off too early, it gained energy without limit.
 #[test]
 fn a_slender_beam_of_many_cells_hangs_as_deep_as_the_published_one() {
     let mesh = Mesh::grid([0.0; 3], [1.0, 0.1, 0.1], [20, 2, 2]).unwrap();
@@ -188,8 +188,8 @@ fn a_slender_beam_of_many_cells_hangs_as_deep_as_the_published_one() {
     assert!((sunk / 0.014_686 - 1.0).abs() < 0.01, "{sunk}");
 }
 
-/// Slender beams of quadratic tetrahedra: their first swing is that of exact steps, they stay in their plane and come to rest where
-/// statics says, and no budget is spent before that.
+/// Slender beams of quadratic tetrahedra: their first oscillation matches exact steps, they stay in their plane and come to rest at the static
+/// solution, and no budget is used up before that.
 #[test]
 fn slender_beams_swing_and_rest_as_with_exact_steps() {
     slender_beams(&[[14, 2, 1]]);
@@ -233,7 +233,7 @@ fn slender_beams(beams: &[[u32; 3]]) {
             still.frame().unwrap();
             still
         };
-        // Tetrahedra of one cut are not quite alike on both sides: statics turns them out of the plane as well.
+        // The tetrahedra of one cut are not quite symmetric, so statics also moves them out of the plane.
         let natural = (0..=last).map(|n| (of_statics.position(0, n)[2] - mesh.positions[n as usize][2]).abs());
         let (sideways, natural) = (sideways.fold(0.0, Lane::larger), natural.fold(0.0, Lane::larger));
         assert!(sideways < 3.0 * natural + 1e-5, "{cells:?}: {sideways} {natural}");
@@ -246,7 +246,7 @@ fn slender_beams(beams: &[[u32; 3]]) {
     }
 }
 
-/// A slender beam whose matrix is not factored takes many products, and errs in its bending: that is not passed over in silence.
+/// A slender beam whose matrix is not factored needs many products and has an error in bending, which is reported.
 #[test]
 fn steps_that_may_be_worse_than_promised_are_counted_with_what_is_left() {
     let mesh = Mesh::grid([0.0; 3], [1.0, 0.1, 0.1], [16, 2, 2]).unwrap();
@@ -263,8 +263,8 @@ fn steps_that_may_be_worse_than_promised_are_counted_with_what_is_left() {
     assert!(warning.message.contains(&format!("{} m", number(work.left))), "{warning:?}");
 }
 
-/// A clamped bar under a sudden weight: one iteration leaves the more out of balance the more that bends the bar, of the first weights 8 and 2 %,
-/// of the second 32 and 10 %.
+/// A clamped bar under a sudden weight: the more the bar bends, the larger the residual after one iteration. For the first weights it is 8 and 2 %,
+/// for the second 32 and 10 %.
 #[test]
 fn a_step_that_leaves_more_out_of_balance_than_its_rule_promises_is_counted() {
     let counted = |rule: &str, iterations: i64, weight: f64| {
@@ -289,7 +289,7 @@ fn a_step_that_leaves_more_out_of_balance_than_its_rule_promises_is_counted() {
 }
 
 fn cpu() -> f64 {
-    // Time of this thread: nanoseconds on a processor, the first number of schedstat.
+    // The time of this thread: nanoseconds on a processor, the first number of schedstat.
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
     text.split(' ').next().and_then(|n| n.parse::<f64>().ok()).unwrap_or(0.0) * 1e-9
 }
@@ -369,7 +369,7 @@ fn time_and_error_of_the_clamped_beam() {
     }
 }
 
-/// The setting makes steps of its rule cheaper, not steps of another rule; rules that damp nothing refuse it.
+/// The setting makes steps of an integrator cheaper without replacing it by another; integrators without dissipation refuse it.
 #[test]
 fn real_time_steps_are_those_of_their_rule() {
     let tip = |rule: &str, accuracy: &str| {

@@ -1,4 +1,4 @@
-//! The real-time setting of bodies that slide, stick and tumble on obstacles.
+//! The real-time setting for bodies that slide, stick and tumble on obstacles.
 
 use crate::common;
 use crate::contact::{contact, deepest};
@@ -10,10 +10,10 @@ use opruga_world::blueprint::{Blueprint, ColliderBlueprint};
 
 use opruga_world::{Options, Registry, World};
 
-/// A cube of tetrahedra that is thrown across a floor of friction.
+/// A cube of tetrahedra that is thrown across a floor with friction.
 fn thrown(friction: f64, accuracy: &str) -> Blueprint<3> {
     let mut mesh = Mesh::grid([0.0; 3], [1.0; 3], [4; 3]).unwrap().into_simplices_by(Cut::Five).unwrap();
-    // On an edge, askew.
+    // On an edge, tilted.
     let (c, s) = (0.8, 0.6);
     for x in &mut mesh.positions {
         let [a, b, d] = *x;
@@ -37,7 +37,7 @@ fn thrown(friction: f64, accuracy: &str) -> Blueprint<3> {
     blueprint
 }
 
-/// Where the middle of the cube lies after two seconds [m], and the world.
+/// The position of the centre of the cube after two seconds [m], and the world.
 fn throw(friction: f64, accuracy: &str) -> ([f64; 3], World<3>) {
     let mut world = World::new(thrown(friction, accuracy), Options::default()).expect("a world");
     for _ in 0..120 {
@@ -48,7 +48,7 @@ fn throw(friction: f64, accuracy: &str) -> ([f64; 3], World<3>) {
     (core::array::from_fn(mean), world)
 }
 
-/// Friction that turns from iteration to iteration left a third of these steps farther out of balance than promised; friction that each step
+/// With friction that rotated from iteration to iteration, a third of these steps had a larger residual than promised; with friction that each step
 /// finds anew, 12 of 720.
 #[test]
 fn what_slides_and_tumbles_on_a_floor_leaves_as_little_as_it_promises() {
@@ -61,7 +61,7 @@ fn what_slides_and_tumbles_on_a_floor_leaves_as_little_as_it_promises() {
     }
 }
 
-/// A tower of blocks that leans, and its top after two seconds [m].
+/// A leaning tower of blocks, and its top after two seconds [m].
 fn tower(rule: &str, accuracy: &str, response: &str) -> (World<2>, [f64; 2]) {
     let mut bodies: Vec<_> = (0..4u8)
         .map(|k| block(&format!("block {k}"), [1.0, 0.6], [5, 3], [0.06 * f64::from(k), 0.7 * f64::from(k)], 1.0, 2e4))
@@ -89,7 +89,7 @@ fn tower(rule: &str, accuracy: &str, response: &str) -> (World<2>, [f64; 2]) {
     (world, top)
 }
 
-/// Answers to impulses go by the matrix that is kept from step to step, and steps and contact agree to a tenth of the thickness alone.
+/// Responses to impulses use the matrix that is kept from step to step, and steps and contact agree only to a tenth of the thickness.
 #[test]
 fn bodies_of_a_budget_lie_where_exact_steps_leave_them() {
     for rule in ["backward_euler", "bdf2"] {
@@ -101,7 +101,8 @@ fn bodies_of_a_budget_lie_where_exact_steps_leave_them() {
     }
 }
 
-/// Iterations end at a twentieth of what is out of balance, friction goes by the forces of the step before, and corrections that were cut short do not count.
+/// Iterations end at a twentieth of the initial residual, friction depends on the forces of the previous step, and shortened corrections do not
+/// count.
 #[test]
 fn a_barrier_with_a_budget_leaves_bodies_where_exact_steps_do() {
     for rule in ["backward_euler", "bdf2"] {

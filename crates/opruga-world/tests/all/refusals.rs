@@ -1,4 +1,4 @@
-//! What a world refuses, part by part, and what it warns of.
+//! Refusals of a world, part by part, and its warnings.
 
 use crate::common;
 
@@ -116,7 +116,7 @@ fn every_part_that_is_refused_is_found_once() {
             "unstable: stiff[0]",
         ]
     );
-    // What a world accepts has no problems, and the other way round.
+    // A scene without problems is accepted, and the reverse.
     let first = World::new(blueprint.clone(), Options::default()).expect_err("refused");
     assert!(World::problems(&blueprint, &Options::default(), &Arc::default()).contains(&first));
     blueprint.bodies.truncate(1);
@@ -126,7 +126,7 @@ fn every_part_that_is_refused_is_found_once() {
     assert!(World::new(blueprint, Options::default()).is_ok());
 }
 
-/// A body without edges is refused in the words of the scene file.
+/// A body without edges is refused with the word for edges in the scene file.
 #[test]
 fn springs_without_edges_are_refused_by_the_word_of_their_edges() {
     let dot = Arc::new(Mesh { positions: vec![[0.0, 0.0]], ..Mesh::default() });
@@ -138,8 +138,8 @@ fn springs_without_edges_are_refused_by_the_word_of_their_edges() {
     );
 }
 
-/// Two nodes of m = 0.5 kg and a spring k swing with ω² = 2k/m, so the estimate is k/2 for each node, and the weight of
-/// both stretches that by 4 m g / k = 19.62 N / k: more than the metre between them for a softer spring than 19.62 N/m.
+/// Two nodes of m = 0.5 kg and a spring k oscillate with ω² = 2k/m, so the estimate is k/2 for each node. The weight of both stretches that by 4 m g
+/// / k = 19.62 N / k, which exceeds the distance of one metre between them if the spring is softer than 19.62 N/m.
 #[test]
 fn a_body_is_warned_of_where_its_sag_exceeds_its_size() {
     let warned = |stiffness: f64, size: f64, gravity: f64| {
@@ -156,7 +156,7 @@ fn a_body_is_warned_of_where_its_sag_exceeds_its_size() {
     assert_eq!((warned(0.1, 1.0, 0.0), warned(0.0, 1.0, -9.81)), (0, 0), "no weight, or nothing that sags");
 }
 
-/// Kinds of bodies are counted, and the warning is renewed rather than repeated when the scene changes.
+/// Kinds of bodies are counted, and when the scene changes the warning is replaced rather than repeated.
 #[test]
 fn the_warning_is_counted_by_kinds_and_goes_when_its_cause_goes() {
     let soft = |stiffness| vec![model("mass_spring", "stiffness", stiffness)];
@@ -171,7 +171,7 @@ fn the_warning_is_counted_by_kinds_and_goes_when_its_cause_goes() {
     assert_eq!(counts(&world), []);
 }
 
-/// A law that pushes cells back is no advice for a body that has it; one that pushes them back from farther is.
+/// A law that pushes cells back is not suggested for a body that already has it; a law that pushes them back from farther away is.
 #[test]
 fn the_hint_of_inverted_cells_names_no_law_that_the_body_has() {
     for (law, hint) in [

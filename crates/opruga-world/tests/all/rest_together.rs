@@ -1,4 +1,4 @@
-//! Statics of bodies that touch: they come to their common balance.
+//! Statics of bodies that touch: they reach their common equilibrium.
 
 use crate::contact::{contact, model, scene};
 use crate::implicit_contact::force_on;
@@ -14,7 +14,7 @@ fn block(name: &str, size: [f64; 2], cells: [u32; 2], x: [f64; 2], mass: f64) ->
     BodyBlueprint { translation: x, ..BodyBlueprint::new(name, mesh, Mass::Total(mass), vec![fem]) }
 }
 
-/// A slab that is held below, and a free and heavy cube on it.
+/// A slab with pins below, and a free and heavy cube on it.
 fn stack(rule: &str) -> Blueprint<2> {
     let mut slab = block("slab", [2.0, 0.5], [9, 3], [-0.5, -0.5], 2.0);
     slab.pins.push(PinBlueprint { select: Selector::Side("bottom".into()), axes: [true; 2], motion: Vec::new() });
@@ -25,10 +25,10 @@ fn stack(rule: &str) -> Blueprint<2> {
     scene
 }
 
-/// The height of the cube in its middle [m].
+/// The height of the cube at its middle [m].
 fn height(world: &World<2>) -> f64 {
     let top = |node: u32| world.position(1, node)[1];
-    // The middle of its upper side and of its lower side.
+    // The midpoints of its upper and lower sides.
     top(22) - top(2)
 }
 
@@ -49,7 +49,7 @@ fn a_stack_comes_to_its_balance_in_one_frame() {
         let force = force_on(&mut world, body);
         assert!((force[1] / wanted - 1.0).abs() < 1e-6 && force[0].abs() < 1e-3, "{body}: {force:?}");
     }
-    // Nothing changes in a second frame.
+    // A second frame changes nothing.
     let before = height(&world);
     world.frame().expect("the same balance");
     assert!((height(&world) - before).abs() < 1e-7, "{} {before}", height(&world));
@@ -59,7 +59,7 @@ fn a_stack_comes_to_its_balance_in_one_frame() {
     assert_eq!(at_rest(3).state_hash(), hash);
 }
 
-/// The cube is pressed by its weight, by 2 % of its height. Motion that is damped comes to rest there.
+/// The weight of the cube compresses it by 2 % of its height. Damped motion comes to rest in this state.
 #[test]
 fn a_pressed_cube_comes_to_rest_where_statics_says() {
     let mut still = world(&stack("equilibrium"), 1);
@@ -74,7 +74,7 @@ fn a_pressed_cube_comes_to_rest_where_statics_says() {
     assert!((pressed / wanted - 1.0).abs() < 0.02, "{pressed} {wanted}");
 }
 
-/// Bodies of 5e4 Pa, each on the one before, with meshes that do not match.
+/// Bodies of 5e4 Pa, each on the previous one, with meshes that do not match.
 pub(crate) fn high_stack(bodies: usize, friction: f64) -> Blueprint<2> {
     let all = [
         ("slab", [3.0, 0.5], [24, 4], [-1.5, -0.5], 200.0),
@@ -111,7 +111,7 @@ fn high_stacks_come_to_their_balance() {
     }
 }
 
-/// In space many contacts of flat faces carry one weight, and which of them stick or slide has many answers.
+/// In space many contacts of flat faces support one weight, and there are many solutions for which of them stick or slide.
 #[test]
 fn a_cube_of_space_comes_to_its_balance_on_a_slab() {
     for friction in [0.5, 0.0] {
@@ -147,7 +147,7 @@ fn overlap_is_taken_apart_and_what_nothing_holds_is_refused() {
     let mut reference = world(&stack("equilibrium"), 1);
     reference.frame().expect("a balance");
     assert!((height(&apart) - height(&reference)).abs() < 1e-3, "{} {}", height(&apart), height(&reference));
-    // A cube beside the slab falls for ever.
+    // A cube beside the slab falls forever.
     let mut falling = stack("equilibrium");
     falling.bodies[1].translation = [5.0, 0.0];
     let mut falling = world(&falling, 1);
@@ -158,7 +158,7 @@ fn overlap_is_taken_apart_and_what_nothing_holds_is_refused() {
     assert_eq!(falling.state_hash(), kept);
 }
 
-/// A block that is held below, and another one 31 mm above it, whose upper side goes down by so much within each second. Nothing has a weight.
+/// A block with pins below, and another one 31 mm above it, whose upper side moves down by the given displacement in each second. Nothing has weight.
 fn lowered(ways: &[f64]) -> World<2> {
     let body = |name: &str, size: [f64; 2], cells: [u32; 2], at: [f64; 2], side: &str, motion: Vec<Vec<f64>>| {
         let mut body = block(name, size, cells, at, 1.0);
@@ -177,7 +177,7 @@ fn lowered(ways: &[f64]) -> World<2> {
     world(&scene, 1)
 }
 
-/// What is out of balance in a body on which no force acts is rounding, and so are the forces on it.
+/// The residual of a body on which no force acts is rounding, and so are the forces on it.
 #[test]
 fn bodies_without_forces_do_not_keep_others_from_their_balance() {
     let mut world = lowered(&[0.0, 0.02]);
@@ -195,9 +195,9 @@ fn a_block_that_comes_down_presses_one_on_which_no_force_acted() {
     world.frame().expect("a balance apart");
     world.frame().expect("a balance");
     assert_eq!(world.crossed_surfaces(), []);
-    // The nodes of the lower side of the one and of the upper side of the other.
+    // The nodes of the lower side of the first block and of the upper side of the second.
     let held = [(0, [0, 1, 2]), (1, [12, 13, 14])].map(|(body, nodes)| world.reaction(body, &nodes)[1]);
-    // Together 3 m high, and 20 mm shorter. A bar would take 1e5 · 0.02/3 N; pins and the even strain of the plane stiffen the blocks.
+    // Together they are 3 m high and are shortened by 20 mm. A bar would need 1e5 · 0.02/3 N; pins and plane strain stiffen the blocks.
     assert!(held[0] > 7e2 && held[0] < 1e3, "{held:?}");
     assert!((held[0] + held[1]).abs() < 1e-6 * held[0], "{held:?}");
     for (body, held) in held.into_iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Implicit steps from shapes that no body has: every one comes back to its volume, or is refused with a reason.
+//! Implicit steps from impossible shapes: every body returns to its volume, or is refused with a reason.
 
 use crate::common;
 
@@ -13,7 +13,7 @@ use opruga_world::{Options, World};
 
 const MATERIALS: [&str; 2] = ["stable_neo_hookean", "fixed_corotated"];
 
-/// A cube of 1 m without weight, and a step.
+/// A weightless cube of 1 m, and a step.
 fn body<const D: usize>(mesh: Mesh<D>, material: &str, frame: f64, pins: Vec<PinBlueprint<D>>) -> Blueprint<D> {
     let mut blueprint = solid(
         mesh,
@@ -36,7 +36,7 @@ fn cube(n: u32) -> Mesh<3> {
     Mesh::grid([0.0; 3], [1.0; 3], [n; 3]).unwrap().into_simplices().unwrap()
 }
 
-/// The volume ratio of the body, and the least one of its tetrahedra.
+/// The volume ratio of the body, and the smallest one of its tetrahedra.
 fn volumes(world: &World<3>, mesh: &Mesh<3>) -> (f64, f64) {
     let (mut whole, mut at_rest, mut least) = (0.0, 0.0, f64::INFINITY);
     for cell in &mesh.cells.tetrahedra {
@@ -51,25 +51,25 @@ fn volumes(world: &World<3>, mesh: &Mesh<3>) -> (f64, f64) {
     (whole / at_rest, least)
 }
 
-/// What becomes of a body that starts in another shape, within thirty seconds.
+/// The outcome of a body that starts in another shape, within thirty seconds.
 #[derive(Debug, PartialEq)]
 enum End {
-    /// It has its volume within 0.1 %, and no cell is turned inside out.
+    /// It has its volume within 0.1 %, and no cell is inverted.
     Back,
-    /// A step or a warning says why not.
+    /// An error or a warning gives the reason why not.
     Reasoned(String),
-    /// Neither: the volume ratio and the least one of a cell.
+    /// Neither: the volume ratio, and the smallest one of a cell.
     Silent(f64, f64),
 }
 
-/// The volume ratio of a body, and the least one of its cells.
+/// The volume ratio of a body, and the smallest one of its cells.
 fn ratios<const D: usize>(world: &World<D>) -> (f64, f64) {
     let cells = world.cell_states(0);
     let (now, rest) = cells.iter().fold((0.0, 0.0), |(a, b), c| (a + c.volume_ratio * c.measure, b + c.measure));
     (now / rest, cells.iter().map(|cell| cell.volume_ratio).fold(f64::INFINITY, Lane::smaller))
 }
 
-/// What becomes of a body that begins in a shape, by the volume ratios that `measure` tells.
+/// The outcome of a body that starts in a given shape, judged by the volume ratios from `measure`.
 fn end<const D: usize>(
     blueprint: Blueprint<D>,
     name: &str,
@@ -98,7 +98,7 @@ fn end<const D: usize>(
             assert!(warning.message.contains("body `body`") && warning.message.contains("J = "), "{warning:?}");
             told.get_or_insert_with(|| format!("after {frame} frames: {}", warning.message));
         }
-        // Some come back by themselves all the same.
+        // Some return by themselves nevertheless.
         if told.is_some() && frame >= 450 {
             break;
         }
@@ -114,13 +114,13 @@ fn end<const D: usize>(
     End::Silent(whole, least)
 }
 
-/// It ends at its volume, or a step says why not.
+/// It ends at its volume, or a step gives the reason why not.
 fn comes_back<const D: usize>(blueprint: Blueprint<D>, name: &str, shape: &dyn Fn([f64; D], usize) -> [f64; D]) {
     let end = end(blueprint, name, shape, &ratios);
     assert!(!matches!(end, End::Silent(..)), "{name}: {end:?}");
 }
 
-/// A number from −1 to 1 that belongs to a node and an axis.
+/// A number from −1 to 1 that depends on a node and an axis.
 fn random(node: usize, axis: usize) -> f64 {
     let mut state = (node * 3 + axis) as u64 + 1;
     for _ in 0..3 {
@@ -139,7 +139,7 @@ fn hexahedra(material: &str) -> Blueprint<3> {
     body(Mesh::grid([0.0; 3], [1.0; 3], [3; 3]).unwrap(), material, 1.0 / 30.0, Vec::new())
 }
 
-/// Exactly on a plane, on a line or in a point, where all forces across balance, and mirrored.
+/// Exactly on a plane, on a line or in a point, where all lateral forces balance, and mirrored.
 #[test]
 fn bodies_that_symmetry_holds_flat_or_inside_out_leave_it_or_say_that_they_stay() {
     leave_symmetry("tetrahedra", tetrahedra, &ALL_MATERIALS[..1]);
@@ -169,7 +169,7 @@ fn hexahedra_of_other_materials_leave_symmetry_or_say_that_they_stay_whole_sweep
 }
 
 fn leave_symmetry(name: &str, cells: fn(&str) -> Blueprint<3>, materials: &[&str]) {
-    // One material takes a minute.
+    // One material takes a minute, so they run in parallel.
     std::thread::scope(|threads| {
         for material in materials {
             threads.spawn(move || {
@@ -183,7 +183,7 @@ fn leave_symmetry(name: &str, cells: fn(&str) -> Blueprint<3>, materials: &[&str
     });
 }
 
-/// The same in statics, of a body that is held, and in real time.
+/// The same in statics, for a clamped body, and in real time.
 #[test]
 fn statics_and_real_time_leave_flat_shapes_too() {
     for material in MATERIALS {
@@ -203,7 +203,7 @@ fn statics_and_real_time_leave_flat_shapes_too() {
             blueprint.time.frame = 1.0 / 30.0;
             blueprint.bodies[0].pins = clamp();
             blueprint.surroundings.unfold = true;
-            // What is held stays where it is.
+            // Pinned nodes stay in place.
             let on_line = |x: [f64; 3], _| if x[0] == 0.0 { x } else { [x[0], 0.5, 0.5] };
             let in_point = |x: [f64; 3], _| if x[0] == 0.0 { x } else { [0.5; 3] };
             comes_back(blueprint.clone(), &format!("{rule}, {material}, line"), &on_line);
@@ -227,7 +227,7 @@ fn scattered_stretched_and_twisted_bodies_come_back_or_are_refused_with_a_reason
     }
 }
 
-/// Every other rule, on every kind of cell: what stays folded is told.
+/// All other integrators, with every kind of cell: a body that stays folded is reported.
 #[test]
 fn every_rule_brings_every_kind_of_cell_back_or_says_what_is_folded() {
     let grid = || Mesh::<3>::grid([0.0; 3], [1.0; 3], [2; 3]).unwrap();
@@ -246,7 +246,7 @@ fn every_rule_brings_every_kind_of_cell_back_or_says_what_is_folded() {
             blueprint.surroundings.unfold = true;
             let name = |shape: &str| format!("{rule}, {name}, {shape}");
             comes_back(blueprint.clone(), &name("plane"), &|x, _| [x[0], 0.0, x[2]]);
-            // Many nodes inside out or at random places take long to find out of it.
+            // Many inverted or randomly placed nodes take long to recover.
             if mesh.nodes() <= 27 {
                 comes_back(blueprint.clone(), &name("mirrored"), &|x, _| [-x[0], x[1], x[2]]);
                 comes_back(blueprint, &name("scattered"), &|_, node| core::array::from_fn(|d| random(node, d)));
@@ -255,7 +255,7 @@ fn every_rule_brings_every_kind_of_cell_back_or_says_what_is_folded() {
     }
 }
 
-/// The same chance in every run: a disturbed body is the same to the last bit, and a snapshot knows how often it was disturbed.
+/// The randomness is the same in every run: a displaced body is the same to the last bit, and a snapshot contains the number of displacements.
 #[test]
 fn disturbances_are_repeatable_and_counted() {
     let flat = || {
@@ -285,9 +285,9 @@ fn disturbances_are_repeatable_and_counted() {
     assert!(a.warnings().iter().any(|warning| warning.code == "step.disturbed"));
 }
 
-/// A viscous body that was stretched and let go creeps back: its elastic forces are out of balance all the way, by U/ε a
-/// strain of ε, however slowly it moves. Only damping holds them, which is no rest, and no cell is flat or inside out. So no
-/// step may put energy into it: where strains are small, what it stores falls as exp(−2t/τ).
+/// A viscous body that was stretched and released creeps back. Its elastic forces are out of balance all the time, by U/ε at a strain ε, however
+/// slowly it moves. Only damping balances them, so it is not at rest, and no cell is flat or inverted. No step may therefore add energy to it: at
+/// small strains its stored energy falls as exp(−2t/τ).
 #[test]
 fn a_body_that_creeps_back_against_its_viscosity_is_never_taken_for_one_at_rest() {
     let tau = 20.0;
@@ -329,10 +329,10 @@ fn a_body_that_creeps_back_against_its_viscosity_is_never_taken_for_one_at_rest(
     }
 }
 
-/// Steps that count though they did not converge may not lead beyond every measure.
+/// Steps that are accepted without convergence may not diverge without limit.
 #[test]
 fn accepted_steps_that_blow_a_body_up_end_in_an_error() {
-    // Two iterations a step, a law that pushes flat cells far out, and a start that is random.
+    // Two iterations per step, a law that pushes flat cells far out, and a random start.
     let mut blueprint = solid(
         cube(3),
         "newmark",
@@ -388,8 +388,8 @@ fn hanging(mesh: Mesh<3>, rule: &str, frame: f64, damping: f64) -> World<3> {
     World::new(blueprint, Options::default()).unwrap()
 }
 
-/// A clamped body under its weight, node by node: in long steps it comes to the rest that statics says, in short ones it
-/// moves as explicit steps move it.
+/// A clamped body under its weight, node by node: in long steps it comes to rest at the static solution, in short steps it moves as with explicit
+/// steps.
 #[test]
 fn steps_from_ten_microseconds_to_two_seconds_lead_every_node_to_the_same_place() {
     for h in [2.0, 0.1] {
@@ -413,8 +413,8 @@ fn steps_from_ten_microseconds_to_two_seconds_lead_every_node_to_the_same_place(
     }
 }
 
-/// Layers of cells that are a thousand times wider than high, in a hanging bar without lateral contraction: each layer hangs where
-/// the closed form says, u(x) = ρ g (L x − x²/2)/E.
+/// Layers of cells that are a thousand times wider than high, in a hanging bar without lateral contraction. Each layer follows the closed form, u(x)
+/// = ρ g (L x − x²/2)/E.
 #[test]
 fn layers_of_slivers_hang_where_the_closed_form_says() {
     let (modulus, weight) = (1e6, 1000.0 * 9.81);
@@ -457,7 +457,7 @@ fn layers_of_slivers_hang_where_the_closed_form_says() {
     }
 }
 
-/// Boxes come back too, from shapes in which their mean deformation says nothing of their corners.
+/// Boxes return too, from shapes in which their mean deformation does not depend on their corners.
 #[test]
 fn boxes_come_back_from_shapes_that_no_body_has() {
     boxes_come_back(&MATERIALS[..1]);
@@ -473,7 +473,7 @@ fn boxes_come_back(materials: &[&str]) {
     for material in materials {
         let back = |name: &str, n: u32, shape: &dyn Fn([f64; 3], usize) -> [f64; 3]| {
             let mesh = Mesh::grid([0.0; 3], [1.0; 3], [n; 3]).unwrap();
-            // Boxes have the volume of the tetrahedra that they could be cut into.
+            // Boxes have the volume of the tetrahedra into which they could be cut.
             let cut = mesh.clone().into_simplices().unwrap();
             let name = format!("boxes of {material}, {name}");
             let boxes = body(mesh, material, 1.0 / 30.0, Vec::new());
@@ -488,12 +488,12 @@ fn boxes_come_back(materials: &[&str]) {
             let (y, z) = (x[1] - 0.5, x[2] - 0.5);
             [x[0], c * y - s * z, s * y + c * z]
         });
-        // Corners to and fro: every amplitude that the mean deformation does not see.
+        // Corners displaced alternately: every amplitude to which the mean deformation is insensitive.
         back("crumpled", 3, &|x, node| core::array::from_fn(|d| x[d] + 0.12 * random(node, d)));
     }
 }
 
-/// A bent body comes to rest in steps of any length.
+/// A bent body comes to rest with steps of any length.
 #[test]
 fn steps_from_ten_microseconds_to_two_seconds_are_made() {
     let mesh = cube(3);
@@ -515,7 +515,7 @@ fn steps_from_ten_microseconds_to_two_seconds_are_made() {
     }
 }
 
-/// Slivers of aspect ratio 1000, and a body far from the origin, fall back as the body does where it was built.
+/// Slivers of aspect ratio 1000, and a body far from the origin, return to their shape as the original body does.
 #[test]
 fn slivers_and_distance_leave_the_answer() {
     let run = |scale: f64, far: f64| {

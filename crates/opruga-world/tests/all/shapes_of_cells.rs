@@ -1,5 +1,4 @@
-//! Cells that are folded where no integration point sees it, and cells that have turned under a law that knows no rotation, are
-//! warned of.
+//! Warnings about cells that are folded where no integration point shows it, and about cells that have rotated under a law of small rotations.
 
 #![allow(clippy::disallowed_methods, reason = "shapes, and no bits")]
 
@@ -25,8 +24,8 @@ fn quadratic<const D: usize>() -> Mesh<D> {
     boxes.into_simplices().expect("simplices").into_quadratic().expect("quadratic")
 }
 
-/// Shifts the middle of the first edge of the first quadratic cell to a part of that edge, and says what is warned of and what the
-/// integration points see.
+/// Moves the middle node of the first edge of the first quadratic cell to a fraction of that edge. Returns the warning, and the value at the
+/// integration points.
 fn shifted<const D: usize>(part: f64) -> (Option<String>, f64) {
     let mesh = quadratic::<D>();
     let cell: Vec<u32> = mesh.cells.iter().next().expect("a cell").2.to_vec();
@@ -38,7 +37,7 @@ fn shifted<const D: usize>(part: f64) -> (Option<String>, f64) {
     (world.inverted_cells().map(|warning| warning.message), points)
 }
 
-/// Beyond three quarters of an edge the map of a cell folds at the corner, and the integration points do not see it.
+/// Beyond three quarters of an edge the map of a cell folds at the corner, and the integration points do not show it.
 #[test]
 fn quadratic_cells_that_fold_at_a_corner_are_inside_out() {
     for (part, folded) in [(0.5, false), (0.74, false), (0.76, true), (0.26, false), (0.24, true)] {
@@ -75,8 +74,8 @@ fn boxes_that_fold_at_a_corner_are_inside_out() {
     assert_eq!(world.inverted_cells(), None);
 }
 
-/// Bodies that are bent, drawn and sheared far, none of whose cells is folded, say nothing; nor do cells whose nodes at a quarter of
-/// their sides leave no volume at a corner at rest already.
+/// Bodies under large bending, tension and shear, without folded cells, are not reported; nor are cells whose nodes at a quarter of their sides make
+/// the volume at a corner zero even at rest.
 #[test]
 fn cells_that_are_strained_far_and_not_folded_are_not_warned_of() {
     let mesh = Mesh::<3>::grid([0.0; 3], [4.0, 1.0, 1.0], [8, 2, 2]).expect("a bar");
@@ -101,7 +100,7 @@ fn cells_that_are_strained_far_and_not_folded_are_not_warned_of() {
     assert_eq!(world.inverted_cells(), None);
 }
 
-/// A cell that is folded at rest is refused, also where the integration points do not see it.
+/// A cell that is folded at rest is refused, even if the integration points do not show it.
 #[test]
 fn quadratic_cells_that_are_folded_at_rest_are_refused() {
     let mut mesh = quadratic::<2>();
@@ -112,7 +111,7 @@ fn quadratic_cells_that_are_folded_at_rest_are_refused() {
     assert_eq!(error.code(), "model.inverted_cell", "{error:?}");
 }
 
-/// The warning of turned cells after a square has spun for some frames at an angular velocity [rad/s].
+/// The warning about rotated cells after a square has rotated for some frames at an angular velocity [rad/s].
 fn spun(material: &str, spin: f64, frames: usize) -> Option<(String, u64)> {
     let mesh = Mesh::<2>::grid([0.0; 2], [1.0; 2], [2; 2]).expect("a square");
     let mut blueprint = body(mesh, material);
@@ -122,7 +121,7 @@ fn spun(material: &str, spin: f64, frames: usize) -> Option<(String, u64)> {
     world.warnings().into_iter().find(|w| w.code == "law.turned").map(|w| (w.message, w.count))
 }
 
-/// A frame takes 1/60 s: 1 rad/s turns by 20° in 21 frames.
+/// A frame takes 1/60 s, so 1 rad/s reaches 20° in 21 frames.
 #[test]
 fn cells_of_the_linear_law_that_turn_by_more_than_twenty_degrees_are_warned_of() {
     assert_eq!(spun("linear", 1.0, 20), None);
@@ -133,7 +132,7 @@ fn cells_of_the_linear_law_that_turn_by_more_than_twenty_degrees_are_warned_of()
     assert_eq!(spun("stable_neo_hookean", 1.0, 60), None);
 }
 
-/// What counts is the rotation of cells, whatever the body does as a whole, and no strain and no shear that is small.
+/// The criterion is the rotation of cells, independent of the motion of the whole body, of strain, and of small shear.
 #[test]
 fn strains_are_no_rotations_and_rotations_of_cells_are() {
     let mesh = Mesh::<3>::grid([0.0; 3], [4.0, 1.0, 1.0], [8, 2, 2]).expect("a bar");
@@ -144,7 +143,7 @@ fn strains_are_no_rotations_and_rotations_of_cells_are() {
             for (node, x) in mesh.positions.iter().enumerate() {
                 world.set_node(0, node as u32, shape(*x), [0.0; 3]).expect("placed");
             }
-            // Pins that hold what was placed.
+            // Pins that hold the nodes at the given positions.
             world.frame().expect("a frame");
             world.warnings().into_iter().find(|w| w.code == "law.turned").map(|w| w.message)
         };
@@ -157,7 +156,7 @@ fn strains_are_no_rotations_and_rotations_of_cells_are() {
         assert_eq!(told(&turned(15.0)), None);
         assert!(told(&turned(30.0)).is_some());
         assert!(told(&turned(170.0)).is_some());
-        // Twisted by 60° from end to end, a quarter of that either way from the middle of the body: its ends are turned.
+        // Twisted by 60° from end to end, by up to half of that in either direction from the middle of the body: its ends have rotated.
         assert!(told(&|x| turned_about_x(x, 60.0 * (x[0] / 4.0 - 0.5))).is_some());
         assert_eq!(told(&|x| turned_about_x(x, 20.0 * (x[0] / 4.0 - 0.5))), None);
     }

@@ -1,4 +1,4 @@
-//! Bodies that touch with the skin that they carry.
+//! Bodies that touch with the skins that they carry.
 
 use crate::contact::{contact, model, scene, world};
 use opruga_core::spec::{Value, Values};
@@ -7,7 +7,7 @@ use opruga_mesh::Mesh;
 use opruga_world::blueprint::*;
 use opruga_world::schema::BODY_CONTACT;
 
-/// A ball of 0.5 m filled by a lattice, which reaches beyond it by up to 0.1 m.
+/// A ball of 0.5 m filled by a lattice, which extends beyond it by up to 0.1 m.
 fn ball(name: &str, surface: &str, x: f64, v: f64) -> BodyBlueprint<3> {
     let mesh = Mesh::<3>::icosphere(0.5, 2).expect("a ball").lattice_filling(0.2).expect("a lattice");
     let springs = vec![model::<3>("mass_spring", &[("stiffness", 200.0), ("damping", 0.02)])];
@@ -21,7 +21,7 @@ fn ball(name: &str, surface: &str, x: f64, v: f64) -> BodyBlueprint<3> {
     }
 }
 
-/// How near the middles of two balls come [m], and the momentum that they had and have [kg m/s].
+/// The smallest distance between the centres of two balls [m], and their momentum before and after [kg m/s].
 fn meet(rule: &str, surface: &str, response: &str) -> (f64, [f64; 2]) {
     let mut scene = scene(rule, vec![ball("a", surface, -0.75, 1.0), ball("b", surface, 0.75, -0.5)]);
     scene.contact = contact::<3>(&[("friction", 0.3.into()), ("response", response.into())]);
@@ -50,7 +50,7 @@ fn lattices_touch_with_the_skin_that_is_drawn() {
     let (skin, [before, after]) = meet("symplectic_euler", "skin", "constraint");
     assert!((before - after).abs() < 1e-12, "{before} {after}");
     let (cells, _) = meet("symplectic_euler", "cells", "constraint");
-    // The skins are pressed in; the cells reach beyond them.
+    // The skins are pressed in; the cells extend beyond them.
     assert!(skin < 1.0 && skin > 0.8 && cells > skin + 0.05, "{skin} {cells}");
 }
 

@@ -1,5 +1,5 @@
-//! How stiff slender cells are: the first frequencies of beams and plates against the length of cells in thicknesses of the body. The tables
-//! of docs/finite-elements.md: `cargo test -p opruga-world --test all slender_cells:: -- --nocapture`.
+//! The excess stiffness of slender cells: the first frequencies of beams and plates against the length of cells in thicknesses of the body. The
+//! tables of docs/finite-elements.md are printed by `cargo test -p opruga-world --test all slender_cells:: -- --nocapture`.
 
 #![allow(clippy::disallowed_methods, reason = "shapes, and no bits")]
 
@@ -31,7 +31,7 @@ fn frequencies<const D: usize>(mesh: Mesh<D>, count: usize) -> Vec<f64> {
     world(mesh).modes(0, count).expect("modes").iter().map(|mode| mode.omega()).collect()
 }
 
-/// By how much the worst of the first frequencies of a body is off [%].
+/// The largest error of the first frequencies of a body [%].
 fn error<const D: usize>(mesh: Mesh<D>, fine: &[f64]) -> f64 {
     let off = frequencies(mesh, fine.len()).into_iter().zip(fine).map(|(found, fine)| 100.0 * (found / fine - 1.0));
     off.fold(0.0, |worst: f64, off| if off.abs() > worst.abs() { off } else { worst })
@@ -52,8 +52,8 @@ fn plate(along: u32, across: u32, t: f64) -> Mesh<3> {
     Mesh::grid([0.0; 3], [1.0, 1.0, t], [along, along, across]).expect("a plate")
 }
 
-/// A beam held at one end, 16 cells along: errors by cells across and by the length of cells in thicknesses, of quadrilaterals, linear
-/// and quadratic triangles.
+/// A beam clamped at one end, with 16 cells along it: errors by the number of cells across and by the length of cells in thicknesses, for
+/// quadrilaterals and for linear and quadratic triangles.
 #[test]
 fn beams_of_linear_triangles_are_warned_of_from_where_they_bend_45_percent_too_stiffly() {
     println!(
@@ -77,7 +77,7 @@ fn beams_of_linear_triangles_are_warned_of_from_where_they_bend_45_percent_too_s
     }
 }
 
-/// A square plate held at one side, 6 cells along either way.
+/// A square plate clamped at one side, with 6 cells in either direction.
 #[test]
 fn plates_of_quadratic_tetrahedra_are_warned_of_from_where_they_twist_10_percent_too_stiffly() {
     println!(
@@ -99,8 +99,8 @@ fn plates_of_quadratic_tetrahedra_are_warned_of_from_where_they_twist_10_percent
     }
 }
 
-/// The published frequencies of a thin square plate held at one side, ν = 0.3 (Leissa, "The free vibration of rectangular plates", Journal of
-/// Sound and Vibration 31, 1973): what the others are measured against.
+/// The published frequencies of a thin square plate clamped at one side, ν = 0.3 (Leissa, "The free vibration of rectangular plates", Journal of
+/// Sound and Vibration 31, 1973), which are the reference for the others.
 #[test]
 fn a_thin_plate_of_hexahedra_has_the_published_frequencies() {
     let t: f64 = 0.004;
@@ -111,7 +111,7 @@ fn a_thin_plate_of_hexahedra_has_the_published_frequencies() {
     }
 }
 
-/// Blocks, balls and what is thick for its cells are not warned of, whatever their cells; shells are by their thickness.
+/// Blocks, balls and other thick bodies are not reported, whatever their cells; shells are judged by their thickness.
 #[test]
 fn thick_bodies_are_not_warned_of_and_curved_ones_are_by_their_thickness() {
     for size in [[1.0, 1.0, 1.0], [2.0, 1.0, 1.5], [4.0, 2.0, 2.0]] {

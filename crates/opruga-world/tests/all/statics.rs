@@ -1,4 +1,4 @@
-//! Statics: which bodies are held, by what; loads in halves; solvers; the ledger.
+//! Statics: which bodies are held and by what; loads in halves; solvers; the ledger.
 
 use crate::common;
 use opruga_math::message::Message;
@@ -23,7 +23,7 @@ fn cube() -> Blueprint<3> {
     statics(Mesh::<3>::grid([0.0; 3], [1.0; 3], [2; 3]).unwrap(), &[])
 }
 
-/// What a world says of the motions that nothing holds; nothing where it takes the scene.
+/// The unconstrained motions that a world reports; none if it accepts the scene.
 fn refusal<const D: usize>(blueprint: &Blueprint<D>) -> Option<String> {
     match World::new(blueprint.clone(), Options::default()) {
         Ok(_) => None,
@@ -62,14 +62,14 @@ fn a_pressure_holds_nothing_whatever_its_strength() {
         pin(&mut hung, 0, [true, true]);
         load(&mut hung, Selector::Boundary, LoadKind::Pressure(pressure));
         assert_eq!(refusal(&hung).as_deref(), ONE, "{pressure}");
-        // On one side it drives the square round and round.
+        // On one side it drives the square in circles.
         hung.loads[0].select = Selector::Side("top".into());
         assert_eq!(refusal(&hung).as_deref(), ONE, "{pressure}");
         let mut hung = cube();
         pin(&mut hung, 0, [true; 3]);
         load(&mut hung, Selector::Side("top".into()), LoadKind::Pressure(pressure));
         assert!(refusal(&hung).is_some_and(|told| told.ends_with(": 3 rigid modes")), "{pressure}");
-        // Held at three corners it is held.
+        // Pins at three corners hold it.
         pin(&mut hung, 2, [false, true, true]);
         pin(&mut hung, 6, [false, false, true]);
         assert_eq!(refusal(&hung), None, "{pressure}");
@@ -87,24 +87,24 @@ fn a_dead_load_holds_what_turns_unless_it_acts_where_that_is_held_or_along_its_a
     assert_eq!(refusal(&force(nodes(&[8]), [1.0, 0.0])), None);
     assert_eq!(refusal(&force(nodes(&[8]), [0.0, 0.0])).as_deref(), ONE);
     assert_eq!(refusal(&force(nodes(&[0]), [1.0, 0.0])).as_deref(), ONE);
-    // A couple of dead forces turns the square until they pull against each other.
+    // A couple of dead loads rotates the square until they pull against each other.
     let mut couple = force(nodes(&[2]), [1.0, 0.0]);
     load(&mut couple, nodes(&[6]), LoadKind::Force([-1.0, 0.0]));
     assert_eq!(refusal(&couple), None);
-    // Two that cancel are none.
+    // Two loads that cancel have no effect.
     couple.loads[1].select = nodes(&[2]);
     assert_eq!(refusal(&couple).as_deref(), ONE);
-    // One that begins at nothing.
+    // One that begins at zero.
     let mut later = force(nodes(&[8]), [1.0, 0.0]);
     later.loads[0].curve = vec![vec![0.0, 0.0], vec![1.0, 1.0]];
     assert_eq!(refusal(&later), None);
-    // A traction is dead as well.
+    // A traction is a dead load too.
     let mut drawn = square();
     pin(&mut drawn, 0, [true, true]);
     load(&mut drawn, Selector::Side("right".into()), LoadKind::Traction([1.0, 0.0]));
     assert_eq!(refusal(&drawn), None);
 
-    // In space a weight leaves the turn about its own axis, however the body hangs at first.
+    // In space a weight does not prevent rotation about its own axis, whatever the initial orientation of the body.
     for (gravity, told) in [
         ([0.0, -9.81, 0.0], "rotation about an axis along y: 1 rigid mode"),
         ([-9.81, 0.0, 0.0], "rotation about an axis along x: 1 rigid mode"),
@@ -119,7 +119,7 @@ fn a_dead_load_holds_what_turns_unless_it_acts_where_that_is_held_or_along_its_a
             assert!(found == told || found == turned, "{found}");
         }
     }
-    // At its centre nothing turns it back; hung up at an edge it swings.
+    // A body pinned at its centre has no restoring force; pinned at an edge it swings.
     let mut middle = cube();
     middle.surroundings.gravity = [0.0, -9.81, 0.0];
     pin(&mut middle, 13, [true; 3]);
@@ -129,13 +129,13 @@ fn a_dead_load_holds_what_turns_unless_it_acts_where_that_is_held_or_along_its_a
     pin(&mut hinge, 0, [true; 3]);
     pin(&mut hinge, 2, [true; 3]);
     assert_eq!(refusal(&hinge), None);
-    // What falls freely turns freely.
+    // A body in free fall rotates freely.
     let mut falling = cube();
     falling.surroundings.gravity = [0.0, -9.81, 0.0];
     assert!(refusal(&falling).is_some_and(|told| told.ends_with("6 rigid modes")), "{:?}", refusal(&falling));
 }
 
-/// Half the work of a weight that is let down slowly is held back, and nothing is damped where nothing damps.
+/// Half of the work of a weight that is lowered slowly is not stored, and no damping is recorded for a body without damping.
 #[test]
 fn the_ledger_of_statics_counts_no_damping_of_a_body_that_has_none() {
     let mut beam = statics(Mesh::<3>::grid([0.0; 3], [1.0, 0.2, 0.2], [8, 2, 2]).unwrap(), &[]);
@@ -169,7 +169,7 @@ fn every_solver_is_taken_at_its_word_and_finds_the_same_balance() {
     for d in 0..3 {
         assert!((assembled[d] - wanted[d]).abs() < 1e-8 && (free[d] - wanted[d]).abs() < 1e-8, "{d}: {free:?}");
     }
-    // The factor takes one product an iteration; without a matrix there is no incomplete factor to help.
+    // The factor needs one product per iteration; without a matrix there is no incomplete factor to help.
     assert_eq!(of_factor.linear_iterations, of_factor.iterations);
     assert!(of_free.linear_iterations > of_assembled.linear_iterations, "{of_free:?} {of_assembled:?}");
     let mut arc = statics(
@@ -181,7 +181,8 @@ fn every_solver_is_taken_at_its_word_and_finds_the_same_balance() {
     assert_eq!(error.code(), "integrator.no_matrix");
 }
 
-/// A beam under many times its weight: too much at once for few iterations, and found by halves, or told how far it went.
+/// A beam under many times its weight: the load is too large for few iterations at once, and is either applied in halves, or the error reports how
+/// far it went.
 #[test]
 fn what_is_too_much_at_once_is_put_on_by_halves_or_said_to_have_gone_so_far() {
     let bent = |iterations: i64, policy: &str, weight: f64| {
@@ -231,15 +232,15 @@ fn what_is_too_much_at_once_is_put_on_by_halves_or_said_to_have_gone_so_far() {
     assert_eq!(work.accepted, 1);
 }
 
-/// Three squares in a row of which the middle one is left out: one body of two pieces.
+/// Three squares in a row without the middle one: one body of two pieces.
 fn two_squares() -> Blueprint<2> {
     let mut mesh = Mesh::<2>::grid([0.0; 2], [3.0, 1.0], [3, 1]).unwrap();
     mesh.cells.quadrilaterals.remove(1);
     statics(mesh, &[])
 }
 
-/// A piece that nothing holds has no equilibrium under its weight and many without, whatever holds the others: the two squares
-/// share no node, so the first one, clamped, carries nothing of the second, which has the three rigid motions of the plane.
+/// A piece that nothing holds has no equilibrium under its weight and many without weight, whatever holds the other pieces. The two squares share no
+/// node, so the first one, which is clamped, does not support the second, which has the three rigid motions of the plane.
 #[test]
 fn every_piece_of_a_body_has_to_be_held_with_weight_and_without() {
     for weight in [0.0, 1.0] {
@@ -253,10 +254,10 @@ fn every_piece_of_a_body_has_to_be_held_with_weight_and_without() {
              translation along y, rotation: 3 rigid modes",
             "{weight}"
         );
-        // What nothing holds at all is told as a whole.
+        // A body without any support is reported as a whole.
         islands.bodies[0].pins.clear();
         assert!(refusal(&islands).is_some_and(|told| told.starts_with("translation along x")), "{weight}");
-        // Node 2 is a corner of the second square: held there it turns, and under its weight it hangs or stands.
+        // Node 2 is a corner of the second square: pinned there it rotates, and under its weight it hangs or stands.
         islands.bodies[0].pins = clamp();
         pin(&mut islands, 2, [true; 2]);
         let told = refusal(&islands);
@@ -269,13 +270,13 @@ fn every_piece_of_a_body_has_to_be_held_with_weight_and_without() {
         let mut world = World::new(islands, Options::default()).unwrap();
         world.frame().unwrap();
     }
-    // A body in one piece is not told of pieces.
+    // A body in one piece is not reported in pieces.
     let mut one = statics(Mesh::<2>::grid([0.0; 2], [3.0, 1.0], [3, 1]).unwrap(), &[]);
     one.bodies[0].pins = clamp();
     assert_eq!(refusal(&one), None);
 }
 
-/// The ground at height 0, which does not rub.
+/// The ground at height 0, without friction.
 fn floor() -> ColliderBlueprint {
     let spec = opruga_collide::all(2).into_iter().find(|s| s.kind == "half_space").expect("a floor");
     let mut values = Values::defaults(spec, 2);
@@ -285,7 +286,7 @@ fn floor() -> ColliderBlueprint {
     ColliderBlueprint { values }
 }
 
-/// On a floor that does not rub a piece slides, though the other is clamped.
+/// A piece on a floor without friction slides, although the other one is clamped.
 #[test]
 fn a_piece_that_a_smooth_floor_alone_holds_is_named_with_the_way_it_slides() {
     let mut islands = two_squares();
@@ -300,8 +301,8 @@ fn a_piece_that_a_smooth_floor_alone_holds_is_named_with_the_way_it_slides() {
     World::new(islands, Options::default()).unwrap().frame().unwrap();
 }
 
-/// A bar between a floor and a ceiling: a tenth of a metre thick, it is squeezed into half of that, and has no balance where the ceiling
-/// is below the floor.
+/// A bar between a floor and a ceiling. It is a tenth of a metre thick and is compressed to half of that; it has no equilibrium if the ceiling is
+/// below the floor.
 #[test]
 fn a_body_that_does_not_fit_between_obstacles_has_no_balance() {
     let squeezed = |gap: f64| {
@@ -319,7 +320,7 @@ fn a_body_that_does_not_fit_between_obstacles_has_no_balance() {
     };
     let (outcome, heights) = squeezed(0.05);
     outcome.unwrap();
-    // Nodes of the clamp go through obstacles.
+    // Clamped nodes pass through obstacles.
     assert!(
         (0..27).filter(|node| node % 9 != 0).all(|node| (-1e-6..0.05 + 1e-6).contains(&heights[node])),
         "{heights:?}"
@@ -330,7 +331,7 @@ fn a_body_that_does_not_fit_between_obstacles_has_no_balance() {
     }
 }
 
-/// A blade of 1 m, of equal cells, that its weight would bend by `tip`: q L⁴ (1 − ν²)/(8 E I).
+/// A blade of 1 m, of equal cells, whose tip its weight would bend by `tip`: q L⁴ (1 − ν²)/(8 E I).
 fn blade(law: &str, thickness: f64, cells: u32, tip: f64) -> Blueprint<2> {
     let modulus = 1e6;
     let mesh = Mesh::<2>::grid([0.0; 2], [1.0, thickness], [cells, 1]).unwrap();
@@ -342,9 +343,9 @@ fn blade(law: &str, thickness: f64, cells: u32, tip: f64) -> Blueprint<2> {
     blade
 }
 
-/// A blade of 1 m by a quarter of a millimetre, of four cells a thousand times as long as thick, that its weight would bend by four times
-/// its thickness, q L⁴ (1 − ν²)/(8 E I) = 1 mm. Its load of 1e-8 N is a thousandth of the rounding of its forces, and was left out of balance in
-/// silence, with a tenth of the way; now it is carried, and what is in doubt is told.
+/// A blade of 1 m by a quarter of a millimetre, of four cells a thousand times as long as thick, which its weight would bend by four times its
+/// thickness, q L⁴ (1 − ν²)/(8 E I) = 1 mm. Its load of 1e-8 N is a thousandth of the rounding error of its forces. Earlier it was silently left out
+/// of balance, with a tenth of the displacement; now it is balanced, and the uncertainty is reported.
 #[test]
 fn blades_of_slivers_carry_loads_below_rounding_and_say_what_is_in_doubt() {
     let tip = 1e-3;
@@ -358,8 +359,8 @@ fn blades_of_slivers_carry_loads_below_rounding_and_say_what_is_in_doubt() {
     }
 }
 
-/// Blades of a tenth of a millimetre in sixteen cells: their loads are a twenty thousandth of the rounding of their forces, which bends some
-/// of them by 6 to 19 per cent less. Cells leave a thousandth.
+/// Blades of a tenth of a millimetre in sixteen cells: their loads are a twenty-thousandth of the rounding error of their forces, which reduces the
+/// bending of some of them by 6 to 19 per cent. Cells account for a thousandth.
 #[test]
 fn what_rounding_makes_of_thin_blades_is_no_more_than_they_say() {
     let tip = 1e-3;
@@ -376,8 +377,8 @@ fn what_rounding_makes_of_thin_blades_is_no_more_than_they_say() {
     }
 }
 
-/// A wire of steel, 10 m by 10 mm, that is drawn by its weight under a thousand times that of the earth: the matrix at its start knows of no
-/// stiffness across but that of bending, and would let what rounding leaves move it a thousand times as far.
+/// A steel wire, 10 m by 10 mm, stretched by its weight at a thousand times the gravity of the earth. The matrix at its start has no lateral
+/// stiffness except that of bending, and would turn rounding errors into a displacement a thousand times as large.
 #[test]
 fn wires_under_tension_are_in_no_doubt() {
     let mesh = Mesh::<3>::grid([0.0; 3], [10.0, 0.01, 0.01], [50, 1, 1]).unwrap();
@@ -398,8 +399,8 @@ fn wires_under_tension_are_in_no_doubt() {
     assert!(!world.warnings().iter().any(|warning| warning.code == "statics.blurred"), "{:?}", world.warnings());
 }
 
-/// Conjugate gradients take a nearly incompressible solid as many products as it has unknowns; then they take a complete factor of their
-/// own, which gives the same bits on every processor, and the same balance as the sparse one.
+/// For a nearly incompressible solid conjugate gradients need as many products as there are unknowns. They then use a complete factor of their own,
+/// which gives the same bits on every processor, and the same equilibrium as the sparse factor.
 #[test]
 fn nearly_incompressible_solids_are_solved_with_a_complete_factor() {
     let sagged = |solver: &str| {
@@ -429,7 +430,7 @@ fn nearly_incompressible_solids_are_solved_with_a_complete_factor() {
     let (found, work, everywhere) = sagged("conjugate_gradients");
     assert!(everywhere);
     println!("{work:?}");
-    // A thousand in vain, and one or two for each iteration.
+    // A thousand without success, and one or two for each iteration.
     assert!(work.linear_iterations < 1000 + 3 * work.iterations, "{work:?}");
     for (a, b) in found.iter().zip(&wanted) {
         assert!((a[0] - b[0]).abs() < 1e-7 && (a[1] - b[1]).abs() < 1e-7, "{a:?} {b:?}");

@@ -1,5 +1,5 @@
-//! Bodies so stiff for their mass that rounding of positions makes forces above their weight: as a whole they move by the rule's own
-//! closed form all the same.
+//! Bodies so stiff for their mass that rounding of positions causes forces above their weight: as a whole they still follow the closed form of the
+//! integrator.
 
 #![allow(clippy::disallowed_methods, reason = "closed forms, and no bits")]
 
@@ -36,7 +36,7 @@ fn square(size: f64) -> Mesh<2> {
     Mesh::<2>::grid([0.0; 2], [size; 2], [4, 4]).expect("a square")
 }
 
-/// How far a point falls in so many steps of a rule from rest.
+/// The displacement of a point in free fall from rest after the given steps of an integrator.
 fn falls_by(rule: &str, steps: usize) -> f64 {
     let (mut x, mut v, mut way, mut before) = (0.0, 0.0, 0.0, 0.0);
     for step in 0..steps {
@@ -57,7 +57,7 @@ fn falls_by(rule: &str, steps: usize) -> f64 {
     x
 }
 
-/// A rule, its parameters, and whether it runs in real time.
+/// An integrator, its parameters, and whether it runs in real time.
 type RuleRow = (&'static str, &'static [(&'static str, f64)], bool);
 
 const RULES: [RuleRow; 7] = [
@@ -75,7 +75,7 @@ fn fields(numbers: &[(&'static str, f64)], real_time: bool) -> Vec<(&'static str
     numbers.iter().map(|(name, number)| (*name, Value::Number(*number))).chain([accuracy]).collect()
 }
 
-/// Lets a body fall for half a second; gives how far its nodes fell less than they should, at most.
+/// Lets a body fall for half a second; returns the largest difference between the expected and the actual displacement of its nodes.
 fn falls_short<const D: usize>(scene: opruga_world::blueprint::Blueprint<D>, rule: &str) -> (f64, World<D>) {
     let from = scene.bodies[0].mesh.positions.clone();
     let mut world = World::new(scene, Options::default()).expect("a world");
@@ -112,7 +112,7 @@ fn bodies_fall_however_stiff_they_are() {
         for stiffness in [1e13, 1e15, 1e17, 1e18, 1e22, 1e40] {
             let of_rule = fields(numbers, real_time);
             let (worst, _) = falls_short(body(square(1.0), rule, &of_rule, stiffness, 1000.0), rule);
-            // Below, the matrix tells all that `tolerance` asks for.
+            // Below this stiffness the matrix provides everything that `tolerance` requires.
             let allowed = if stiffness < 1e16 { 1e-7 } else { 1e-13 };
             assert!(worst < allowed, "{rule} {of_rule:?} at {stiffness} Pa: {worst} m");
         }
@@ -127,7 +127,7 @@ fn steel_far_from_the_origin_falls() {
     let before = world.position(0, 0)[1];
     (0..30).for_each(|_| world.frame().expect("a frame"));
     let (fell, wanted) = (before - world.position(0, 0)[1], falls_by("backward_euler", 120));
-    // Positions have 1.5e-11 m there.
+    // The resolution of positions there is 1.5e-11 m.
     assert!((fell - wanted).abs() < 2e-9, "{fell} m, {wanted} m");
     assert!(world.warnings().iter().any(|warning| warning.code == "conditioning"), "{:?}", world.warnings());
 }
@@ -149,7 +149,7 @@ fn stiff_rods_that_spin_keep_their_angular_momentum() {
     scene.bodies[0].angular_velocity = vec![10.0];
     let mut world = World::new(scene, Options::default()).expect("a world");
     let before = world.momentum().angular[2];
-    // The rule stretches what turns fast for the step, and throws it apart in the end.
+    // The integrator stretches a body that rotates fast compared with the step, and eventually tears it apart.
     (0..10).for_each(|_| world.frame().expect("a frame"));
     let after = world.momentum().angular[2];
     assert!(before > 10.0 && (after / before - 1.0).abs() < 1e-9, "{before}, {after}");
@@ -166,7 +166,7 @@ fn stiff_rods_that_spin_keep_their_angular_momentum() {
     }
 }
 
-/// A square that hangs at one corner swings as one does that is a million times softer, and still stiff.
+/// A square that hangs at one corner swings like one that is a million times softer and still stiff.
 #[test]
 fn stiff_bodies_swing_about_their_pin() {
     for (rule, numbers, real_time) in RULES {
@@ -208,13 +208,13 @@ fn stiff_bodies_fall_onto_the_ground_and_rest_there() {
                 "{stiffness} Pa from {height} m: node {node} at {at} m, not {wanted} m"
             );
         }
-        // Rounding of positions is worth 400 N a node at 1e18 Pa.
+        // Rounding of positions corresponds to 400 N per node at 1e18 Pa.
         let borne: f64 = world.contact_forces(0).iter().map(|force| force[1]).sum();
         assert!((borne / (1000.0 * GRAVITY) - 1.0).abs() < 0.05, "{stiffness} Pa from {height} m: {borne} N");
     }
 }
 
-/// What is asked for below the rounding of positions and energies is given as far as they go.
+/// A tolerance below the rounding of positions and energies is met as far as rounding permits.
 #[test]
 fn tolerances_below_rounding_end_with_what_rounding_leaves() {
     for stiffness in [1e5, 1e8, 1e11] {

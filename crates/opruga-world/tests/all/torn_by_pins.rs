@@ -1,4 +1,4 @@
-//! Pins whose way in one step would tear the cells beside them, if these alone had to follow, lead the body all the same.
+//! Pins whose displacement in one step would overstretch the neighbouring cells, if only these had to follow, still move the body.
 
 #![allow(clippy::disallowed_methods, reason = "shapes, and no bits")]
 
@@ -13,12 +13,12 @@ use opruga_world::{Options, World};
 
 const STIFFNESS: f64 = 1e5;
 
-/// A plate of 2 by 1 m whose right side pins draw along x to so many lengths in so many steps of 1 s; it thins freely.
+/// A plate of 2 by 1 m whose right side pins stretch along x to `to` lengths in `steps` steps of 1 s; it contracts freely in the lateral directions.
 fn drawn(order: u32, rule: &str, material: &str, ratio: f64, to: f64, steps: u32) -> Blueprint<2> {
     drawn_by(order, (rule, &[]), material, ratio, to, steps)
 }
 
-/// The same by a rule with parameters of its own.
+/// The same with an integrator that has parameters of its own.
 fn drawn_by(
     order: u32,
     (rule, of_rule): (&str, &[(&str, Value)]),
@@ -47,16 +47,15 @@ fn drawn_by(
     out
 }
 
-/// The force along x by which pins draw the right side [N].
+/// The force along x with which pins pull the right side [N].
 fn tension(world: &mut World<2>) -> f64 {
     let forces = world.node_forces(0, None);
     let at = &world.blueprint().bodies[0].mesh.positions;
     at.iter().zip(forces).filter(|(x, _)| x[0] == 2.0).map(|(_, force)| -force[0]).sum()
 }
 
-/// Uniaxial stress of St. Venant and Kirchhoff at the stretch λ: S₁₁ = E (λ² − 1)/2 and E₂₂ = E₃₃ = −ν (λ² − 1)/2, so each of both other
-/// stretches is √(1 − ν (λ² − 1)). The first row of cells alone, an eighth of the length, would be drawn to more than the largest
-/// stretch that has a thickness, √(1 + 1/ν).
+/// Uniaxial stress of the St. Venant–Kirchhoff law at the stretch λ: S₁₁ = E (λ² − 1)/2 and E₂₂ = E₃₃ = −ν (λ² − 1)/2, so both other stretches are
+/// √(1 − ν (λ² − 1)). The first row of cells alone, an eighth of the length, would exceed the largest stretch with a positive thickness, √(1 + 1/ν).
 #[test]
 fn plates_that_thin_follow_pins_in_statics_at_the_closed_form() {
     for order in [1, 2] {
@@ -80,7 +79,7 @@ fn plates_that_thin_follow_pins_in_statics_at_the_closed_form() {
     }
 }
 
-/// Beyond the largest stretch no plate has a thickness; what is told names that, and the world stays at its last good frame.
+/// Beyond the largest stretch no plate has a positive thickness; the error names this, and the world stays at its last good frame.
 #[test]
 fn plates_without_a_thickness_are_refused_with_that_reason() {
     for order in [1, 2] {
@@ -94,7 +93,7 @@ fn plates_without_a_thickness_are_refused_with_that_reason() {
     }
 }
 
-/// The same under rules that step through time: long steps in which the first row of cells would have no thickness.
+/// The same with integrators in time: long steps in which the first row of cells would have no thickness.
 #[test]
 fn plates_that_thin_follow_pins_through_time() {
     for rule in ["backward_euler", "bdf2", "newmark", "implicit_midpoint"] {
@@ -110,8 +109,8 @@ fn plates_that_thin_follow_pins_through_time() {
     }
 }
 
-/// Ten iterations are too few for the whole way from where the cells are torn, and what is said of it is that they are: a refusal of the
-/// model, which half of the way does not meet.
+/// Ten iterations are too few for the whole displacement from a state with overstretched cells. The reported reason is the refusal of the model,
+/// which does not occur for half of the displacement.
 #[test]
 fn a_way_that_a_model_refuses_is_gone_in_halves_where_that_is_asked_for() {
     let lead = |policy: &str| {
@@ -136,7 +135,7 @@ fn a_way_that_a_model_refuses_is_gone_in_halves_where_that_is_asked_for() {
     assert!((force / wanted - 1.0).abs() < 1e-9, "{force} N, {wanted} N");
 }
 
-/// A square of `count` cells a side that pins press to so much of its length in one step of statics.
+/// A square with `count` cells per side that pins compress to the fraction `to` of its length in one step of statics.
 fn pressed(count: u32, to: f64, ratio: f64, unfold: bool) -> World<2> {
     let mesh = Mesh::<2>::grid([0.0; 2], [1.0; 2], [count; 2]).expect("a grid").into_simplices().expect("triangles");
     let fields = [
@@ -168,8 +167,8 @@ fn closed_form(to: f64) -> f64 {
     0.5 * STIFFNESS * strain * strain
 }
 
-/// Pressed to 0.7 or 0.8 of its length in one step, the law softens so much that the iteration comes by folded shapes. Either it ends at
-/// the closed form, or in a folded balance that a warning names together with the word that helps.
+/// During compression to 0.7 or 0.8 of its length in one step, the law softens so much that the iteration passes through folded shapes. Either it
+/// ends at the closed form, or in a folded equilibrium, which a warning reports together with the option that helps.
 #[test]
 fn plates_that_are_pressed_at_once_end_at_the_closed_form_or_are_reported_as_folded() {
     let mut folded = 0;
@@ -187,7 +186,7 @@ fn plates_that_are_pressed_at_once_end_at_the_closed_form_or_are_reported_as_fol
     assert!(folded > 0, "no plate folds any more: the twin below shows nothing");
 }
 
-/// With `unfold`, statics goes through the frame again in parts: all end at the closed form, and nothing is reported of the fold on the way.
+/// With `unfold`, statics repeats the frame in parts: all end at the closed form, and the intermediate fold is not reported.
 #[test]
 fn plates_that_are_pressed_at_once_and_may_unfold_end_at_the_closed_form() {
     for (count, to, ratio) in PRESSED {

@@ -1,4 +1,4 @@
-//! Obstacles that are finer than the mesh, against edges and facets of bodies.
+//! Obstacles that are finer than the mesh, in contact with edges and facets of bodies.
 
 use opruga_core::spec::{Value, Values};
 use opruga_mesh::Mesh;
@@ -24,7 +24,7 @@ fn scene<const D: usize>(rule: &str, body: BodyBlueprint<D>, obstacle: ColliderB
     scene
 }
 
-/// A coarse gas ball, the middle of whose lowest edge lies below its centre.
+/// A coarse ball of gas whose lowest edge has its midpoint below the centre.
 fn ball(at: [f64; 2], velocity: [f64; 2]) -> BodyBlueprint<2> {
     let ring = Mesh::ring(0.5, 12, [0.0; 2], std::f64::consts::PI / 12.0).expect("a ring");
     let models = vec![
@@ -35,7 +35,7 @@ fn ball(at: [f64; 2], velocity: [f64; 2]) -> BodyBlueprint<2> {
     BodyBlueprint { translation: at, velocity, ..body }
 }
 
-/// The distance of a point from the outline of the ball [m], negative within.
+/// The distance of a point from the outline of the ball [m]; negative inside.
 fn signed_distance(world: &World<2>, p: [f64; 2]) -> f64 {
     let (mut inside, mut least) = (false, f64::INFINITY);
     for facet in &world.blueprint().bodies[0].mesh.facets {
@@ -51,8 +51,7 @@ fn signed_distance(world: &World<2>, p: [f64; 2]) -> f64 {
     if inside { -least.sqrt() } else { least.sqrt() }
 }
 
-/// Obstacles of the plane with a tip at the origin, less wide than an edge of the ball; with the points that must stay out of it, and
-/// how far.
+/// Obstacles in the plane with a tip at the origin, narrower than an edge of the ball; with the points that must stay outside, and their distance.
 fn needles() -> Vec<(ColliderBlueprint, f64, [f64; 2])> {
     let numbers = |x: &[f64]| Value::Numbers(x.to_vec());
     let rows = |x: &[[f64; 2]]| Value::Rows(x.iter().map(|row| row.to_vec()).collect());
@@ -72,7 +71,7 @@ fn needles() -> Vec<(ColliderBlueprint, f64, [f64; 2])> {
     ]
 }
 
-/// The ball lands on a needle with the middle of an edge: with contact the needle stays outside, and carries it.
+/// The ball lands on a needle with the midpoint of an edge: with contact the needle stays outside and supports it.
 #[test]
 fn needles_stay_outside_of_a_coarse_ball() {
     for rule in ["symplectic_euler", "verlet", "runge_kutta", "backward_euler", "newmark"] {
@@ -102,7 +101,7 @@ fn needles_stay_outside_of_a_coarse_ball() {
     }
 }
 
-/// What is shot at a needle does not pass it, whatever the speed.
+/// A body that is shot at a needle does not pass through it at any speed.
 #[test]
 fn a_fast_edge_does_not_pass_a_needle() {
     for speed in [10.0, 100.0, 1000.0] {
@@ -120,7 +119,7 @@ fn a_fast_edge_does_not_pass_a_needle() {
     }
 }
 
-/// A needle that moves pushes the ball along, and what it gives is in the ledger.
+/// A moving needle pushes the ball, and its work is in the ledger.
 #[test]
 fn a_needle_that_moves_pushes_the_ball() {
     for (needle, radius, tip) in needles() {
@@ -143,7 +142,7 @@ fn a_needle_that_moves_pushes_the_ball() {
     }
 }
 
-/// How high a sheet is above a point of the xz plane [m]; infinitely high where it does not cover it.
+/// The height of a sheet above a point of the xz plane [m]; infinity if the sheet does not cover it.
 fn height_over(world: &World<3>, [x, z]: [f64; 2]) -> f64 {
     let mut least = f64::INFINITY;
     for corners in &world.blueprint().bodies[0].mesh.sheets {
@@ -161,7 +160,7 @@ fn height_over(world: &World<3>, [x, z]: [f64; 2]) -> f64 {
     least
 }
 
-/// A coarse sheet falls on edges and corners that are finer than its triangles: it stays above them.
+/// A coarse sheet falls on edges and corners that are finer than its triangles and stays above them.
 #[test]
 fn edges_of_obstacles_stay_below_a_coarse_sheet() {
     let numbers = |x: &[f64]| Value::Numbers(x.to_vec());

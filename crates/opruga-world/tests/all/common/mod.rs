@@ -1,4 +1,4 @@
-//! A solid of finite elements, free and without weight, that tests hold and burden as they like.
+//! A free and weightless solid of finite elements, to which tests add pins and loads.
 #![allow(dead_code, reason = "every test file uses its own part")]
 
 use opruga_core::spec::{Spec, Value, Values};
@@ -19,7 +19,7 @@ pub(crate) fn values<const D: usize>(spec: &'static Spec, set: &[(&str, Value)])
     values
 }
 
-/// A body of 1000 kg/m³ under an integrator, with fields of both, at steps of 1/60 s.
+/// A body of 1000 kg/m³ with an integrator and fields of both, with steps of 1/60 s.
 pub(crate) fn solid<const D: usize>(
     mesh: Mesh<D>,
     rule: &str,
@@ -36,7 +36,7 @@ pub(crate) fn solid<const D: usize>(
     }
 }
 
-/// Holds the nodes of the left side.
+/// Pins the nodes of the left side.
 pub(crate) fn clamp<const D: usize>() -> Vec<PinBlueprint<D>> {
     vec![PinBlueprint { select: Selector::Side("left".into()), axes: [true; D], motion: Vec::new() }]
 }
