@@ -1,4 +1,4 @@
-//! Who is next to whom.
+//! Neighbours of nodes.
 
 use crate::chambers::Survey;
 use crate::{Mesh, MeshError};
@@ -6,7 +6,7 @@ use crate::{Mesh, MeshError};
 /// Lists of neighbour nodes, one list per node, stored end to end.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub struct Adjacency {
-    /// Where each node's list starts in `neighbours`; one more entry than nodes.
+    /// The start of each node's list in `neighbours`; one more entry than nodes.
     pub starts: Vec<u32>,
     /// The lists, end to end.
     pub neighbours: Vec<u32>,
@@ -26,7 +26,7 @@ impl Adjacency {
         self.starts.len().saturating_sub(1)
     }
 
-    /// Empty lists with room for `counts[node]` entries each.
+    /// Empty lists with space for `counts[node]` entries each.
     fn with_counts(counts: impl Iterator<Item = u32>) -> Adjacency {
         let mut starts = vec![0];
         let mut end = 0;
@@ -38,10 +38,10 @@ impl Adjacency {
     }
 }
 
-/// For each of `nodes` nodes the nodes that share an edge with it, ascending and without repetition.
+/// For each of `nodes` nodes, the nodes that share an edge with it, ascending and without repetition.
 ///
 /// # Errors
-/// [`MeshError::IndexOutOfRange`] where an edge names a node that does not exist.
+/// [`MeshError::IndexOutOfRange`] if an edge names a node that does not exist.
 pub fn node_neighbours(edges: &[[u32; 2]], nodes: usize) -> Result<Adjacency, MeshError> {
     crate::mesh::limit_nodes(nodes as u64)?;
     let mut pairs = Vec::with_capacity(2 * edges.len());
@@ -67,7 +67,7 @@ pub fn node_neighbours(edges: &[[u32; 2]], nodes: usize) -> Result<Adjacency, Me
 }
 
 impl Mesh<3> {
-    /// For each node of the closed triangle surface the ring of its neighbours, counter-clockwise seen from outside.
+    /// For each node of the closed triangle surface, the ring of its neighbours, counter-clockwise as seen from outside.
     ///
     /// ```text
     ///       2---1
@@ -79,13 +79,13 @@ impl Mesh<3> {
     /// Nodes that no facet names have an empty ring.
     ///
     /// # Errors
-    /// What [`Mesh::validate`] finds; [`MeshError::Open`], [`MeshError::NonManifoldEdges`], [`MeshError::NonOrientable`],
-    /// [`MeshError::InconsistentOrientation`]; [`MeshError::NonManifoldNodes`] where the triangles at a node form more than one fan.
+    /// Those of [`Mesh::validate`]; [`MeshError::Open`], [`MeshError::NonManifoldEdges`], [`MeshError::NonOrientable`],
+    /// [`MeshError::InconsistentOrientation`]; [`MeshError::NonManifoldNodes`] if the triangles at a node form more than one fan.
     pub fn node_rings(&self) -> Result<Adjacency, MeshError> {
         self.validate()?;
         Survey::of(&self.facets)?.closed_and_consistent()?;
 
-        // At each corner of each triangle (a, b, c) the ring of a steps from b to c.
+        // At each corner of each triangle (a, b, c), the ring of a steps from b to c.
         let mut steps = Vec::with_capacity(3 * self.facets.len());
         for &[a, b, c] in &self.facets {
             steps.extend([[a, b, c], [b, c, a], [c, a, b]]);

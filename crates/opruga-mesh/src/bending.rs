@@ -1,9 +1,9 @@
-//! Where a body bends: hinges of surfaces, triples of chains.
+//! The places where a body bends: hinges of surfaces, triples of chains.
 
 use crate::geometry::ascending;
 use crate::{Mesh, MeshError};
 
-/// For each edge that two triangles share the four nodes [a, b, c, d] of the hinge, in the order of (|b − a|, lower node) as [`Mesh::edges`] has it.
+/// For each edge that two triangles share, the four nodes [a, b, c, d] of the hinge, in the order of (|b − a|, lower node), as in [`Mesh::edges`].
 ///
 /// ```text
 ///         c
@@ -14,12 +14,12 @@ use crate::{Mesh, MeshError};
 ///        \ /
 ///         d
 /// ```
-/// Border edges have no hinge. The numbering follows the first triangle where the two face opposite ways.
+/// Border edges have no hinge. If the two triangles have opposite orientations, the numbering follows the first.
 ///
 /// # Errors
-/// [`MeshError::NonManifoldEdges`] where more than two triangles share an edge.
+/// [`MeshError::NonManifoldEdges`] if more than two triangles share an edge.
 pub fn hinges(triangles: &[[u32; 3]]) -> Result<Vec<[u32; 4]>, MeshError> {
-    // Each side of each triangle: edge, triangle, opposite node, whether it runs from the lower node to the higher.
+    // Each side of each triangle: edge, triangle, opposite node, and whether it runs from the lower node to the higher.
     let mut sides = Vec::with_capacity(3 * triangles.len());
     for (index, &[a, b, c]) in triangles.iter().enumerate() {
         for (p, q, opposite) in [(a, b, c), (b, c, a), (c, a, b)] {
@@ -43,13 +43,13 @@ pub fn hinges(triangles: &[[u32; 3]]) -> Result<Vec<[u32; 4]>, MeshError> {
     if crowded.is_empty() { Ok(list) } else { Err(MeshError::NonManifoldEdges { edges: crowded }) }
 }
 
-/// For each node between exactly two edges of a chain the triple [previous, middle, next], ascending in the middle node.
+/// For each node between exactly two edges of a chain, the triple [previous, middle, next], ascending in the middle node.
 ///
 /// ```text
 ///     previous ---> middle ---> next
 /// ```
-/// The edges' own direction says which is previous; where both edges start or both end at the middle, the lower node is. Free ends and branching
-/// nodes have no triple.
+/// The direction of the edges determines the previous node. If both edges start or both end at the middle node, the lower node is the previous one.
+/// Free ends and branching nodes have no triple.
 pub fn bends(edges: &[[u32; 2]]) -> Vec<[u32; 3]> {
     // Each end of each edge: node, whether the edge leaves it, the node at the other end. Arriving edges sort first.
     let mut ends = Vec::with_capacity(2 * edges.len());
@@ -71,7 +71,7 @@ impl<const D: usize> Mesh<D> {
     /// The hinges of the boundary (space only), then those of the sheets; see [`hinges`] for the figure.
     ///
     /// # Errors
-    /// What [`Mesh::validate`] finds, and [`MeshError::NonManifoldEdges`].
+    /// Those of [`Mesh::validate`], and [`MeshError::NonManifoldEdges`].
     pub fn hinges(&self) -> Result<Vec<[u32; 4]>, MeshError> {
         self.validate()?;
         let mut list = hinges(&self.facet_triangles())?;
@@ -82,7 +82,7 @@ impl<const D: usize> Mesh<D> {
     /// The bending triples of the outline (plane only), then those of the wires; see [`bends`].
     ///
     /// # Errors
-    /// What [`Mesh::validate`] finds.
+    /// Those of [`Mesh::validate`].
     pub fn bends(&self) -> Result<Vec<[u32; 3]>, MeshError> {
         self.validate()?;
         let mut list = Vec::new();

@@ -1,33 +1,33 @@
-//! From cells to their boundary, and from boxes to simplices.
+//! Boundaries of cells, and conversion of boxes to simplices.
 
 use crate::geometry::{HEXAHEDRON_FACES, TETRAHEDRON_FACES, ascending};
 use crate::quadratic::{TRIANGLE_SIDES, tetrahedron_parts};
 use crate::quality::HEXAHEDRON_EDGES;
 use crate::{Element, Mesh, MeshError};
 
-/// Six tetrahedra around the diagonal 0–6 of a hexahedron, all of positive volume. On a grid neighbours cut their common face alike.
+/// Six tetrahedra around the diagonal 0–6 of a hexahedron, all of positive volume. Neighbours in a grid cut their common face in the same way.
 ///
 /// # Source
 /// Kuhn, "Some combinatorial lemmas in topology", IBM J. Res. Dev. 4 (1960).
 const KUHN: [[usize; 4]; 6] = [[0, 1, 2, 6], [0, 5, 1, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 4, 5, 6], [0, 7, 4, 6]];
 
-/// The tetrahedra 0257 and 1346 of a hexahedron, whose edges are diagonals of its faces, each with the four corners that it leaves.
+/// The tetrahedra 0257 and 1346 of a hexahedron, whose edges are diagonals of its faces, each with the four remaining corner tetrahedra.
 const INSCRIBED: [[[usize; 4]; 5]; 2] = [
     [[0, 5, 2, 7], [0, 1, 2, 5], [0, 2, 3, 7], [0, 4, 5, 7], [2, 5, 6, 7]],
     [[1, 3, 4, 6], [0, 1, 3, 4], [1, 2, 3, 6], [1, 4, 5, 6], [3, 4, 6, 7]],
 ];
 
-/// Into how many tetrahedra a hexahedron is cut.
+/// The number of tetrahedra into which a hexahedron is cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cut {
-    /// Six around its diagonal 0–6, in every hexahedron alike; where neighbours would cut their common face by both of its diagonals, six
-    /// from the node of the least number.
+    /// Six around its diagonal 0–6, in the same way in every hexahedron. If neighbours would cut a common face along different diagonals, six from
+    /// the node with the lowest number.
     Six,
-    /// Five: one inscribed and four corners, mirrored from hexahedron to hexahedron so that common faces are cut alike.
+    /// Five: one inscribed and four at corners, mirrored from hexahedron to hexahedron so that common faces are cut in the same way.
     Five,
 }
 
-/// A face of a cell: its distinct nodes ascending (the key), and as seen from outside. Triangles and edges repeat their last node.
+/// A face of a cell: its distinct nodes, ascending (the key), and its nodes as seen from outside. Triangles and edges repeat their last node.
 struct Face {
     key: [u32; 4],
     order: usize,
@@ -35,13 +35,13 @@ struct Face {
 }
 
 impl<const D: usize> Mesh<D> {
-    /// The facets that bound the cells: oriented faces that belong to one cell only, in the order of the cells.
+    /// The facets that bound the cells: oriented faces that belong to only one cell, in the order of the cells.
     ///
-    /// A face of a hexahedron becomes two triangles, cut from its lowest node. The side of a quadratic triangle becomes two edges, the face of a
-    /// quadratic tetrahedron four triangles, through all its nodes.
+    /// A face of a hexahedron becomes two triangles, cut from its lowest node. The side of a quadratic triangle becomes two edges, and the face of a
+    /// quadratic tetrahedron four triangles, through all of its nodes.
     ///
     /// # Errors
-    /// What [`Mesh::validate`] finds; [`MeshError::NonManifoldEdges`] with the lowest two nodes of each face that more than two cells share.
+    /// Those of [`Mesh::validate`]; [`MeshError::NonManifoldEdges`] with the lowest two nodes of each face that more than two cells share.
     pub fn facets_from_cells(&self) -> Result<Vec<[u32; D]>, MeshError> {
         self.validate()?;
         let mut faces = Vec::new();
@@ -73,7 +73,7 @@ impl<const D: usize> Mesh<D> {
             }
         }
 
-        // Faces of one cell only are the boundary; back to the order of the cells.
+        // Faces of only one cell are the boundary; return them to the order of the cells.
         faces.sort_unstable_by_key(|face| (face.key, face.order));
         let groups = || faces.chunk_by(|p, q| p.key == q.key);
         let mut crowded: Vec<[u32; 2]> =
@@ -91,7 +91,7 @@ impl<const D: usize> Mesh<D> {
             if D == 2 || c == d {
                 facets.push(facet([a, b, c]));
             } else {
-                // Turn the quadrilateral so that its lowest node comes first.
+                // Rotate the quadrilateral so that its lowest node comes first.
                 let mut nodes = face.nodes;
                 let lowest = (0..4).min_by_key(|&corner| nodes[corner]).unwrap_or(0);
                 nodes.rotate_left(lowest);
@@ -102,7 +102,8 @@ impl<const D: usize> Mesh<D> {
         Ok(facets)
     }
 
-    /// The same body of simplices: quadrilaterals cut into two triangles with diagonals that alternate on grids, hexahedra into six tetrahedra.
+    /// The same body made of simplices: quadrilaterals cut into two triangles with diagonals that alternate on grids, hexahedra cut into six
+    /// tetrahedra.
     ///
     /// # Errors
     /// Those of [`Mesh::facets_from_cells`].
@@ -110,20 +111,20 @@ impl<const D: usize> Mesh<D> {
         self.into_simplices_by(Cut::Six)
     }
 
-    /// The same body of simplices, hexahedra cut as told.
+    /// The same body made of simplices, with hexahedra cut as given.
     ///
-    /// Nodes, groups, wires, sheets and quadratic cells stay; facets are found anew where there were cells, and the parts of a cell keep its groups and
-    /// values.
+    /// Nodes, groups, wires, sheets and quadratic cells are kept. Facets are recomputed if there were cells, and the parts of a cell keep its groups
+    /// and values.
     ///
     /// # Errors
-    /// Those of [`Mesh::facets_from_cells`]; [`MeshError::OddLoop`] where hexahedra cannot be mirrored from one to the next.
+    /// Those of [`Mesh::facets_from_cells`]; [`MeshError::OddLoop`] if hexahedra cannot be mirrored from one to the next.
     pub fn into_simplices_by(mut self, cut: Cut) -> Result<Mesh<D>, MeshError> {
         self.validate()?;
         if self.cells.is_empty() {
             return Ok(self);
         }
         let parts = if cut == Cut::Five { INSCRIBED[0].len() } else { KUHN.len() };
-        // Which old cell each new one comes from: each kind is followed by the parts of the next.
+        // The old cell of each new one; each kind is followed by the parts of the next kind.
         let (triangles, quadrilaterals) = (self.cells.triangles.len(), self.cells.quadrilaterals.len());
         let (tetrahedra, hexahedra) = (self.cells.tetrahedra.len(), self.cells.hexahedra.len());
         let mut origins: Vec<u32> = Vec::new();
@@ -159,13 +160,13 @@ impl<const D: usize> Mesh<D> {
         Ok(self)
     }
 
-    /// Whether neighbours that are cut around their diagonals 0–6 cut their common faces by the same diagonal: they do on grids, and where
-    /// a file numbers the corners of all hexahedra alike.
+    /// Whether neighbours that are cut around their diagonals 0–6 cut their common faces along the same diagonal. This is so on grids, and if a file
+    /// numbers the corners of all hexahedra in the same way.
     fn are_cut_alike(&self) -> bool {
         let mut faces: Vec<([u32; 4], [u32; 2])> = Vec::with_capacity(6 * self.cells.hexahedra.len());
         for cell in &self.cells.hexahedra {
             for face in &HEXAHEDRON_FACES {
-                // The diagonals go from 0 or from 6.
+                // The diagonals start at 0 or at 6.
                 let Some(from) = face.iter().position(|corner| *corner == 0 || *corner == 6) else { continue };
                 let [a, c] = [face[from], face[(from + 2) % 4]].map(|corner| cell[corner]);
                 faces.push((distinct(face.map(|corner| cell[corner])), ascending(a, c)));
@@ -175,8 +176,8 @@ impl<const D: usize> Mesh<D> {
         faces.windows(2).all(|pair| pair[0].0 != pair[1].0 || pair[0].1 == pair[1].1)
     }
 
-    /// Which nodes are an odd number of edges of hexahedra away from the first of their piece, so that every diagonal of a
-    /// face joins nodes that are alike.
+    /// The nodes that are an odd number of edges of hexahedra away from the first node of their piece. Every diagonal of a face then joins nodes of
+    /// equal parity.
     fn node_parities(&self) -> Result<Vec<bool>, MeshError> {
         let mut edges: Vec<[u32; 2]> = Vec::with_capacity(24 * self.cells.hexahedra.len());
         for cell in &self.cells.hexahedra {
@@ -212,8 +213,8 @@ impl<const D: usize> Mesh<D> {
     }
 }
 
-/// Six tetrahedra from the node of the least number to the faces that it is none of, each of which is cut from its own least node: so
-/// neighbours cut their common face alike, however their corners are numbered.
+/// Six tetrahedra from the node with the lowest number to the faces that do not contain it, each of which is cut from its own lowest node. Neighbours
+/// therefore cut their common face in the same way, however their corners are numbered.
 fn from_the_least(cell: &[u32; 8]) -> impl Iterator<Item = [u32; 4]> {
     let least = cell.iter().copied().fold(u32::MAX, u32::min);
     HEXAHEDRON_FACES

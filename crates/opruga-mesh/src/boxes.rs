@@ -1,6 +1,6 @@
 //! A tree of boxes over triangles in the order of a space-filling curve.
 
-/// Triangles below a node of the lowest level of the tree.
+/// Triangles in a node of the lowest level of the tree.
 const LEAF: usize = 4;
 
 /// Lowest and highest corner.
@@ -8,7 +8,7 @@ pub(crate) type Bounds = [[f64; 3]; 2];
 
 const NOTHING: Bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
 
-/// The square of the distance of a box from a point.
+/// The squared distance of a box from a point.
 pub(crate) fn distance_to(bounds: &Bounds, point: &[f64; 3]) -> f64 {
     let mut square = 0.0;
     for d in 0..3 {
@@ -86,7 +86,7 @@ impl Tree {
         tree
     }
 
-    /// The boxes, by number ascending, in which a point lies.
+    /// The numbers of the boxes that contain a point, ascending.
     pub(crate) fn around(&self, point: &[f64; 3]) -> Vec<u32> {
         let holds = |bounds: &Bounds| (0..3).all(|d| bounds[0][d] <= point[d] && point[d] <= bounds[1][d]);
         let (mut waiting, mut found) = (vec![1usize], Vec::new());

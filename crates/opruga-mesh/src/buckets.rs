@@ -1,9 +1,9 @@
-//! Sorting what belongs to nodes: first into a bucket for each node, then within it.
+//! Sorting of items by nodes: first into a bucket for each node, then within each bucket.
 
-/// Sorts items whose order begins with a node, of so many: as `sort_unstable` does, in time that grows as their number.
+/// Sorts items whose order begins with a node number below `nodes`. The result is that of `sort_unstable`, in time proportional to their number.
 pub(crate) fn sorted_by_node<T: Copy + Ord>(items: &[T], nodes: usize, node: impl Fn(&T) -> u32) -> Vec<T> {
     let Some(first) = items.first() else { return Vec::new() };
-    // Where each bucket begins, and then, as it is filled, where its next item goes.
+    // The start of each bucket; while it is filled, the position of its next item.
     let mut offsets = vec![0u32; nodes + 1];
     items.iter().for_each(|item| offsets[node(item) as usize + 1] += 1);
     for bucket in 0..nodes {
@@ -25,7 +25,7 @@ pub(crate) fn sorted_by_node<T: Copy + Ord>(items: &[T], nodes: usize, node: imp
     out
 }
 
-/// One more than the largest node that is named.
+/// One more than the largest node number.
 pub(crate) fn nodes_of<const N: usize>(lists: &[[u32; N]]) -> usize {
     lists.iter().flatten().max().map_or(0, |largest| *largest as usize + 1)
 }

@@ -1,4 +1,4 @@
-//! What a force per volume gives to the nodes of cells: ∫ Nₐ dV by the shape functions of the cells.
+//! The distribution of a force per volume to the nodes of cells: ∫ Nₐ dV with the shape functions of the cells.
 
 use crate::geometry::{Point, lift};
 use crate::quadratic::{TETRAHEDRON_EDGES, tetrahedron_jacobian};
@@ -6,7 +6,7 @@ use crate::sides::{side_points, side_vector};
 use crate::{Element, Mesh};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Gauss's points and weights on [0, 1], exact to degree 7: a collapsed tetrahedron has products of degree 7.
+/// Gauss points and weights on [0, 1], exact up to degree 7, because a collapsed tetrahedron has products of degree 7.
 const GAUSS: [(f64, f64); 4] = [
     (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
     (0.330_009_478_207_571_9, 0.326_072_577_431_273_1),
@@ -14,7 +14,7 @@ const GAUSS: [(f64, f64); 4] = [
     (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
 ];
 
-/// ∫ Nₐ dV of a quadratic tetrahedron with curved sides, without error: a box drawn together to a corner (Duffy 1982).
+/// ∫ Nₐ dV of a quadratic tetrahedron with curved sides, exact: a box collapsed to a corner (Duffy 1982).
 fn of_quadratic_tetrahedron(x: &[Point; 10]) -> [f64; 10] {
     let mut out = [0.0; 10];
     for (a, of_a) in GAUSS {
@@ -35,7 +35,7 @@ fn of_quadratic_tetrahedron(x: &[Point; 10]) -> [f64; 10] {
     out
 }
 
-/// ∫ Nₐ dV of a hexahedron, without error: two of Gauss's points along every axis.
+/// ∫ Nₐ dV of a hexahedron, exact: two Gauss points along every axis.
 fn of_hexahedron(x: &[Point; 8]) -> [f64; 8] {
     /// The corners of the reference box [0, 1]³.
     const CORNERS: [[usize; 3]; 8] =
@@ -65,11 +65,11 @@ fn of_hexahedron(x: &[Point; 8]) -> [f64; 8] {
 }
 
 impl<const D: usize> Mesh<D> {
-    /// The integral of the shape functions of the cells all of whose nodes are selected, ∫ Nₐ dV [m², m³], for every node of
-    /// these cells: times a force per volume the forces that do the same work in every motion of the cells.
+    /// The integral of the shape functions ∫ Nₐ dV [m², m³] over the cells whose nodes are all selected, for every node of these cells. Multiplied by
+    /// a force per volume, it gives the nodal forces that do the same work in every motion of the cells.
     ///
-    /// It adds up to the measure of these cells. Corners of quadratic tetrahedra have less than nothing, which is right: the
-    /// nodes in the middle of their edges have more. Nodes beyond the mesh select nothing.
+    /// The values add up to the measure of these cells. Corners of quadratic tetrahedra have negative values, which is correct: the nodes at the
+    /// midpoints of their edges have larger ones. Nodes beyond the mesh select nothing.
     pub fn cell_shares(&self, selected: &[u32]) -> BTreeMap<u32, f64> {
         let chosen: BTreeSet<u32> = selected.iter().copied().collect();
         let mut shares = BTreeMap::new();
@@ -89,7 +89,7 @@ impl<const D: usize> Mesh<D> {
                     own[..8].copy_from_slice(&of_hexahedron(&[a, b, c, d, e, f, g, h]));
                 }
                 Element::Tetrahedron => own[..4].fill(0.25 * self.size_of(nodes, element)),
-                // Cells of the plane are sides of space that lie in it.
+                // Cells in the plane are sides of space that lie in the plane.
                 _ => {
                     for point in side_points(3, nodes.len()) {
                         let area = side_vector(&point, &x[..nodes.len()])[2];
@@ -109,7 +109,7 @@ impl<const D: usize> Mesh<D> {
 mod tests {
     use super::*;
 
-    /// Shares reproduce ∫ 1, ∫ x of cells of every kind, straight and bent: a force per volume has the right sum and moment.
+    /// Shares reproduce ∫ 1 and ∫ x for cells of every kind, straight and curved, so a force per volume has the right sum and moment.
     #[test]
     fn shares_have_the_volume_and_the_centre_of_the_cells() {
         let plate = Mesh::<2>::grid([0.0; 2], [1.0, 1.2], [3, 2]).unwrap();
@@ -128,14 +128,14 @@ mod tests {
         }
     }
 
-    /// By the theorem of Gauss over the boundary: ∫ dV = ∮ x n dA / D, ∫ xᵢ dV = ∮ ½ xᵢ² nᵢ dA.
+    /// By Gauss's theorem over the boundary: ∫ dV = ∮ x n dA / D, ∫ xᵢ dV = ∮ ½ xᵢ² nᵢ dA.
     fn check<const D: usize>(mesh: &Mesh<D>) {
         let all: Vec<u32> = (0..mesh.nodes() as u32).collect();
         let shares = mesh.cell_shares(&all);
         let (mut volume, mut moment) = (0.0, [0.0; D]);
         for side in mesh.boundary_sides(&all) {
             let x: Vec<[f64; D]> = side.iter().map(|&node| mesh.positions[node as usize]).collect();
-            // Many points: ½ x² n is of a higher degree than what sides are integrated for.
+            // Many points, because ½ x² n has a higher degree than the integration of sides is made for.
             for (weight, at, n) in fine(&x) {
                 for d in 0..D {
                     volume += weight * at[d] * n[d] / D as f64;
@@ -151,9 +151,9 @@ mod tests {
         }
     }
 
-    /// Weight, place and vector of the area at many points of a side.
+    /// Weight, position and area vector at many points of a side.
     fn fine<const D: usize>(x: &[[f64; D]]) -> Vec<(f64, [f64; D], [f64; D])> {
-        // Midpoints of small parts, and Richardson's step towards parts without size.
+        // Midpoint rule on small parts, and Richardson extrapolation to parts of size zero.
         let at = |parts: usize| -> Vec<(f64, [f64; D], [f64; D])> {
             let mut out = Vec::new();
             let h = 1.0 / parts as f64;

@@ -1,4 +1,4 @@
-//! Closed chambers: which facets enclose one volume.
+//! Closed chambers: the facets that enclose one volume.
 
 use crate::boxes::Tree;
 use crate::buckets::{nodes_of, sorted_by_node};
@@ -14,7 +14,7 @@ pub struct Component {
     pub signed_volume: f64,
 }
 
-/// Where facets meet: a node in the plane, an edge in space. `forward` tells the two directions apart.
+/// The place where facets meet: a node in the plane, an edge in space. `forward` distinguishes the two directions.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Use {
     ridge: [u32; 2],
@@ -22,19 +22,19 @@ struct Use {
     forward: bool,
 }
 
-/// What facets look like as a whole: components, relative orientation, free boundaries.
+/// The structure of all facets: components, relative orientation, free boundaries.
 pub(crate) struct Survey {
     /// Component of each facet; components are numbered by their lowest facet.
     component: Vec<u32>,
-    /// Number of components.
+    /// The number of components.
     components: usize,
-    /// Facets that face against the majority of their component, ascending.
+    /// Facets oriented against the majority of their component, ascending.
     minority: Vec<u32>,
     /// Lowest node of each free boundary, ascending.
     open: Vec<u32>,
 }
 
-/// The D ridges of each facet, sorted. One source for both dimensions: end points of edges, sides of triangles.
+/// The D ridges of each facet, sorted. The same code serves both dimensions: end points of edges, sides of triangles.
 fn ridges<const D: usize>(facets: &[[u32; D]]) -> Vec<Use> {
     let mut uses = Vec::with_capacity(D * facets.len());
     for (index, facet) in facets.iter().enumerate() {
@@ -48,14 +48,14 @@ fn ridges<const D: usize>(facets: &[[u32; D]]) -> Vec<Use> {
     sorted_by_node(&uses, nodes_of(facets), |entry| entry.ridge[0])
 }
 
-/// No facet.
+/// Marks a missing facet.
 const NONE: u32 = u32::MAX;
 
 impl Survey {
-    /// Walks the facets across their ridges.
+    /// Walks over the facets across their ridges.
     ///
     /// # Errors
-    /// More than two facets at a ridge, or a surface with one side.
+    /// More than two facets at a ridge, or a surface with only one side.
     pub(crate) fn of<const D: usize>(facets: &[[u32; D]]) -> Result<Survey, MeshError> {
         let uses = ridges(facets);
 
@@ -73,7 +73,7 @@ impl Survey {
             });
         }
 
-        // Neighbours across ridges, with whether the two facets face the same way.
+        // Neighbours across ridges, and whether the two facets have the same orientation.
         let mut links = vec![[(NONE, false); D]; facets.len()];
         for pair in uses.chunk_by(|p, q| p.ridge == q.ridge).filter(|group| group.len() == 2) {
             let agree = pair[0].forward != pair[1].forward;
@@ -87,7 +87,7 @@ impl Survey {
         }
         links.iter_mut().for_each(|own| own.sort_unstable());
 
-        // Flood each component from its lowest facet; `against` compares with that facet.
+        // Flood-fill each component from its lowest facet; `against` compares with that facet.
         let mut component = vec![NONE; facets.len()];
         let mut against = vec![false; facets.len()];
         let mut minority = Vec::new();
@@ -115,7 +115,7 @@ impl Survey {
                     }
                 }
             }
-            // The smaller part is the one to turn; a tie keeps the lowest facet.
+            // The smaller part is reversed; in a tie the lowest facet is kept.
             let turned = members.iter().filter(|&&facet| against[facet as usize]).count();
             let wrong = 2 * turned <= members.len();
             minority.extend(members.iter().copied().filter(|&facet| against[facet as usize] == wrong));
@@ -129,7 +129,7 @@ impl Survey {
         Ok(Survey { component, components, minority, open })
     }
 
-    /// Facets that face against the majority of their component, ascending.
+    /// Facets oriented against the majority of their component, ascending.
     pub(crate) fn minority(&self) -> &[u32] {
         &self.minority
     }
@@ -143,7 +143,7 @@ impl Survey {
         }
     }
 
-    /// Refuses free boundaries and facets that face against their neighbours.
+    /// Refuses free boundaries, and facets oriented against their neighbours.
     pub(crate) fn closed_and_consistent(&self) -> Result<(), MeshError> {
         self.closed()?;
         if !self.minority.is_empty() {
@@ -193,12 +193,12 @@ fn loops(free: &[Use]) -> Vec<u32> {
 impl<const D: usize> Mesh<D> {
     /// Connected components of the closed boundary, each with its signed area [m²] or volume [m³]; holes are negative.
     ///
-    /// Facets are connected where they share a node (plane) or an edge (space). Components are ordered by their lowest facet.
+    /// Facets are connected if they share a node (plane) or an edge (space). Components are ordered by their lowest facet.
     ///
     /// # Errors
-    /// What [`Mesh::validate`] finds; [`MeshError::NonManifoldNodes`] (plane) or [`MeshError::NonManifoldEdges`] (space) where more than two facets
-    /// meet; [`MeshError::NonOrientable`] for a surface with one side; [`MeshError::Open`] with the number of free boundaries and a node on each;
-    /// [`MeshError::InconsistentOrientation`] where neighbours face opposite ways.
+    /// Those of [`Mesh::validate`]; [`MeshError::NonManifoldNodes`] (plane) or [`MeshError::NonManifoldEdges`] (space) if more than two facets meet;
+    /// [`MeshError::NonOrientable`] for a surface with only one side; [`MeshError::Open`] with the number of free boundaries and a node on each;
+    /// [`MeshError::InconsistentOrientation`] if neighbours have opposite orientations.
     pub fn components(&self) -> Result<Vec<Component>, MeshError> {
         self.validate()?;
         let survey = Survey::of(&self.facets)?;
@@ -206,7 +206,7 @@ impl<const D: usize> Mesh<D> {
         Ok(self.components_of(&survey))
     }
 
-    /// The components that a survey found, with their volumes.
+    /// The components of a survey, with their volumes.
     pub(crate) fn components_of(&self, survey: &Survey) -> Vec<Component> {
         let mut components = vec![Component { facets: Vec::new(), signed_volume: 0.0 }; survey.components];
         for (facet, &component) in survey.component.iter().enumerate() {
@@ -220,11 +220,11 @@ impl<const D: usize> Mesh<D> {
 
     /// The closed chambers, each as the ascending indices of the facets that enclose it.
     ///
-    /// A chamber is one component of positive volume and the holes (components of negative volume) in it. A hole belongs to the smallest positive
-    /// component whose winding number about a node of the hole is 1. An outward component inside another is a chamber of its own.
+    /// A chamber is one component of positive volume together with the holes (components of negative volume) in it. A hole belongs to the smallest
+    /// positive component whose winding number about a node of the hole is 1. An outward component inside another is a chamber of its own.
     ///
     /// # Errors
-    /// Those of [`Mesh::components`], and [`MeshError::InsideOut`] for a hole in nothing.
+    /// Those of [`Mesh::components`], and [`MeshError::InsideOut`] for a hole without an enclosing component.
     pub fn chambers(&self) -> Result<Vec<Vec<u32>>, MeshError> {
         let components = self.components()?;
         let (outer, holes): (Vec<&Component>, Vec<&Component>) =
@@ -232,7 +232,7 @@ impl<const D: usize> Mesh<D> {
         let skins: Vec<Vec<[u32; D]>> = outer.iter().map(|component| self.gather(&component.facets)).collect();
         let mut chambers: Vec<Vec<u32>> = outer.iter().map(|component| component.facets.clone()).collect();
 
-        // Each hole goes to the tightest skin around it; only one whose box it lies in can be that.
+        // Each hole belongs to the smallest enclosing skin; only skins whose box contains it are candidates.
         let tree = (!holes.is_empty()).then(|| Tree::of(skins.iter().map(|skin| self.box_of(skin))));
         for hole in holes {
             let point = self.positions[self.facets[hole.facets[0] as usize][0] as usize];
@@ -255,12 +255,12 @@ impl<const D: usize> Mesh<D> {
         Ok(chambers)
     }
 
-    /// Turns facets so that neighbours agree and the total signed volume is positive; returns how many facets were reversed.
+    /// Orients facets so that neighbours agree and the total signed volume is positive; returns the number of reversed facets.
     ///
     /// In each component the majority decides. Holes stay holes: if the total is negative, every facet is reversed.
     ///
     /// # Errors
-    /// What [`Mesh::validate`] finds; [`MeshError::NonManifoldNodes`], [`MeshError::NonManifoldEdges`], [`MeshError::NonOrientable`],
+    /// Those of [`Mesh::validate`]; [`MeshError::NonManifoldNodes`], [`MeshError::NonManifoldEdges`], [`MeshError::NonOrientable`],
     /// [`MeshError::Open`]. The mesh is then unchanged.
     pub fn orient_outward(&mut self) -> Result<usize, MeshError> {
         self.validate()?;
@@ -275,7 +275,7 @@ impl<const D: usize> Mesh<D> {
         if signed_volume(&self.facets, &self.positions) < 0.0 {
             self.facets.iter_mut().for_each(|facet| facet.swap(0, 1));
         }
-        // A facet turned twice must be as it was.
+        // A facet that was reversed twice does not count.
         let mut reversed = 0;
         for (facet, old) in self.facets.iter().zip(&before) {
             reversed += usize::from(facet != old);
@@ -283,7 +283,7 @@ impl<const D: usize> Mesh<D> {
         Ok(reversed)
     }
 
-    /// The lowest and the highest corner of the box around facets, the highest twice.
+    /// The lowest and highest corners of the box around facets, with the highest repeated.
     pub(crate) fn box_of(&self, facets: &[[u32; D]]) -> [[f64; 3]; 3] {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for node in facets.iter().flatten() {
@@ -302,7 +302,7 @@ impl<const D: usize> Mesh<D> {
     }
 }
 
-/// How often closed facets wind around a point: 1 inside an outward skin, 0 outside.
+/// The winding number of closed facets about a point: 1 inside an outward skin, 0 outside.
 ///
 /// Plane: signed crossings of the ray to the right. Space: solid angles over 4π.
 ///

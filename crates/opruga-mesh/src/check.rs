@@ -1,4 +1,4 @@
-//! Everything that looks wrong with a mesh, listed.
+//! A list of everything that looks wrong with a mesh.
 
 use crate::geometry::{Point, cross, dot, lift, norm, subtract};
 use crate::{Element, Mesh, MeshError};
@@ -10,7 +10,7 @@ pub const SHORT_EDGE: f64 = 1e-12;
 /// An element whose area is below this fraction of its longest edge squared (volume: cubed) counts as degenerate [−].
 pub const THIN_ELEMENT: f64 = 1e-10;
 
-/// A body whose extent across is below this fraction of its extent along counts as flat [−].
+/// A body whose extent in one direction is below this fraction of its largest extent counts as flat [−].
 const FLAT_BODY: f64 = 1e-9;
 
 /// Something that looks wrong with a mesh.
@@ -25,7 +25,7 @@ pub enum Problem {
     /// Indices or boundary are broken; see the error.
     #[error(transparent)]
     Topology(#[from] MeshError),
-    /// An element has, for its size, no length, area or volume.
+    /// The indices or the boundary are invalid; see the error.
     #[error("{element} {index} is degenerate: its measure is {}", number(*measure))]
     Degenerate {
         /// Kind of the element.
@@ -35,14 +35,14 @@ pub enum Problem {
         /// Its length [m], area [m²] or volume [m³].
         measure: f64,
     },
-    /// A filled cell has negative area or volume, or a negative Jacobian at one of its nodes.
+    /// The element has no length, area or volume, relative to its size.
     #[error("{element} {index} is inverted: its measure is {}", number(*measure))]
     Inverted {
         /// Kind of the cell.
         element: Element,
         /// Index of the cell among its kind.
         index: u32,
-        /// The signed area [m²] or volume [m³] of a cell that has the Jacobian of its worst node everywhere.
+        /// The signed area [m²] or volume [m³] that the cell would have with the Jacobian of its worst node everywhere.
         measure: f64,
     },
     /// Two facets have the same nodes.
@@ -53,25 +53,25 @@ pub enum Problem {
         /// The facet that repeats it.
         second: u32,
     },
-    /// No element names these nodes.
+    /// No element uses these nodes.
     #[error("{} to no element, the first is node {}", counted(nodes.len() as u64, "node belongs", "nodes belong"), nodes.first().copied().unwrap_or(0))]
     UnreferencedNodes {
         /// The nodes, ascending.
         nodes: Vec<u32>,
     },
-    /// A body that should enclose area or volume lies in a point, a line or a plane.
+    /// A body that should enclose area or volume is contained in a point, a line or a plane.
     #[error("the body is flat: its nodes span only {dimension} dimensions")]
     Flat {
-        /// Number of dimensions that the nodes span.
+        /// The number of dimensions that the nodes span.
         dimension: usize,
     },
 }
 
 impl<const D: usize> Mesh<D> {
-    /// Lists what looks wrong: broken indices and boundaries, coordinates that are not finite, degenerate or inverted elements, duplicate facets,
-    /// nodes without element, bodies without extent. Empty for a sound mesh.
+    /// Lists everything that looks wrong: invalid indices and boundaries, coordinates that are not finite, degenerate or inverted elements, duplicate
+    /// facets, unused nodes, bodies without extent. Empty for a sound mesh.
     ///
-    /// Broken indices hide all problems but themselves, coordinates that are not finite hide those of shape.
+    /// If indices are invalid, only that problem is listed. If coordinates are not finite, problems of shape are not listed.
     pub fn check(&self) -> Vec<Problem> {
         let mut problems = Vec::new();
         if let Err(error) = self.validate() {
@@ -91,7 +91,7 @@ impl<const D: usize> Mesh<D> {
         problems
     }
 
-    /// Duplicate facets and nodes without element.
+    /// Checks for duplicate facets and unused nodes.
     fn check_references(&self, problems: &mut Vec<Problem>) {
         let mut keys: Vec<([u32; D], u32)> = Vec::with_capacity(self.facets.len());
         for (index, &facet) in self.facets.iter().enumerate() {
@@ -110,7 +110,7 @@ impl<const D: usize> Mesh<D> {
         }
     }
 
-    /// Degenerate and inverted elements, flat bodies; positions are finite.
+    /// Checks for degenerate and inverted elements and flat bodies; the positions are finite.
     fn check_shapes(&self, problems: &mut Vec<Problem>) {
         let points: Vec<Point> = self.positions.iter().map(lift).collect();
         let spread = spread(&points);
@@ -149,14 +149,14 @@ impl<const D: usize> Mesh<D> {
     }
 }
 
-/// Extent of points along their longest direction from the first, across it, and out of the plane of both [m].
+/// Extent of points along their longest direction from the first point, perpendicular to it, and out of the plane of both [m].
 fn spread(points: &[Point]) -> [f64; 3] {
     let mut extents = [0.0; 3];
     let Some(&origin) = points.first() else {
         return extents;
     };
 
-    // Greedy: the farthest point gives a direction, which is then taken out of all.
+    // Greedy: the farthest point gives a direction, whose component is then removed from all points.
     let mut directions: [Point; 3] = [[0.0; 3]; 3];
     for rank in 0..3 {
         let mut farthest = [0.0; 3];

@@ -1,21 +1,21 @@
-//! Edges of the plane that meet one another where they are not neighbours.
+//! Edges in the plane that meet where they are not neighbours.
 
 use crate::crossings::{Crossings, MOST_LISTED};
 use robust::{Coord, orient2d};
 
-/// Pairs of edges that cross, touch or overlap anywhere but at the nodes that they share. The sides on which ends lie are exact for
-/// the coordinates as they are.
+/// Pairs of edges that cross, touch or overlap, except at nodes that they share. The side of an edge on which a point lies is exact for the given
+/// coordinates.
 ///
 /// # Source
-/// J. R. Shewchuk, "Adaptive precision floating-point arithmetic and fast robust geometric predicates", Discrete and Computational
-/// Geometry 18 (1997); library robust.
+/// J. R. Shewchuk, "Adaptive precision floating-point arithmetic and fast robust geometric predicates", Discrete and Computational Geometry 18
+/// (1997); library robust.
 pub fn crossing_edges(edges: &[[u32; 2]], positions: &[[f64; 2]]) -> Crossings {
     let at = |node: u32| positions[node as usize];
     let range = |edge: &[u32; 2], d: usize| {
         let [a, b] = edge.map(|node| at(node)[d]);
         if a < b { [a, b] } else { [b, a] }
     };
-    // A line that sweeps along x holds the edges over it.
+    // A sweep along x keeps only the edges that overlap the present x.
     let mut order: Vec<u32> = (0..edges.len() as u32).collect();
     order.sort_by(|a, b| range(&edges[*a as usize], 0)[0].total_cmp(&range(&edges[*b as usize], 0)[0]));
     let (mut over, mut pairs): (Vec<u32>, Vec<[u32; 2]>) = (Vec::new(), Vec::new());
@@ -42,7 +42,7 @@ pub fn crossing_edges(edges: &[[u32; 2]], positions: &[[f64; 2]]) -> Crossings {
     Crossings { pairs, complete: true }
 }
 
-/// Whether two edges whose boxes meet do so themselves.
+/// Whether two edges with overlapping boxes meet.
 fn meet([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> bool {
     let side = |a: [f64; 2], b: [f64; 2], c: [f64; 2]| {
         let side = orient2d(coord(a), coord(b), coord(c));

@@ -1,50 +1,50 @@
-//! Facets of a surface that meet one another where they are not neighbours.
+//! Facets of a surface that meet where they are not neighbours.
 //!
-//! Candidates come from a tree of boxes over the facets in the order of a space-filling curve; whether two facets meet is
-//! decided by the signs of determinants, exact for the coordinates as they are.
+//! A tree of boxes over the facets, in the order of a space-filling curve, gives the candidates. The signs of determinants, exact for the given
+//! coordinates, decide whether two facets meet.
 
 use crate::Mesh;
 use crate::boxes::{Bounds, Tree};
 use crate::geometry::{cross, subtract};
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
-/// Pairs that are listed at most.
+/// The maximum number of listed pairs.
 pub(crate) const MOST_LISTED: usize = 1000;
 
-/// Pairs of boxes that are compared at most, for each facet: sound surfaces take about fifty.
+/// The maximum number of pairs of boxes that are compared, per facet; sound surfaces need about fifty.
 const MOST_COMPARED: u64 = 2000;
 
-/// What was found of facets that meet.
+/// The result of a search for facets that meet.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Crossings {
     /// Pairs of facets, lower number first, ascending; at most a thousand.
     pub pairs: Vec<[u32; 2]>,
-    /// Whether all facets were compared; else there were too many pairs, or too many boxes overlap.
+    /// Whether all facets were compared; otherwise there were too many pairs, or too many boxes overlap.
     pub complete: bool,
 }
 
 impl Mesh<3> {
-    /// Pairs of facets that cross, touch or overlap anywhere but at the nodes and edges that they share.
+    /// Pairs of facets that cross, touch or overlap, except at nodes and edges that they share.
     ///
-    /// Takes about a second for a million facets. Nodes at the same place under different numbers are not shared: where
-    /// components touch, they meet.
+    /// Takes about a second for a million facets. Nodes with equal positions but different numbers are not shared: components that touch count as
+    /// meeting.
     ///
     /// # Source
-    /// J. R. Shewchuk, "Adaptive precision floating-point arithmetic and fast robust geometric predicates", Discrete and
-    /// Computational Geometry 18 (1997); library robust.
+    /// J. R. Shewchuk, "Adaptive precision floating-point arithmetic and fast robust geometric predicates", Discrete and Computational Geometry 18
+    /// (1997); library robust.
     pub fn crossing_facets(&self) -> Crossings {
         let mut found = Crossings { pairs: Vec::new(), complete: true };
         if self.facets.len() < 2 {
             return found;
         }
-        // Scaled by a power of two to a size of about one: products of three lengths neither overflow nor vanish.
+        // Scaled by a power of two to a size of about one, so that products of three lengths neither overflow nor vanish.
         let (low, high) = self.bounds();
         let extent = (0..3).map(|d| high[d] - low[d]).fold(0.0, |most, x| if x > most { x } else { most });
         let factor = inverse_power(extent);
         let points: Vec<[f64; 3]> = self.positions.iter().map(|x| x.map(|x| x * factor)).collect();
         let sorted = Sorted::of(&self.facets, points);
         let mut budget = MOST_COMPARED * self.facets.len() as u64;
-        // Pairs of nodes of one level that overlap; every pair of leaves comes once.
+        // Pairs of overlapping nodes of one level; every pair of leaves occurs once.
         let mut waiting = vec![[1usize; 2]];
         while let Some([node, other]) = waiting.pop() {
             if budget < 4 || found.pairs.len() >= MOST_LISTED {
@@ -66,7 +66,7 @@ impl Mesh<3> {
     }
 }
 
-/// A box in half the bytes, rounded outward.
+/// A box in half of the memory, rounded outward.
 type Small = [[f32; 3]; 2];
 
 fn small([low, high]: &Bounds) -> Small {
@@ -75,17 +75,17 @@ fn small([low, high]: &Bounds) -> Small {
     [low.map(down), high.map(up)]
 }
 
-/// Whether two boxes overlap; without branches, since nobody can foretell it.
+/// Whether two boxes overlap; without branches, because the result is unpredictable.
 fn overlap(a: &Small, b: &Small) -> bool {
     (0..3).fold(true, |so_far, d| so_far & (a[0][d] <= b[1][d]) & (b[0][d] <= a[1][d]))
 }
 
-/// The facets in the order of the curve, with what is asked of them first.
+/// The facets in the order of the curve, with the data that are needed first.
 struct Sorted {
     leaves: usize,
     boxes: Vec<Small>,
     facets: Vec<SortedFacet>,
-    /// Where the facets of each leaf begin, and where the last ones end.
+    /// The start of the facets of each leaf, and the end of the last ones.
     begins: Vec<u32>,
     points: Vec<[f64; 3]>,
 }
@@ -96,12 +96,12 @@ struct SortedFacet {
     nodes: [u32; 3],
     /// Twice its area times its normal, rounded.
     normal: [f64; 3],
-    /// What the normal times a difference of points may err by, for each unit of the largest part of that difference.
+    /// The largest error of the normal times a difference of points, per unit of the largest component of that difference.
     error: f64,
 }
 
-/// Rounding of a product of a normal and a difference: two differences, six products and three sums for the normal, then one
-/// difference, three products and two sums; each errs by half of 2⁻⁵², and none is larger than six products of largest parts.
+/// The rounding error of a product of a normal and a difference: two differences, six products and three sums for the normal, then one difference,
+/// three products and two sums. Each has an error of half of 2⁻⁵², and none is larger than six products of largest components.
 const ERROR: f64 = 64.0 * f64::EPSILON;
 
 impl Sorted {
@@ -133,7 +133,7 @@ impl Sorted {
         &self.facets[self.begins[leaf] as usize..self.begins[leaf + 1] as usize]
     }
 
-    /// Compares the facets of two leaves, or of one with one another.
+    /// Compares the facets of two leaves, or those of one leaf with one another.
     fn compare(&self, [leaf, other]: [usize; 2], pairs: &mut Vec<[u32; 2]>) {
         let others = self.facets_of(other);
         for (index, a) in self.facets_of(leaf).iter().enumerate() {
@@ -146,11 +146,11 @@ impl Sorted {
         }
     }
 
-    /// Whether two facets meet anywhere but at what they share.
+    /// Whether two facets meet anywhere except at shared nodes.
     fn meet(&self, a: &SortedFacet, b: &SortedFacet) -> bool {
         let (mut first, mut second) = (a.nodes, b.nodes);
         let mut shared = 0;
-        // What is shared comes first, in the same order.
+        // Shared nodes come first, in the same order.
         for k in 0..3 {
             if let Some(index) = second[shared..].iter().position(|node| *node == first[k]) {
                 first.swap(shared, k);
@@ -158,22 +158,21 @@ impl Sorted {
                 shared += 1;
             }
         }
-        // What lies on one side of the other's plane, and not in it, meets that at most in what is shared.
+        // A facet that is strictly on one side of the plane of the other meets it at most in shared nodes.
         if shared < 3 && (self.beside(a, &second[shared..]) || self.beside(b, &first[shared..])) {
             return false;
         }
         let [p, q] = [first, second].map(|nodes| nodes.map(|node| self.points[node as usize]));
         match shared {
             0 => sides(&p).iter().any(|side| reaches(side, &q)) || sides(&q).iter().any(|side| reaches(side, &p)),
-            // The sides across from the shared node: whatever is common reaches them.
+            // The sides opposite the shared node: any common point lies on one of them.
             1 => reaches(&[p[1], p[2]], &q) || reaches(&[q[1], q[2]], &p),
             2 => folded(&p, &q[2]),
             _ => true,
         }
     }
 
-    /// Whether points certainly lie on one side of the plane of a facet, and not in it: where rounding leaves a doubt, the
-    /// exact signs will tell.
+    /// Whether points are certainly strictly on one side of the plane of a facet. If rounding leaves a doubt, the exact signs decide later.
     fn beside(&self, facet: &SortedFacet, nodes: &[u32]) -> bool {
         let origin = self.points[facet.nodes[0] as usize];
         let side = |node: u32| {
@@ -181,7 +180,7 @@ impl Sorted {
             let [x, y, z] = facet.normal;
             let height = x * offset[0] + y * offset[1] + z * offset[2];
             let error = facet.error * largest(offset);
-            // Below the least numbers, roundings are not as large as their parts.
+            // For numbers near the underflow limit, rounding errors are not proportional to their terms.
             if height.abs() > error && error > 1e-280 { height } else { 0.0 }
         };
         let first = side(nodes[0]);
@@ -202,12 +201,12 @@ fn exact(p: &[f64; 3]) -> Coord3D<f64> {
     Coord3D { x: p[0], y: p[1], z: p[2] }
 }
 
-/// On which side of the plane through three points a fourth lies.
+/// The side of the plane through three points on which a fourth lies.
 fn side(a: &[f64; 3], b: &[f64; 3], c: &[f64; 3], d: &[f64; 3]) -> f64 {
     orient3d(exact(a), exact(b), exact(c), exact(d))
 }
 
-/// Whether a segment has a point in common with a triangle, borders included.
+/// Whether a segment has a point in common with a triangle, including its border.
 fn reaches(segment: &[[f64; 3]; 2], triangle: &[[f64; 3]; 3]) -> bool {
     let ([p, q], [a, b, c]) = (segment, triangle);
     let (above, below) = (side(a, b, c, p), side(a, b, c, q));
@@ -221,7 +220,7 @@ fn reaches(segment: &[[f64; 3]; 2], triangle: &[[f64; 3]; 3]) -> bool {
     around.iter().all(|x| *x >= 0.0) || around.iter().all(|x| *x <= 0.0)
 }
 
-/// The same for a segment in the plane of the triangle, along the axis from which the triangle looks largest.
+/// The same for a segment in the plane of the triangle, projected along the axis from which the triangle looks largest.
 fn reaches_in_plane(segment: &[[f64; 3]; 2], triangle: &[[f64; 3]; 3]) -> bool {
     let axis = widest(triangle);
     let flat = |p: &[f64; 3]| Coord { x: p[(axis + 1) % 3], y: p[(axis + 2) % 3] };
@@ -234,7 +233,7 @@ fn reaches_in_plane(segment: &[[f64; 3]; 2], triangle: &[[f64; 3]; 3]) -> bool {
         let apart = |x: f64, y: f64| x > 0.0 && y > 0.0 || x < 0.0 && y < 0.0;
         !apart(orient2d(p, q, from), orient2d(p, q, to)) && !apart(orient2d(from, to, p), orient2d(from, to, q))
     };
-    // Collinear segments that do not overlap pass the second test, but then neither end is within.
+    // Collinear segments that do not overlap pass the second test, but neither of their ends is then inside.
     within(p) || within(q) || [(a, b), (b, c), (c, a)].into_iter().filter(|(from, to)| crosses(*from, *to)).count() > 1
 }
 
@@ -249,7 +248,7 @@ fn widest([a, b, c]: &[[f64; 3]; 3]) -> usize {
     better(better(0, 1), 2)
 }
 
-/// Whether the triangle of an edge (the first two corners) and another point lies on the triangle itself.
+/// Whether the triangle of an edge (the first two corners) and another point overlaps the triangle itself.
 fn folded(triangle: &[[f64; 3]; 3], other: &[f64; 3]) -> bool {
     let [a, b, c] = triangle;
     if side(a, b, c, other) != 0.0 {
@@ -261,7 +260,7 @@ fn folded(triangle: &[[f64; 3]; 3], other: &[f64; 3]) -> bool {
     one > 0.0 && two > 0.0 || one < 0.0 && two < 0.0
 }
 
-/// One over the power of two that is next below a positive number.
+/// The reciprocal of the largest power of two below a positive number.
 fn inverse_power(x: f64) -> f64 {
     let exponent = x.to_bits() >> 52;
     if (1..2046).contains(&exponent) { f64::from_bits((2046 - exponent) << 52) } else { 1.0 }

@@ -1,23 +1,23 @@
-//! Edges in an order that runs through memory, and the area beside each.
+//! Edges in the order of memory access, and the area beside each.
 
 use crate::Mesh;
 use crate::MeshError;
 use crate::geometry::{HEXAHEDRON_FACES, ascending, lift, triangle_area};
 use crate::quadratic::{tetrahedron_parts, triangle_parts};
 
-/// Which edges of a mesh are meant.
+/// The set of edges of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EdgeSet {
     /// Edges of the boundary facets.
     Boundary,
-    /// Edges of facets, wires, sheets and cells. The diagonals that only cut the boundary faces of hexahedra into triangles are left out: they would
+    /// Edges of facets, wires, sheets and cells, without the diagonals that only cut the boundary faces of hexahedra into triangles: these would
     /// stiffen one diagonal of the skin and not the other. Quadratic cells have the edges of the triangles through the nodes of their faces.
     All,
     /// `All`, with both diagonals of every quadrilateral and of every face of a hexahedron (not the diagonals through its interior).
     AllWithShear,
 }
 
-/// A stretch of edges (a, b), (a+1, b+1), …, (a+count−1, b+count−1), which can be walked without reading the edge list.
+/// A run of edges (a, b), (a+1, b+1), …, (a+count−1, b+count−1), which can be processed without reading the edge list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EdgeRun {
     /// Position of the first edge in the edge list.
@@ -28,7 +28,7 @@ pub struct EdgeRun {
     pub count: u32,
 }
 
-/// Splits an edge list into its maximal runs, in list order; a ring gives two, its sides and the edge that closes it.
+/// Splits an edge list into its maximal runs, in list order. A ring gives two: its sides, and the edge that closes it.
 pub fn edge_runs(edges: &[[u32; 2]]) -> Vec<EdgeRun> {
     let mut runs: Vec<EdgeRun> = Vec::new();
     for (index, &[a, b]) in edges.iter().enumerate() {
@@ -44,7 +44,7 @@ pub fn edge_runs(edges: &[[u32; 2]]) -> Vec<EdgeRun> {
     runs
 }
 
-/// Largest distance |b − a| in index between the ends of an edge: how far apart in memory neighbours lie. Zero for no edges.
+/// The largest difference |b − a| of the indices of the ends of an edge, which is the distance of neighbours in memory. Zero without edges.
 pub fn bandwidth(edges: &[[u32; 2]]) -> u32 {
     edges.iter().map(|&[a, b]| a.abs_diff(b)).max().unwrap_or(0)
 }
@@ -62,16 +62,16 @@ fn push_diagonals([a, b, c, d]: [u32; 4], out: &mut Vec<[u32; 2]>) {
     out.push(ascending(b, d));
 }
 
-/// The face of a hexahedron as four nodes, for each of its six faces.
+/// The six faces of a hexahedron, each as four nodes.
 fn faces(cell: &[u32; 8]) -> [[u32; 4]; 6] {
     HEXAHEDRON_FACES.map(|face| face.map(|corner| cell[corner]))
 }
 
 impl<const D: usize> Mesh<D> {
-    /// The edges of the set, each once, lower node first, in the order of (b − a, a).
+    /// The edges of the set, each once, with the lower node first, in the order of (b − a, a).
     ///
-    /// Edges of equal distance b − a stand together, so that long runs (a+k, b+k) appear and a spring loop can stream through memory without an
-    /// index: a ring gives (0,1), (1,2), …, (n−2,n−1) and then (0,n−1); a grid gives all its horizontal edges, then each family of diagonals and all
+    /// Edges of equal difference b − a are adjacent, so that long runs (a+k, b+k) appear and a spring loop can stream through memory without an
+    /// index. A ring gives (0,1), (1,2), …, (n−2,n−1) and then (0,n−1); a grid gives all its horizontal edges, then each family of diagonals and all
     /// its vertical edges. [`edge_runs`] lists the runs.
     pub fn edges(&self, set: EdgeSet) -> Vec<[u32; 2]> {
         let mut edges = Vec::new();
@@ -83,7 +83,7 @@ impl<const D: usize> Mesh<D> {
             }
         }
         if set != EdgeSet::Boundary {
-            // Facet edges that are diagonals of hexahedron faces carry no spring of their own.
+            // Facet edges that are diagonals of hexahedron faces have no spring of their own.
             if set == EdgeSet::All && !self.cells.hexahedra.is_empty() {
                 let mut diagonals = Vec::new();
                 for cell in &self.cells.hexahedra {
@@ -133,20 +133,21 @@ impl<const D: usize> Mesh<D> {
         }
     }
 
-    /// Sum ΣA of the areas of the triangles beside each edge [m²], one value per edge of the list.
+    /// The sum ΣA of the areas of the triangles beside each edge [m²], one value per edge of the list.
     ///
-    /// Triangles are the facets in space, sheet triangles, triangle cells and the four parts of quadratic ones. A membrane spring of stiffness k = E₂D ΣA / l² (E₂D [N/m], l [m]) gives
-    /// on the regular triangular lattice k = √3/2·E₂D inside and half of that on the border, where only one triangle lies beside the edge.
+    /// Triangles are the facets in space, sheet triangles, triangle cells and the four parts of quadratic ones. On a regular triangular lattice, the
+    /// membrane stiffness k = E₂D ΣA / l² (E₂D [N/m], l [m]) is √3/2·E₂D inside. On the border, where only one triangle adjoins the edge, it is half
+    /// of that.
     ///
-    /// A quadrilateral (cell or sheet) is cut by the diagonal that the edge list contains. With both diagonals, or with none, it counts as the mean of
-    /// its two triangulations: a rectangle of area A then adds A/2 to each side and A/2 to each diagonal. Edges beside no area get 0.
+    /// A quadrilateral (cell or sheet) is cut along the diagonal that the edge list contains. With both diagonals, or with none, it counts as the
+    /// mean of its two triangulations: a rectangle of area A then adds A/2 to each side and A/2 to each diagonal. Edges without adjacent area get 0.
     ///
     /// # Errors
-    /// What [`Mesh::validate`] finds.
+    /// Those of [`Mesh::validate`].
     pub fn edge_areas(&self, edges: &[[u32; 2]]) -> Result<Vec<f64>, MeshError> {
         self.validate()?;
 
-        // A sorted copy finds the index of an edge in any list.
+        // A sorted copy gives the index of an edge in any list.
         let mut sorted: Vec<([u32; 2], usize)> =
             edges.iter().enumerate().map(|(index, &[a, b])| (ascending(a, b), index)).collect();
         sorted.sort_unstable();
@@ -166,13 +167,13 @@ impl<const D: usize> Mesh<D> {
             }
         };
 
-        // Whole triangles; the sheet triangles that make up quadrilaterals come with these.
+        // Triangles as a whole, without the sheet triangles that make up quadrilaterals, which follow below.
         let loose = self.sheets.get(2 * self.sheet_quadrilaterals.len()..).unwrap_or_default();
         for &triangle in self.facet_triangles().iter().chain(loose).chain(&self.cells.triangles) {
             add(triangle, 1.0);
         }
         self.cells.quadratic_triangles.iter().flat_map(triangle_parts).for_each(|triangle| add(triangle, 1.0));
-        // Quadrilaterals, cut by the diagonals that are in the list.
+        // Quadrilaterals, cut along the diagonals in the list.
         for &[a, b, c, d] in self.cells.quadrilaterals.iter().chain(&self.sheet_quadrilaterals) {
             let (weight_ac, weight_bd) = match (find(a, c).is_some(), find(b, d).is_some()) {
                 (true, false) => (1.0, 0.0),

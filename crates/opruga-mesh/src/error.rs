@@ -1,10 +1,10 @@
-//! What can be wrong with a mesh or with the numbers that a generator is given.
+//! Errors of a mesh, or of the numbers that are passed to a generator.
 
 use opruga_math::words::{counted, number};
 use opruga_math::{messages, terms};
 
 terms! {
-    /// The kinds of element that a mesh is made of; used to say where something is wrong.
+    /// The kinds of elements of a mesh; used to name the place of an error.
     pub enum Element = "part.mesh_element" {
         Facet = "facet",
         Wire = "wire",
@@ -22,7 +22,7 @@ terms! {
 }
 
 terms! {
-    /// A number that a generator is given.
+    /// A number that is passed to a generator.
     pub enum Quantity = "part.quantity" {
         NumberCellsPerAxis = "number of cells per axis",
         NumberCellsPerSide = "number of cells per side",
@@ -68,7 +68,7 @@ terms! {
 }
 
 terms! {
-    /// What a number must be.
+    /// The condition that a number must satisfy.
     pub enum Must = "part.must" {
         NotNegative = "0 or more, and finite",
         TwoOrThree = "2 or 3",
@@ -83,10 +83,10 @@ terms! {
 }
 
 messages! {
-    /// Why a mesh could not be made or read.
+    /// The reasons why a mesh could not be created or read.
     #[derive(Clone, Debug, PartialEq)]
     pub enum MeshError {
-        /// A count lies outside what the generator allows.
+        /// A count is outside the range that the generator allows.
         "part.mesh" #[error("{what} is {value}, but must be between {least} and {most}")]
         Count { what: Quantity, value: u64, least: u64, most: u64 },
         /// A length, coordinate or angle has an impossible value.
@@ -95,7 +95,7 @@ messages! {
         /// The mesh would have more nodes than [`crate::MAXIMUM_NODES`].
         "part.mesh" #[error("the mesh would have {nodes} nodes, but at most {most} are allowed")]
         TooManyNodes { nodes: u64, most: u64 },
-        /// Edges lie over one another's boxes so often that it cannot be told in time whether they meet.
+        /// The boxes of edges overlap so often that there is not enough time to determine whether the edges meet.
         "part.mesh" #[error("{edges} edges run past one another so closely that more than {most} pairs would have to be compared")]
         NotCompared { edges: u64, most: u64 },
         /// Two consecutive points of an outline or chain coincide.
@@ -114,29 +114,29 @@ messages! {
         /// A group of cells names a cell that does not exist.
         "part.mesh" #[error("the group `{group}` names cell {cell}, but there are {cells} cells")]
         CellOutOfRange { group: String, cell: u32, cells: usize },
-        /// Values of cells are more or fewer than there are cells.
+        /// The number of values of cells differs from the number of cells.
         "part.mesh" #[error("`{name}` has {values} values for {cells} cells")]
         CellValues { name: String, values: usize, cells: usize },
-        /// Values of nodes are more or fewer than there are nodes.
+        /// The number of values of nodes differs from the number of nodes.
         "part.mesh" #[error("`{name}` has {values} numbers, {components} a node, for {nodes} nodes")]
         NodeValues { name: String, values: usize, components: usize, nodes: usize },
-        /// Something that only triangles and tetrahedra can do was asked of another cell.
+        /// An operation that supports only triangles and tetrahedra was applied to another cell.
         "part.mesh" #[error("a {element} is no triangle or tetrahedron; it has to be cut into these first")]
         NotSimplices { element: Element },
-        /// Hexahedra that cannot be cut into five tetrahedra each with common faces cut alike.
+        /// Hexahedra that cannot be cut into five tetrahedra each such that common faces are cut in the same way.
         "part.mesh" #[error("the hexahedra around the edge from node {} to node {} cannot alternate: a loop of an odd number of edges leads through it",
             edge[0], edge[1])]
         OddLoop { edge: [u32; 2] },
-        /// A filling has no distance of nodes.
+        /// The spacing of a filling is missing.
         "part.mesh" #[error("`spacing` is missing: the side of the cubes that the filling is made of [m]")]
         NoSpacing {},
-        /// A filling does not hold together as its surface does: it is too coarse.
+        /// A filling is not connected as its surface is, because it is too coarse.
         "part.mesh" #[error("with a spacing of {} m the filling of {} falls into {pieces} pieces", number(*spacing), counted(*parts as u64, "closed surface", "closed surfaces"))]
         Torn { spacing: f64, pieces: usize, parts: usize },
-        /// A filling has far less or more volume than its surface encloses: it is too coarse.
+        /// A filling has much less or more volume than its surface encloses, because it is too coarse.
         "part.mesh" #[error("with a spacing of {} m the filling would have {kept:.2} of the volume{}", number(*spacing), keeps(*finer))]
         Lost { spacing: f64, kept: f64, finer: Option<f64> },
-        /// An element of space in a plane mesh, or a filled plane cell in a mesh of space.
+        /// A three-dimensional element in a plane mesh, or a filled plane cell in a mesh in space.
         "part.mesh" #[error("a {element} has no place in a mesh of {dimension} dimensions")]
         WrongDimension { element: Element, dimension: usize },
         /// Sheet quadrilateral k is not the union of sheet triangles 2k and 2k + 1.
@@ -151,32 +151,32 @@ messages! {
         /// More than two edges of an outline meet at a node, or the triangles at a node form more than one fan.
         "part.mesh" #[error("the boundary touches itself at the nodes {nodes:?}")]
         NonManifoldNodes { nodes: Vec<u32> },
-        /// The surface has only one side, as a Möbius band.
+        /// The surface has only one side, like a Möbius band.
         "part.mesh" #[error("the surface through facet {facet} has only one side")]
         NonOrientable { facet: u32 },
-        /// Neighbouring facets face opposite ways; [`crate::Mesh::orient_outward`] repairs it.
+        /// Neighbouring facets have opposite orientations; [`crate::Mesh::orient_outward`] repairs this.
         "part.mesh" #[error("{} against their neighbours, the first is facet {}", counted(*count as u64, "facet faces", "facets face"), first)]
         InconsistentOrientation { count: usize, first: u32 },
-        /// A component with negative volume lies in no enclosing component; [`crate::Mesh::orient_outward`] repairs a mesh that is inside out.
+        /// A component with negative volume is in no enclosing component; [`crate::Mesh::orient_outward`] repairs a mesh that is inside out.
         "part.mesh" #[error("the component through facet {facet} is inside out: its volume is {} and no other component encloses it",
             number(*signed_volume))]
         InsideOut { facet: u32, signed_volume: f64 },
         /// Two rings of one body have points in common.
         "part.mesh" #[error("the rings {first} and {second} cross or touch")]
         RingsMeet { first: usize, second: usize },
-        /// A ring lies in a ring, or a hole in a hole: the area would count twice, or be left out twice.
+        /// A ring directly inside a ring, or a hole directly inside a hole: the area would count twice, or be removed twice.
         "part.mesh" #[error("ring {inner} lies inside ring {outer}, and their radii have the same sign")]
         RingsAlike { outer: usize, inner: usize },
-        /// A ring that is a hole lies in no other ring.
+        /// A ring that is a hole is inside no other ring.
         "part.mesh" #[error("ring {ring} is a hole, by its negative radius, and lies inside no other ring")]
         HoleInNothing { ring: usize },
-        /// Elements of different dimension share one mesh, so that one density cannot give a mass.
+        /// Elements of different dimensions share one mesh, so a single density cannot define a mass.
         "part.mesh" #[error("the mesh mixes {first} and {second} elements, which have no common measure")]
         MixedMeasures { first: Element, second: Element },
     }
 }
 
-/// Which spacing would keep the volume.
+/// A spacing that would keep the volume.
 fn keeps(finer: Option<f64>) -> String {
     finer.map_or(String::new(), |spacing| format!("; {} m would keep it", number(spacing)))
 }

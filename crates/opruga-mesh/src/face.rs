@@ -3,40 +3,41 @@
 use crate::geometry::{Point, cross, dot, norm, subtract};
 use crate::outline::{Ring, triangles_between};
 
-/// Corners whose triangle with their neighbours has less than this part of the face's area are straight.
+/// A corner is straight if its triangle with its neighbours has less than this fraction of the area of the face.
 const STRAIGHT: f64 = 1e-12;
 
-/// A face whose corners lie this part of its size off its plane is folded too far: a square folded along its diagonal by a right angle.
+/// A face is folded too far if its corners are farther from its plane than this fraction of its size: this is the value of a square folded along its
+/// diagonal by a right angle.
 const FOLDED: f64 = 0.25;
 
-/// Of diagonals whose lengths differ by less than this part, the first is taken, so that rounding does not choose.
+/// If the lengths of diagonals differ by less than this fraction, the first is taken, so that rounding does not decide.
 const AS_LONG: f64 = 1e-9;
 
-/// Why a face cannot be cut into triangles.
+/// Reasons why a face cannot be cut into triangles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FaceError {
-    /// Its edges cross or touch, or it encloses nothing.
+    /// Its edges cross or touch, or it encloses no area.
     Crossing,
-    /// A corner lies so far off its plane, as a part of its size.
+    /// The largest distance of a corner from its plane, relative to its size.
     Folded(f64),
 }
 
-/// A face as triangles.
+/// A face cut into triangles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CutFace {
-    /// Two fewer triangles than corners, by the numbers of the corners, winding as the face does.
+    /// The triangles, two fewer than corners, by the numbers of the corners, with the winding of the face.
     pub triangles: Vec<[u32; 3]>,
     /// Whether it has a corner that points inward.
     pub concave: bool,
-    /// How far corners lie off its plane, as a part of its size: the longest side of its bounding box.
+    /// The largest distance of a corner from its plane, relative to its size, which is the longest side of its bounding box.
     pub bent: f64,
 }
 
-/// Cuts a face with at least three corners along diagonals that stay inside.
+/// Cuts a face with at least three corners along diagonals inside it.
 ///
-/// The plane is the one that the area vector ½Σ xᵢ×xⱼ is normal to, through the mean of the corners; what is inside is decided there. A face of four corners
-/// is cut along the diagonal that stays inside; where both do, along the shorter one. Larger faces become the constrained Delaunay triangulation of their
-/// corners, which has the largest smallest angle.
+/// Its plane is normal to the area vector ½Σ xᵢ×xⱼ and passes through the mean of the corners; it determines what is inside. A face of four corners
+/// is cut along the diagonal inside it; if both are inside, along the shorter one. Larger faces get the constrained Delaunay triangulation of their
+/// corners, which maximises the smallest angle.
 ///
 /// # Errors
 /// [`FaceError::Crossing`], [`FaceError::Folded`].
@@ -49,7 +50,7 @@ pub fn cut_face(corners: &[[f64; 3]]) -> Result<CutFace, FaceError> {
     if n < 3 || !(size > 0.0 && size.is_finite()) {
         return Err(FaceError::Crossing);
     }
-    // Of ordinary size, and about the first corner, so that nothing overflows and little is lost to rounding.
+    // Scaled to unit size and relative to the first corner, so that nothing overflows and little is lost to rounding.
     let local = |p: &[f64; 3]| -> Point { core::array::from_fn(|d| p[d] / size - corners[0][d] / size) };
     let points: Vec<Point> = corners.iter().map(local).collect();
     let mut whole = [0.0; 3];
@@ -69,7 +70,7 @@ pub fn cut_face(corners: &[[f64; 3]]) -> Result<CutFace, FaceError> {
     }
 
     let [along, across] = plane(normal);
-    // The library takes no coordinates that are next to nothing.
+    // The library does not accept coordinates close to the underflow limit.
     let flat = |x: f64| if x.abs() < 1e-100 { 0.0 } else { x };
     let flat: Vec<[f64; 2]> = points.iter().map(|p| [flat(dot(*p, along)), flat(dot(*p, across))]).collect();
     let side = |[a, b, c]: [usize; 3]| {
@@ -95,7 +96,7 @@ pub fn cut_face(corners: &[[f64; 3]]) -> Result<CutFace, FaceError> {
         }
         _ => triangles_between(&[Ring { points: flat.clone(), part: 0 }]).map_err(|_| FaceError::Crossing)?,
     };
-    // Of a face that crosses itself there are too many, or some are turned over.
+    // If the face crosses itself, there are too many triangles, or some are reversed.
     let turned = |triangle: &[u32; 3]| side(triangle.map(|k| k as usize)) <= 0.0;
     if triangles.len() != n - 2 || triangles.iter().any(turned) {
         return Err(FaceError::Crossing);
@@ -103,7 +104,7 @@ pub fn cut_face(corners: &[[f64; 3]]) -> Result<CutFace, FaceError> {
     Ok(CutFace { triangles, concave, bent })
 }
 
-/// Highest less lowest coordinate.
+/// The difference of the highest and the lowest coordinate.
 fn range(points: &[[f64; 3]], axis: usize) -> f64 {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for point in points {
@@ -113,7 +114,7 @@ fn range(points: &[[f64; 3]], axis: usize) -> f64 {
     high - low
 }
 
-/// Two directions of the plane with a normal, counter-clockwise seen against it; exact where the normal is an axis.
+/// Two directions in the plane with a normal, counter-clockwise as seen against it; exact if the normal is an axis.
 fn plane(normal: Point) -> [Point; 2] {
     let least = (1..3).fold(0, |best, axis| if normal[axis].abs() < normal[best].abs() { axis } else { best });
     let mut axis = [0.0; 3];

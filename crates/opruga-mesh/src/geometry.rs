@@ -1,8 +1,8 @@
-//! Lengths, areas and volumes. A plane point is lifted to z = 0, so that one formula serves both dimensions.
+//! Lengths, areas and volumes. Points in the plane are lifted to z = 0, so that one formula serves both dimensions.
 
 pub(crate) type Point = [f64; 3];
 
-/// The point in space, with z = 0 for a plane one.
+/// The point in space, with z = 0 for a point in the plane.
 #[inline]
 pub(crate) fn lift<const D: usize>(point: &[f64; D]) -> Point {
     [point[0], point[1], point.get(2).copied().unwrap_or(0.0)]
@@ -54,7 +54,7 @@ pub(crate) const HEXAHEDRON_FACES: [[usize; 4]; 6] =
 /// Outward faces of a tetrahedron, counter-clockwise seen from outside.
 pub(crate) const TETRAHEDRON_FACES: [[usize; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
 
-/// Signed volume of a trilinear hexahedron [m³]: a bilinear face cuts off the mean of what its two triangulations cut off.
+/// Signed volume of a trilinear hexahedron [m³]: a bilinear face bounds the mean of the volumes that its two triangulations bound.
 pub(crate) fn hexahedron_volume(corners: &[Point; 8]) -> f64 {
     let o = corners[0];
     let mut doubled = 0.0;
@@ -72,13 +72,14 @@ pub(crate) fn quadrilateral_area(corners: &[Point; 4]) -> f64 {
     0.5 * cross(subtract(c, a), subtract(d, b))[2]
 }
 
-/// Signed volume that closed facets enclose: area ½Σ(xᵢyⱼ − xⱼyᵢ) [m²] in the plane, volume ⅙ΣXₐ·(X_b×X_c) [m³] in space.
+/// The signed volume that closed facets enclose: area ½Σ(xᵢyⱼ − xⱼyᵢ) [m²] in the plane, volume ⅙ΣXₐ·(X_b×X_c) [m³] in space.
 ///
-/// Positive for counter-clockwise outlines and outward triangles. Taken about the first node of the first facet, which keeps the digits of a small
-/// body far from the origin; for facets that are not closed the value has no meaning. Zero for no facets. Shapes: `facets` F×D, `positions` N×D.
+/// Positive for counter-clockwise outlines and outward triangles. It is computed relative to the first node of the first facet, which keeps the
+/// digits of a small body far from the origin. For facets that are not closed the value has no meaning. Zero without facets. Shapes: `facets` F×D,
+/// `positions` N×D.
 ///
 /// # Panics
-/// Where a facet names a node beyond `positions`; [`crate::Mesh::validate`] finds these.
+/// If a facet names a node beyond `positions`; [`crate::Mesh::validate`] finds these.
 pub fn signed_volume<const D: usize>(facets: &[[u32; D]], positions: &[[f64; D]]) -> f64 {
     let Some(first) = facets.first() else {
         return 0.0;

@@ -1,6 +1,6 @@
-//! The least det ∂x/∂ξ over a whole cell.
+//! The minimum of det ∂x/∂ξ over a whole cell.
 //!
-//! The determinant of the map of a cell is a polynomial in its reference coordinates ξ. In Bernstein's basis
+//! The determinant of the map of a cell is a polynomial in its reference coordinates ξ. In the Bernstein basis
 //!
 //! | cell | degree | coefficients |
 //! |---|---|---|
@@ -10,57 +10,56 @@
 //! | quadratic tetrahedron | 3 | 20 |
 //! | hexahedron | 2 along each axis | 27 |
 //!
-//! its values lie between the least and the greatest coefficient, and those at the vertices are coefficients. So coefficients that
-//! are all positive prove that nothing of the cell is inside out, and a negative value proves that something is. Between
-//! these the cell is bisected (de Casteljau), which brings coefficients nearer to values: the gap falls with the square of the size.
-//! A piece without negative coefficients is done with. After [`MOST_PIECES`] the least J is known to lie between two bounds.
+//! its values are between the smallest and the largest coefficient, and the values at the vertices are coefficients. If all coefficients are
+//! positive, the cell is therefore nowhere inverted; a negative value proves that it is inverted somewhere. Otherwise the cell is bisected (de
+//! Casteljau), which brings the coefficients closer to the values: the gap falls with the square of the size. A piece without negative coefficients
+//! needs no further bisection. After [`MOST_PIECES`] the minimum of J is known to be between two bounds.
 //!
 //! # Source
-//! A. Johnen, J.-F. Remacle, C. Geuzaine, "Geometrical validity of curvilinear finite elements", Journal of Computational Physics 233
-//! (2013).
+//! A. Johnen, J.-F. Remacle, C. Geuzaine, "Geometrical validity of curvilinear finite elements", Journal of Computational Physics 233 (2013).
 
 use crate::quadratic::{TETRAHEDRON_EDGES, TRIANGLE_SIDES};
 use std::collections::VecDeque;
 
-/// Pieces of a cell that are looked at, at most. A quadratic cell of which one tenth at a corner is nearly flat takes some ten; what
-/// takes more than this has a least J within about a thousandth of zero, in units of its greatest.
+/// The maximum number of pieces of a cell that are examined. A quadratic cell with one tenth at a corner nearly flat takes about ten. If a cell takes
+/// more than this, its minimum of J is within about a thousandth of zero, relative to its maximum.
 const MOST_PIECES: usize = 512;
 
-/// How many roundings of a position a coefficient may be off by, in units of its change with that: a sum of some ten products.
+/// The error of a coefficient in roundings of a position, in units of its derivative by the position: a sum of about ten products.
 const ROUNDINGS: f64 = 16.0;
 
-/// The least det ∂x/∂ξ over a cell [m², m³]: twice the area of a straight triangle, six times the volume of a straight tetrahedron, the
-/// area or volume of a straight box.
+/// The minimum of det ∂x/∂ξ over a cell [m², m³]. This is twice the area of a straight triangle, six times the volume of a straight tetrahedron, or
+/// the area or volume of a straight box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeastJacobian {
-    /// Nowhere is it less.
+    /// A lower bound.
     pub bound: f64,
-    /// The least value that was found.
+    /// The smallest value found.
     pub found: f64,
-    /// Where: barycentric coordinates of triangles and tetrahedra, coordinates from 0 to 1 along the axes of boxes.
+    /// The position of that value: barycentric coordinates for triangles and tetrahedra, coordinates from 0 to 1 along the axes for boxes.
     pub at: [f64; 4],
-    /// What of it is rounding of the positions. A corner whose neighbours all lie on one obstacle has none but that.
+    /// The error by rounding of the positions. At a corner whose neighbours all lie on one obstacle, the value is only rounding.
     pub rounding: f64,
 }
 
 impl LeastJacobian {
-    /// Whether the cell certainly has a volume and is right side out everywhere.
+    /// Whether the cell certainly has a positive Jacobian everywhere.
     pub fn is_positive(&self) -> bool {
         self.bound > self.rounding
     }
-    /// Whether the cell is certainly inside out nowhere, though it may be flat at a point.
+    /// Whether the cell is certainly nowhere inverted; it may be flat at a point.
     pub fn is_upright(&self) -> bool {
         self.bound >= -self.rounding
     }
-    /// Whether the cell is certainly inside out somewhere; also what is no number is.
+    /// Whether the cell is certainly inverted somewhere; NaN counts as inverted.
     pub fn is_inverted(&self) -> bool {
-        // Written so that what is no number is inverted.
+        // This form treats NaN as inverted.
         let upright = self.found >= -self.rounding;
         !upright
     }
 }
 
-/// The least det ∂x/∂ξ over a cell with these nodes, numbered as in [`crate::Cells`]; none of what has no such determinant.
+/// The minimum of det ∂x/∂ξ over a cell with these nodes, numbered as in [`crate::Cells`]; none for elements without such a determinant.
 pub fn least_jacobian<const D: usize>(nodes: &[[f64; D]]) -> Option<LeastJacobian> {
     let whole = Net::of(nodes)?;
     let scale = whole.coefficients.iter().fold(0.0, |most: f64, c| if c.abs() > most { c.abs() } else { most });
@@ -73,7 +72,7 @@ pub fn least_jacobian<const D: usize>(nodes: &[[f64; D]]) -> Option<LeastJacobia
         whole.vertices().into_iter().for_each(|(value, at)| least.see(value, at));
         return Some(least);
     }
-    // The middles of edges are no coefficients; most of what is folded is so there or at a vertex.
+    // The values at midpoints of edges are not coefficients; most folded cells are folded there or at a vertex.
     for at in whole.samples() {
         least.see(whole.value(at), at);
     }
@@ -113,7 +112,7 @@ pub fn jacobian_at<const D: usize>(nodes: &[[f64; D]], at: [f64; 4]) -> Option<f
 }
 
 impl LeastJacobian {
-    /// Notes a value; what is no number stays.
+    /// Records a value; NaN is kept.
     fn see(&mut self, value: f64, at: [f64; 4]) {
         if value < self.found || value.is_nan() {
             (self.found, self.at) = (value, at);
@@ -121,21 +120,21 @@ impl LeastJacobian {
     }
 }
 
-/// A polynomial over a piece of a cell, by its coefficients in Bernstein's basis.
+/// A polynomial over a piece of a cell, given by its coefficients in the Bernstein basis.
 #[derive(Clone, Debug)]
 struct Net {
     basis: Basis,
     coefficients: Vec<f64>,
-    /// The corners of the piece in coordinates of the cell: of a simplex all, of a box the lowest and the highest.
+    /// The corners of the piece in coordinates of the cell: all of a simplex, the lowest and the highest of a box.
     corners: Vec<[f64; 4]>,
 }
 
-/// Which coefficients there are, and in which order.
+/// The coefficients and their order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Basis {
-    /// Of a simplex: indices by corner that sum to the degree, in the order of [`indices`].
+    /// For a simplex: indices by corner that add up to the degree, in the order of [`indices`].
     Simplex { corners: usize, degree: usize },
-    /// Of a box: the first axis runs fastest.
+    /// For a box: the first axis varies fastest.
     Box { axes: usize, degree: usize },
 }
 
@@ -154,7 +153,7 @@ fn indices(corners: usize, degree: usize) -> Vec<[usize; 4]> {
     out
 }
 
-/// Where a coefficient of a simplex stands in that order, by the indices of the corners behind the first.
+/// The position of a coefficient of a simplex in that order, by the indices of the corners after the first.
 #[derive(Clone, Copy, Debug)]
 struct Order([u8; 64]);
 
@@ -175,12 +174,12 @@ fn factorial(n: usize) -> f64 {
     (1..=n).map(|k| k as f64).product()
 }
 
-/// n over k.
+/// The binomial coefficient n over k.
 fn binomial(n: usize, k: usize) -> f64 {
     factorial(n) / (factorial(k) * factorial(n - k))
 }
 
-/// x to a small whole power.
+/// x to a small integer power.
 fn power(x: f64, n: usize) -> f64 {
     (0..n).map(|_| x).product()
 }
@@ -222,8 +221,8 @@ impl Net {
         Net::simplex(D + 1, 0, vec![determinant(&sides)])
     }
 
-    /// Of a quadratic simplex: ∂x/∂ξₖ is linear, and the coefficient of a product of D linear functions is the mean over all ways to
-    /// share the corners of its index among the factors.
+    /// For a quadratic simplex ∂x/∂ξₖ is linear. The coefficient of a product of D linear functions is the mean over all ways to distribute the
+    /// corners of its index over the factors.
     fn quadratic<const D: usize, const E: usize>(nodes: &[[f64; D]], edges: &[[usize; 2]; E]) -> Net {
         let corners = D + 1;
         // ∂x/∂λᵢ at corner c: (4 δ − 1) xᵢ + 4 xᵢ꜀.
@@ -263,14 +262,14 @@ impl Net {
 
     /// det ∂x/∂ξ is bilinear: the determinants at the corners.
     fn quadrilateral<const D: usize>(nodes: &[[f64; D]]) -> Net {
-        // Along the first axis from corner 0 to 1 below and 3 to 2 above, along the second from 0 to 3 and 1 to 2.
+        // The first axis runs from corner 0 to 1 below and 3 to 2 above, the second from 0 to 3 and 1 to 2.
         let first = [less(&nodes[1], &nodes[0]), less(&nodes[2], &nodes[3])];
         let second = [less(&nodes[3], &nodes[0]), less(&nodes[2], &nodes[1])];
         let at = |x: usize, y: usize| determinant(&[first[y], second[x]]);
         Net::boxed(2, 1, vec![at(0, 0), at(1, 0), at(0, 1), at(1, 1)])
     }
 
-    /// ∂x/∂ξ is bilinear in the other two axes: bᵢ = Σ det / Π (2 over i) over the ways to share an index between the two factors.
+    /// ∂x/∂ξ is bilinear in the other two axes: bᵢ = Σ det / Π (2 over i) over the ways to distribute an index over the two factors.
     fn hexahedron<const D: usize>(nodes: &[[f64; D]]) -> Net {
         let corner = |x: usize, y: usize, z: usize| &nodes[[0, 1, 3, 2][x + 2 * y] + 4 * z];
         let mut coefficients = vec![0.0; 27];
@@ -289,12 +288,12 @@ impl Net {
         Net::boxed(3, 2, coefficients)
     }
 
-    /// The least coefficient; what is no number stays.
+    /// The smallest coefficient; NaN is kept.
     fn least(&self) -> f64 {
         self.coefficients.iter().fold(f64::INFINITY, |least, c| if *c < least || c.is_nan() { *c } else { least })
     }
 
-    /// Vertices and middles of edges of a whole cell.
+    /// Vertices and midpoints of edges of a whole cell.
     fn samples(&self) -> Vec<[f64; 4]> {
         let middle = |a: &[f64; 4], b: &[f64; 4]| core::array::from_fn(|k| 0.5 * (a[k] + b[k]));
         match self.basis {
@@ -307,7 +306,7 @@ impl Net {
                 out
             }
             Basis::Box { axes, .. } => {
-                // Where at most one coordinate is in the middle.
+                // At most one coordinate is at a midpoint.
                 let all = (0..3_usize.pow(axes as u32)).map(|code| -> [f64; 4] {
                     core::array::from_fn(
                         |d| if d < axes { 0.5 * (code / 3_usize.pow(d as u32) % 3) as f64 } else { 0.0 },
@@ -343,7 +342,7 @@ impl Net {
         }
     }
 
-    /// The values at the vertices of a piece, which are coefficients, and where these are.
+    /// The values at the vertices of a piece, which are coefficients, and the positions of these vertices.
     fn vertices(&self) -> Vec<(f64, [f64; 4])> {
         match self.basis {
             Basis::Simplex { corners, degree } => {
@@ -381,7 +380,7 @@ impl Net {
                 let list = indices(corners, degree);
                 let order = Order::of(&list);
                 let (mut first, mut second) = (self.clone(), self.clone());
-                // Rows of coefficients along the edge, the other indices fixed.
+                // Rows of coefficients along the edge, with the other indices fixed.
                 for start in list.iter().filter(|index| index[b] == 0) {
                     let steps = start[a];
                     let at = |k: usize| {

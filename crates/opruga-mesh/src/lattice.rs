@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::mesh::{count, finite, limit_nodes, positive};
 use crate::{Cells, MAXIMUM_NODES, Mesh, MeshError, Must, Quantity};
 
-/// Names of the low and high side of each axis; `back` is the side of low z.
+/// Names of the low and high side of each axis; `back` is the side with low z.
 pub(crate) const SIDES: [[&str; 2]; 3] = [["left", "right"], ["bottom", "top"], ["back", "front"]];
 
 /// Coordinate of lattice station `index` of `cells`; the last one is exactly the far end.
@@ -13,7 +13,7 @@ pub(crate) fn station(lower: f64, size: f64, index: u32, cells: u32) -> f64 {
     if index == cells { lower + size } else { lower + size * f64::from(index) / f64::from(cells) }
 }
 
-/// Node sets of the sides of a lattice, from each node's lattice index.
+/// Node groups of the sides of a lattice, from each node's lattice index.
 pub(crate) fn side_groups<const A: usize>(
     nodes: impl Iterator<Item = [u32; A]>,
     cells: [u32; A],
@@ -31,7 +31,7 @@ pub(crate) fn side_groups<const A: usize>(
     groups
 }
 
-/// Lattice indices in node order, the first axis fastest.
+/// Lattice indices in node order; the first axis varies fastest.
 pub(crate) fn lattice<const A: usize>(cells: [u32; A]) -> impl Iterator<Item = [u32; A]> {
     let total: u64 = cells.iter().map(|&n| u64::from(n) + 1).product();
     (0..total).map(move |node| {
@@ -49,7 +49,7 @@ impl<const D: usize> Mesh<D> {
     /// A straight wire from one point to another [m], in `segments` equal edges; node i is the i-th station.
     ///
     /// # Errors
-    /// [`MeshError::Count`] for no segment or too many; [`MeshError::Size`] where a point is not finite or both coincide.
+    /// [`MeshError::Count`] for no segments or too many; [`MeshError::Size`] if a point is not finite or both coincide.
     pub fn line(from: [f64; D], to: [f64; D], segments: u32) -> Result<Mesh<D>, MeshError> {
         count(Quantity::NumberSegments, segments, 1, MAXIMUM_NODES - 1)?;
         finite(Quantity::EndLine, &from)?;
@@ -67,11 +67,11 @@ impl<const D: usize> Mesh<D> {
         Ok(Mesh { positions, wires, ..Mesh::default() })
     }
 
-    /// A wire through the given points [m], closed to a loop or not; node i is point i. A closed loop may repeat its first point at the end.
+    /// A wire through the given points [m], optionally closed to a loop; node i is point i. A closed loop may repeat its first point at the end.
     ///
     /// # Errors
-    /// [`MeshError::Count`] for too few points (2, or 3 in a loop); [`MeshError::Size`] where one is not finite; [`MeshError::RepeatedPoint`] where
-    /// two in a row coincide.
+    /// [`MeshError::Count`] for too few points (2, or 3 in a loop); [`MeshError::Size`] if one is not finite; [`MeshError::RepeatedPoint`] if two
+    /// consecutive ones coincide.
     pub fn polyline(points: &[[f64; D]], closed: bool) -> Result<Mesh<D>, MeshError> {
         let points = if closed { without_repeated_end(points) } else { points };
         check_points(points, if closed { 3 } else { 2 }, closed)?;
@@ -102,13 +102,13 @@ impl<const D: usize> Mesh<D> {
         }
         limit_nodes(nodes)?;
 
-        // Nodes, first axis fastest.
+        // Nodes; the first axis varies fastest.
         let positions = lattice(cells)
             .map(|index| std::array::from_fn(|axis| station(lower[axis], size[axis], index[axis], cells[axis])))
             .collect();
         let groups = side_groups(lattice(cells), cells);
 
-        // Cells from their lowest node: one step along x, y, z is 1, `row`, `layer` in index.
+        // Cells from their lowest node: a step along x, y, z changes the index by 1, `row`, `layer`.
         let row = cells[0] + 1;
         let layer = row * (cells[1] + 1);
         let mut filled = Cells::default();
@@ -129,13 +129,13 @@ impl<const D: usize> Mesh<D> {
 }
 
 impl Mesh<2> {
-    /// A filled quadrilateral through four corners [m], counter-clockwise, of `cells` quadrilaterals along its first and its second side.
+    /// A filled quadrilateral through four corners [m], counter-clockwise, with `cells` quadrilaterals along its first and its second side.
     ///
-    /// A grid of the unit square whose point (s, t) lies at the bilinear mean of the corners. Groups: `bottom` runs from corner 0 to 1, `right` from
-    /// 1 to 2, `top` from 3 to 2, `left` from 0 to 3.
+    /// It is a grid of the unit square whose point (s, t) is at the bilinear mean of the corners. Groups: `bottom` runs from corner 0 to 1, `right`
+    /// from 1 to 2, `top` from 3 to 2, `left` from 0 to 3.
     ///
     /// # Errors
-    /// Those of [`Mesh::grid`]; [`MeshError::Size`] with the area of a corner where the quadrilateral is not convex and counter-clockwise there.
+    /// Those of [`Mesh::grid`]; [`MeshError::Size`] with the area at a corner if the quadrilateral is not convex and counter-clockwise there.
     pub fn quadrilateral(corners: [[f64; 2]; 4], cells: [u32; 2]) -> Result<Mesh<2>, MeshError> {
         for k in 0..4 {
             finite(Quantity::CornerQuadrilateral, &corners[k])?;

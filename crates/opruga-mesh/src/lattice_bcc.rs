@@ -1,18 +1,18 @@
-//! The body-centred cubic lattice: corners and centres of cubes, and the tetrahedra between them, all alike.
+//! The body-centred cubic lattice: corners and centres of cubes, and the congruent tetrahedra between them.
 //!
-//! Its tetrahedra have two long edges of length a (between centres of neighbouring cubes, and along cubes), opposite each other, and four short ones of
-//! √3/2·a between centres and corners.
+//! Its tetrahedra have two long edges of length a (between centres of neighbouring cubes, and along cubes), opposite each other, and four short edges
+//! of √3/2·a between centres and corners.
 
 use crate::geometry::tetrahedron_volume;
 use crate::{MAXIMUM_NODES, Mesh, MeshError, Quantity};
 
-/// Lattice points by twice their coordinates: corners of cubes are even in all of them, centres of cubes odd.
+/// Lattice points, given by twice their coordinates: all are even for corners of cubes, all are odd for centres.
 pub(crate) type Key = [i32; 3];
 
-/// The most cubes in the box of a surface: each is looked at.
+/// The maximum number of cubes in the box of a surface, each of which is examined.
 const MOST_CUBES: f64 = 8_388_608.0;
 
-/// Cubes around the box of a surface, at least one beyond it on every side, centred.
+/// Cubes around the box of a surface, centred, with at least one cube beyond it on every side.
 pub(crate) struct Lattice {
     /// Cubes along each axis.
     pub(crate) counts: [i32; 3],
@@ -44,12 +44,12 @@ impl Lattice {
         Ok(Lattice { counts, origin, spacing })
     }
 
-    /// Where a lattice point lies [m].
+    /// The position of a lattice point [m].
     pub(crate) fn at(&self, key: Key) -> [f64; 3] {
         core::array::from_fn(|d| self.origin[d] + 0.5 * self.spacing * f64::from(key[d]))
     }
 
-    /// Centres of all cubes, x fastest.
+    /// Centres of all cubes; x varies fastest.
     pub(crate) fn centers(&self) -> impl Iterator<Item = Key> {
         let [x, y, z] = self.counts;
         let rows = (0..z).flat_map(move |k| (0..y).map(move |j| (j, k)));

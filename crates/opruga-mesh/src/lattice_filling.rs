@@ -7,7 +7,7 @@ use crate::{Mesh, MeshError};
 use std::collections::BTreeMap;
 
 impl Mesh<3> {
-    /// About how many nodes [`Mesh::lattice_filling`] or [`Mesh::tetrahedra_filling`] makes of this surface.
+    /// The approximate number of nodes of [`Mesh::lattice_filling`] or [`Mesh::tetrahedra_filling`] for this surface.
     pub fn lattice_estimate(&self, spacing: f64) -> f64 {
         let mut area = 0.0;
         for facet in &self.facets {
@@ -21,13 +21,14 @@ impl Mesh<3> {
 
     /// The inside of this closed surface as a body of equal tetrahedra, which carries the surface as its [`Skin`].
     ///
-    /// The nodes are the body-centred cubic lattice of cubes of side `spacing` [m]: corners and centres. Its tetrahedra, all alike, have two edges of
-    /// length a (between centres, and along cubes) and four of √3/2·a. Those are kept whose middle is inside the surface or that hold a node
-    /// of it, and those around edges where they would else touch, so the body reaches a little beyond the surface; the skin shows the surface itself.
+    /// The nodes are the body-centred cubic lattice of cubes of side `spacing` [m]: corners and centres. Its tetrahedra are congruent; they have two
+    /// edges of length a (between centres, and along cubes) and four of √3/2·a. A tetrahedron is kept if its centre is inside the surface or if it
+    /// contains a node of the surface. Tetrahedra around edges at which the body would otherwise only touch itself are kept too. The body therefore
+    /// extends slightly beyond the surface; the skin shows the surface itself.
     ///
     /// # Errors
-    /// Those of [`Mesh::components`]; [`MeshError::Size`] for a spacing that is not positive; [`MeshError::TooManyNodes`], also for a surface whose box is
-    /// too large for the spacing.
+    /// Those of [`Mesh::components`]; [`MeshError::Size`] for a spacing that is not positive; [`MeshError::TooManyNodes`], also for a surface whose
+    /// box is too large for the spacing.
     ///
     /// # Source
     /// F. Labelle, J. R. Shewchuk, "Isosurface stuffing", ACM Trans. Graphics 26 (2007), section 3.
@@ -35,7 +36,7 @@ impl Mesh<3> {
         let lattice = Lattice::around(self, spacing)?;
         let inside = Inside::of(self)?;
 
-        // Tetrahedra that hold a point of the skin.
+        // Tetrahedra that contain a point of the skin.
         let mut kept: BTreeMap<[Key; 4], ()> = BTreeMap::new();
         let mut holders: Vec<[Key; 4]> = Vec::with_capacity(self.nodes());
         for position in &self.positions {
@@ -43,7 +44,7 @@ impl Mesh<3> {
             kept.insert(holder, ());
             holders.push(holder);
         }
-        // Tetrahedra whose middle is inside.
+        // Tetrahedra whose centre is inside.
         for center in lattice.centers() {
             for axis in 0..3 {
                 for tetrahedron in lattice.beyond(center, axis) {
@@ -57,7 +58,7 @@ impl Mesh<3> {
         }
         let (keys, mut mesh) = loop {
             let (keys, mesh) = body(&kept, &lattice)?;
-            // Where the steps of the lattice touch along an edge, the tetrahedra around it close the gap.
+            // If steps of the lattice touch along an edge, the tetrahedra around it close the gap.
             let crowded = crowded_edges(&mesh.facets);
             if crowded.is_empty() {
                 break (keys, mesh);
@@ -68,7 +69,7 @@ impl Mesh<3> {
             }
         };
         let number = |key: &Key| number(&keys, key);
-        // A surface that is coarser than the lattice could not follow it: points are added to it that only pictures show.
+        // A surface coarser than the lattice could not follow its deformation, so points are added that only pictures show.
         let (points, triangles) = refined(&self.positions, &self.facets, spacing);
         holders.extend(points.iter().skip(holders.len()).map(|point| kept_holder(*point, &kept, &lattice)));
         let mut skin = Skin { triangles, ..Skin::default() };
@@ -98,7 +99,7 @@ impl Mesh<3> {
     }
 }
 
-/// The nodes of tetrahedra in the order of the lattice, z slowest, and the mesh of them.
+/// The nodes of tetrahedra in the order of the lattice, with z varying slowest, and their mesh.
 fn body(kept: &BTreeMap<[Key; 4], ()>, lattice: &Lattice) -> Result<(Vec<Key>, Mesh<3>), MeshError> {
     let mut keys: Vec<Key> = kept.keys().flatten().copied().collect();
     keys.sort_unstable_by_key(|[x, y, z]| (*z, *y, *x));
@@ -109,7 +110,7 @@ fn body(kept: &BTreeMap<[Key; 4], ()>, lattice: &Lattice) -> Result<(Vec<Key>, M
     Ok((keys, mesh))
 }
 
-/// The node of a lattice point.
+/// The node number of a lattice point.
 fn number(keys: &[Key], key: &Key) -> u32 {
     keys.binary_search_by_key(&(key[2], key[1], key[0]), |[x, y, z]| (*z, *y, *x)).unwrap_or(0) as u32
 }
@@ -122,10 +123,10 @@ fn crowded_edges(facets: &[[u32; 3]]) -> Vec<[u32; 2]> {
     edges.chunk_by(|p, q| p == q).filter(|group| group.len() > 2).map(|group| group[0]).collect()
 }
 
-/// All tetrahedra of the lattice that have both ends of an edge.
+/// All tetrahedra of the lattice that contain both ends of an edge.
 fn around_edge(edge: [Key; 2], lattice: &Lattice) -> Vec<[Key; 4]> {
     let mut found = Vec::new();
-    // Centres of cubes are odd; those that matter are at most two steps away.
+    // Centres of cubes are odd; the relevant ones are at most two steps away.
     let centers_around = |x: i32| (x - 3..=x + 3).filter(|c| c.rem_euclid(2) == 1);
     for z in centers_around(edge[0][2]) {
         for y in centers_around(edge[0][1]) {
@@ -142,7 +143,7 @@ fn around_edge(edge: [Key; 2], lattice: &Lattice) -> Vec<[Key; 4]> {
     found
 }
 
-/// The tetrahedron of the body that holds a point, or of those around it the one that it is least outside of.
+/// The tetrahedron of the body that contains a point; if there is none, the one around it that the point is least outside of.
 fn kept_holder(point: [f64; 3], kept: &BTreeMap<[Key; 4], ()>, lattice: &Lattice) -> [Key; 4] {
     let ideal = holder(point, lattice);
     if kept.contains_key(&ideal) {
@@ -165,18 +166,18 @@ fn kept_holder(point: [f64; 3], kept: &BTreeMap<[Key; 4], ()>, lattice: &Lattice
     best.0
 }
 
-/// The cube of the lattice that a point lies in.
+/// The cube of the lattice that contains a point.
 fn cube_of(point: [f64; 3], lattice: &Lattice) -> [i32; 3] {
     core::array::from_fn(|d| ((point[d] - lattice.origin[d]) / lattice.spacing).floor() as i32)
 }
 
-/// The least weight of a point in a tetrahedron; negative outside.
+/// The smallest weight of a point in a tetrahedron; negative outside.
 fn least_weight(tetrahedron: &[Key; 4], point: [f64; 3], lattice: &Lattice) -> f64 {
     let weights = weights(tetrahedron.map(|key| lattice.at(key)), point);
     weights.into_iter().fold(f64::INFINITY, |m, w| if w < m { w } else { m })
 }
 
-/// The tetrahedron of the lattice that holds a point: of those around the point's cube the one in which its least weight is largest.
+/// The tetrahedron of the lattice that contains a point: the one around the point's cube in which its smallest weight is largest.
 fn holder(point: [f64; 3], lattice: &Lattice) -> [Key; 4] {
     let center = cube_of(point, lattice).map(|c| 2 * c + 1);
     let mut best = ([center; 4], f64::NEG_INFINITY);

@@ -1,26 +1,27 @@
-//! Bodies at rest: positions and topology, one source for the plane and for space.
+//! Bodies at rest: positions and topology, with common code for the plane and for space.
 //!
-//! A [`Mesh`] holds rest positions and what spans them: boundary facets, wires, sheets, filled cells, named node groups. It comes from a generator
-//! ([`Mesh::ring`], [`Mesh::polygon`], [`Mesh::grid`], [`Mesh::icosphere`], …) or is filled by hand or by an importer. Everything else here reads it:
+//! A [`Mesh`] contains rest positions and the elements between them: boundary facets, wires, sheets, filled cells, named node groups. It is created
+//! by a generator ([`Mesh::ring`], [`Mesh::polygon`], [`Mesh::grid`], [`Mesh::icosphere`], …), by hand or by an importer. Everything else in this
+//! crate reads it:
 //!
 //! | question | answer |
 //! |---|---|
-//! | which edges carry springs, in an order that runs through memory | [`Mesh::edges`], [`edge_runs`], [`Mesh::edge_areas`] |
-//! | who are a node's neighbours | [`node_neighbours`], [`Mesh::node_rings`] |
+//! | which edges have springs, in the order of memory access | [`Mesh::edges`], [`edge_runs`], [`Mesh::edge_areas`] |
+//! | which nodes are neighbours of a node | [`node_neighbours`], [`Mesh::node_rings`] |
 //! | which closed chambers hold gas | [`Mesh::chambers`], [`Mesh::components`], [`signed_volume`], [`Mesh::orient_outward`] |
-//! | where does it bend | [`Mesh::hinges`], [`Mesh::bends`] |
-//! | how much length, area or volume belongs to each node | [`Mesh::lumped_measures`], [`Mesh::measure`] |
-//! | is it sound | [`Mesh::check`], [`Mesh::validate`], [`Mesh::cell_quality`], [`Mesh::cell_measures`] |
+//! | where it bends | [`Mesh::hinges`], [`Mesh::bends`] |
+//! | which length, area or volume belongs to each node | [`Mesh::lumped_measures`], [`Mesh::measure`] |
+//! | whether it is sound | [`Mesh::check`], [`Mesh::validate`], [`Mesh::cell_quality`], [`Mesh::cell_measures`] |
 //! | what bounds the cells | [`Mesh::facets_from_cells`], [`Mesh::into_simplices`] |
 //! | what fills a closed surface | [`Mesh::tetrahedra_filling`], [`Mesh::lattice_filling`] |
 //! | cells of second order | [`Mesh::into_quadratic`] |
 //!
-//! Orientation. A plane outline runs counter-clockwise (interior to its left); the facets of a closed surface are counter-clockwise seen from outside.
-//! Both make [`signed_volume`] positive. Holes run the other way.
+//! Orientation: a plane outline runs counter-clockwise (interior to its left); the facets of a closed surface are counter-clockwise as seen from
+//! outside. Both make [`signed_volume`] positive. Holes have the opposite orientation.
 //!
-//! Results are the same bits on every platform: sines come from `libm`, and every order is a sorted one.
+//! Results have the same bits on every platform: sines come from `libm`, and every order is sorted.
 
-// Units stand in brackets, [m], which rustdoc takes for links.
+// Units are in brackets, [m], which rustdoc interprets as links.
 #![allow(rustdoc::broken_intra_doc_links)]
 
 mod adjacency;

@@ -1,4 +1,4 @@
-//! Length, area or volume of a body, as a whole and per node.
+//! Length, area or volume of a body, in total and per node.
 
 use crate::geometry::{
     Point, hexahedron_volume, lift, norm, quadrilateral_area, subtract, tetrahedron_volume, triangle_area,
@@ -6,7 +6,7 @@ use crate::geometry::{
 use crate::quadratic::{self, TETRAHEDRON_SHARES, TRIANGLE_SHARES};
 use crate::{Element, Mesh, MeshError};
 
-/// How much there is of a body, in the dimension of its own matter.
+/// The size of a body, in its own dimension.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Measure {
     /// Length of outlines in the plane and of wires [m].
@@ -26,23 +26,23 @@ impl Measure {
     }
 }
 
-/// How a body's measure is shared among its nodes.
+/// The distribution of a body's measure over its nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Share {
     /// Every node has the same share.
     Equal,
-    /// Each element gives equal parts of its own measure to its nodes: half an edge, a third of a triangle, an eighth of a hexahedron.
-    /// Quadratic cells give to corners and mid-edge nodes what [`TRIANGLE_SHARES`] and [`TETRAHEDRON_SHARES`] say.
+    /// Each element gives equal parts of its own measure to its nodes: half of an edge, a third of a triangle, an eighth of a hexahedron. The shares
+    /// of corners and mid-edge nodes of quadratic cells are [`TRIANGLE_SHARES`] and [`TETRAHEDRON_SHARES`].
     Proportional,
 }
 
 impl<const D: usize> Mesh<D> {
-    /// Length, area or volume of the body: of its cells where it is filled, else of its facets and sheets, else of its wires.
+    /// Length, area or volume of the body: that of its cells if it is filled, otherwise that of its facets and sheets, otherwise that of its wires.
     ///
-    /// In the plane facets and wires are lengths and add up. Facets that bound cells count nothing of their own. An empty mesh has length 0.
+    /// In the plane facets and wires have lengths, which add up. Facets that bound cells do not count. An empty mesh has length 0.
     ///
     /// # Errors
-    /// What [`Mesh::validate`] finds; [`MeshError::MixedMeasures`] where elements of different dimension share the mesh.
+    /// Those of [`Mesh::validate`]; [`MeshError::MixedMeasures`] if elements of different dimensions share the mesh.
     pub fn measure(&self) -> Result<Measure, MeshError> {
         let mut total = 0.0;
         let kind = self.visit_measures(|_, _, measure| total += measure)?;
@@ -68,7 +68,7 @@ impl<const D: usize> Mesh<D> {
     /// The lumped mass of each node [kg], from the density of every cell [kg/m³, in the plane per area].
     ///
     /// # Errors
-    /// Those of [`Mesh::measure`]; [`MeshError::CellValues`] where there are not as many densities as cells.
+    /// Those of [`Mesh::measure`]; [`MeshError::CellValues`] if the number of densities differs from the number of cells.
     pub fn lumped_masses(&self, densities: &[f64]) -> Result<Vec<f64>, MeshError> {
         let cells = self.cells.len();
         if densities.len() != cells {
@@ -79,7 +79,7 @@ impl<const D: usize> Mesh<D> {
         Ok(masses)
     }
 
-    /// Adds to every node its share of the measure of the elements that carry matter, each times a weight by its number.
+    /// Adds to every node its share of the measure of the elements that have mass, each multiplied by a weight that depends on its number.
     fn share_out(&self, shares: &mut [f64], weight: impl Fn(usize) -> f64) -> Result<(), MeshError> {
         let mut number = 0;
         self.visit_measures(|element, nodes, measure| {
@@ -100,11 +100,11 @@ impl<const D: usize> Mesh<D> {
         Ok(())
     }
 
-    /// Calls `visit(kind, nodes, measure)` for each element that carries matter; returns which measure it is.
+    /// Calls `visit(kind, nodes, measure)` for each element that has mass; returns the kind of measure.
     fn visit_measures(&self, mut visit: impl FnMut(Element, &[u32], f64)) -> Result<fn(f64) -> Measure, MeshError> {
         self.validate()?;
 
-        // Matter is in the elements of highest dimension; those of lower dimension are a boundary, or do not belong.
+        // The elements of highest dimension have the mass; those of lower dimension are a boundary, or are not allowed.
         let rank = |element: Element| match element {
             Element::Facet if self.cells.is_empty() => Some(D - 1),
             Element::Facet | Element::SheetQuadrilateral | Element::Edge | Element::Group => None,
@@ -131,7 +131,7 @@ impl<const D: usize> Mesh<D> {
         })
     }
 
-    /// Length, area or volume of one element; signed for filled cells, negative where they are inverted.
+    /// Length, area or volume of one element; signed for filled cells, and negative if they are inverted.
     pub(crate) fn size_of(&self, nodes: &[u32], element: Element) -> f64 {
         let mut corners: [Point; 10] = [[0.0; 3]; 10];
         for (corner, &node) in corners.iter_mut().zip(nodes) {

@@ -1,10 +1,11 @@
-//! The mesh itself, and the checks that every reader of it relies on.
+//! The mesh, and the checks on which all code that reads it relies.
 
 use std::collections::BTreeMap;
 
 use crate::{Element, MeshError, Must, Quantity, Skin};
 
-/// Most nodes that a mesh may have: 2²⁵, so that every index and every doubled index fits `u32` and a mistyped count cannot exhaust the memory.
+/// The maximum number of nodes of a mesh: 2²⁵, so that every index and every doubled index fits `u32`, and a mistyped count cannot exhaust the
+/// memory.
 pub const MAXIMUM_NODES: u64 = 1 << 25;
 
 /// The filled interior of a body.
@@ -31,18 +32,19 @@ pub const MAXIMUM_NODES: u64 = 1 << 25;
 ///                                  1
 /// ```
 /// Triangles and quadrilaterals are counter-clockwise; a tetrahedron has (X₁−X₀)·((X₂−X₀)×(X₃−X₀)) > 0; a hexahedron has its nodes 0 1 2 3
-/// counter-clockwise seen from 4 5 6 7, which lie above them. The corners of quadratic cells run as those of linear ones; their sides may be curved.
+/// counter-clockwise as seen from 4 5 6 7, which are above them. The corners of quadratic cells have the order of linear ones; their sides may be
+/// curved.
 ///
-/// Cells are counted kind by kind, in the order of the fields below.
+/// Cells are numbered kind by kind, in the order of the fields below.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub struct Cells {
-    /// Triangles of the plane, 3 nodes each.
+    /// Triangles in the plane, 3 nodes each.
     pub triangles: Vec<[u32; 3]>,
-    /// Quadrilaterals of the plane, 4 nodes each.
+    /// Quadrilaterals in the plane, 4 nodes each.
     pub quadrilaterals: Vec<[u32; 4]>,
-    /// Tetrahedra of space, 4 nodes each.
+    /// Tetrahedra in space, 4 nodes each.
     pub tetrahedra: Vec<[u32; 4]>,
-    /// Hexahedra of space, 8 nodes each.
+    /// Hexahedra in space, 8 nodes each.
     pub hexahedra: Vec<[u32; 8]>,
     /// Triangles of second order in the plane: 3 corners, then the nodes between corners 0–1, 1–2, 2–0.
     pub quadratic_triangles: Vec<[u32; 6]>,
@@ -51,7 +53,7 @@ pub struct Cells {
 }
 
 impl Cells {
-    /// True where the body has no filled interior.
+    /// Whether the body has no filled interior.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -66,7 +68,7 @@ impl Cells {
             + self.quadratic_tetrahedra.len()
     }
 
-    /// All cells in the order in which they are counted, as (kind, index among its kind, nodes).
+    /// All cells in the order of their numbers, as (kind, index among its kind, nodes).
     pub fn iter(&self) -> impl Iterator<Item = (Element, u32, &[u32])> {
         rows(Element::Triangle, &self.triangles)
             .chain(rows(Element::Quadrilateral, &self.quadrilaterals))
@@ -76,7 +78,7 @@ impl Cells {
             .chain(rows(Element::QuadraticTetrahedron, &self.quadratic_tetrahedra))
     }
 
-    /// The nodes of all cells, to be numbered anew.
+    /// The nodes of all cells, for renumbering.
     pub(crate) fn nodes_mut(&mut self) -> impl Iterator<Item = &mut u32> {
         let straight = self.triangles.iter_mut().flatten().chain(self.quadrilaterals.iter_mut().flatten());
         let solid = self.tetrahedra.iter_mut().flatten().chain(self.hexahedra.iter_mut().flatten());
@@ -85,39 +87,39 @@ impl Cells {
     }
 }
 
-/// A body at rest: where its nodes are and what spans them, in the plane (`D = 2`) or in space (`D = 3`).
+/// A body at rest: the positions of its nodes and the elements between them, in the plane (`D = 2`) or in space (`D = 3`).
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Mesh<const D: usize> {
     /// Rest positions X [m], one row per node.
     pub positions: Vec<[f64; D]>,
-    /// The boundary: edges with the interior to their left in the plane, triangles counter-clockwise seen from outside in space.
+    /// The boundary: edges with the interior to their left in the plane, triangles counter-clockwise as seen from outside in space.
     pub facets: Vec<[u32; D]>,
     /// One-dimensional cells: edges of open or closed chains that bound nothing.
     pub wires: Vec<[u32; 2]>,
     /// Triangles of an open surface (cloth), in space only.
     pub sheets: Vec<[u32; 3]>,
-    /// Quadrilaterals of an open surface, where it is a grid: number k is the union of triangles 2k and 2k + 1 of `sheets`.
+    /// Quadrilaterals of an open surface that is a grid: number k is the union of triangles 2k and 2k + 1 of `sheets`.
     pub sheet_quadrilaterals: Vec<[u32; 4]>,
     /// The filled interior.
     pub cells: Cells,
     /// Named node sets, ascending (`left`, `right`, `bottom`, `top`, `back`, `front` for grids).
     pub groups: BTreeMap<String, Vec<u32>>,
-    /// Named sets of cells, ascending; cells are counted in the order of [`Cells::iter`].
+    /// Named sets of cells, ascending; cells are numbered as in [`Cells::iter`].
     pub cell_groups: BTreeMap<String, Vec<u32>>,
-    /// Named numbers, one per cell in the order of [`Cells::iter`], such as the parameters of a material; NaN for a cell that has none.
+    /// Named numbers, one per cell in the order of [`Cells::iter`], such as material parameters; NaN for a cell without a value.
     pub cell_values: BTreeMap<String, Vec<f64>>,
     /// Named numbers or vectors of nodes, such as a velocity that another program has computed.
     pub node_values: BTreeMap<String, NodeValues>,
-    /// What is drawn instead of the boundary, in space only.
+    /// The surface that is drawn instead of the boundary, in space only.
     pub skin: Option<Skin>,
 }
 
 /// Numbers or vectors, one per node.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NodeValues {
-    /// How many numbers a node has.
+    /// The number of values per node.
     pub components: usize,
-    /// The numbers, node by node; NaN for a node that has none.
+    /// The numbers, node by node; NaN for a node without a value.
     pub values: Vec<f64>,
 }
 
@@ -132,7 +134,7 @@ impl<const D: usize> Mesh<D> {
         self.positions.len()
     }
 
-    /// All elements, kind by kind, as (kind, index, nodes); groups are no elements.
+    /// All elements, kind by kind, as (kind, index, nodes); groups are not elements.
     pub(crate) fn elements(&self) -> impl Iterator<Item = (Element, u32, &[u32])> {
         rows(Element::Facet, &self.facets)
             .chain(rows(Element::Wire, &self.wires))
@@ -149,18 +151,18 @@ impl<const D: usize> Mesh<D> {
         self.facets.iter().map(|facet| [facet[0], facet[1], facet[D - 1]]).collect()
     }
 
-    /// Checks that every index names a node and no element names a node twice, so that no reader of the mesh can go astray.
+    /// Checks that every index names a node and that no element names a node twice, so that all code can rely on the mesh.
     ///
     /// # Errors
     /// [`MeshError::TooManyNodes`], [`MeshError::IndexOutOfRange`], [`MeshError::RepeatedNode`], [`MeshError::WrongDimension`],
-    /// [`MeshError::SheetPairing`], [`MeshError::CellOutOfRange`], [`MeshError::CellValues`] or [`MeshError::NodeValues`], whichever is met first.
+    /// [`MeshError::SheetPairing`], [`MeshError::CellOutOfRange`], [`MeshError::CellValues`] or [`MeshError::NodeValues`], whichever is found first.
     /// [`Mesh::check`] lists every problem instead.
     pub fn validate(&self) -> Result<(), MeshError> {
         const { assert!(D == 2 || D == 3, "bodies live in the plane or in space") }
         limit_nodes(self.positions.len() as u64)?;
         let nodes = self.positions.len() as u32;
 
-        // Every element: in its dimension, indices in range and distinct.
+        // Every element: the dimension matches, indices are in range and distinct.
         for (element, index, list) in self.elements() {
             if !belongs(element, D) {
                 return Err(MeshError::WrongDimension { element, dimension: D });
@@ -217,7 +219,7 @@ impl<const D: usize> Mesh<D> {
 
     /// Vertices − edges + facets of the boundary: 2 for each sphere, 0 for each torus; for outlines vertices − edges, 0 for each closed loop.
     ///
-    /// Only nodes that a facet names are counted.
+    /// Only nodes of facets are counted.
     pub fn euler_characteristic(&self) -> i64 {
         let mut vertices: Vec<u32> = self.facets.iter().flatten().copied().collect();
         vertices.sort_unstable();
@@ -238,7 +240,7 @@ fn belongs(element: Element, dimension: usize) -> bool {
     }
 }
 
-/// An estimate of a number of nodes as a whole number; infinite where it is no number.
+/// Rounds an estimate of a number of nodes down to a whole number; infinity for NaN.
 pub(crate) fn estimated(nodes: f64) -> f64 {
     if nodes.is_nan() { f64::INFINITY } else { nodes.floor() }
 }

@@ -1,10 +1,10 @@
-//! The point of a surface that is nearest to another point.
+//! The point of a surface nearest to another point.
 
 use crate::Mesh;
 use crate::boxes::{Tree, distance_to};
 use crate::geometry::{dot, subtract};
 
-/// A surface that is asked for its nearest points.
+/// A surface prepared for queries of its nearest points.
 pub(crate) struct Nearest {
     tree: Tree,
     corners: Vec<[[f64; 3]; 3]>,
@@ -17,7 +17,7 @@ impl Nearest {
         Nearest { tree: Tree::of(corners.iter().copied()), corners }
     }
 
-    /// The point of the surface nearest to a point; of several the one on the facet of lowest number.
+    /// The point of the surface nearest to a point; if there are several, the one on the facet with the lowest number.
     pub(crate) fn point(&self, from: [f64; 3]) -> [f64; 3] {
         let mut best = (f64::INFINITY, u32::MAX, from);
         let mut waiting = vec![1usize];
@@ -26,7 +26,7 @@ impl Nearest {
                 continue;
             }
             if node < self.tree.leaves {
-                // The nearer one is looked at first.
+                // The nearer one is examined first.
                 let far = |node: usize| distance_to(&self.tree.boxes[node], &from);
                 let (p, q) = (2 * node, 2 * node + 1);
                 waiting.extend(if far(p) < far(q) { [q, p] } else { [p, q] });
@@ -45,7 +45,7 @@ impl Nearest {
     }
 }
 
-/// The point of a triangle nearest to a point: by the regions of its plane, corners and sides first.
+/// The point of a triangle nearest to a point, found by the regions of its plane, corners and sides first.
 ///
 /// Source: C. Ericson, Real-Time Collision Detection (2005), section 5.1.5.
 fn nearest_on(&[a, b, c]: &[[f64; 3]; 3], p: [f64; 3]) -> [f64; 3] {

@@ -1,4 +1,4 @@
-//! Round and regular outlines of the plane.
+//! Round and regular outlines in the plane.
 
 use std::f64::consts::PI;
 
@@ -12,10 +12,10 @@ pub(crate) fn outline(positions: Vec<[f64; 2]>) -> Mesh<2> {
     Mesh { positions, facets, ..Mesh::default() }
 }
 
-/// The largest start angle [rad]: farther round, the angles of neighbouring vertices differ by rounding, and from 1e17 on not at all.
+/// The largest start angle [rad]: beyond it, rounding changes the angles between neighbouring vertices, and from 1e17 on they are zero.
 pub const LARGEST_ANGLE: f64 = 1e6;
 
-/// Refuses an angle so far round that rounding would move nodes [rad].
+/// Refuses an angle so large that rounding would move nodes [rad].
 fn angle(what: Quantity, value: f64) -> Result<(), MeshError> {
     if (-LARGEST_ANGLE..=LARGEST_ANGLE).contains(&value) {
         Ok(())
@@ -50,8 +50,8 @@ impl Mesh<2> {
         Ok(outline(circle(radius, vertices, center, start_angle)))
     }
 
-    /// A regular polygon with corners at `radius` [m] from `center` [m], each side in `vertices_per_side` equal edges; the first corner, node 0, lies at
-    /// `start_angle` [rad], the others follow counter-clockwise.
+    /// A regular polygon with corners at `radius` [m] from `center` [m] and `vertices_per_side` equal edges per side. The first corner, node 0, is at
+    /// `start_angle` [rad]; the others follow counter-clockwise.
     ///
     /// # Errors
     /// As [`Mesh::ring`], for `sides` ≥ 3 and `vertices_per_side` ≥ 1; [`MeshError::TooManyNodes`].

@@ -5,23 +5,24 @@ use crate::outline::first_meeting;
 use crate::plane::outline;
 use crate::{Mesh, MeshError, Must, Quantity, signed_volume};
 
-/// An outline through given points, and whether it had to be turned.
+/// An outline through given points, and whether it had to be reversed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polygon {
     /// The outline; node i is point i.
     pub mesh: Mesh<2>,
-    /// True where the points ran clockwise, so that the facets run against them.
+    /// Whether the points ran clockwise, so that the facets run in the opposite direction.
     pub flipped: bool,
 }
 
 impl Mesh<2> {
     /// An outline through the given points [m], in either direction; the first point may be repeated at the end.
     ///
-    /// Node i is point i. Facets run counter-clockwise: with the points, or against them where these run clockwise, which `flipped` tells.
+    /// Node i is point i. Facets run counter-clockwise: in the direction of the points, or against it if the points run clockwise, which `flipped`
+    /// shows.
     ///
     /// # Errors
-    /// [`MeshError::Count`] for fewer than 3 points; [`MeshError::Size`] where one is not finite or they enclose no area;
-    /// [`MeshError::RepeatedPoint`] where two in a row coincide; [`MeshError::SelfIntersection`] with the first two edges that cross, touch or overlap.
+    /// [`MeshError::Count`] for fewer than 3 points; [`MeshError::Size`] if one is not finite or they enclose no area; [`MeshError::RepeatedPoint`]
+    /// if two consecutive ones coincide; [`MeshError::SelfIntersection`] with the first two edges that cross, touch or overlap.
     pub fn polygon(points: &[[f64; 2]]) -> Result<Polygon, MeshError> {
         let points = without_repeated_end(points);
         check_points(points, 3, true)?;

@@ -1,33 +1,33 @@
-//! Cells of second order: numbering, areas and volumes of curved cells, and how linear cells become quadratic.
+//! Cells of second order: numbering, areas and volumes of curved cells, and conversion of linear cells to quadratic ones.
 //!
-//! A point of a quadratic cell is x(λ) = Σ Nₐ(λ) xₐ with barycentric coordinates λ: Nᵢ = λᵢ (2 λᵢ − 1) for corner i, Nᵢⱼ = 4 λᵢ λⱼ for the node in the
-//! middle of edge ij. Sides may be curved, as parabolas.
+//! A point of a quadratic cell is x(λ) = Σ Nₐ(λ) xₐ with barycentric coordinates λ: Nᵢ = λᵢ (2 λᵢ − 1) for corner i, Nᵢⱼ = 4 λᵢ λⱼ for the node at
+//! the midpoint of edge ij. Sides may be curved, as parabolas.
 
 use crate::geometry::{Point, ascending, cross, tetrahedron_volume};
 use crate::{Element, Mesh, MeshError};
 use std::collections::BTreeMap;
 
-/// The corners that each mid-edge node of a quadratic triangle lies between, for nodes 3 to 5.
+/// The two corners beside each mid-edge node of a quadratic triangle, for nodes 3 to 5.
 pub const TRIANGLE_SIDES: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
 
-/// The corners that each mid-edge node of a quadratic tetrahedron lies between, for nodes 4 to 9.
+/// The two corners beside each mid-edge node of a quadratic tetrahedron, for nodes 4 to 9.
 pub const TETRAHEDRON_EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]];
 
-/// The four triangles through the nodes of a quadratic triangle, oriented as it is.
+/// The four triangles through the nodes of a quadratic triangle, with its orientation.
 pub(crate) const TRIANGLE_PARTS: [[usize; 3]; 4] = [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]];
 
 /// The outward faces of a quadratic tetrahedron as quadratic triangles.
 pub(crate) const TETRAHEDRON_FACES: [[usize; 6]; 4] =
     [[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [0, 3, 2, 7, 9, 6]];
 
-/// Shares of the nodes in the mass of a quadratic triangle: the diagonal of its consistent mass matrix, scaled to the whole.
+/// The nodes' shares in the mass of a quadratic triangle: the diagonal of its consistent mass matrix, scaled to the total.
 ///
 /// # Source
 /// E. Hinton, T. Rock, O. C. Zienkiewicz, "A note on mass lumping and related processes in the finite element method", Earthquake Engineering and
-/// Structural Dynamics 4 (1976): 1/19 and 16/57 with straight sides. All are positive, where plain row sums leave nothing to the corners.
+/// Structural Dynamics 4 (1976): 1/19 and 16/57 with straight sides. All are positive, whereas plain row sums give nothing to the corners.
 pub const TRIANGLE_SHARES: [f64; 6] = [1.0 / 19.0, 1.0 / 19.0, 1.0 / 19.0, 16.0 / 57.0, 16.0 / 57.0, 16.0 / 57.0];
 
-/// Shares of the nodes in the mass of a quadratic tetrahedron, as [`TRIANGLE_SHARES`]: 1/36 and 4/27 (row sums would be −1/20 and 1/5).
+/// The nodes' shares in the mass of a quadratic tetrahedron, as [`TRIANGLE_SHARES`]: 1/36 and 4/27 (row sums would be −1/20 and 1/5).
 pub const TETRAHEDRON_SHARES: [f64; 10] = [
     1.0 / 36.0,
     1.0 / 36.0,
@@ -46,19 +46,19 @@ pub fn triangle_parts(nodes: &[u32; 6]) -> [[u32; 3]; 4] {
     TRIANGLE_PARTS.map(|part| part.map(|corner| nodes[corner]))
 }
 
-/// The sixteen boundary triangles of a quadratic tetrahedron, four to a face, outward.
+/// The sixteen boundary triangles of a quadratic tetrahedron, four per face, oriented outward.
 pub(crate) fn tetrahedron_parts(nodes: &[u32; 10]) -> impl Iterator<Item = [u32; 3]> {
     TETRAHEDRON_FACES.into_iter().flat_map(move |face| triangle_parts(&face.map(|corner| nodes[corner])))
 }
 
-/// Signed area of a quadratic triangle with curved sides [m²]: each parabola adds 4/3 of the triangle a, middle, b to that of the corners.
+/// Signed area of a quadratic triangle with curved sides [m²]: each parabola adds 4/3 of the triangle a, midpoint, b to the triangle of the corners.
 pub(crate) fn triangle_area(nodes: &[Point; 6]) -> f64 {
     let part = |a: usize, b: usize, c: usize| crate::geometry::area_vector(nodes[a], nodes[b], nodes[c])[2];
     part(0, 1, 2) + 4.0 / 3.0 * (part(0, 3, 1) + part(1, 4, 2) + part(2, 5, 0))
 }
 
-/// Signed volume of a quadratic tetrahedron with curved sides [m³]: ∫ det ∂x/∂λ, a polynomial of degree 3, by a rule of five points that is exact
-/// for these.
+/// Signed volume of a quadratic tetrahedron with curved sides [m³]: ∫ det ∂x/∂λ, a polynomial of degree 3, by a five-point rule that is exact for
+/// this degree.
 pub(crate) fn tetrahedron_volume_of(nodes: &[Point; 10]) -> f64 {
     let mut sum = -0.8 * tetrahedron_jacobian(nodes, [0.25; 4]);
     for corner in 0..4 {
@@ -69,14 +69,14 @@ pub(crate) fn tetrahedron_volume_of(nodes: &[Point; 10]) -> f64 {
     sum / 6.0
 }
 
-/// The determinant det ∂x/∂λ of a quadratic triangle at barycentric coordinates λ [m²]: twice the area where the triangle is straight.
+/// The determinant det ∂x/∂λ of a quadratic triangle at barycentric coordinates λ [m²]: twice the area if the triangle is straight.
 fn triangle_jacobian(nodes: &[Point; 6], at: [f64; 3]) -> f64 {
     let by = derivatives(nodes, &TRIANGLE_SIDES, at);
     let side = |k: usize| [by[k][0] - by[0][0], by[k][1] - by[0][1], 0.0];
     cross(side(1), side(2))[2]
 }
 
-/// The determinant det ∂x/∂λ of a quadratic tetrahedron at barycentric coordinates λ [m³]: six times the volume where it is straight.
+/// The determinant det ∂x/∂λ of a quadratic tetrahedron at barycentric coordinates λ [m³]: six times the volume if it is straight.
 pub(crate) fn tetrahedron_jacobian(nodes: &[Point; 10], at: [f64; 4]) -> f64 {
     let by = derivatives(nodes, &TETRAHEDRON_EDGES, at);
     6.0 * tetrahedron_volume(by[0], by[1], by[2], by[3])
@@ -103,12 +103,12 @@ fn derivatives<const N: usize, const C: usize, const E: usize>(
     out
 }
 
-/// det ∂x/∂λ at the six nodes of a quadratic triangle, as areas [m²]: negative where the triangle folds over.
+/// det ∂x/∂λ at the six nodes of a quadratic triangle, as areas [m²]; negative if the triangle folds over there.
 pub(crate) fn triangle_areas(nodes: &[Point; 6]) -> [f64; 6] {
     core::array::from_fn(|node| 0.5 * triangle_jacobian(nodes, coordinates(node, &TRIANGLE_SIDES)))
 }
 
-/// det ∂x/∂λ at the ten nodes of a quadratic tetrahedron, as volumes [m³]: negative where it folds over.
+/// det ∂x/∂λ at the ten nodes of a quadratic tetrahedron, as volumes [m³]; negative if it folds over there.
 pub(crate) fn tetrahedron_volumes(nodes: &[Point; 10]) -> [f64; 10] {
     core::array::from_fn(|node| tetrahedron_jacobian(nodes, coordinates(node, &TETRAHEDRON_EDGES)) / 6.0)
 }
@@ -122,14 +122,14 @@ fn coordinates<const C: usize, const E: usize>(node: usize, edges: &[[usize; 2];
 }
 
 impl<const D: usize> Mesh<D> {
-    /// The same body of quadratic cells: every triangle and tetrahedron gets a node in the middle of each of its edges.
+    /// The same body made of quadratic cells: every triangle and tetrahedron gets a node at the midpoint of each of its edges.
     ///
-    /// Corners keep their numbers; the new nodes follow, in the order of (lower corner, higher corner). A new node joins every node group that holds
-    /// both ends of its edge, and has the mean of their values. Cells keep their groups and values. Facets are found anew; sides are straight. Quadratic cells stay as they are, and lend
-    /// their nodes to neighbours that share an edge.
+    /// Corners keep their numbers; the new nodes follow, in the order of (lower corner, higher corner). A new node joins every node group that
+    /// contains both ends of its edge, and gets the mean of their values. Cells keep their groups and values. Facets are recomputed; sides are
+    /// straight. Existing quadratic cells do not change, and neighbours use their nodes at common edges.
     ///
     /// # Errors
-    /// What [`Mesh::validate`] finds; [`MeshError::NotSimplices`] for quadrilaterals and hexahedra ([`Mesh::into_simplices`] cuts them);
+    /// Those of [`Mesh::validate`]; [`MeshError::NotSimplices`] for quadrilaterals and hexahedra ([`Mesh::into_simplices`] cuts them);
     /// [`MeshError::TooManyNodes`].
     pub fn into_quadratic(mut self) -> Result<Mesh<D>, MeshError> {
         self.validate()?;
@@ -141,11 +141,11 @@ impl<const D: usize> Mesh<D> {
                 return Err(MeshError::NotSimplices { element });
             }
         }
-        // Which old cell each new one comes from: linear cells are counted first, and go behind the quadratic ones.
+        // The old cell of each new one: linear cells are numbered first, and move after the quadratic ones.
         let linear = self.cells.triangles.len() + self.cells.tetrahedra.len();
         let origins: Vec<u32> = (linear..self.cells.len()).chain(0..linear).map(|cell| cell as u32).collect();
 
-        // Nodes in the middle of edges: those that are there, then new ones in ascending order.
+        // Nodes at the midpoints of edges: first existing ones, then new ones in ascending order.
         let mut middles: BTreeMap<[u32; 2], u32> = BTreeMap::new();
         let triangles = std::mem::take(&mut self.cells.triangles);
         let tetrahedra = std::mem::take(&mut self.cells.tetrahedra);
@@ -199,7 +199,7 @@ impl<const D: usize> Mesh<D> {
         Ok(self)
     }
 
-    /// Lets cell groups and cell values follow cells that have been made anew: new cell k comes from old cell `origins[k]`.
+    /// Updates cell groups and cell values after cells have been rebuilt: new cell k comes from old cell `origins[k]`.
     pub(crate) fn follow_cells(&mut self, origins: &[u32]) {
         for values in self.cell_values.values_mut() {
             *values = origins.iter().map(|&origin| values[origin as usize]).collect();

@@ -1,23 +1,24 @@
-//! How good cells are: measures, the worst corner, angles.
+//! The quality of cells: measures, the worst corner, angles.
 
 use crate::geometry::{Point, cross, dot, lift, norm, subtract};
 use crate::{Element, Mesh};
 
-/// How large a cell is.
+/// The size of a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellMeasure {
     /// Its signed area [m²] or volume [m³].
     pub whole: f64,
-    /// The least and the greatest det ∂x/∂ξ at its nodes, as the area or volume of a cell that has it everywhere. Where it is positive
-    /// at the nodes and negative between them, `least` is that: see [`crate::least_jacobian`].
+    /// The smallest det ∂x/∂ξ at its nodes, as the area or volume that a cell with this value everywhere would have. If the determinant is positive
+    /// at the nodes but negative between them, the smallest value there: see [`crate::least_jacobian`].
     pub least: f64,
-    /// See `least`.
+    /// The largest such value at its nodes.
     pub greatest: f64,
     /// The longest distance between two of its nodes [m].
     pub longest: f64,
 }
 
-/// How good the cells of a mesh are. Angles are those between faces of tetrahedra and between sides of others, straight ones through the corners.
+/// The quality of the cells of a mesh. Angles are those between the faces of tetrahedra and between the sides of other cells, with straight sides
+/// through the corners.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellQuality {
     /// Number of cells.
@@ -36,7 +37,7 @@ pub struct CellQuality {
     pub longest_edge: f64,
 }
 
-/// Corners of a cell that angles are measured at: every corner with its two, or three, neighbours.
+/// Corners of a cell at which angles are measured: every corner with its two, or three, neighbours.
 const QUADRILATERAL_CORNERS: [[usize; 3]; 4] = [[0, 1, 3], [1, 2, 0], [2, 3, 1], [3, 0, 2]];
 const HEXAHEDRON_CORNERS: [[usize; 4]; 8] =
     [[0, 1, 3, 4], [1, 2, 0, 5], [2, 3, 1, 6], [3, 0, 2, 7], [4, 7, 5, 0], [5, 4, 6, 1], [6, 5, 7, 2], [7, 6, 4, 3]];
@@ -45,7 +46,7 @@ pub(crate) const HEXAHEDRON_EDGES: [[usize; 2]; 12] =
     [[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4], [0, 4], [1, 5], [2, 6], [3, 7]];
 
 impl<const D: usize> Mesh<D> {
-    /// How large every cell is, in the order of [`crate::Cells::iter`]. Indices must be sound.
+    /// The size of every cell, in the order of [`crate::Cells::iter`]. Indices must be valid.
     pub fn cell_measures(&self) -> Vec<CellMeasure> {
         let measure = |(element, _, nodes): (Element, u32, &[u32])| {
             let whole = self.size_of(nodes, element);
@@ -68,8 +69,8 @@ impl<const D: usize> Mesh<D> {
         lift(&self.positions[node as usize])
     }
 
-    /// Least and greatest Jacobian at the nodes of a cell, as areas or volumes; the least also between the nodes, where it is negative
-    /// there alone.
+    /// Smallest and largest Jacobian at the nodes of a cell, as areas or volumes; the smallest is also searched between the nodes, if it is negative
+    /// only there.
     pub(crate) fn extreme_measures(&self, element: Element, nodes: &[u32], whole: f64) -> (f64, f64) {
         let at = |k: usize| self.point(nodes[k]);
         let side = |a: usize, b: usize| subtract(at(b), at(a));
@@ -85,7 +86,7 @@ impl<const D: usize> Mesh<D> {
         let (low, high) = values.into_iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
             (if x < low { x } else { low }, if x > high { x } else { high })
         });
-        // Positive at its nodes, a cell may be folded between them.
+        // A cell with positive values at its nodes may be folded between them.
         let unit = match element {
             Element::QuadraticTriangle => 0.5,
             Element::QuadraticTetrahedron => 1.0 / 6.0,
@@ -101,7 +102,7 @@ impl<const D: usize> Mesh<D> {
         crate::least_jacobian(&rest)
     }
 
-    /// Turns cells round, so that their measure changes its sign; cells are counted in the order of [`crate::Cells::iter`].
+    /// Reverses cells, so that their measure changes its sign; cells are numbered in the order of [`crate::Cells::iter`].
     pub fn turn_cells(&mut self, cells: &[u32]) {
         let locations: Vec<(Element, u32)> = self.cells.iter().map(|(element, index, _)| (element, index)).collect();
         for cell in cells {
@@ -110,7 +111,7 @@ impl<const D: usize> Mesh<D> {
         }
     }
 
-    /// Nodes that no element names, ascending.
+    /// Nodes that no element uses, ascending.
     pub fn unreferenced_nodes(&self) -> Vec<u32> {
         let mut named = vec![false; self.nodes()];
         for (_, _, nodes) in self.elements() {
@@ -119,7 +120,7 @@ impl<const D: usize> Mesh<D> {
         (0..named.len()).filter(|&node| !named[node]).map(|node| node as u32).collect()
     }
 
-    /// How good the cells are; none without cells.
+    /// The quality of the cells; none without cells.
     pub fn cell_quality(&self) -> Option<CellQuality> {
         if self.cells.is_empty() {
             return None;
@@ -168,12 +169,12 @@ impl<const D: usize> Mesh<D> {
 }
 
 impl<const D: usize> Mesh<D> {
-    /// The smallest angle of every cell [rad], as [`Mesh::cell_quality`] measures them, in the order of [`crate::Cells::iter`].
+    /// The smallest angle of every cell [rad], measured as in [`Mesh::cell_quality`], in the order of [`crate::Cells::iter`].
     pub fn smallest_cell_angles(&self) -> Vec<f64> {
         self.cells.iter().map(|(element, _, nodes)| self.angles_of(element, nodes).0).collect()
     }
 
-    /// The smallest and the largest angle of a cell: between faces of tetrahedra, between sides of others [rad].
+    /// The smallest and the largest angle of a cell, between faces of tetrahedra or sides of other cells [rad].
     fn angles_of(&self, element: Element, nodes: &[u32]) -> (f64, f64) {
         let at = |k: usize| self.point(nodes[k]);
         let corner = |o: usize, a: usize, b: usize| between(subtract(at(a), at(o)), subtract(at(b), at(o)));
@@ -199,9 +200,9 @@ fn between(a: Point, b: Point) -> f64 {
     libm::atan2(norm(cross(a, b)), dot(a, b))
 }
 
-/// The six angles between the faces of a tetrahedron, inside it [rad].
+/// The six interior angles between the faces of a tetrahedron [rad].
 pub(crate) fn dihedral_angles(corners: [Point; 4]) -> [f64; 6] {
-    // At edge ij with the other corners k and l: the angle between the parts of ik and il across the edge.
+    // At edge ij with the other corners k and l: the angle between the components of ik and il perpendicular to the edge.
     const EDGES: [[usize; 4]; 6] = [[0, 1, 2, 3], [1, 2, 0, 3], [2, 0, 1, 3], [0, 3, 1, 2], [1, 3, 2, 0], [2, 3, 0, 1]];
     EDGES.map(|[i, j, k, l]| {
         let edge = subtract(corners[j], corners[i]);

@@ -1,9 +1,9 @@
-//! Closed surfaces of nearly equilateral triangles of a wanted size.
+//! Remeshing of closed surfaces to nearly equilateral triangles of a given size.
 //!
-//! Rounds of four moves: edges that are too long are split, those that are too short collapse, edges are flipped toward six
-//! triangles at every node, and nodes move within the surface to the middle of their neighbours and back onto the surface
-//! that was given. No move opens the surface, turns a triangle over, or makes two edges of one. Where moves together let
-//! the surface cross itself, those around the crossing are taken back.
+//! Each round consists of four operations: edges that are too long are split, edges that are too short are collapsed, edges are flipped to get six
+//! triangles at every node, and nodes move within the surface to the mean of their neighbours and back onto the original surface. No operation opens
+//! the surface, turns a triangle over, or merges two edges into one. If operations together make the surface cross itself, those around the crossing
+//! are undone.
 
 use crate::geometry::{cross, dot, norm, subtract};
 use crate::mesh::{limit_nodes, positive};
@@ -11,15 +11,15 @@ use crate::nearest::Nearest;
 use crate::{Mesh, MeshError, Quantity};
 use std::collections::BTreeMap;
 
-/// Rounds of the four moves.
+/// The number of rounds of the four operations.
 const ROUNDS: usize = 6;
-/// Edges longer than this times the wanted length are split.
+/// Edges longer than this times the target length are split.
 const LONG: f64 = 4.0 / 3.0;
-/// Edges shorter than this times the wanted length collapse.
+/// Edges shorter than this times the target length are collapsed.
 const SHORT: f64 = 4.0 / 5.0;
-/// Cosine of the angle between neighbouring normals, below which their edge is sharp: 40°.
+/// Cosine of the angle between neighbouring normals below which their edge is sharp: 40°.
 const SHARP: f64 = 0.766;
-/// Cosine of the angle by which a move may turn a triangle: 60°.
+/// Cosine of the largest angle by which an operation may rotate a triangle: 60°.
 const TURN: f64 = 0.5;
 
 type Point = [f64; 3];
@@ -38,44 +38,42 @@ fn unit(v: Point) -> Option<Point> {
     (length > 0.0).then(|| v.map(|x| x / length))
 }
 
-/// A surface whose triangles come and go.
+/// A surface whose triangles are added and removed.
 #[derive(Clone)]
 struct Work {
     positions: Vec<Point>,
-    /// Node sets that each node belongs to, by number.
+    /// The node groups to which each node belongs, by number.
     groups: Vec<Vec<u32>>,
-    /// None where a triangle is gone.
+    /// None if a triangle was removed.
     triangles: Vec<Option<[u32; 3]>>,
-    /// The triangles of every node.
+    /// The triangles at every node.
     fans: Vec<Vec<u32>>,
-    /// Edges that stay: their ends keep to them.
+    /// Edges that are kept; their ends stay on them.
     sharp: BTreeMap<Edge, ()>,
-    /// Nodes that neither move nor come nor go for now, ascending: where they did, the surface crossed itself.
+    /// Nodes that are neither moved, added nor removed for now, ascending, because the surface crossed itself there.
     locked: Vec<u32>,
 }
 
 impl Mesh<3> {
-    /// This closed surface with edges of about a wanted length [m]: between 0.6 and 1.45 of it for nearly all, where the shape
-    /// allows. Edges between triangles that meet at more than 40° stay edges, their corners stay where they are. A surface that does
-    /// not cross itself goes on so: where it would, its triangles stay smaller.
+    /// This closed surface with edges of about the given length [m]: between 0.6 and 1.45 of it for nearly all, if the shape permits. Edges between
+    /// triangles that meet at more than 40° are kept, and their corners stay in place. A surface that does not cross itself stays so: where it would,
+    /// its triangles stay smaller.
     ///
-    /// Nodes are numbered anew. A group keeps its old nodes; a new node is in it where both ends of the edge are that it
-    /// divides.
+    /// Nodes are renumbered. A group keeps its old nodes; a new node belongs to it if both ends of the edge that it divides do.
     ///
     /// # Errors
-    /// Those of [`Mesh::components`] for surfaces that are not closed; [`MeshError::Size`] for a length that is not
-    /// positive, [`MeshError::TooManyNodes`] for one that is too small.
+    /// Those of [`Mesh::components`] for surfaces that are not closed; [`MeshError::Size`] for a length that is not positive,
+    /// [`MeshError::TooManyNodes`] for one that is too small.
     ///
     /// # Source
-    /// M. Botsch, L. Kobbelt, "A remeshing approach to multiresolution modeling", Symposium on Geometry Processing (2004),
-    /// section 4.
+    /// M. Botsch, L. Kobbelt, "A remeshing approach to multiresolution modeling", Symposium on Geometry Processing (2004), section 4.
     pub fn remeshed(&self, length: f64) -> Result<Mesh<3>, MeshError> {
         positive(Quantity::LengthEdges, length)?;
         self.components()?;
         limit_nodes(self.remesh_estimate(length) as u64)?;
         let surface = Nearest::to(self);
         let mut work = Work::of(self);
-        // One that crosses itself as it is given may go on so.
+        // A surface that already crosses itself may continue to do so.
         let guarded = work.crossing().is_empty();
         for _ in 0..ROUNDS {
             work.split(LONG * length);
@@ -86,7 +84,7 @@ impl Mesh<3> {
         Ok(work.finish(self))
     }
 
-    /// About how many nodes [`Mesh::remeshed`] makes: one for every two equilateral triangles.
+    /// The approximate number of nodes of [`Mesh::remeshed`]: one for every two equilateral triangles.
     pub fn remesh_estimate(&self, length: f64) -> f64 {
         let mut area = 0.0;
         for facet in &self.facets {
@@ -127,8 +125,8 @@ impl Work {
         work
     }
 
-    /// Does moves that add no nodes, without those that let the surface cross itself: they are done again with the nodes of
-    /// crossing triangles locked, and with those around them, until nothing crosses.
+    /// Applies operations that add no nodes, except those that make the surface cross itself: the operations are repeated with the nodes of crossing
+    /// triangles locked, then with those around them, until nothing crosses.
     fn guard(&mut self, guarded: bool, moves: impl Fn(&mut Work)) {
         let before = guarded.then(|| self.clone());
         moves(self);
@@ -144,7 +142,7 @@ impl Work {
             locked.sort_unstable();
             locked.dedup();
             if locked.len() == known {
-                // What crosses is locked already: what lies around it moved.
+                // The crossing triangles are already locked, so their surroundings must have moved.
                 let around: Vec<u32> = locked.iter().flat_map(|node| before.neighbours(*node)).collect();
                 locked.extend(around);
                 locked.sort_unstable();
@@ -190,7 +188,7 @@ impl Work {
         edges
     }
 
-    /// The two triangles at an edge: that which runs from its first node to its second, then the other.
+    /// The two triangles at an edge: the one that runs from its first node to its second, then the other.
     fn beside(&self, [a, b]: Edge) -> Option<[u32; 2]> {
         let mut found = [None; 2];
         for &triangle in &self.fans[a as usize] {
@@ -205,7 +203,7 @@ impl Work {
         Some([found[0]?, found[1]?])
     }
 
-    /// The corner of a triangle that is not on an edge.
+    /// The corner of a triangle opposite an edge.
     fn across(&self, triangle: u32, edge: Edge) -> Option<u32> {
         self.triangles[triangle as usize]?.into_iter().find(|node| !edge.contains(node))
     }
@@ -227,7 +225,7 @@ impl Work {
         out
     }
 
-    /// How many sharp edges a node has.
+    /// The number of sharp edges at a node.
     fn sharpness(&self, node: u32) -> usize {
         self.neighbours(node).into_iter().filter(|other| self.sharp.contains_key(&edge(node, *other))).count()
     }
@@ -244,7 +242,7 @@ impl Work {
         }
     }
 
-    /// Splits edges longer than a length in their middle, the longest first.
+    /// Splits edges longer than a length at their midpoints, the longest first.
     fn split(&mut self, length: f64) {
         loop {
             let mut long: Vec<Edge> = self.edges().into_iter().filter(|e| self.length(*e) > length).collect();
@@ -273,7 +271,7 @@ impl Work {
         }
     }
 
-    /// Collapses edges shorter than a length, where no edge becomes longer than another length.
+    /// Collapses edges shorter than a length, if no edge becomes longer than another length.
     fn collapse(&mut self, short: f64, long: f64) {
         let mut edges: Vec<Edge> = self.edges().into_iter().filter(|e| self.length(*e) < short).collect();
         edges.sort_by(|e, f| self.length(*e).total_cmp(&self.length(*f)).then(e.cmp(f)));
@@ -281,7 +279,7 @@ impl Work {
             if self.beside([a, b]).is_none() || self.length([a, b]) >= short || self.is_locked(a) || self.is_locked(b) {
                 continue;
             }
-            // Who is bound more stays where it is.
+            // The node with more constraints stays in place.
             let bound = [self.sharpness(a), self.sharpness(b)];
             let (kept, gone, position) = match bound {
                 [0, 0] => (a, b, middle(self.at(a), self.at(b))),
@@ -298,11 +296,11 @@ impl Work {
         }
     }
 
-    /// Whether the surface stays sound where two neighbours become one node at a position.
+    /// Whether the surface stays valid if two neighbours become one node at a position.
     fn may_merge(&self, kept: u32, gone: u32, position: Point, long: f64) -> bool {
         let (around, other) = (self.neighbours(kept), self.neighbours(gone));
         let common: Vec<u32> = around.iter().copied().filter(|node| other.contains(node)).collect();
-        // Their common neighbours are the corners across; each of these keeps four triangles.
+        // Their common neighbours are the opposite corners; each of these keeps four triangles.
         if common.len() != 2 || common.iter().any(|node| self.neighbours(*node).len() < 5) {
             return false;
         }
@@ -310,7 +308,7 @@ impl Work {
         if around.iter().chain(&other).filter(|node| **node != kept && **node != gone).any(far) {
             return false;
         }
-        // A crease must not bend: its node may go where the others lie on its line.
+        // A crease must not bend: its node may be removed if the others are on its line.
         if self.sharpness(gone) == 2 {
             let along: Vec<u32> =
                 other.iter().copied().filter(|node| self.sharp.contains_key(&edge(gone, *node))).collect();
@@ -354,7 +352,7 @@ impl Work {
         }
     }
 
-    /// Flips edges where that brings their four nodes nearer to six neighbours.
+    /// Flips edges if this brings their four nodes closer to six neighbours each.
     fn flip(&mut self) {
         for [a, b] in self.edges() {
             if self.sharp.contains_key(&[a, b]) || self.is_locked(a) || self.is_locked(b) {
@@ -374,7 +372,7 @@ impl Work {
             let ([Some(n), Some(m)], [Some(p), Some(q)]) = (normals(old), normals(new)) else { continue };
             let least =
                 [dot(p, n), dot(p, m), dot(q, n), dot(q, m)].into_iter().fold(1.0, |l, x| if x < l { x } else { l });
-            // Thin triangles have other normals after rounding, and are no gain.
+            // The normals of thin triangles change by rounding, and such triangles are no improvement.
             if least < SHARP || self.smallest_height(new) < 0.5 * self.smallest_height(old) {
                 continue;
             }
@@ -384,7 +382,7 @@ impl Work {
         }
     }
 
-    /// The least of twice the areas of two triangles over their longest side squared.
+    /// The smaller ratio of twice the area of two triangles to their longest side squared.
     fn smallest_height(&self, triangles: [[u32; 3]; 2]) -> f64 {
         let quality = |corners: [u32; 3]| {
             let [a, b, c] = corners;
@@ -399,7 +397,7 @@ impl Work {
         if one < two { one } else { two }
     }
 
-    /// Moves nodes off creases to the middle of their neighbours, within the surface.
+    /// Moves nodes that are not on creases to the mean of their neighbours, within the surface.
     fn relax(&mut self, surface: &Nearest) {
         for node in 0..self.positions.len() as u32 {
             let fan = self.fans[node as usize].clone();
@@ -422,7 +420,7 @@ impl Work {
         }
     }
 
-    /// The mesh of what is left, nodes and triangles in their order.
+    /// The mesh of the remaining nodes and triangles, in their order.
     fn finish(self, given: &Mesh<3>) -> Mesh<3> {
         let mut numbers = vec![u32::MAX; self.positions.len()];
         let mut mesh = Mesh::<3>::default();

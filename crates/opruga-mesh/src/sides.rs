@@ -1,25 +1,25 @@
-//! Sides of cells on the boundary, with their shape functions: what a pressure acts on.
+//! Sides of cells on the boundary, with their shape functions, on which a pressure acts.
 
 use crate::Mesh;
 use crate::geometry::{HEXAHEDRON_FACES, lift};
 use crate::quadratic::{TETRAHEDRON_FACES, TRIANGLE_SIDES};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The most nodes of a side.
+/// The maximum number of nodes of a side.
 pub const MOST_SIDE_NODES: usize = 6;
 
-/// A point at which a side is integrated.
+/// An integration point of a side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SidePoint {
     /// The weight, in the coordinates of the side.
     pub weight: f64,
     /// The shape functions Nₐ.
     pub shape: [f64; MOST_SIDE_NODES],
-    /// Their derivatives by the coordinates of the side; one in the plane.
+    /// Their derivatives by the coordinates of the side; only one in the plane.
     pub slope: [[f64; 2]; MOST_SIDE_NODES],
 }
 
-/// A shape function of a side of the plane at ξ from 0 to 1: ends, then the middle.
+/// The shape functions of a side in the plane at ξ from 0 to 1: ends, then the midpoint.
 fn edge(nodes: usize, x: f64) -> [(f64, f64); 3] {
     if nodes == 2 {
         [(1.0 - x, -1.0), (x, 1.0), (0.0, 0.0)]
@@ -57,8 +57,8 @@ fn quadrilateral(x: f64, y: f64) -> [(f64, [f64; 2]); 4] {
     ]
 }
 
-/// The points of a side of so many nodes in `dimensions` dimensions. Products of a shape function and the area vector
-/// ∂x/∂ξ × ∂x/∂η are integrated without error.
+/// The integration points of a side with `nodes` nodes in `dimensions` dimensions. They integrate products of a shape function and the area vector
+/// ∂x/∂ξ × ∂x/∂η exactly.
 ///
 /// # Source
 /// Gauss; D. A. Dunavant, International Journal for Numerical Methods in Engineering 21 (1985), degree 4.
@@ -91,7 +91,7 @@ pub fn side_points(dimensions: usize, nodes: usize) -> Vec<SidePoint> {
     }
 }
 
-/// The vector of length (plane) or area (space) of a side at a point, outwards: ∂x/∂ξ turned to the right, ∂x/∂ξ × ∂x/∂η.
+/// The outward length vector (plane) or area vector (space) of a side at a point: ∂x/∂ξ rotated to the right, or ∂x/∂ξ × ∂x/∂η.
 pub fn side_vector<const D: usize>(point: &SidePoint, x: &[[f64; D]]) -> [f64; D] {
     let t = side_tangents(point, x);
     if D == 2 {
@@ -117,7 +117,7 @@ pub fn side_tangents<const D: usize>(point: &SidePoint, x: &[[f64; D]]) -> [[f64
     })
 }
 
-/// The shape functions of a side at coordinates of its own, without a weight.
+/// The shape functions of a side at given local coordinates, without a weight.
 #[cfg(test)]
 pub(crate) fn at(dimensions: usize, nodes: usize, x: f64, y: f64) -> SidePoint {
     let values: Vec<(f64, [f64; 2])> = match (dimensions, nodes) {
@@ -133,14 +133,14 @@ pub(crate) fn at(dimensions: usize, nodes: usize, x: f64, y: f64) -> SidePoint {
 }
 
 impl<const D: usize> Mesh<D> {
-    /// The sides of cells that lie on the boundary and all of whose nodes are selected, each by its nodes as seen from outside.
+    /// The sides of cells that are on the boundary and whose nodes are all selected, each with its nodes as seen from outside.
     ///
-    /// In the plane two ends, and the node between them where the cell is quadratic; in space the three corners of a triangle, the
-    /// four of a quadrilateral, or three corners and the nodes between corners 0–1, 1–2, 2–0. Facets without cells are
-    /// sides themselves. Nodes beyond the mesh select nothing.
+    /// In the plane these are two ends, and the node between them if the cell is quadratic. In space they are the three corners of a triangle, the
+    /// four of a quadrilateral, or three corners and the nodes between corners 0–1, 1–2, 2–0. Facets without cells are sides themselves. Nodes beyond
+    /// the mesh select nothing.
     pub fn boundary_sides(&self, selected: &[u32]) -> Vec<Vec<u32>> {
         let chosen: BTreeSet<u32> = selected.iter().copied().collect();
-        // Which facets a side is made of: ascending nodes to number.
+        // The facets of which a side consists: from ascending nodes to numbers.
         let mut left = BTreeMap::new();
         for (number, facet) in self.facets.iter().enumerate() {
             if facet.iter().all(|node| chosen.contains(node)) {
@@ -183,11 +183,11 @@ impl<const D: usize> Mesh<D> {
         sides.into_iter().map(|(_, nodes)| nodes).collect()
     }
 
-    /// The shares ∫ Nₐ dA of nodes in the sides all of whose nodes are selected, at rest: lengths [m] in the plane, areas [m²] in
-    /// space; Nₐ are the shape functions of the cells.
+    /// The shares ∫ Nₐ dA of nodes in the sides whose nodes are all selected, at rest: lengths [m] in the plane, areas [m²] in space; Nₐ are the
+    /// shape functions of the cells.
     ///
-    /// An even traction times the shares does the work on every displacement of the cells that it does on the body, as long as
-    /// sides are flat. Nodes without a share are left out. Nodes beyond the mesh select nothing.
+    /// A uniform traction times the shares does the same work on every displacement of the cells as on the body, as long as sides are flat. Nodes
+    /// without a share are omitted. Nodes beyond the mesh select nothing.
     pub fn boundary_shares(&self, selected: &[u32]) -> BTreeMap<u32, f64> {
         let mut shares = BTreeMap::new();
         for side in self.boundary_sides(selected) {
@@ -213,7 +213,7 @@ fn ascending(nodes: &[u32]) -> Vec<u32> {
 mod tests {
     use super::*;
 
-    /// The work of an even traction on x², which linear cells take as linear between nodes.
+    /// The work of a uniform traction on x², which linear cells interpolate linearly between nodes.
     #[test]
     fn shares_of_quadratic_sides_integrate_quadratic_motion() {
         let plane = Mesh::<2>::grid([0.0; 2], [1.0, 2.0], [2, 3]).unwrap().into_simplices().unwrap();
@@ -261,7 +261,7 @@ mod tests {
         assert!(mesh.boundary_sides(&mesh.groups["top"]).iter().all(|side| side.len() == 4));
     }
 
-    /// ∫ n dA over a closed surface is zero, ∫ x·n dA three times what it encloses, whatever the shape of its sides.
+    /// ∫ n dA over a closed surface is zero, and ∫ x·n dA is three times the enclosed volume, whatever the shape of its sides.
     #[test]
     fn sides_close_and_enclose_the_volume_of_their_cells() {
         let plain = Mesh::<3>::grid([0.0; 3], [1.0, 1.2, 0.8], [2, 3, 2]).unwrap();

@@ -4,15 +4,15 @@ use crate::geometry::{dot, subtract, tetrahedron_volume};
 use crate::{Mesh, MeshError};
 use std::collections::BTreeMap;
 
-/// Points that move with a body without being part of its physics: each is a mean of four of its nodes.
+/// Points that move with a body without being part of its physics; each is a weighted mean of four of its nodes.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Skin {
-    /// In space: triangles between the points of the skin, outward.
+    /// In space: triangles between the points of the skin, oriented outward.
     pub triangles: Vec<[u32; 3]>,
     /// In the plane: areas between the points of the skin, painted one over another.
     pub areas: Vec<Area>,
-    /// In the plane: edges between the points of the skin, with the inside to their left. A body that is filled by a lattice touches others
-    /// with them; empty where the boundary of the cells is that of the drawing.
+    /// In the plane: edges between the points of the skin, with the inside to their left. A body that is filled by a lattice touches others with
+    /// these edges. Empty if the boundary of the cells coincides with that of the drawing.
     pub outline: Vec<[u32; 2]>,
     /// The nodes that carry each point.
     pub carriers: Vec<[u32; 4]>,
@@ -25,14 +25,14 @@ pub struct Skin {
 pub struct Area {
     /// Red, green, blue and opacity; none for the colour of the body.
     pub colour: Option<[u8; 4]>,
-    /// The points of the skin along each closed line that bounds the area; one inside another bounds a hole.
+    /// The points of the skin along each closed line that bounds the area; a line inside another bounds a hole.
     pub rings: Vec<Vec<u32>>,
     /// The area at rest as triangles between these points.
     pub triangles: Vec<[u32; 3]>,
 }
 
 impl Skin {
-    /// Where the points of the skin are while the body's nodes are at `positions` [m].
+    /// The positions of the points of the skin when the body's nodes are at `positions` [m].
     pub fn positions(&self, positions: &[[f64; 3]]) -> Vec<[f64; 3]> {
         self.carriers
             .iter()
@@ -41,7 +41,7 @@ impl Skin {
             .collect()
     }
 
-    /// A quantity of the nodes at the points of the skin.
+    /// A nodal quantity at the points of the skin.
     pub fn values(&self, values: &[f64]) -> Vec<f64> {
         let each = |(nodes, weights): (&[u32; 4], &[f64; 4])| {
             nodes.iter().zip(weights).map(|(node, weight)| weight * values[*node as usize]).sum()
@@ -61,7 +61,7 @@ fn mean(nodes: &[u32; 4], weights: &[f64; 4], at: impl Fn(usize) -> [f64; 3]) ->
     out
 }
 
-/// Weights of a point in a tetrahedron: volumes of the tetrahedra that it forms with the faces over the whole.
+/// Weights of a point in a tetrahedron: the volumes of the tetrahedra that it forms with the faces, divided by the total.
 pub(crate) fn weights([a, b, c, d]: [[f64; 3]; 4], point: [f64; 3]) -> [f64; 4] {
     let whole = tetrahedron_volume(a, b, c, d);
     [
@@ -72,11 +72,11 @@ pub(crate) fn weights([a, b, c, d]: [[f64; 3]; 4], point: [f64; 3]) -> [f64; 4] 
     ]
 }
 
-/// More points than this are not added to a skin.
+/// The maximum number of points that are added to a skin.
 const MOST_ADDED: usize = 1 << 20;
 
-/// A surface with edges no longer than a length: longer ones are halved, and the triangles at them cut, again and again.
-/// The points that were there keep their numbers.
+/// A surface with edges no longer than a length: longer ones are repeatedly halved, and the triangles at them are cut. Existing points keep their
+/// numbers.
 pub(crate) fn refined(positions: &[[f64; 3]], triangles: &[[u32; 3]], longest: f64) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
     let (mut points, mut cut) = (positions.to_vec(), triangles.to_vec());
     while points.len() < positions.len() + MOST_ADDED {
@@ -101,19 +101,19 @@ pub(crate) fn refined(positions: &[[f64; 3]], triangles: &[[u32; 3]], longest: f
     (points, cut)
 }
 
-/// The triangles into which one is cut whose edges may have a middle.
+/// The triangles into which a triangle is cut if its edges may have midpoints.
 fn pieces([a, b, c]: [u32; 3], middle: &impl Fn(u32, u32) -> Option<u32>) -> Vec<[u32; 3]> {
     match (middle(a, b), middle(b, c), middle(c, a)) {
         (None, None, None) => vec![[a, b, c]],
         (Some(m), None, None) => vec![[a, m, c], [m, b, c]],
         (Some(m), Some(n), None) => vec![[m, b, n], [a, m, n], [a, n, c]],
         (Some(m), Some(n), Some(o)) => vec![[a, m, o], [m, b, n], [o, n, c], [m, n, o]],
-        // The same, begun from another corner.
+        // The same, starting from another corner.
         (None, ..) | (Some(_), None, Some(_)) => pieces([b, c, a], middle),
     }
 }
 
-/// Whether a ray from a point upwards (z) meets closed facets an odd number of times. Facets are found by a grid in x and y.
+/// Tests whether an upward ray (along z) from a point meets closed facets an odd number of times. Facets are found by a grid in x and y.
 pub(crate) struct Inside<'m> {
     mesh: &'m Mesh<3>,
     low: [f64; 2],
@@ -164,11 +164,11 @@ impl<'m> Inside<'m> {
         let mut inside = false;
         for facet in cell {
             let [a, b, c] = self.mesh.facets[*facet as usize].map(|node| self.mesh.positions[node as usize]);
-            // Half-open rules on x make a ray through an edge or a node count once.
+            // Half-open intervals in x make a ray through an edge or a node count once.
             let mut within = false;
             for (p, q) in [(a, b), (b, c), (c, a)] {
                 if (p[1] > point[1]) != (q[1] > point[1]) {
-                    // One direction for both triangles at an edge, so that they agree to the last bit.
+                    // The same direction for both triangles at an edge, so that they agree to the last bit.
                     let (p, q) = if p[1] < q[1] { (p, q) } else { (q, p) };
                     let x = p[0] + (point[1] - p[1]) / (q[1] - p[1]) * (q[0] - p[0]);
                     within ^= x > point[0];

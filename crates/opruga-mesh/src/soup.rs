@@ -1,4 +1,4 @@
-//! Triangles of space as they come from files: welding, orientation, closing, bodies.
+//! Triangles in space as they come from files: welding, orientation, closing, bodies.
 
 use crate::boxes::Tree;
 use crate::buckets::{nodes_of, sorted_by_node};
@@ -7,14 +7,14 @@ use crate::geometry::{lift, norm, subtract, triangle_area};
 use crate::{Mesh, MeshError, Must, Quantity, signed_volume};
 use std::collections::BTreeMap;
 
-/// Joins points that lie at most `distance` [m] apart (0: at the same place) and lets triangles name the first of each cluster; returns how many
-/// points were joined to another. Points that stay keep their order.
+/// Joins points that are at most `distance` [m] apart (0: at the same position) and lets triangles refer to the first of each cluster; returns the
+/// number of points that were joined to another. The remaining points keep their order.
 ///
-/// A point joins the first one before it that is near enough, so clusters do not grow along chains.
+/// A point joins the first earlier one that is near enough, so clusters do not grow along chains.
 ///
 /// # Errors
-/// [`MeshError::Size`] for a distance that is negative or not finite, [`MeshError::RepeatedNode`] with the first triangle that collapses;
-/// nothing is changed then.
+/// [`MeshError::Size`] for a distance that is negative or not finite, [`MeshError::RepeatedNode`] with the first triangle that collapses; nothing is
+/// then changed.
 pub fn weld(positions: &mut Vec<[f64; 3]>, triangles: &mut [[u32; 3]], distance: f64) -> Result<usize, MeshError> {
     if !(distance >= 0.0 && distance.is_finite()) {
         return Err(MeshError::Size { what: Quantity::DistanceWelding, value: distance, must: Must::NotNegative });
@@ -44,16 +44,16 @@ pub fn weld(positions: &mut Vec<[f64; 3]>, triangles: &mut [[u32; 3]], distance:
     Ok(joined)
 }
 
-/// For every point the first one with the same coordinates; −0 is 0.
+/// For every point, the first one with the same coordinates; −0 equals 0.
 fn first_coincident(positions: &[[f64; 3]]) -> Vec<u32> {
     const FREE: u32 = u32::MAX;
     let key = |node: u32| positions[node as usize].map(|x| (x + 0.0).to_bits());
-    // The first point at each position, in a slot that follows from its coordinates or the next free one: most points of a
-    // soup come several times, and neighbours soon after one another.
+    // The first point at each position, in a hash slot given by its coordinates or in the next free one. Most points of a soup occur several times,
+    // and soon after one another.
     let slots = (2 * positions.len()).next_power_of_two();
     let mut firsts = vec![FREE; slots];
     let slot_of = |[x, y, z]: [u64; 3]| {
-        // Every step can be undone: no two coordinates are mixed up by more than chance.
+        // Every step is invertible, so coordinates collide only by chance.
         let mix = |sum: u64, x: u64| (sum ^ x).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29);
         (mix(mix(mix(0, x), y), z) >> 20) as usize & (slots - 1)
     };
@@ -74,7 +74,7 @@ fn first_coincident(positions: &[[f64; 3]]) -> Vec<u32> {
     (0..positions.len() as u32).map(&mut first_of).collect()
 }
 
-/// For every point the first one before it within a distance that joins no other, or itself.
+/// For every point, the first earlier one within a distance that joins no other; or itself.
 fn first_within(positions: &[[f64; 3]], distance: f64) -> Vec<u32> {
     let cell = |x: f64| (x / distance).floor();
     let mut cells: BTreeMap<[i64; 3], Vec<u32>> = BTreeMap::new();
@@ -106,22 +106,22 @@ fn first_within(positions: &[[f64; 3]], distance: f64) -> Vec<u32> {
     target
 }
 
-/// What an orientation had to turn.
+/// The changes made by an orientation.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Turned {
-    /// Triangles that faced against their neighbours.
+    /// Triangles with the opposite orientation to their neighbours.
     pub against: usize,
     /// Components that were inside out.
     pub inside_out: usize,
-    /// A triangle of the first component that encloses less than 10⁻¹² of its extent cubed, and what it encloses [m³].
+    /// A triangle of the first component whose enclosed volume is less than 10⁻¹² of its cubed extent, and that volume [m³].
     pub flat: Option<(u32, f64)>,
 }
 
-/// A component that encloses less than this part of its extent cubed is flat.
+/// A component is flat if its enclosed volume is less than this fraction of its cubed extent.
 const FLAT: f64 = 1e-12;
 
 impl<const D: usize> Mesh<D> {
-    /// Leaves out nodes that no element names; returns how many. Groups lose them too. The carriers of a skin are nodes of elements.
+    /// Drops nodes that no element uses; returns their number. They are also removed from groups. The carriers of a skin are nodes of elements.
     pub fn drop_unreferenced(&mut self) -> usize {
         let mut used = vec![false; self.nodes()];
         for (_, _, nodes) in self.elements() {
@@ -161,7 +161,7 @@ impl<const D: usize> Mesh<D> {
 }
 
 impl Mesh<3> {
-    /// Turns the triangles of every closed component outward, those of cavities (an odd number of components around them) inward.
+    /// Orients the triangles of every closed component outward, and those of cavities (with an odd number of components around them) inward.
     ///
     /// # Errors
     /// Those of [`Mesh::orient_outward`]. The mesh is then unchanged.
@@ -173,7 +173,7 @@ impl Mesh<3> {
             self.facets[*facet as usize].swap(0, 1);
         }
         let components = self.components_of(&survey);
-        // How many others are around a component: their winding numbers about a node of it, whichever way they face.
+        // The number of other components around a component, from their winding numbers about one of its nodes, independent of their orientation.
         let boxes: Vec<([f64; 3], [f64; 3])> = components.iter().map(|c| self.bounds_of(&c.facets)).collect();
         let tree = Tree::of(boxes.iter().map(|(low, high)| [*low, *high, *high]));
         let (mut inside_out, mut flat) = (0, None);
@@ -218,7 +218,8 @@ impl Mesh<3> {
         (low, high)
     }
 
-    /// Turns the triangles of open surfaces so that neighbours face alike; the majority of each component decides. Returns how many were turned.
+    /// Orients the triangles of open surfaces so that neighbours agree; the majority of each component decides. Returns the number of reversed
+    /// triangles.
     ///
     /// # Errors
     /// [`MeshError::NonManifoldEdges`], [`MeshError::NonOrientable`].
@@ -228,13 +229,14 @@ impl Mesh<3> {
         Ok(survey.minority().len())
     }
 
-    /// Closes every free boundary by a fan of triangles around the mean of its nodes, which becomes a new node; returns how many were closed.
+    /// Closes every free boundary with a fan of triangles around the mean of its nodes, which becomes a new node; returns the number of closed
+    /// boundaries.
     ///
     /// # Errors
-    /// What orientation refuses, and [`MeshError::NonManifoldNodes`] where a free boundary touches itself.
+    /// Those of the orientation, and [`MeshError::NonManifoldNodes`] if a free boundary touches itself.
     pub fn cap(&mut self) -> Result<usize, MeshError> {
         self.orient_alike()?;
-        // Free edges run against the boundary of the hole: from each node to the next.
+        // Free edges run in the opposite direction to the boundary of the hole: from each node to the next.
         let mut sides: Vec<[u32; 2]> =
             self.facets.iter().flat_map(|[a, b, c]| [[*a, *b], [*b, *c], [*c, *a]]).collect();
         sides.sort_unstable();
@@ -299,9 +301,9 @@ impl Mesh<3> {
         keys.windows(2).filter(|pair| pair[0].0 == pair[1].0).map(|pair| [pair[0].1, pair[1].1]).min_by_key(|p| p[1])
     }
 
-    /// Nodes of a closed surface at which parts of it hang together that share no edge there, ascending.
+    /// Nodes of a closed surface at which parts are connected that share no edge there, ascending.
     pub fn pinched_nodes(&self) -> Vec<u32> {
-        // Around a node every facet leads from one neighbour to another; one round through all of them leaves nothing.
+        // Every facet at a node connects one neighbour to another; a single loop through all of them has no remainder.
         let mut links: Vec<[u32; 3]> = Vec::with_capacity(3 * self.facets.len());
         for [a, b, c] in &self.facets {
             links.extend([[*a, *b, *c], [*b, *c, *a], [*c, *a, *b]]);

@@ -6,10 +6,10 @@ use crate::geometry::{Point, norm};
 use crate::mesh::{count, positive};
 use crate::{Mesh, MeshError, Quantity};
 
-/// Most times that the icosahedron may be subdivided: 7 gives 163,842 nodes.
+/// The maximum number of subdivisions of the icosahedron: 7 gives 163,842 nodes.
 pub const MAXIMUM_SUBDIVISIONS: u32 = 7;
 
-/// The lattice on the icosahedron whose edges are cut into n parts, numbered row by row from the north pole to the south pole.
+/// The lattice on the icosahedron with edges divided into n parts, numbered row by row from the north pole to the south pole.
 ///
 /// ```text
 ///            N                row 0         1 node
@@ -26,7 +26,7 @@ struct Rows {
 }
 
 impl Rows {
-    /// Nodes per fifth of a row; the poles have rows of one node.
+    /// Nodes per fifth of a row; a pole is a row of one node.
     fn sector(&self, row: u32) -> u32 {
         let n = self.n;
         if row < n {
@@ -63,7 +63,7 @@ impl Rows {
 
     /// Index of lattice point (i, j) of a face, 0 ≤ i, j and i + j ≤ n. Faces 5k … 5k + 4 are north, belt down, belt up, south.
     ///
-    /// The corners are (0, 0), (n, 0), (0, n), counter-clockwise seen from outside.
+    /// The corners are (0, 0), (n, 0), (0, n), counter-clockwise as seen from outside.
     fn at(&self, face: u32, i: u32, j: u32) -> u32 {
         let (n, s) = (self.n, face % 5);
         match face / 5 {
@@ -80,13 +80,13 @@ impl Rows {
 }
 
 impl Mesh<3> {
-    /// A sphere of radius r [m] about the origin: an icosahedron with corners on the z axis, each face cut in four `subdivisions` times, each new node
-    /// pushed out to the sphere.
+    /// A sphere of radius r [m] about the origin: an icosahedron with corners on the z axis, each face divided into four `subdivisions` times, with
+    /// each new node projected onto the sphere.
     ///
     /// It has 10·4ˢ + 2 nodes (12, 42, 162, 642, 2562, 10242, 40962, 163842) and 20·4ˢ facets. Twelve nodes have 5 neighbours, all others 6.
     ///
-    /// Nodes are numbered in rows from the north pole to the south pole, so that neighbours lie close in memory: at most 10·2ˢ apart in index, and
-    /// the belt, half of all nodes, has edges of only three directions in long runs.
+    /// Nodes are numbered in rows from the north pole to the south pole, so that neighbours are close in memory: at most 10·2ˢ apart in index. The
+    /// belt, half of all nodes, has edges in only three directions, in long runs.
     ///
     /// # Errors
     /// [`MeshError::Size`] for a radius that is not positive and finite; [`MeshError::Count`] for more than [`MAXIMUM_SUBDIVISIONS`].
@@ -97,19 +97,19 @@ impl Mesh<3> {
         let rows = Rows { n };
         let mut unit: Vec<Point> = vec![[0.0; 3]; (10 * n * n + 2) as usize];
 
-        // The twelve corners: two poles and two rings of five at z = ±1/√5, turned by 36° against each other.
+        // The twelve corners: two poles and two rings of five at z = ±1/√5, rotated by 36° against each other.
         let (z, r) = (1.0 / 5.0_f64.sqrt(), 2.0 / 5.0_f64.sqrt());
         unit[rows.node(0, 0, 0) as usize] = [0.0, 0.0, 1.0];
         unit[rows.node(3 * n, 0, 0) as usize] = [0.0, 0.0, -1.0];
         for s in 0..5 {
             let angle = 2.0 * PI * f64::from(s) / 5.0;
             unit[rows.node(n, s, 0) as usize] = [r * libm::cos(angle), r * libm::sin(angle), z];
-            // Lₛ stands below the middle of Uₛ and Uₛ₊₁.
+            // Lₛ is below the midpoint of Uₛ and Uₛ₊₁.
             let lower = angle + PI / 5.0;
             unit[rows.node(2 * n, s, 0) as usize] = [r * libm::cos(lower), r * libm::sin(lower), -z];
         }
 
-        // Halve every edge, level by level. Neighbour faces compute a shared midpoint twice, with the same bits, for a + b = b + a.
+        // Halve every edge, level by level. Neighbouring faces compute a shared midpoint twice, with the same bits, because a + b = b + a.
         let mut stride = n;
         while stride > 1 {
             let half = stride / 2;
@@ -132,7 +132,7 @@ impl Mesh<3> {
             stride = half;
         }
 
-        // Two triangles per lattice cell, one along the slanted side.
+        // Two triangles per lattice cell, only one along the slanted side.
         let mut facets = Vec::with_capacity((20 * n * n) as usize);
         for face in 0..20 {
             for i in 0..n {

@@ -1,4 +1,4 @@
-//! The inside of a closed surface as tetrahedra of guaranteed angles.
+//! The inside of a closed surface as tetrahedra with guaranteed angles.
 
 use crate::geometry::{Point, dot, subtract, tetrahedron_volume};
 use crate::lattice_bcc::{Key, Lattice};
@@ -12,16 +12,17 @@ pub const SMALLEST_DIHEDRAL_ANGLE: f64 = 10.7;
 /// The largest angle between two faces of the tetrahedra of [`Mesh::tetrahedra_filling`] [°].
 pub const LARGEST_DIHEDRAL_ANGLE: f64 = 164.8;
 
-/// A lattice point moves to where the surface cuts one of its edges, if that is nearer than this part of a long edge, or of a short one.
+/// A lattice point moves to the point at which the surface cuts one of its edges, if this is closer than this fraction of a long edge, or of a short
+/// one.
 ///
-/// Of the pairs on a grid of 0.003 and 0.005 this one leaves the largest smallest angle, 10.76°, with 164.38° as the largest; the test below measures
-/// both over all stencils, with cuts at and around these limits.
+/// Of the pairs on a grid of 0.003 and 0.005, this one gives the largest minimum angle, 10.76°, with a maximum angle of 164.38°. The test below
+/// measures both over all stencils, with cuts at and around these limits.
 const WARP_LIMITS: [f64; 2] = [0.284, 0.400];
 
-/// Halvings that find where an edge meets the surface: to 10⁻¹² of the edge.
+/// The number of halvings that locate the intersection of an edge and the surface: to 10⁻¹² of the edge.
 const HALVINGS: u32 = 40;
 
-/// On which side of the surface a lattice point lies.
+/// The side of the surface on which a lattice point is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Side {
     Outside,
@@ -29,25 +30,26 @@ enum Side {
     Inside,
 }
 
-/// A corner of a tetrahedron: a lattice point, or the place where the surface cuts an edge; by the sum of both ends of the edge, which no two share.
+/// A corner of a tetrahedron: a lattice point, or a point at which the surface cuts an edge. It is given by the sum of both ends of the edge, which
+/// is unique.
 type Corner = [i32; 3];
 
 impl Mesh<3> {
     /// The inside of this closed surface as tetrahedra without sharp or flat angles, whose boundary follows the surface.
     ///
-    /// The nodes are a body-centred cubic lattice of cubes of side `spacing` [m]. Where the surface cuts an edge of the lattice close to an end, this
-    /// end moves there; elsewhere the cut becomes a node. All angles between faces lie between [`SMALLEST_DIHEDRAL_ANGLE`] and
-    /// [`LARGEST_DIHEDRAL_ANGLE`], whatever the surface looks like. All boundary nodes lie on the surface, but sharp edges and corners of it are cut
-    /// off within a spacing, and what is thinner than a spacing may be lost: compare the volumes. Where parts of the body would touch along an edge only,
-    /// the tetrahedra of the smaller part at that edge are left out.
+    /// The nodes are a body-centred cubic lattice of cubes of side `spacing` [m]. If the surface cuts an edge of the lattice close to an end, this
+    /// end moves to the cut; otherwise the cut becomes a node. All angles between faces are between [`SMALLEST_DIHEDRAL_ANGLE`] and
+    /// [`LARGEST_DIHEDRAL_ANGLE`] for any surface. All boundary nodes are on the surface, but its sharp edges and corners are cut off within a
+    /// spacing, and parts thinner than a spacing may be lost: compare the volumes. If parts of the body would touch only along an edge, the
+    /// tetrahedra of the smaller part at that edge are removed.
     ///
     /// # Errors
-    /// Those of [`Mesh::components`]; [`MeshError::Size`] for a spacing that is not positive, or so large that nothing is left;
-    /// [`MeshError::Torn`] where the filling has more or fewer pieces than the surface; [`MeshError::TooManyNodes`].
+    /// Those of [`Mesh::components`]; [`MeshError::Size`] for a spacing that is not positive, or so large that nothing remains; [`MeshError::Torn`]
+    /// if the filling has more or fewer pieces than the surface; [`MeshError::TooManyNodes`].
     ///
     /// # Source
-    /// F. Labelle, J. R. Shewchuk, "Isosurface stuffing: fast tetrahedral meshes with good dihedral angles", ACM Trans. Graphics 26 (2007), the uniform
-    /// variant (table 1 has the same bounds). Its stencils are cut here by one rule, see `Stuffing::diagonal`.
+    /// F. Labelle, J. R. Shewchuk, "Isosurface stuffing: fast tetrahedral meshes with good dihedral angles", ACM Trans. Graphics 26 (2007), the
+    /// uniform variant (table 1 has the same bounds). Its stencils are cut here by one rule, see `Stuffing::diagonal`.
     pub fn tetrahedra_filling(&self, spacing: f64) -> Result<Mesh<3>, MeshError> {
         let lattice = Lattice::around(self, spacing)?;
         let inside = Inside::of(self)?;
@@ -60,7 +62,7 @@ impl Mesh<3> {
             return Err(MeshError::Size { what: Quantity::Spacing, value: spacing, must: Must::BelowBody });
         }
 
-        // Nodes in the order of the lattice, z slowest.
+        // Nodes in the order of the lattice, with z varying slowest.
         let mut corners: Vec<Corner> = tetrahedra.iter().flatten().copied().collect();
         let order = |corner: &Corner| (corner[2], corner[1], corner[0]);
         corners.sort_unstable_by_key(order);
@@ -76,7 +78,7 @@ impl Mesh<3> {
     }
 }
 
-/// Number of pieces whose tetrahedra share no node with those of another.
+/// The number of pieces whose tetrahedra share no node with those of another.
 fn pieces(mesh: &Mesh<3>) -> usize {
     let mut parent: Vec<u32> = (0..mesh.nodes() as u32).collect();
     let root = |parent: &mut Vec<u32>, mut node: u32| {
@@ -101,11 +103,11 @@ fn pieces(mesh: &Mesh<3>) -> usize {
 
 struct Stuffing<'a> {
     lattice: &'a Lattice,
-    /// Sides of corners, then of centres of cubes, x fastest.
+    /// Sides of corners, then of centres of cubes; x varies fastest.
     sides: Vec<Side>,
     /// Lattice points that have moved to the surface.
     moved: BTreeMap<Key, Point>,
-    /// Where edges from a point inside to one outside meet the surface, by the sum of their ends.
+    /// The intersections of the surface with edges from a point inside to one outside, by the sum of their ends.
     cuts: BTreeMap<Corner, Point>,
 }
 
@@ -145,7 +147,7 @@ impl<'a> Stuffing<'a> {
         stuffing
     }
 
-    /// The index of a lattice point in `sides`; none outside of the lattice.
+    /// The index of a lattice point in `sides`; none outside the lattice.
     fn index(&self, key: Key) -> Option<usize> {
         let shift = key[0].rem_euclid(2);
         let counts = self.lattice.counts.map(|n| n + 1 - shift);
@@ -169,7 +171,7 @@ impl<'a> Stuffing<'a> {
         corners.chain(self.lattice.centers()).filter(|key| self.side(*key) == Side::Inside).collect()
     }
 
-    /// Finds where edges from a point inside to one outside meet the surface.
+    /// Finds the intersections of the surface with edges from a point inside to one outside.
     fn find_cuts(&mut self, mut inside: impl FnMut(Point) -> bool) {
         for key in self.inner() {
             for (other, _) in neighbours(key) {
@@ -194,7 +196,7 @@ impl<'a> Stuffing<'a> {
         core::array::from_fn(|d| 0.5 * (near[d] + far[d]))
     }
 
-    /// Moves lattice points that lie close to a cut of one of their edges to the nearest; the other cuts of a moved point are no more.
+    /// Moves lattice points that are close to a cut of one of their edges to the nearest cut; the other cuts of a moved point are removed.
     fn warp(&mut self) {
         let mut ends: Vec<Key> = Vec::new();
         for key in self.inner() {
@@ -229,7 +231,7 @@ impl<'a> Stuffing<'a> {
         }
     }
 
-    /// Where a corner lies.
+    /// The position of a corner.
     fn position(&self, corner: Corner) -> Point {
         if let Some(cut) = self.cuts.get(&corner) {
             return *cut;
@@ -238,7 +240,7 @@ impl<'a> Stuffing<'a> {
         self.moved.get(&key).copied().unwrap_or_else(|| self.lattice.at(key))
     }
 
-    /// What of every tetrahedron of the lattice lies inside, as tetrahedra of positive volume.
+    /// The inside part of every tetrahedron of the lattice, as tetrahedra of positive volume.
     fn tetrahedra(&self) -> Vec<[Corner; 4]> {
         let mut out = Vec::new();
         for center in self.lattice.centers() {
@@ -260,7 +262,7 @@ impl<'a> Stuffing<'a> {
         out
     }
 
-    /// Where tetrahedra at an edge form several fans that share no face with one another, leaves all but the largest out; whether there were any.
+    /// If tetrahedra at an edge form several fans that share no face with one another, removes all but the largest; returns whether there were any.
     fn part_at_edges(&self, tetrahedra: &mut Vec<[Corner; 4]>) -> bool {
         let crowded = self.crowded_edges(tetrahedra);
         let mut gone = vec![false; tetrahedra.len()];
@@ -317,7 +319,7 @@ impl<'a> Stuffing<'a> {
         edges.chunk_by(|p, q| p == q).filter(|group| group.len() > 2).map(|group| group[0]).collect()
     }
 
-    /// The part of one tetrahedron that lies inside: itself, or cut off at the edges that the surface cuts.
+    /// The inside part of one tetrahedron: the whole, or a part cut off at the edges that the surface cuts.
     fn part(&self, keys: [Key; 4], out: &mut Vec<[Corner; 4]>) {
         let of = |side: Side| keys.into_iter().filter(|key| self.side(*key) == side).collect::<Vec<Key>>();
         let (inner, on, outer) = (of(Side::Inside), of(Side::On), of(Side::Outside));
@@ -325,7 +327,7 @@ impl<'a> Stuffing<'a> {
         match (&inner[..], &on[..], &outer[..]) {
             ([], ..) => {}
             (_, _, []) => out.push(keys.map(own)),
-            // A corner alone: its edges end at the surface.
+            // A single corner: its edges end at the surface.
             (&[p], on, outer) => {
                 let ends: Vec<Corner> =
                     on.iter().map(|key| own(*key)).chain(outer.iter().map(|key| sum(p, *key))).collect();
@@ -344,7 +346,7 @@ impl<'a> Stuffing<'a> {
             (&[p, q], [], &[m, n]) => {
                 let ends = [[own(p), sum(p, m), sum(p, n)], [own(q), sum(q, m), sum(q, n)]];
                 let (first, last) = (self.diagonal(p, q, m), !self.diagonal(p, q, n));
-                // The third side lies on the surface and is nobody else's: the shorter diagonal, if both will do.
+                // The third side is on the surface and is not shared: use the shorter diagonal if both are possible.
                 let [[_, a, b], [_, c, d]] = ends;
                 let length = |p: Corner, q: Corner| distance_square(self.position(p), self.position(q));
                 let free = if first == last { !first } else { length(a, d) <= length(b, c) };
@@ -359,10 +361,11 @@ impl<'a> Stuffing<'a> {
         }
     }
 
-    /// Whether the quadrilateral p, q, cut of qm, cut of pm on a face of the lattice is cut from p, else from q. Both tetrahedra at the face agree.
+    /// Whether the quadrilateral p, q, cut of qm, cut of pm on a face of the lattice is cut from p; otherwise it is cut from q. Both tetrahedra at
+    /// the face agree.
     ///
-    /// From the far end of a cut that lies on a long edge; where both cut edges are short, from the end that has an even number of
-    /// coordinates beyond m: the two faces at p and q of a tetrahedron are then cut from different ends (the parity rule of Labelle and Shewchuk).
+    /// It is cut from the far end of a cut on a long edge. If both cut edges are short, it is cut from the end with an even number of coordinates
+    /// greater than those of m: the two faces at p and q of a tetrahedron are then cut from different ends (the parity rule of Labelle and Shewchuk).
     fn diagonal(&self, p: Key, q: Key, m: Key) -> bool {
         let long = |a: Key, b: Key| (a[0] - b[0]).rem_euclid(2) == 0;
         if long(p, m) {
@@ -375,18 +378,19 @@ impl<'a> Stuffing<'a> {
     }
 }
 
-/// A prism with ends a and b as three tetrahedra; `forward[k]` says whether its side k is cut from a\[k\] to b\[k + 1\], else from a\[k + 1\] to b\[k\].
+/// A prism with ends a and b as three tetrahedra; `forward[k]` is true if its side k is cut from a\[k\] to b\[k + 1\], and false if from a\[k + 1\]
+/// to b\[k\].
 ///
-/// The three sides must not be cut round and round.
+/// The diagonals of the three sides must not form a cycle.
 fn prism(ends: [[Corner; 3]; 2], forward: [bool; 3], out: &mut Vec<[Corner; 4]>) {
     for end in 0..2 {
         for k in 0..3 {
-            // Corner k of this end lies between sides k and k − 1: is it an end of both diagonals?
+            // Corner k of this end is between sides k and k − 1; check whether it is an end of both diagonals.
             let (own, other) = (ends[end], ends[1 - end]);
             let touches_next = forward[k] == (end == 0);
             let touches_last = forward[(k + 2) % 3] != (end == 0);
             if touches_next && touches_last {
-                // This corner with the other end, and with both halves of the side opposite.
+                // This corner with the other end, and with both halves of the opposite side.
                 let (next, last) = ((k + 1) % 3, (k + 2) % 3);
                 out.push([own[k], other[0], other[1], other[2]]);
                 if forward[next] == (end == 0) {
@@ -424,8 +428,8 @@ mod tests {
         }
     }
 
-    /// The bounds come from the stencils alone: they hold for any sides of lattice points, and for cuts anywhere on their edges, most of all where
-    /// points are just moved, or just not.
+    /// The bounds follow from the stencils alone: they hold for any sides of lattice points, and for cuts anywhere on their edges, in particular
+    /// close to the limits at which points move.
     #[test]
     fn angles_keep_their_bounds_for_any_sides_and_cuts() {
         let lattice = Lattice { counts: [4; 3], origin: [0.0; 3], spacing: 1.0 };
@@ -463,7 +467,7 @@ mod tests {
             }
         }
         assert!(smallest >= SMALLEST_DIHEDRAL_ANGLE && largest <= LARGEST_DIHEDRAL_ANGLE, "{smallest}° to {largest}°");
-        // The bounds are nearly met, so they could not be promised any better.
+        // The bounds are nearly attained, so they could not be tighter.
         assert!(smallest < SMALLEST_DIHEDRAL_ANGLE + 0.5 && largest > LARGEST_DIHEDRAL_ANGLE - 1.0);
     }
 }

@@ -7,12 +7,12 @@ use crate::lattice::{lattice, side_groups, station};
 use crate::mesh::{count, finite, limit_nodes, positive};
 use crate::{MAXIMUM_NODES, Mesh, MeshError, Must, Quantity};
 
-/// The two triangles of a quadrilateral, cut along a–c where `even`, else along b–d.
+/// The two triangles of a quadrilateral, cut along a–c if `even`, otherwise along b–d.
 fn halves([a, b, c, d]: [u32; 4], even: bool) -> [[u32; 3]; 2] {
     if even { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] }
 }
 
-/// Index of the nodes of a box surface: the lattice points of the surface, x fastest, then y, then z.
+/// Indices of the nodes of a box surface: the lattice points of the surface, with x varying fastest, then y, then z.
 struct Skin {
     cells: [u32; 3],
 }
@@ -35,7 +35,7 @@ impl Skin {
 }
 
 impl Mesh<3> {
-    /// An open plane surface: the parallelogram of two sides [m] from a corner [m], cut into `cells` quadrilaterals along each side.
+    /// An open plane surface: the parallelogram of two sides [m] from a corner [m], divided into `cells` quadrilaterals along each side.
     ///
     /// ```text
     ///   v ^   n+1---n+2---n+3       node (x, y) has index x + (nu+1)·y
@@ -46,7 +46,7 @@ impl Mesh<3> {
     /// Groups: `left`, `right` (low and high u), `bottom`, `top` (v).
     ///
     /// # Errors
-    /// [`MeshError::Count`] for a side without cells; [`MeshError::Size`] where a number is not finite or the sides span no area;
+    /// [`MeshError::Count`] for a side without cells; [`MeshError::Size`] if a number is not finite or the sides span no area;
     /// [`MeshError::TooManyNodes`].
     pub fn sheet(corner: [f64; 3], sides: [[f64; 3]; 2], cells: [u32; 2]) -> Result<Mesh<3>, MeshError> {
         let [u, v] = sides;
@@ -76,10 +76,10 @@ impl Mesh<3> {
         Ok(mesh)
     }
 
-    /// The closed surface of a box of `size` [m] from its `lower` corner [m], with `cells` divisions per axis, each face cut into two triangles per
-    /// cell with alternating diagonals.
+    /// The closed surface of a box of `size` [m] from its `lower` corner [m], with `cells` divisions per axis, each face divided into two triangles
+    /// per cell with alternating diagonals.
     ///
-    /// It has 2(nx·ny + ny·nz + nz·nx) + 2 nodes, numbered by layers of z, rows of y, then x, and twice as many facets less four. Groups as for
+    /// It has 2(nx·ny + ny·nz + nz·nx) + 2 nodes, numbered by layers of z, rows of y, then x, and twice as many facets minus four. Groups as for
     /// [`Mesh::grid`].
     ///
     /// # Errors
@@ -107,7 +107,7 @@ impl Mesh<3> {
         let positions = points.iter().map(at).collect();
         let groups = side_groups(points.iter().copied(), cells);
 
-        // Each pair of axes (u, v) with u × v along w spans the far side; the near side runs the other way.
+        // Each pair of axes (u, v) with u × v along w spans the far side; the near side has the opposite orientation.
         let skin = Skin { cells };
         let mut facets = Vec::new();
         for w in 0..3 {

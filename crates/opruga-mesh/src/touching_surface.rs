@@ -1,4 +1,4 @@
-//! What of a body touches others: points, facets and wires, where a point may be a fixed combination of nodes.
+//! The part of a body that touches others: points, facets and wires, where a point may be a fixed combination of nodes.
 
 use crate::geometry::HEXAHEDRON_FACES;
 use crate::{Mesh, Skin};
@@ -6,7 +6,7 @@ use crate::{Mesh, Skin};
 /// A fixed combination of at most four nodes: x = Σ wᵢ xᵢ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Carrier {
-    /// The nodes. Those beyond its own repeat another one with the weight 0.
+    /// The nodes. Unused entries repeat another node with weight 0.
     pub nodes: [u32; 4],
     /// Their weights wᵢ, which add up to 1.
     pub weights: [f64; 4],
@@ -14,7 +14,7 @@ pub struct Carrier {
 
 /// The surface with which a body touches others.
 ///
-/// Points are counted so: `nodes` first, then `carried`.
+/// Points are numbered in this order: `nodes` first, then `carried`.
 ///
 /// ```text
 ///  face of a hexahedron     d---c      four triangles about the mean m of its nodes:
@@ -25,27 +25,27 @@ pub struct Carrier {
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TouchingSurface<const D: usize> {
-    /// Nodes that are points, ascending. Before them come nodes that are none and only carry points.
+    /// Nodes that are points, ascending. Before them come nodes that only carry points.
     pub nodes: Vec<u32>,
-    /// How many of the nodes only carry points.
+    /// The number of nodes that only carry points.
     pub carrying: usize,
-    /// Points that nodes carry; their nodes are counted as points.
+    /// Points whose positions follow from nodes, which are given by their numbers as points.
     pub carried: Vec<Carrier>,
-    /// The corners of every facet, as points: of closed boundaries first, then of open surfaces, in the plane of wires.
+    /// The corners of every facet, as points: first of closed boundaries, then of open surfaces and, in the plane, of wires.
     pub facets: Vec<[u32; D]>,
-    /// How many of the facets belong to closed boundaries.
+    /// The number of facets that belong to closed boundaries.
     pub closed: usize,
-    /// Wires of space, as points.
+    /// Wires in space, as points.
     pub wires: Vec<[u32; 2]>,
 }
 
 impl<const D: usize> TouchingSurface<D> {
-    /// The number of points, and of nodes that carry some.
+    /// The number of points, including nodes that only carry points.
     pub fn points(&self) -> usize {
         self.nodes.len() + self.carried.len()
     }
 
-    /// The points where the nodes of the body are at `positions` [m].
+    /// The positions of the points when the nodes of the body are at `positions` [m].
     pub fn positions(&self, positions: &[[f64; D]]) -> Vec<[f64; D]> {
         let mut out: Vec<[f64; D]> = self.nodes.iter().map(|node| positions[*node as usize]).collect();
         for carrier in &self.carried {
@@ -58,7 +58,7 @@ impl<const D: usize> TouchingSurface<D> {
         out
     }
 
-    /// Counts nodes as points: facets and carriers hold nodes of the body before, and carried points from `first` on.
+    /// Renumbers nodes as points. Before the call, facets and carriers refer to nodes of the body, and to carried points from `first` on.
     fn count(&mut self, first: u32) {
         let TouchingSurface { nodes, carrying, carried, facets, wires, .. } = self;
         let mut own: Vec<u32> = facets.iter().flatten().chain(wires.iter().flatten()).copied().collect();
@@ -86,7 +86,7 @@ impl<const D: usize> TouchingSurface<D> {
 }
 
 impl<const D: usize> Mesh<D> {
-    /// The surface with which this body touches others: boundary, open surfaces, wires, and without any of these its nodes as points.
+    /// The surface with which this body touches others: boundary, open surfaces and wires; without any of these, its nodes as points.
     ///
     /// With `skin`, a body that carries a skin touches with that instead.
     pub fn touching_surface(&self, skin: bool) -> TouchingSurface<D> {
@@ -129,10 +129,10 @@ impl<const D: usize> Mesh<D> {
 }
 
 impl<const D: usize> TouchingSurface<D> {
-    /// Takes the facets of a body, those of hexahedra as four triangles each.
+    /// Adds the facets of a body, with those of hexahedra as four triangles each.
     fn take_boundary(&mut self, mesh: &Mesh<D>, first: u32) {
         let quadrilaterals = if D == 3 { mesh.outer_quadrilaterals() } else { Vec::new() };
-        // The quadrilateral of every three of its corners.
+        // The quadrilateral of any three of its corners.
         let mut corners: Vec<([u32; 3], u32)> = Vec::with_capacity(4 * quadrilaterals.len());
         for (number, [a, b, c, d]) in quadrilaterals.iter().copied().enumerate() {
             for mut three in [[a, b, c], [a, b, d], [a, c, d], [b, c, d]] {
@@ -162,7 +162,7 @@ impl<const D: usize> TouchingSurface<D> {
         }
     }
 
-    /// Takes a skin; says whether it has facets.
+    /// Adds a skin; returns whether it has facets.
     fn take_skin(&mut self, skin: &Skin, first: u32) -> bool {
         if D == 3 {
             self.facets.extend(skin.triangles.iter().map(|t| core::array::from_fn(|k| first + t[k])));

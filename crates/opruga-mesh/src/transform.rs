@@ -1,11 +1,11 @@
-//! Moving, turning, stretching and mirroring a body at rest.
+//! Translation, rotation, scaling and mirroring of a body at rest.
 
 use crate::geometry::{cross, dot, lift, norm};
 use crate::mesh::finite;
 use crate::{Cells, Element, Mesh, MeshError, Must, Quantity};
 
 impl<const D: usize> Mesh<D> {
-    /// Moves every node by the same vector [m].
+    /// Translates every node by the same vector [m].
     pub fn translate(&mut self, by: [f64; D]) {
         for position in &mut self.positions {
             for axis in 0..D {
@@ -16,10 +16,10 @@ impl<const D: usize> Mesh<D> {
 
     /// Maps every node by X′ = about + A (X − about), with the rows of A [−] in `rows`; returns whether orientations were reversed.
     ///
-    /// Where det A < 0 every oriented element is reversed, so that outlines stay counter-clockwise and cells keep positive measure.
+    /// If det A < 0 every oriented element is reversed, so that outlines stay counter-clockwise and cells keep a positive measure.
     ///
     /// # Errors
-    /// [`MeshError::Size`] where A or `about` is not finite, or det A = 0. The mesh is then unchanged.
+    /// [`MeshError::Size`] if A or `about` is not finite, or if det A = 0. The mesh is then unchanged.
     pub fn transform(&mut self, rows: &[[f64; D]; D], about: [f64; D]) -> Result<bool, MeshError> {
         rows.iter().try_for_each(|row| finite(Quantity::EntryMap, row))?;
         finite(Quantity::CentreMap, &about)?;
@@ -47,21 +47,20 @@ impl<const D: usize> Mesh<D> {
         Ok(determinant < 0.0)
     }
 
-    /// Stretches by one factor per axis [−] about a point [m]; returns whether orientations were reversed (an odd number of negative factors).
+    /// Scales by one factor per axis [−] about a point [m]; returns whether orientations were reversed (an odd number of negative factors).
     ///
     /// # Errors
-    /// [`MeshError::Size`] where a factor is zero or not finite.
+    /// [`MeshError::Size`] if a factor is zero or not finite.
     pub fn scale(&mut self, factors: [f64; D], about: [f64; D]) -> Result<bool, MeshError> {
         let rows =
             std::array::from_fn(|axis| std::array::from_fn(|column| if axis == column { factors[axis] } else { 0.0 }));
         self.transform(&rows, about)
     }
 
-    /// Mirrors in the line (plane) or plane (space) through a point [m] with the given normal, of any length; always reverses orientations and
-    /// returns true.
+    /// Mirrors in the line (plane) or plane (space) through a point [m] with a normal of any length; always reverses orientations and returns true.
     ///
     /// # Errors
-    /// [`MeshError::Size`] where the normal is zero or not finite.
+    /// [`MeshError::Size`] if the normal is zero or not finite.
     pub fn mirror(&mut self, normal: [f64; D], about: [f64; D]) -> Result<bool, MeshError> {
         let length = direction_length(Quantity::LengthNormal, lift(&normal))?;
         let unit = normal.map(|component| component / length);
@@ -83,7 +82,7 @@ impl<const D: usize> Mesh<D> {
 }
 
 impl Cells {
-    /// Turns a cell round: two corners change places, and with them the nodes between.
+    /// Reverses a cell: two corners change places, and with them the nodes between.
     pub(crate) fn turn(&mut self, element: Element, index: usize) {
         match element {
             Element::Triangle => self.triangles[index].swap(0, 1),
@@ -110,10 +109,10 @@ impl Cells {
 }
 
 impl Mesh<2> {
-    /// Turns counter-clockwise by an angle [rad] about a point [m].
+    /// Rotates counter-clockwise by an angle [rad] about a point [m].
     ///
     /// # Errors
-    /// [`MeshError::Size`] where the angle or the point is not finite.
+    /// [`MeshError::Size`] if the angle or the point is not finite.
     pub fn rotate(&mut self, angle: f64, about: [f64; 2]) -> Result<(), MeshError> {
         finite(Quantity::RotationAngle, &[angle])?;
         let (s, c) = (libm::sin(angle), libm::cos(angle));
@@ -122,10 +121,10 @@ impl Mesh<2> {
 }
 
 impl Mesh<3> {
-    /// Turns by an angle [rad] about an axis of any length through a point [m], counter-clockwise seen against the axis.
+    /// Rotates by an angle [rad] about an axis of any length through a point [m], counter-clockwise as seen against the axis.
     ///
     /// # Errors
-    /// [`MeshError::Size`] where a number is not finite or the axis is zero.
+    /// [`MeshError::Size`] if a number is not finite or the axis is zero.
     ///
     /// # Source
     /// Rodrigues' formula: R = cos θ I + sin θ [u]× + (1 − cos θ) u ⊗ u.
@@ -144,7 +143,7 @@ impl Mesh<3> {
     }
 }
 
-/// Length of a direction, refused where it is zero or not finite.
+/// The length of a direction; refused if it is zero or not finite.
 fn direction_length(what: Quantity, direction: [f64; 3]) -> Result<f64, MeshError> {
     let length = norm(direction);
     crate::mesh::positive(what, length)?;

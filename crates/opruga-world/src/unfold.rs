@@ -29,7 +29,7 @@
 //! | `REST`, `BALANCED` | a body that creeps or oscillates is displaced on its way | `robust_steps::a_body_that_creeps_back…` |
 //! | `PERIODS` | every frame pays for a check, and a body is displaced before it oscillates freely | `flat_bodies::bodies_on_a_line_leave…` |
 //! | `PATIENCE` | a body is displaced again before it could leave | `flat_bodies::disturbances_end…` |
-//! | `PARTS` | a plate that one step folds stays folded, though smaller steps keep it upright | `torn_by_pins::plates_that_are_pressed_at_once_and_may_unfold…` |
+//! | `PARTS` | a plate that one step folds stays folded; smaller steps keep it upright | `torn_by_pins::plates_that_are_pressed_at_once_and_may_unfold…` |
 //! | `SIZES` | a single displacement does not leave a flat shape that is stable against it | `robust_steps::bodies_that_symmetry_holds…` |
 //! | `STRAINED` | folded bodies with sound cells stay folded | `robust_steps::every_rule_brings…` |
 

@@ -1,4 +1,4 @@
-//! The least determinant of cells against differences of their maps.
+//! The minimum determinant of cells compared with differences of their maps.
 
 use super::*;
 
@@ -18,13 +18,13 @@ fn hexahedron() -> Vec<[f64; 3]> {
     (0..8).map(corner).collect()
 }
 
-/// Numbers from −1 to 1, the same in every run.
+/// Pseudo-random numbers from −1 to 1, the same in every run.
 fn chance(state: &mut u64) -> f64 {
     *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
     (*state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
 }
 
-/// det ∂x/∂ξ by differences of x = Σ Nₐ xₐ, which are exact for polynomials of degree two.
+/// det ∂x/∂ξ from differences of x = Σ Nₐ xₐ, which are exact for polynomials of degree two.
 fn by_differences<const D: usize>(nodes: &[[f64; D]], at: [f64; 4]) -> f64 {
     let is_box = nodes.len() == 1 << D;
     let x = |at: [f64; 4]| -> [f64; D] {
@@ -57,7 +57,7 @@ fn by_differences<const D: usize>(nodes: &[[f64; D]], at: [f64; 4]) -> f64 {
     determinant(&columns)
 }
 
-/// Places inside a cell, and on its edges.
+/// Points inside a cell and on its edges.
 fn sample_points(is_box: bool, dimension: usize) -> Vec<[f64; 4]> {
     const STEPS: usize = 8;
     let mut out = Vec::new();
@@ -85,7 +85,7 @@ fn agrees<const D: usize>(reference: &[[f64; D]], amount: f64, state: &mut u64) 
         assert!((net.value(at) - expected).abs() < 1e-11, "{at:?}: {} {expected}", net.value(at));
         sampled = if expected < sampled { expected } else { sampled };
     }
-    // The pieces are the same polynomial.
+    // The pieces represent the same polynomial.
     for half in net.halves().iter().flat_map(Net::halves) {
         for (value, at) in half.vertices() {
             assert!((value - net.value(at)).abs() < 1e-11);
@@ -96,7 +96,7 @@ fn agrees<const D: usize>(reference: &[[f64; D]], amount: f64, state: &mut u64) 
     if sampled < -1e-12 {
         assert!(!least.is_upright(), "{least:?} {sampled}");
     }
-    // What is not decided is decided within little.
+    // If the sign is not determined, the bounds are close to each other.
     assert!(least.is_upright() || least.is_inverted() || least.found - least.bound < 2e-2, "{least:?}");
 }
 
@@ -114,7 +114,7 @@ fn the_least_jacobian_of_any_cell_is_bounded_from_both_sides() {
 
 #[test]
 fn a_cell_folded_between_its_nodes_is_found() {
-    // Positive at all corners and edge midpoints, negative on a face between them.
+    // Positive at all corners and midpoints of edges, negative on a face between them.
     let mut nodes = tetrahedron();
     let mut state = 3;
     let found = (0..200_000).any(|_| {
@@ -143,7 +143,7 @@ fn straight_cells_have_one_jacobian_and_flat_ones_have_none() {
     let flat: Vec<[f64; 2]> = triangle().iter().map(|x| [x[0], 0.0]).collect();
     let flat = least_jacobian(&flat).expect("a cell");
     assert!(!flat.is_positive() && flat.is_upright() && !flat.is_inverted(), "{flat:?}");
-    // A corner in the plane of its neighbours is flat and not inside out, wherever that is.
+    // A corner in the plane of its neighbours is flat but not inverted, whatever its position.
     for shift in [0.0, 0.3, 1e3] {
         let mut cell = hexahedron();
         cell[6] = [2.0 / 3.0; 3];

@@ -1,4 +1,4 @@
-//! A drawing that a body of the plane carries: its areas move with the cells in which they lie.
+//! A drawing that a body in the plane carries: its areas move with the cells that contain them.
 
 use super::filling::triangles_between;
 use super::{OutlineError, Overlap, Ring, distance, joined};
@@ -6,25 +6,25 @@ use crate::skin::{Area, Skin};
 use crate::{Mesh, MeshError};
 use std::collections::BTreeMap;
 
-/// Each cell covers so many bins of the grid on average at most: compact ones cover four. It keeps the grid about as large as the body.
+/// The maximum mean number of bins of the grid that each cell covers; compact cells cover four. It limits the grid to about the size of the body.
 const MOST_BINS: f64 = 16.0;
 
-/// An area that is to be painted on a body.
+/// An area to be painted on a body.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Painted {
-    /// What bounds it; rings inside others are holes by the even-odd rule.
+    /// Its boundary; rings inside others are holes by the even-odd rule.
     pub rings: Vec<Ring>,
     /// Red, green, blue and opacity; none for the colour of the body.
     pub colour: Option<[u8; 4]>,
 }
 
-/// Paints areas on a body, one over another: each point belongs to the cell in which it lies, or to the nearest one.
+/// Paints areas on a body, one over another. Each point belongs to the cell that contains it, or to the nearest one.
 ///
-/// A square carries its points by bilinear weights, a triangle by barycentric ones. A body without cells carries by triangles between the nodes of
-/// its outline `rings`. A body of squares touches others with what bounds it: `rings`, in edges of about half a cell.
+/// The weights of points are bilinear in a square and barycentric in a triangle. A body without cells uses triangles between the nodes of its outline
+/// `rings`. A body of squares touches others with its outline `rings`, in edges of about half a cell.
 ///
 /// # Errors
-/// [`OutlineError::TooCoarse`] where the rings of a body without cells meet, [`OutlineError::Mesh`] for too many points.
+/// [`OutlineError::TooCoarse`] if the rings of a body without cells meet, [`OutlineError::Mesh`] for too many points.
 pub fn carry(mesh: &mut Mesh<2>, rings: &[Ring], painted: &[Painted]) -> Result<(), OutlineError> {
     let cells: Vec<Carrier> = if mesh.cells.is_empty() {
         triangles_between(rings)?.into_iter().map(Carrier::Triangle).collect()
@@ -35,7 +35,7 @@ pub fn carry(mesh: &mut Mesh<2>, rings: &[Ring], painted: &[Painted]) -> Result<
     let Some(grid) = Grid::of(&cells, &mesh.positions) else { return Ok(()) };
     let mut skin = Skin::default();
     for area in painted {
-        // Rings that cross themselves are made into such that do not: the area between them is cut into triangles.
+        // Rings that cross themselves are converted to rings that do not: the area between them is cut into triangles.
         let rings = area.rings.iter().filter(|ring| ring.points.len() > 2);
         let one: Vec<Ring> = rings.map(|ring| Ring { part: 0, ..ring.clone() }).collect();
         let clean = joined(&one, Overlap::EvenOdd);
@@ -43,7 +43,7 @@ pub fn carry(mesh: &mut Mesh<2>, rings: &[Ring], painted: &[Painted]) -> Result<
             continue;
         }
         let first = skin.carriers.len() as u32;
-        // Rings that touch in a point have no triangulation here; they can still be painted as what they bound.
+        // Rings that touch at a point cannot be triangulated here, but can still be painted as areas.
         let triangles = triangles_between(&clean).unwrap_or_default();
         let mut made = Area {
             colour: area.colour,
@@ -73,11 +73,11 @@ pub fn carry(mesh: &mut Mesh<2>, rings: &[Ring], painted: &[Painted]) -> Result<
     Ok(())
 }
 
-/// The length of the edges with which a lattice touches, relative to its cells: longer ones cut curves off, and would not bend as the cells
-/// do; shorter ones show what no cell does.
+/// The length of the contact edges of a lattice, relative to its cells. Longer edges would cut off curves and would not bend as the cells do; shorter
+/// ones would show details that no cell has.
 const EDGE: f64 = 0.5;
 
-/// Rings with edges about so long [m]; where such edges would cross, those of the drawing, of which long ones are cut.
+/// Rings with edges of about this length [m]; if such edges would cross, the rings of the drawing, with long edges divided.
 fn followed(rings: &[Ring], length: f64) -> Vec<Ring> {
     super::resampled(rings, length).unwrap_or_else(|_| {
         let cut = |ring: &Ring| {
@@ -94,7 +94,7 @@ fn followed(rings: &[Ring], length: f64) -> Vec<Ring> {
 }
 
 impl Skin {
-    /// Takes rings for what touches others.
+    /// Uses rings as the outline that touches others.
     fn follow(&mut self, grid: &Grid<'_>, rings: &[Ring]) {
         for ring in rings {
             let (first, count) = (self.carriers.len() as u32, ring.points.len() as u32);
@@ -112,11 +112,11 @@ impl Skin {
 #[derive(Clone, Copy, Debug)]
 enum Carrier {
     Triangle([u32; 3]),
-    /// A square along the axes, counter-clockwise from its lowest corner.
+    /// An axis-aligned square, counter-clockwise from its lowest corner.
     Square([u32; 4]),
 }
 
-/// Cells by the bins of a grid that their boxes cover.
+/// Cells by the bins of a grid that their boxes overlap.
 struct Grid<'m> {
     cells: &'m [Carrier],
     positions: &'m [[f64; 2]],
@@ -128,7 +128,7 @@ struct Grid<'m> {
 }
 
 impl<'m> Grid<'m> {
-    /// None where there are no cells.
+    /// None if there are no cells.
     fn of(cells: &'m [Carrier], positions: &'m [[f64; 2]]) -> Option<Grid<'m>> {
         let boxes: Vec<([f64; 2], [f64; 2])> = cells.iter().map(|cell| bounds_of(cell, positions)).collect();
         let (mut low, mut high) = *boxes.first()?;
@@ -140,12 +140,12 @@ impl<'m> Grid<'m> {
                 widest += (to[a] - from[a]) / (2 * cells.len()) as f64;
             }
         }
-        // About as wide as a cell, but no more bins than a few for each.
+        // About as wide as a cell, but with no more than a few bins for each.
         let least = distance(low, high) / (2.0 * (cells.len() as f64).sqrt() + 1.0);
         let side = if widest > least { widest } else { least };
         let counts = core::array::from_fn(|a| ((high[a] - low[a]) / side).floor() as i64);
         let mut grid = Grid { cells, positions, low, side, counts, bins: BTreeMap::new() };
-        // Long slanting cells cover many bins: fewer and wider ones then, down to one.
+        // Long slanted cells overlap many bins: use fewer and wider bins then, down to one.
         while grid.covered(&boxes) > MOST_BINS * cells.len() as f64 && grid.counts != [0; 2] {
             grid.side *= 2.0;
             grid.counts = core::array::from_fn(|a| ((high[a] - low[a]) / grid.side).floor() as i64);
@@ -161,7 +161,7 @@ impl<'m> Grid<'m> {
         Some(grid)
     }
 
-    /// How many bins boxes cover, each counted as often.
+    /// The number of bins that boxes overlap, counted with repetition.
     fn covered(&self, boxes: &[([f64; 2], [f64; 2])]) -> f64 {
         let of = |(from, to): &([f64; 2], [f64; 2])| {
             let (from, to) = (self.bin(*from), self.bin(*to));
@@ -178,13 +178,13 @@ impl<'m> Grid<'m> {
         (along(0), along(1))
     }
 
-    /// The nodes that carry a point and their weights: of the cell in which its least weight is largest, among those near it.
+    /// The nodes that carry a point, and their weights: those of the nearby cell in which its smallest weight is largest.
     fn carrier(&self, point: [f64; 2]) -> ([u32; 4], [f64; 4]) {
         let (i, j) = self.bin(point);
         let widest = if self.counts[0] > self.counts[1] { self.counts[0] } else { self.counts[1] };
         let mut best = (f64::NEG_INFINITY, ([0; 4], [1.0, 0.0, 0.0, 0.0]));
         for reach in 0..=widest + 1 {
-            // The bins at this distance: nearer ones have been looked at.
+            // The bins at this distance; nearer ones have been examined.
             let columns = (i - reach..=i + reach).filter(|column| (0..=self.counts[0]).contains(column));
             let ring = columns.flat_map(|column| {
                 let step = if (column - i).abs() == reach { 1 } else { 2 * reach };
@@ -196,7 +196,7 @@ impl<'m> Grid<'m> {
                     best = weighed;
                 }
             }
-            // A cell that holds the point is found at once; one near it within a bin more than the first was.
+            // A cell that contains the point is found at once; a nearby cell within one bin more than the first.
             if best.0 >= 0.0 || best.0 > f64::NEG_INFINITY && reach > 0 {
                 break;
             }
@@ -204,7 +204,7 @@ impl<'m> Grid<'m> {
         best.1
     }
 
-    /// How far inside a cell a point lies (negative: outside, in widths of the cell), and what carries it.
+    /// The depth of a point inside a cell (negative outside, in widths of the cell), and its carrier.
     fn weigh(&self, cell: &Carrier, point: [f64; 2]) -> (f64, ([u32; 4], [f64; 4])) {
         let at = |node: u32| self.positions[node as usize];
         match *cell {

@@ -1,18 +1,18 @@
-//! The triangulation between closed curves and points inside them.
+//! The triangulation of closed curves and points inside them.
 
 use super::{OutlineError, Ring};
 use spade::handles::FixedVertexHandle;
 use spade::{ConstrainedDelaunayTriangulation, HasPosition, Triangulation};
 
-/// So many points of a ring in a row on one line make a long straight side.
+/// The number of consecutive points of a ring on one line that make a long straight side.
 const LONG_SIDE: usize = 500;
 
-/// The triangulation of rings and of points inside them, with the edges of the rings; and for every vertex the number of its point, those of the
-/// rings first.
+/// The triangulation of rings and of points inside them, with the edges of the rings. Also returns the number of the point of every vertex; points of
+/// the rings come first.
 ///
-/// The library inserts many points at once from their middle outwards, which is quick for points that spread over an area. Those of a long straight side
-/// it walks along for each new one, in a time that grows with the square of their number: rings with such sides are inserted from coarse to fine instead,
-/// see [`coarse_to_fine`]. (Triangulations are the same either way, but a refinement adds its points in another order.)
+/// The library inserts many points at once, from their centre outwards, which is fast for points that cover an area. Along a long straight side it
+/// walks past all earlier points for each new one, so the time grows with the square of their number. Rings with such sides are therefore inserted
+/// from coarse to fine, see [`coarse_to_fine`]. (The triangulations are equal either way, but a refinement adds its points in another order.)
 pub(super) fn constrained<V: HasPosition<Scalar = f64>>(
     rings: &[Ring],
     inside: &[[f64; 2]],
@@ -43,7 +43,7 @@ pub(super) fn constrained<V: HasPosition<Scalar = f64>>(
             edges.clone(),
             |_| {},
         );
-        // Points that fall together make one vertex.
+        // Coincident points make one vertex.
         let made = made.ok().filter(|made| made.num_vertices() == points.len()).ok_or_else(|| refuse(0))?;
         (made, (0..points.len()).collect())
     };
@@ -51,7 +51,7 @@ pub(super) fn constrained<V: HasPosition<Scalar = f64>>(
     numbers.iter().enumerate().for_each(|(vertex, number)| vertices[*number] = FixedVertexHandle::from_index(vertex));
     for [from, to] in edges {
         let (a, b) = (vertices[from], vertices[to]);
-        // An edge that crosses another is not added, one with a point on it becomes two.
+        // An edge that crosses another is not added; an edge with a point on it becomes two.
         if a != b && !triangulation.exists_constraint(a, b) {
             triangulation.try_add_constraint(a, b);
         }
@@ -62,7 +62,7 @@ pub(super) fn constrained<V: HasPosition<Scalar = f64>>(
     Ok((triangulation, numbers))
 }
 
-/// Whether many points in a row lie on one line.
+/// Whether many consecutive points are on one line.
 fn has_long_side(ring: &Ring) -> bool {
     let n = ring.points.len();
     let mut run = 0;
@@ -78,10 +78,11 @@ fn has_long_side(ring: &Ring) -> bool {
     false
 }
 
-/// Vertices without edges, and for each the number of its point; else the number of a point that falls together with another.
+/// Vertices without edges, and the number of the point of each; or the number of a point that coincides with another.
 ///
-/// Of the list of all points first some far apart are inserted, then those halfway between, and so on, each looked for from the one before it in the list,
-/// which lies near. The outer corners come first of all: among points of one straight line there is no triangle to look in, only a row to walk along.
+/// From the list of all points, some distant ones are inserted first, then those halfway between, and so on. The search for each starts at the
+/// previous point of the list, which is near. The outer corners are inserted before all others: points on one straight line form no triangle to
+/// search in, only a row to walk along.
 fn coarse_to_fine<V: HasPosition<Scalar = f64>>(
     points: &[[f64; 2]],
     shrink: impl Fn([f64; 2]) -> V,
@@ -107,7 +108,7 @@ fn coarse_to_fine<V: HasPosition<Scalar = f64>>(
     Ok((triangulation, numbers))
 }
 
-/// Three points that span a triangle: both ends along x, and the one farthest from the line through them.
+/// Three points that form a triangle: both extremes along x, and the point farthest from the line through them.
 fn outer_corners(points: &[[f64; 2]]) -> [usize; 3] {
     let along = |a: &usize, b: &usize| {
         let (a, b) = (points[*a], points[*b]);
@@ -119,7 +120,7 @@ fn outer_corners(points: &[[f64; 2]]) -> [usize; 3] {
     [left, right, (0..points.len()).max_by(|a, b| off(*a).total_cmp(&off(*b))).unwrap_or(0)]
 }
 
-/// The numbers below a count from coarse to fine, each with the one halfway before which it was left out: 0; 4 after 0; 2 after 0, 6 after 4; …
+/// The numbers below a count from coarse to fine, each with its lower neighbour among the earlier numbers: 0; 4 after 0; 2 after 0, 6 after 4; …
 fn halvings(count: usize) -> impl Iterator<Item = (usize, Option<usize>)> {
     let strides = core::iter::successors(Some(count.next_power_of_two()), |stride| Some(stride / 2));
     let finer = strides.take_while(|stride| *stride > 1).flat_map(move |stride| {
@@ -136,7 +137,7 @@ mod tests {
     use spade::{HasPosition, Point2};
 
     thread_local! {
-        /// How often the library has looked at a point.
+        /// The number of times that the library has accessed a point.
         static LOOKS: Cell<u64> = const { Cell::new(0) };
     }
 
@@ -162,8 +163,8 @@ mod tests {
         }
     }
 
-    /// Points of a straight side lie in no triangle before there is a corner. One side of a strip, both sides of one, the sides of a square that lies
-    /// askew: however many points there are, each is looked at a few hundred times.
+    /// Points of a straight side are in no triangle before there is a corner. For one side of a strip, both sides of one, and the sides of a rotated
+    /// square, each point is accessed a few hundred times, however many points there are.
     #[test]
     fn points_of_long_straight_sides_are_looked_at_equally_often_however_many_there_are() {
         let looks = |points: Vec<[f64; 2]>| {

@@ -1,9 +1,9 @@
-//! Where closed curves cross or touch, themselves or one another.
+//! Crossings and contacts of closed curves with themselves or one another.
 
 use super::segments::{Segments, bounds_of};
 use crate::MeshError;
 
-/// Twice the signed area of the triangle a b c [m²]; positive where c lies left of a → b.
+/// Twice the signed area of the triangle a b c [m²]; positive if c is to the left of a → b.
 fn side(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
@@ -15,7 +15,7 @@ fn span(p: f64, q: f64) -> [f64; 2] {
 
 /// Whether the segments a b and c d have a common point.
 fn segments_meet(a: [f64; 2], b: [f64; 2], c: [f64; 2], d: [f64; 2]) -> bool {
-    // Their boxes must overlap, and each must have no whole segment strictly on one side.
+    // Their boxes must overlap, and neither segment may be strictly on one side of the other.
     let overlap = (0..2).all(|axis| {
         let (p, q) = (span(a[axis], b[axis]), span(c[axis], d[axis]));
         p[0] <= q[1] && q[0] <= p[1]
@@ -27,19 +27,20 @@ fn segments_meet(a: [f64; 2], b: [f64; 2], c: [f64; 2], d: [f64; 2]) -> bool {
 /// An edge of a ring: (number of the ring, number of the edge); edge i runs from point i to the next.
 pub(crate) type EdgeOfRing = (usize, usize);
 
-/// The most boxes that are compared: about a second of work, and so many more for each edge. Curves as people draw them take about a hundred for
-/// each; without a limit, a hundred thousand long edges that fan out from one place, whose boxes all overlap, would take minutes.
+/// The maximum number of boxes that are compared: a constant, about a second of work, plus a number for each edge. Typical drawings need about a
+/// hundred per edge. Without a limit, a hundred thousand long edges that fan out from one point, whose boxes all overlap, would take minutes.
 const MOST_COMPARED: [u64; 2] = [1 << 27, 500];
 
-/// Boxes are wider by this part of the extent than their edges: turning them has rounded their ends, and [`segments_meet`] rounds too.
+/// The margin of boxes around their edges, relative to the extent: their ends were rounded during rotation, and [`segments_meet`] rounds too.
 const MARGIN: f64 = 64.0 * f64::EPSILON;
 
-/// The lowest pair of edges of closed rings that meet beyond a shared end.
+/// The lowest pair of edges of closed rings that meet other than at a shared end.
 ///
-/// Only edges whose boxes overlap are compared. Boxes lie along the direction of most long edges, so that those of a slanting comb are thin too.
+/// Only edges with overlapping boxes are compared. Boxes are aligned with the direction of most long edges, so that those of a slanted comb are thin
+/// too.
 ///
 /// # Errors
-/// [`MeshError::NotCompared`] where too many boxes overlap.
+/// [`MeshError::NotCompared`] if too many boxes overlap.
 pub(crate) fn first_meeting(rings: &[&[[f64; 2]]]) -> Result<Option<[EdgeOfRing; 2]>, MeshError> {
     let edges = rings.iter().map(|points| points.len() as u64).sum();
     let most = MOST_COMPARED[0] + MOST_COMPARED[1] * edges;
@@ -47,7 +48,7 @@ pub(crate) fn first_meeting(rings: &[&[[f64; 2]]]) -> Result<Option<[EdgeOfRing;
     search(rings, most, &mut compared).map_err(|()| MeshError::NotCompared { edges, most })
 }
 
-/// The same; counts the boxes that are compared, and gives up where there are too many.
+/// The same; counts the comparisons of boxes, and gives up if there are too many.
 fn search(rings: &[&[[f64; 2]]], most: u64, compared: &mut u64) -> Result<Option<[EdgeOfRing; 2]>, ()> {
     let edges: Vec<EdgeOfRing> =
         rings.iter().enumerate().flat_map(|(ring, points)| (0..points.len()).map(move |edge| (ring, edge))).collect();
@@ -63,7 +64,7 @@ fn search(rings: &[&[[f64; 2]]], most: u64, compared: &mut u64) -> Result<Option
     let (width, height) = (extent(0), extent(1));
     let size = if width > height { width } else { height };
 
-    // The mean direction of edges and of what stands square to them, long ones counting more: four times an angle is the same for both.
+    // The mean direction of the edges and their perpendiculars, weighted by length: four times the angle is equal for both.
     let (mut along, mut across) = (0.0, 0.0);
     for edge in &edges {
         let (a, b) = ends(*edge);
@@ -89,7 +90,7 @@ fn search(rings: &[&[[f64; 2]]], most: u64, compared: &mut u64) -> Result<Option
     });
     let tree = Segments::of(boxes.collect());
 
-    // Edge by edge from the first on: the first that meets a later one is part of the lowest pair.
+    // Edge by edge in ascending order: the first that meets a later one is part of the lowest pair.
     for number in 0..edges.len() as u32 {
         let mut lowest: Option<u32> = None;
         *compared += tree.beside(number, |other| {
@@ -108,7 +109,7 @@ fn search(rings: &[&[[f64; 2]]], most: u64, compared: &mut u64) -> Result<Option
     Ok(None)
 }
 
-/// Whether two edges, the lower first, meet in more than the end that neighbours of one ring share.
+/// Whether two edges, the lower one first, meet other than at the end that neighbours of one ring share.
 fn edges_conflict(rings: &[&[[f64; 2]]], [first, second]: [EdgeOfRing; 2]) -> bool {
     let ends = |(ring, edge): EdgeOfRing| (rings[ring][edge], rings[ring][(edge + 1) % rings[ring].len()]);
     let folds_back = |a: [f64; 2], b: [f64; 2], c: [f64; 2]| {
@@ -142,7 +143,7 @@ mod tests {
     }
 
     proptest! {
-        /// On a coarse grid, points and edges often touch.
+        /// On a coarse grid points and edges often touch.
         #[test]
         fn the_lowest_pair_that_meets_is_that_of_all_pairs(
             rings in proptest::collection::vec(proptest::collection::vec([0..9u8, 0..9u8], 3..12), 1..4),
@@ -157,7 +158,7 @@ mod tests {
         }
     }
 
-    /// A comb of long teeth, turned by an angle.
+    /// A comb of long teeth, rotated by an angle.
     fn comb(teeth: u32, angle: f64) -> Vec<[f64; 2]> {
         let width = 1.0 / f64::from(2 * teeth);
         let mut points = vec![[1.0, 1.0], [0.0, 1.0]];
@@ -184,7 +185,7 @@ mod tests {
 
     #[test]
     fn too_many_edges_side_by_side_are_refused_and_not_compared_for_ever() {
-        // Thin spikes that fan out: every box overlaps those of a whole quarter.
+        // Thin spikes that fan out: every box overlaps those of a whole quadrant.
         let spikes = 4_000;
         let place = |k: u32, r: f64| {
             let angle = core::f64::consts::PI * f64::from(k) / f64::from(spikes);

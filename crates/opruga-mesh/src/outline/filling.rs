@@ -13,27 +13,28 @@ const RADIUS_TO_EDGE: f64 = 1.183_100_791_576_249_3;
 /// √3 / 2: height of an equilateral triangle over its side.
 const HEIGHT: f64 = 0.866_025_403_784_438_6;
 
-/// Inner nodes keep this much of the spacing away from the outline.
+/// The smallest distance of inner nodes from the outline, relative to the spacing.
 const CLEARANCE: f64 = 0.6;
 
-/// Triangles of less than this times the spacing squared are not divided any more: an equilateral one has 0.43.
+/// Triangles with less than this times the squared spacing are not divided further; an equilateral triangle has 0.43.
 const SMALLEST_AREA: f64 = 0.1;
 
-/// About how many nodes a filling has: those of the rings, and one for every two triangles inside.
+/// The approximate number of nodes of a filling: those of the rings, and one for every two triangles inside.
 pub fn node_estimate(rings: &[Ring], spacing: f64) -> f64 {
     let inside: f64 = rings.iter().map(Ring::area).sum::<f64>() / (HEIGHT * spacing * spacing);
     let border: usize = rings.iter().map(|ring| ring.points.len()).sum();
     crate::mesh::estimated(border as f64 + inside.abs())
 }
 
-/// The inside of rings that [`super::nest`] has turned, as a lattice of nearly equilateral triangles of side `spacing` [m].
+/// The inside of rings that [`super::nest`] has oriented, as a lattice of nearly equilateral triangles of side `spacing` [m].
 ///
-/// Nodes of the rings come first and keep their order; edges of the rings may be halved where a triangle would else be too thin. Inside, the nodes lie
-/// on a regular triangular lattice; between it and the outline lies a constrained Delaunay triangulation, refined until no angle is below
-/// [`super::SMALLEST_ANGLE`] but in triangles too small to be divided: small triangles would take small steps of time. What came out below it is told.
+/// Nodes of the rings come first and keep their order. Edges of the rings may be halved if a triangle would otherwise be too thin. Inside, the nodes
+/// form a regular triangular lattice. Between it and the outline there is a constrained Delaunay triangulation, refined until no angle is below
+/// [`super::SMALLEST_ANGLE`], except in triangles that are too small to be divided: small triangles would require short time steps. Smaller angles in
+/// the result are reported.
 ///
 /// # Errors
-/// [`OutlineError::TooCoarse`] where edges of the rings cross, [`OutlineError::TooFine`] where the mesh would be too large.
+/// [`OutlineError::TooCoarse`] if edges of the rings cross, [`OutlineError::TooFine`] if the mesh would be too large.
 ///
 /// # Source
 /// J. Ruppert, "A Delaunay refinement algorithm for quality 2-dimensional mesh generation", J. Algorithms 18 (1995); library spade.
@@ -45,7 +46,7 @@ pub fn filled(rings: &[Ring], spacing: f64) -> Result<(Mesh<2>, Option<Thin>), O
     let (low, high) = super::bounds(rings).ok_or(OutlineError::Empty {})?;
     let extent = distance(low, high);
 
-    // The library wants numbers of ordinary size: the drawing is brought to the unit square and back.
+    // The library needs numbers of moderate size, so the drawing is scaled to the unit square and back.
     let shrink = |p: [f64; 2]| Point2::new((p[0] - low[0]) / extent, (p[1] - low[1]) / extent);
     let failed = |part: u32, position| OutlineError::TooCoarse { spacing, parts: [part; 2], position };
     let (mut triangulation, given) = constrained(rings, &lattice(rings, low, high, spacing), shrink, failed)?;
@@ -56,7 +57,7 @@ pub fn filled(rings: &[Ring], spacing: f64) -> Result<(Mesh<2>, Option<Thin>), O
         .exclude_outer_faces(true);
     let refined = triangulation.refine(parameters);
 
-    // Nodes: those of the rings, those of the lattice, then those of the refinement in the order of their insertion.
+    // Nodes: first those of the rings, then those of the lattice, then those of the refinement in the order of their insertion.
     let mut outside = refined.excluded_faces;
     outside.sort_unstable();
     let number = |index: usize| given.get(index).copied().unwrap_or(index);
@@ -97,17 +98,17 @@ pub fn filled(rings: &[Ring], spacing: f64) -> Result<(Mesh<2>, Option<Thin>), O
     Ok((mesh, thin))
 }
 
-/// The inside of rings that do not meet as triangles between their points, which are counted ring by ring; no points are added.
+/// The inside of rings that do not meet, as triangles between their points, which are numbered ring by ring; no points are added.
 ///
 /// # Errors
-/// [`OutlineError::TooCoarse`] where rings meet, [`OutlineError::Empty`] without rings.
+/// [`OutlineError::TooCoarse`] if rings meet, [`OutlineError::Empty`] without rings.
 pub(crate) fn triangles_between(rings: &[Ring]) -> Result<Vec<[u32; 3]>, OutlineError> {
     let (low, high) = super::bounds(rings).ok_or(OutlineError::Empty {})?;
     let extent = distance(low, high);
     let shrink = |p: [f64; 2]| Point2::new((p[0] - low[0]) / extent, (p[1] - low[1]) / extent);
     let failed = |part: u32, position| OutlineError::TooCoarse { spacing: extent, parts: [part; 2], position };
     let (mut triangulation, given) = constrained(rings, &[], shrink, failed)?;
-    // A refinement that may add nothing tells which triangles lie outside.
+    // A refinement without new vertices reports which triangles are outside.
     let nothing = RefinementParameters::<f64>::new().with_max_additional_vertices(0).exclude_outer_faces(true);
     let mut outside = triangulation.refine(nothing).excluded_faces;
     outside.sort_unstable();
@@ -115,9 +116,9 @@ pub(crate) fn triangles_between(rings: &[Ring]) -> Result<Vec<[u32; 3]>, Outline
     Ok(inner.map(|face| face.vertices().map(|vertex| given[vertex.fix().index()] as u32)).collect())
 }
 
-/// Points of a triangular lattice inside the rings and clear of them, row by row.
+/// Points of a triangular lattice inside the rings and at some distance from them, row by row.
 fn lattice(rings: &[Ring], low: [f64; 2], high: [f64; 2], spacing: f64) -> Vec<[f64; 2]> {
-    // Edges by the cells of a grid that they run through.
+    // Edges by the cells of a grid that they pass through.
     let cell = |x: f64| (x / spacing).floor() as i64;
     let edges: Vec<([f64; 2], [f64; 2])> = rings.iter().flat_map(Ring::edges).collect();
     let mut edges_by_cell: BTreeMap<(i64, i64), Vec<usize>> = BTreeMap::new();
@@ -146,7 +147,7 @@ fn lattice(rings: &[Ring], low: [f64; 2], high: [f64; 2], spacing: f64) -> Vec<[
     let rows = ((high[1] - low[1]) / height).floor() as i64;
     let first_y = low[1] + 0.5 * ((high[1] - low[1]) - rows as f64 * height);
     let middle = 0.5 * (low[0] + high[0]);
-    // A sweep from below: edges come in by their lower end, and go by their upper one.
+    // A sweep from below: edges are added at their lower end and removed at their upper end.
     let lower =
         |edge: &usize| if edges[*edge].0[1] < edges[*edge].1[1] { edges[*edge].0[1] } else { edges[*edge].1[1] };
     let mut waiting: Vec<usize> = (0..edges.len()).collect();

@@ -1,4 +1,4 @@
-//! Which ring lies inside which, and whether a point lies inside of one.
+//! The nesting of rings, and whether a point is inside one.
 
 use super::Ring;
 use super::segments::{Segments, bounds_of};
@@ -10,17 +10,17 @@ struct Rising {
     low: [f64; 2],
     high: [f64; 2],
     ring: usize,
-    /// Whether the ring runs upwards here.
+    /// Whether the ring runs upwards on this edge.
     upward: bool,
 }
 
 impl Rising {
-    /// Whether it crosses a level, at which the lower end counts and the upper one does not: rings that only touch it cross it twice or never.
+    /// Whether it crosses a level. The lower end counts and the upper one does not, so rings that only touch the level cross it twice or never.
     fn crosses(&self, level: f64) -> bool {
         self.low[1] <= level && level < self.high[1]
     }
 
-    /// Whether a point lies strictly to the left; exact.
+    /// Whether a point is strictly to its left; exact.
     fn is_right_of(&self, point: [f64; 2]) -> bool {
         self.side(point) > 0.0
     }
@@ -30,14 +30,14 @@ impl Rising {
         orient2d(exact(self.low), exact(self.high), exact(point))
     }
 
-    /// Whether it lies to the left of another one that crosses the same level, where the two meet at an end at most.
+    /// Whether it is to the left of another edge that crosses the same level, if the two meet at most at an end.
     fn is_left_of(&self, other: &Rising) -> bool {
         let by_low = if self.low[1] >= other.low[1] { other.side(self.low) } else { -self.side(other.low) };
         let by_high = || if self.high[1] <= other.high[1] { other.side(self.high) } else { -self.side(other.high) };
         if by_low == 0.0 { by_high() > 0.0 } else { by_low > 0.0 }
     }
 
-    /// About where it crosses a level.
+    /// The approximate position at which it crosses a level.
     fn at(&self, level: f64) -> f64 {
         self.low[0] + (level - self.low[1]) / (self.high[1] - self.low[1]) * (self.high[0] - self.low[0])
     }
@@ -60,9 +60,10 @@ fn tree_of(edges: &[Rising]) -> Segments {
     Segments::of(edges.iter().map(|edge| bounds_of(edge.low, edge.high)).collect())
 }
 
-/// For every ring the innermost other one that it lies in. Rings must not meet.
+/// For every ring, the innermost other ring that contains it. Rings must not meet.
 ///
-/// The nearest edge to the right of the rightmost point of a ring tells: that of a ring around it, or of one beside it, which is then in the same one.
+/// The nearest edge to the right of the rightmost point of a ring gives the answer: it belongs to the surrounding ring, or to a ring beside it, which
+/// has the same surrounding ring.
 pub fn around(rings: &[Ring]) -> Vec<Option<usize>> {
     let all: Vec<&[[f64; 2]]> = rings.iter().map(|ring| ring.points.as_slice()).collect();
     let edges = rising(&all);
@@ -75,7 +76,7 @@ pub fn around(rings: &[Ring]) -> Vec<Option<usize>> {
     };
     let mut order: Vec<(usize, [f64; 2])> =
         all.iter().enumerate().filter_map(|(ring, points)| Some((ring, rightmost(points)?))).collect();
-    // A ring that is met reaches farther to the right: it has been placed before.
+    // The ring that is found extends farther to the right, so its own result is already known.
     order.sort_by(|p, q| q.1[0].total_cmp(&p.1[0]).then(p.0.cmp(&q.0)));
     let mut found: Vec<Option<usize>> = vec![None; rings.len()];
     for (ring, point) in order {
@@ -87,7 +88,7 @@ pub fn around(rings: &[Ring]) -> Vec<Option<usize>> {
                 && edge.is_right_of(point)
                 && nearest.is_none_or(|(best, _)| edge.is_left_of(&best))
             {
-                // Rounding may not hide an edge that lies a little to the left.
+                // Rounding must not hide an edge slightly to the left.
                 let at = edge.at(point[1]);
                 let slack = 1e-12 * (at.abs() + point[0].abs());
                 nearest = Some((edge, at + slack));
@@ -95,28 +96,28 @@ pub fn around(rings: &[Ring]) -> Vec<Option<usize>> {
             nearest.map_or(f64::INFINITY, |(_, reach)| reach)
         });
         found[ring] = nearest.and_then(|(edge, _)| {
-            // Inside is to the left of a ring that runs counter-clockwise.
+            // The inside is to the left of a counter-clockwise ring.
             if edge.upward == counter_clockwise[edge.ring] { Some(edge.ring) } else { found[edge.ring] }
         });
     }
     found
 }
 
-/// A closed curve that can be asked about many points.
+/// A closed curve prepared for queries of many points.
 pub struct Inside {
     edges: Vec<Rising>,
     tree: Segments,
 }
 
 impl Inside {
-    /// The curve through some points and back to the first.
+    /// The closed curve through some points.
     pub fn of(points: &[[f64; 2]]) -> Inside {
         let edges = rising(&[points]);
         let tree = tree_of(&edges);
         Inside { edges, tree }
     }
 
-    /// Whether a point lies inside: an odd number of edges cross the ray to its right.
+    /// Whether a point is inside, which is so if an odd number of edges cross the ray to its right.
     pub fn holds(&self, point: [f64; 2]) -> bool {
         let mut inside = false;
         self.tree.along_ray(point, |number| {
@@ -141,7 +142,7 @@ mod tests {
         Ring { points, part: 0 }
     }
 
-    /// By asking every ring about a point of every other: the smallest that holds it.
+    /// Tests every ring with a point of every other one: the smallest ring that contains it.
     fn by_all_pairs(rings: &[Ring]) -> Vec<Option<usize>> {
         let of = |number: usize| {
             let holds =
@@ -151,13 +152,13 @@ mod tests {
         (0..rings.len()).map(of).collect()
     }
 
-    /// A square of squares in one another: `tree` says how deep each of nine is divided.
+    /// A square with nested squares; `tree` determines how deep each of nine is divided.
     fn nested(x: f64, y: f64, half: f64, tree: &mut impl Iterator<Item = (bool, bool, bool)>, out: &mut Vec<Ring>) {
         let Some((there, divided, clockwise)) = tree.next() else { return };
         if !there {
             return;
         }
-        // Sides of neighbours lie on common lines, where rays meet corners.
+        // Sides of neighbours are on common lines, so that rays meet corners.
         out.push(square(x, y, half, clockwise));
         if divided {
             for i in [-1.0, 0.0, 1.0] {

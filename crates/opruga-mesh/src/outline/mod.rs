@@ -1,12 +1,12 @@
-//! Closed curves of the plane, from wherever they come, made into bodies.
+//! Closed curves in the plane from any source, and bodies made from them.
 //!
 //! ```text
 //! rings as drawn ─nest→ outer rings and holes ─resampled→ equal edges ─skin→ a skin of edges
 //!                                                                    └─filled→ triangles inside
 //!                     └─squares→ equal squares around, which carry the rings
 //! ```
-//! Holes follow the even-odd rule: a point is inside where a ray from it to infinity meets the rings an odd number of times. Rings that meet are
-//! refused, or joined beforehand by [`joined`].
+//! Holes follow the even-odd rule: a point is inside if a ray from it to infinity crosses the rings an odd number of times. Rings that meet are
+//! refused, unless [`joined`] has joined them before.
 
 mod carrying;
 mod constrained;
@@ -36,18 +36,18 @@ pub use thin::{Cause, SMALLEST_ANGLE, Thin};
 
 use crate::{Mesh, MeshError};
 
-/// A closed curve of the plane.
+/// A closed curve in the plane.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Ring {
-    /// Its points [m], the first not repeated at the end.
+    /// Its points [m], without a repetition of the first at the end.
     pub points: Vec<[f64; 2]>,
-    /// The part of its source that it was drawn by: paths of a drawing, letters of a text, polygons of a map. Rings of one part are holes of one
-    /// another; what parts do to each other is said by [`Overlap`].
+    /// The part of its source to which it belongs: a path of a drawing, a letter of a text, a polygon of a map. Rings of one part are holes of one
+    /// another; [`Overlap`] determines the effect of parts on each other.
     pub part: u32,
 }
 
 impl Ring {
-    /// Signed area ½Σ(xᵢyⱼ − xⱼyᵢ) [m²] about the first point; positive where the ring runs counter-clockwise.
+    /// Signed area ½Σ(xᵢyⱼ − xⱼyᵢ) [m²] relative to the first point; positive if the ring runs counter-clockwise.
     pub fn area(&self) -> f64 {
         let Some(o) = self.points.first() else { return 0.0 };
         let mut doubled = 0.0;
@@ -62,14 +62,14 @@ impl Ring {
         self.edges().map(|(a, b)| distance(a, b)).sum()
     }
 
-    /// Its edges as pairs of points, the closing one last.
+    /// Its edges as pairs of points, with the closing edge last.
     pub(crate) fn edges(&self) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
         let next = self.points.iter().cycle().skip(1);
         self.points.iter().zip(next).map(|(a, b)| (*a, *b))
     }
 }
 
-/// Lowest and highest coordinates of all rings [m]; none where there are no points.
+/// Lowest and highest coordinates of all rings [m]; none if there are no points.
 pub fn bounds(rings: &[Ring]) -> Option<([f64; 2], [f64; 2])> {
     let mut points = rings.iter().flat_map(|ring| &ring.points);
     let first = *points.next()?;
@@ -93,7 +93,7 @@ pub(crate) fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     (x * x + y * y).sqrt()
 }
 
-/// Rings as the skin of a body: an edge from every point to the next. Rings that [`nest`] has turned make chambers with holes.
+/// Rings as the skin of a body: an edge from every point to the next. Rings that [`nest`] has oriented make chambers with holes.
 ///
 /// # Errors
 /// [`MeshError::TooManyNodes`].

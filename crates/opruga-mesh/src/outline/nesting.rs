@@ -1,13 +1,14 @@
-//! Which rings are holes.
+//! Distinction of outer rings and holes.
 
 use super::inside::around;
 use super::{OutlineError, Ring, first_meeting};
 use crate::MeshError;
 
-/// Two parts, and where they meet.
+/// Two parts, and the position at which they meet.
 type Meeting = ([u32; 2], [f64; 2]);
 
-/// Turns rings by the even-odd rule: those inside an even number of others run counter-clockwise, holes clockwise. Returns how many were turned.
+/// Orients rings by the even-odd rule: rings inside an even number of others run counter-clockwise, holes clockwise. Returns the number of reversed
+/// rings.
 ///
 /// # Errors
 /// [`OutlineError::Empty`], [`OutlineError::NotFinite`], [`OutlineError::NoArea`], and [`OutlineError::Meeting`] for rings that cross or touch
@@ -31,9 +32,9 @@ pub fn nest(rings: &mut [Ring]) -> Result<usize, OutlineError> {
     Ok(turned)
 }
 
-/// Whether a ring lies inside an odd number of others; what is known of each is kept.
+/// Whether a ring is inside an odd number of others. Known results are kept.
 fn is_hole(number: usize, around: &[Option<usize>], known: &mut [Option<bool>]) -> bool {
-    // Outwards to a ring of which it is known, and back: rings may lie in one another by the thousand.
+    // Follow the nesting outwards to a ring with a known result, and return; there may be thousands of levels.
     let (mut path, mut at) = (Vec::new(), number);
     let mut hole = loop {
         match (known[at], around[at]) {
@@ -66,7 +67,7 @@ fn check(rings: &[Ring]) -> Result<(), OutlineError> {
         }
         let area = ring.area();
         if ring.points.len() < 3 || area == 0.0 || !area.is_finite() {
-            // The halves of a figure of eight enclose as much as they take away: what is wrong is that they cross.
+            // The halves of a figure of eight have areas that cancel; its error is that it crosses itself.
             if area == 0.0
                 && !is_on_a_line(ring)
                 && let Some((parts, point)) = meeting(core::slice::from_ref(ring))?
@@ -80,7 +81,7 @@ fn check(rings: &[Ring]) -> Result<(), OutlineError> {
     Ok(())
 }
 
-/// Whether all points of a ring lie on one line.
+/// Whether all points of a ring are on one line.
 fn is_on_a_line(ring: &Ring) -> bool {
     let Some(first) = ring.points.first() else { return true };
     let offset = |p: &[f64; 2]| [p[0] - first[0], p[1] - first[1]];
@@ -88,10 +89,10 @@ fn is_on_a_line(ring: &Ring) -> bool {
     ring.points.iter().map(offset).all(|offset| along[0] * offset[1] - along[1] * offset[0] == 0.0)
 }
 
-/// The parts of the first two edges that meet, and about where.
+/// The parts of the first two edges that meet, and the approximate position.
 ///
 /// # Errors
-/// [`MeshError::NotCompared`] where that cannot be told.
+/// [`MeshError::NotCompared`] if this cannot be determined.
 pub(super) fn meeting(rings: &[Ring]) -> Result<Option<Meeting>, MeshError> {
     let all: Vec<&[[f64; 2]]> = rings.iter().map(|ring| ring.points.as_slice()).collect();
     let Some([p, q]) = first_meeting(&all)? else { return Ok(None) };
@@ -100,7 +101,7 @@ pub(super) fn meeting(rings: &[Ring]) -> Result<Option<Meeting>, MeshError> {
     Ok(Some(([rings[p.0].part, rings[q.0].part], crossing_point(a, b, c, d))))
 }
 
-/// Where two edges cross: a common end, or where their lines do; for parallel ones an end of one that lies on the other.
+/// The crossing point of two edges: a common end, or the intersection of their lines; for parallel edges, an end of one that is on the other.
 fn crossing_point(a: [f64; 2], b: [f64; 2], c: [f64; 2], d: [f64; 2]) -> [f64; 2] {
     let (u, v) = ([b[0] - a[0], b[1] - a[1]], [d[0] - c[0], d[1] - c[1]]);
     if let Some(common) = [c, d].into_iter().find(|end| *end == a || *end == b) {

@@ -1,4 +1,4 @@
-//! Drawings whose parts lie over one another, made into rings that do not meet.
+//! Conversion of drawings with overlapping parts to rings that do not meet.
 
 use super::{Ring, nesting, touching};
 use i_overlay::core::fill_rule::FillRule;
@@ -6,31 +6,31 @@ use i_overlay::core::overlay_rule::OverlayRule;
 use i_overlay::core::solver::Solver;
 use i_overlay::float::overlay::{FloatOverlay, OverlayOptions};
 
-/// What is inside where parts of a drawing lie over one another.
+/// The rule that determines the inside of overlapping parts of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Overlap {
-    /// What any part covers: the silhouette. Each part by itself follows the even-odd rule.
+    /// The area that any part covers: the silhouette. Each part by itself follows the even-odd rule.
     Union,
-    /// What an odd number of rings of all parts enclose.
+    /// The area that an odd number of rings of all parts enclose.
     EvenOdd,
 }
 
-/// Rings that bound what is covered, and that meet nowhere; they belong to part 0.
+/// Rings that bound the covered area and do not meet anywhere; they belong to part 0.
 ///
-/// Coordinates are kept on a grid of about 2⁻³⁰ of the drawing's size. Areas that touch in points alone do not hang together
-/// there: every one keeps a corner of its own, set back by 2⁻³² of that size.
+/// Coordinates are rounded to a grid of about 2⁻³⁰ of the drawing's size. Areas that touch only at points are not connected there: each gets its own
+/// corner, which is set back by 2⁻³² of that size.
 pub fn joined(rings: &[Ring], how: Overlap) -> Vec<Ring> {
     let made = covered(rings, how, false);
     if matches!(nesting::meeting(&made), Ok(None)) {
         return made;
     }
-    // Points in which rings touch lie on straight edges too: none of them may be left out.
+    // Points at which rings touch may be on straight edges too, so none of them may be dropped.
     touching::apart(&covered(rings, how, true))
 }
 
-/// What the non-zero rule covers: points around which the rings wind.
+/// The area covered by the non-zero rule: points around which the rings wind.
 ///
-/// Like [`joined`], for rings whose directions count.
+/// Like [`joined`], for rings whose directions matter.
 pub fn wound(rings: &[Ring]) -> Vec<Ring> {
     let all: Vec<&Ring> = rings.iter().collect();
     let made = numbered(contours(&all, FillRule::NonZero, false));
@@ -41,13 +41,13 @@ pub fn wound(rings: &[Ring]) -> Vec<Ring> {
     }
 }
 
-/// The rings of [`joined`], which may touch; with all points on their edges, or without those on straight lines.
+/// The rings of [`joined`], which may touch; with all points on their edges, or without points on straight lines.
 fn covered(rings: &[Ring], how: Overlap, all_points: bool) -> Vec<Ring> {
     let everything: Vec<&Ring> = rings.iter().collect();
     numbered(match how {
         Overlap::EvenOdd => contours(&everything, FillRule::EvenOdd, all_points),
         Overlap::Union => {
-            // First every part by itself, then all of them together: outer rings and holes then wind opposite ways.
+            // First each part separately, then all of them together: outer rings and holes then have opposite directions.
             let mut by_part = everything;
             by_part.sort_by_key(|ring| ring.part);
             let clean: Vec<Ring> = by_part
@@ -64,7 +64,7 @@ fn numbered(contours: Vec<Vec<[f64; 2]>>) -> Vec<Ring> {
     contours.into_iter().map(|points| Ring { points, part: 0 }).collect()
 }
 
-/// The contours of what a rule covers, with it to their left.
+/// The contours of the area covered by a rule, with the area to their left.
 fn contours(rings: &[&Ring], rule: FillRule, all_points: bool) -> Vec<Vec<[f64; 2]>> {
     let all: Vec<Vec<[f64; 2]>> = rings.iter().map(|ring| ring.points.clone()).collect();
     let mut options = OverlayOptions::default();

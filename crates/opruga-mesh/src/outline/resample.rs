@@ -1,21 +1,22 @@
-//! Closed curves in equal edges that keep their corners.
+//! Resampling of closed curves to equal edges that keep their corners.
 
 use super::{OutlineError, Ring, distance};
 use crate::Quantity;
 use std::collections::BTreeSet;
 
-/// A turn by more than this within one edge length is a corner: cos 35°. The tip of a heart may turn by no more than 40°, a
-/// regular octagon by 45°; a circle, cut into the twelve edges or more in which turns are looked for, by 30° at most.
+/// A turn by more than this within one edge length is a corner: cos 35°. The tip of a heart may turn by only 40°, a regular octagon turns by 45°; a
+/// circle that is cut into twelve edges or more, in which turns are measured, by at most 30°.
 const CORNER_COSINE: f64 = 0.819_152_044_288_991_8;
 
-/// Rings with points about `spacing` [m] apart along them: corners stay, curves between them are cut into equal lengths, detail finer than the
-/// spacing is left out; at least 3 points each.
+/// Rings with points about `spacing` [m] apart. Corners are kept, the curves between them are divided into equal lengths, and detail finer than the
+/// spacing is dropped. Each ring has at least 3 points.
 ///
-/// A corner is a point where the directions half a spacing before and behind differ by more than 35°, and more than those around it; or one in which
-/// rings touched before [`super::joined`] took them apart.
+/// A corner is a point at which the directions half a spacing before and after differ by more than 35°, and by more than at the points around it; or
+/// a point at which rings touched before [`super::joined`] separated them.
 ///
 /// # Errors
-/// [`OutlineError::Mesh`] for too many points; [`OutlineError::NoArea`] for a ring that vanishes, [`OutlineError::TooCoarse`] where edges cross now.
+/// [`OutlineError::Mesh`] for too many points; [`OutlineError::NoArea`] for a ring that vanishes, [`OutlineError::TooCoarse`] if edges of the result
+/// cross.
 pub fn resampled(rings: &[Ring], spacing: f64) -> Result<Vec<Ring>, OutlineError> {
     crate::mesh::positive(Quantity::Spacing, spacing)?;
     let pieces: f64 = rings.iter().map(|ring| ring.length() / spacing).sum();
@@ -34,7 +35,7 @@ pub fn resampled(rings: &[Ring], spacing: f64) -> Result<Vec<Ring>, OutlineError
     }
 }
 
-/// One ring, resampled; the points with the given numbers stay.
+/// One ring, resampled; the points with the given numbers are kept.
 fn resample(ring: &Ring, fixed: &[usize], spacing: f64) -> Ring {
     let curve = Curve::of(ring);
     if curve.total == 0.0 {
@@ -60,7 +61,7 @@ fn resample(ring: &Ring, fixed: &[usize], spacing: f64) -> Ring {
     Ring { points, part: ring.part }
 }
 
-/// A closed curve by its length.
+/// A closed curve, parametrised by its length.
 struct Curve<'a> {
     points: &'a [[f64; 2]],
     /// Length from the first point to each point [m].
@@ -80,7 +81,7 @@ impl<'a> Curve<'a> {
         Curve { points: &ring.points, from_start, total }
     }
 
-    /// The point at a length from the first one; lengths wrap around.
+    /// The point at a given length from the first one; lengths wrap around.
     fn at(&self, length: f64) -> [f64; 2] {
         let mut length = length;
         while length < 0.0 {
@@ -97,7 +98,7 @@ impl<'a> Curve<'a> {
         [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]
     }
 
-    /// Lengths at which the corners lie, ascending; the points with the given numbers are some whatever lies near them.
+    /// Lengths at the corners, ascending; the points with the given numbers are always corners.
     fn corners(&self, fixed: &[usize], spacing: f64) -> Vec<f64> {
         let twelfth = self.total / 12.0;
         let reach = if 0.5 * spacing < twelfth { 0.5 * spacing } else { twelfth };
@@ -112,9 +113,9 @@ impl<'a> Curve<'a> {
                 candidates.push((cosine, *length));
             }
         }
-        // The sharpest first; what lies within its reach belongs to it.
+        // The sharpest first; candidates within its reach belong to it.
         candidates.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
-        // Lengths are not negative: their bits are in the order of the numbers.
+        // Lengths are not negative, so their bits have the same order as the numbers.
         let mut corners: BTreeSet<u64> = fixed.iter().map(|point| self.from_start[*point].to_bits()).collect();
         for (_, length) in candidates {
             let apart = |other: Option<&u64>| {
@@ -123,7 +124,7 @@ impl<'a> Curve<'a> {
                     gap > reach && self.total - gap > reach
                 })
             };
-            // The neighbours before and behind, around the end of the ring.
+            // The neighbours before and after, across the end of the ring.
             let key = length.to_bits();
             let before = corners.range(..key).next_back().or(corners.last());
             let behind = corners.range(key..).next().or(corners.first());

@@ -1,6 +1,6 @@
-//! A tree of boxes over the edges of closed curves: which edges lie near a place, in a time that hardly grows with their number.
+//! A tree of boxes over the edges of closed curves, which finds the edges near a position in a time that hardly grows with their number.
 
-/// Edges below a node of the lowest level.
+/// Edges in a node of the lowest level.
 const LEAF: usize = 4;
 
 /// Lowest and highest corner.
@@ -30,7 +30,7 @@ fn overlap(a: &Bounds, b: &Bounds) -> bool {
     (0..2).all(|axis| a[0][axis] <= b[1][axis] && b[0][axis] <= a[1][axis])
 }
 
-/// A complete binary tree: node 1 is the root, nodes 2n and 2n + 1 are below node n, edges follow a space-filling curve.
+/// A complete binary tree: node 1 is the root, nodes 2n and 2n + 1 are below node n, and edges follow a space-filling curve.
 pub(super) struct Segments {
     leaves: usize,
     nodes: Vec<Bounds>,
@@ -75,7 +75,7 @@ impl Segments {
         &self.order[(leaf * LEAF).min(end)..((leaf + 1) * LEAF).min(end)]
     }
 
-    /// Visits all edges whose box overlaps that of an edge; returns how many boxes were compared.
+    /// Visits all edges whose box overlaps that of an edge; returns the number of comparisons of boxes.
     pub(super) fn beside(&self, edge: u32, mut visit: impl FnMut(u32)) -> u64 {
         let area = self.own[edge as usize];
         let (mut waiting, mut compared) = (vec![1usize], 0);
@@ -98,8 +98,8 @@ impl Segments {
         compared
     }
 
-    /// Visits edges whose box the ray from a point to the right meets, the near ones first. `visit` says how far the ray has still to be
-    /// followed: to the nearest edge that was found so far.
+    /// Visits edges whose box intersects the ray from a point to the right, near ones first. `visit` returns how far the ray has to be followed: to
+    /// the nearest edge found so far.
     pub(super) fn along_ray(&self, from: [f64; 2], mut visit: impl FnMut(u32) -> f64) {
         let mut reach = f64::INFINITY;
         let met = |bounds: &Bounds, reach: f64| {

@@ -4,24 +4,24 @@ use super::{OutlineError, Ring, bounds};
 use crate::{MAXIMUM_NODES, Mesh, Quantity};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A square by its column and row.
+/// A square, given by its column and row.
 type Square = (i64, i64);
 
-/// About how many nodes [`squares`] makes: one for each square inside, and those along the rings.
+/// The approximate number of nodes of [`squares`]: one for each square inside, plus those along the rings.
 pub fn squares_estimate(rings: &[Ring], spacing: f64) -> f64 {
     let inside = rings.iter().map(Ring::area).sum::<f64>().abs() / (spacing * spacing);
     let border = 2.0 * rings.iter().map(Ring::length).sum::<f64>() / spacing;
     crate::mesh::estimated(inside + border + 4.0)
 }
 
-/// The inside of rings that [`super::nest`] has turned as equal squares of side `spacing` [m], which reach a little beyond the rings: those are kept
-/// that a ring runs through or whose middle is inside, and where two would touch in a corner alone, one beside them.
+/// The inside of rings that [`super::nest`] has oriented, as equal squares of side `spacing` [m], which extend slightly beyond the rings. A square is
+/// kept if a ring passes through it or if its centre is inside. If two squares would touch only at a corner, one beside them is added.
 ///
-/// Detail finer than the spacing does not change the squares but by where it reaches: parts less than a square apart become one body. The lattice is
-/// centred in the box of the rings. Nodes run row by row, from below.
+/// Detail finer than the spacing affects the squares only by its extent: parts less than a square apart become one body. The lattice is centred in
+/// the box of the rings. Nodes are numbered row by row, from below.
 ///
 /// # Errors
-/// [`OutlineError::TooFine`] where the lattice would be too large, [`OutlineError::Empty`] without rings.
+/// [`OutlineError::TooFine`] if the lattice would be too large, [`OutlineError::Empty`] without rings.
 pub fn squares(rings: &[Ring], spacing: f64) -> Result<Mesh<2>, OutlineError> {
     crate::mesh::positive(Quantity::Spacing, spacing)?;
     let (low, high) = bounds(rings).ok_or(OutlineError::Empty {})?;
@@ -58,7 +58,7 @@ fn corners((i, j): Square) -> [(i64, i64); 4] {
     [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)]
 }
 
-/// Squares that a ring runs through: for every edge, column by column, the rows between its ends there.
+/// Squares that a ring passes through: for every edge, column by column, the rows between its ends in that column.
 fn crossed(rings: &[Ring], origin: [f64; 2], spacing: f64) -> BTreeSet<Square> {
     let mut found = BTreeSet::new();
     for (a, b) in rings.iter().flat_map(Ring::edges) {
@@ -80,9 +80,9 @@ fn crossed(rings: &[Ring], origin: [f64; 2], spacing: f64) -> BTreeSet<Square> {
     found
 }
 
-/// Squares whose middle is inside, by the even-odd rule, row by row.
+/// Squares whose centre is inside by the even-odd rule, row by row.
 fn inside(rings: &[Ring], origin: [f64; 2], spacing: f64) -> Vec<Square> {
-    // Every edge adds its crossing to the rows whose middle lies between its ends.
+    // Every edge adds its crossing to the rows whose middle is between its ends.
     let mut rows: BTreeMap<i64, Vec<f64>> = BTreeMap::new();
     for (a, b) in rings.iter().flat_map(Ring::edges) {
         let row = |y: f64| (y - origin[1]) / spacing - 0.5;
@@ -105,9 +105,9 @@ fn inside(rings: &[Ring], origin: [f64; 2], spacing: f64) -> Vec<Square> {
     found
 }
 
-/// Adds a square wherever two touch in a corner alone: a body there would hang together by a point.
+/// Adds a square wherever two touch only at a corner, because the body would be connected there by a single point.
 fn close_corners(kept: &mut BTreeSet<Square>) {
-    // What was added last can touch others anew.
+    // A square that was just added may touch further ones.
     let mut added: Vec<Square> = kept.iter().copied().collect();
     while !added.is_empty() {
         let mut missing = BTreeSet::new();

@@ -1,40 +1,40 @@
-//! Which triangles of a filling are thinner than promised, and why.
+//! Triangles of a filling that are thinner than promised, and the causes.
 
 use super::{Ring, distance};
 use crate::Mesh;
 
-/// The smallest angle [°] of triangles inside, but where the outline is finer than the spacing or its corners are sharper themselves.
+/// The smallest angle [°] of triangles inside, except where the outline is finer than the spacing or has sharper corners itself.
 pub const SMALLEST_ANGLE: f64 = 25.0;
 
-/// Rounding takes no more than this from an angle [°].
+/// The largest error of an angle by rounding [°].
 const ROUNDING: f64 = 1e-6;
 
-/// Why a triangle is thin.
+/// The cause of a thin triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cause {
-    /// The outline itself has a corner of this inner angle [°] there.
+    /// The outline itself has a corner with this inner angle [°] there.
     Corner(f64),
-    /// Sides of the outline come nearer to one another there than the spacing, or nodes of it lie nearer: smaller triangles would take smaller steps.
+    /// Sides or nodes of the outline are closer to one another there than the spacing; smaller triangles would require shorter time steps.
     Finer,
-    /// The refinement ended since it had added as many nodes as it may.
+    /// The refinement ended because it reached the maximum number of added nodes.
     Unfinished,
 }
 
 /// Triangles of a filling with angles below [`SMALLEST_ANGLE`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Thin {
-    /// How many there are.
+    /// Their number.
     pub count: usize,
-    /// The smallest angle of all [°].
+    /// The smallest of all angles [°].
     pub angle: f64,
-    /// Where that is [m].
+    /// Its position [m].
     pub position: [f64; 2],
-    /// Why.
+    /// Its cause.
     pub cause: Cause,
 }
 
 impl Thin {
-    /// Those of the filling of rings; none where all angles are as promised.
+    /// The thin triangles in a filling of rings; none if all angles are as promised.
     pub(super) fn of(mesh: &Mesh<2>, rings: &[Ring], spacing: f64, complete: bool) -> Option<Thin> {
         let (mut count, mut angle, mut position) = (0, f64::INFINITY, [0.0; 2]);
         for triangle in &mesh.cells.triangles {
@@ -64,7 +64,7 @@ fn sharpest_corner(rings: &[Ring], position: [f64; 2], spacing: f64) -> Option<f
         for k in 0..n {
             let point = ring.points[k];
             if distance(point, position) <= spacing {
-                // Rings run with the inside on their left.
+                // The inside is to the left of rings.
                 let angle = turn(point, ring.points[(k + 1) % n], ring.points[(k + n - 1) % n]);
                 let angle = if angle < 0.0 { angle + 360.0 } else { angle };
                 sharpest = Some(sharpest.map_or(angle, |least| if angle < least { angle } else { least }));
@@ -74,7 +74,7 @@ fn sharpest_corner(rings: &[Ring], position: [f64; 2], spacing: f64) -> Option<f
     sharpest
 }
 
-/// The angle at `o` from `a` round to `b`, counter-clockwise [°].
+/// The angle at `o` from `a` to `b`, counter-clockwise [°].
 fn turn(o: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
     let (u, v) = ([a[0] - o[0], a[1] - o[1]], [b[0] - o[0], b[1] - o[1]]);
     libm::atan2(u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1]) / core::f64::consts::PI * 180.0

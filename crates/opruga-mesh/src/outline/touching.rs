@@ -1,15 +1,15 @@
-//! Rings that touch in points, taken apart there.
+//! Separation of rings that touch at points.
 //!
-//! Around a point in which rings touch, what is inside falls into sectors. Every sector gets a corner of its own, which lies
-//! in it a little beside the point: bodies do not hang together by points.
+//! Around a point at which rings touch, the inside consists of sectors. Every sector gets its own corner, slightly inside it, because bodies are not
+//! connected by points.
 
 use super::{Ring, bounds, distance};
 use std::collections::BTreeMap;
 
-/// Corners of different sectors lie about this part of the size of the drawing beside the point that they had in common.
+/// The approximate distance of the corners of different sectors from their common point, relative to the size of the drawing.
 const APART: f64 = 1.0 / (1u64 << 32) as f64;
 
-/// Rings that bound the same inside and touch nowhere. They must have it to their left and meet in common points alone.
+/// Rings that bound the same inside and do not touch anywhere. The given rings must have the inside to their left and meet only at common points.
 pub(super) fn apart(rings: &[Ring]) -> Vec<Ring> {
     let Some((low, high)) = bounds(rings) else { return Vec::new() };
     let step = distance(low, high) * APART;
@@ -17,13 +17,13 @@ pub(super) fn apart(rings: &[Ring]) -> Vec<Ring> {
     let mut next = corners.next.clone();
     let mut moved = corners.points.clone();
     for here in corners.by_position().into_values().filter(|here| here.len() > 1) {
-        // By their direction; of equal ones the first comes last, where it is looked for.
+        // Sorted by direction; of equal ones the first comes last, where the search finds it.
         let mut leaving: Vec<(f64, usize)> =
             here.iter().map(|corner| (corners.direction(*corner, corners.next[*corner]), *corner)).collect();
         leaving.sort_by(|p, q| p.0.total_cmp(&q.0).then(q.1.cmp(&p.1)));
         for &corner in &here {
             let from = corners.direction(corner, corners.previous[corner]);
-            // The sector to the left of the edge that comes in ends at the first edge that goes out, clockwise.
+            // The sector to the left of the incoming edge ends at the first outgoing edge, clockwise.
             let below = leaving.partition_point(|(to, _)| *to < from);
             let (to, other) = leaving[if below > 0 { below } else { leaving.len() } - 1];
             next[corner] = corners.next[other];
@@ -48,14 +48,14 @@ pub(super) fn apart(rings: &[Ring]) -> Vec<Ring> {
     made
 }
 
-/// Places where rings touch themselves or one another: for every ring the numbers of its points that lie next to a point
-/// which is no neighbour, ascending.
+/// Positions at which rings touch themselves or one another: for every ring the numbers of its points that are next to a point other than a
+/// neighbour, ascending.
 pub(super) fn touching(rings: &[Ring]) -> Vec<Vec<usize>> {
     let mut found = vec![Vec::new(); rings.len()];
     let Some((low, high)) = bounds(rings) else { return found };
-    // Somewhat more than two corners that have been taken apart can be from one another.
+    // Slightly more than the largest distance of two corners that have been separated.
     let tolerance = 4.0 * distance(low, high) * APART;
-    // Two that are near share a column of one of two gratings, and lie one after another in it.
+    // Two close points share a column of one of two gratings, and are consecutive in it.
     for shift in [0.0, tolerance] {
         let mut order: Vec<(f64, f64, usize, usize)> = Vec::new();
         for (number, ring) in rings.iter().enumerate() {
@@ -113,14 +113,14 @@ impl Corners {
         corners
     }
 
-    /// The angle of the way from one corner to another [rad].
+    /// The direction angle from one corner to another [rad].
     fn direction(&self, from: usize, to: usize) -> f64 {
         let (p, q) = (self.points[from], self.points[to]);
         libm::atan2(q[1] - p[1], q[0] - p[0])
     }
 }
 
-/// The angle from one direction clockwise to another [rad]: above 0, at most a whole turn.
+/// The angle from one direction clockwise to another [rad]: above 0, at most a full turn.
 fn clockwise(from: f64, to: f64) -> f64 {
     let angle = from - to;
     if angle > 0.0 { angle } else { angle + core::f64::consts::TAU }

@@ -1,4 +1,4 @@
-//! Drawings that bodies of the plane carry: squares around them, and weights that follow every affine motion.
+//! Drawings that bodies in the plane carry: squares around them, and weights that follow every affine motion.
 #![allow(clippy::disallowed_methods, reason = "what tests expect needs no equal bits")]
 
 use opruga_mesh::outline::{self, Painted, Ring};
@@ -25,7 +25,7 @@ fn nested(mut rings: Vec<Ring>) -> Vec<Ring> {
     rings
 }
 
-/// Squares that hold a point of a body of squares.
+/// Whether a point is in one of the squares of a body.
 fn covers(mesh: &Mesh<2>, p: [f64; 2]) -> bool {
     mesh.cells.quadrilaterals.iter().any(|q| {
         let (low, high) = (mesh.positions[q[0] as usize], mesh.positions[q[2] as usize]);
@@ -33,14 +33,14 @@ fn covers(mesh: &Mesh<2>, p: [f64; 2]) -> bool {
     })
 }
 
-/// How many edges of the boundary begin at each node.
+/// The number of edges of the boundary that begin at each node.
 fn starts(mesh: &Mesh<2>) -> BTreeMap<u32, usize> {
     let mut counts = BTreeMap::new();
     mesh.facets.iter().for_each(|[a, _]| *counts.entry(*a).or_default() += 1);
     counts
 }
 
-/// The area of what a skin paints, by its rings and by its triangles.
+/// The painted area of a skin, by its rings and by its triangles.
 fn areas(skin: &Skin, positions: &[[f64; 2]]) -> (f64, f64) {
     let points = skin.positions(&positions.iter().map(|p| [p[0], p[1], 0.0]).collect::<Vec<_>>());
     let cross =
@@ -66,7 +66,7 @@ fn areas(skin: &Skin, positions: &[[f64; 2]]) -> (f64, f64) {
 fn a_body_of_squares_has_the_holes_that_are_wider_than_a_square() {
     let rings = nested(vec![square(0.0, 4.0), square(1.0, 3.0)]);
     let mesh = outline::squares(&rings, 0.5).expect("squares");
-    // The rings lie on lines of the lattice: those squares that they touch from outside come too.
+    // The rings are on lines of the lattice, so squares that they touch from outside are included too.
     assert!(mesh.measure().expect("an area").value() >= 12.0);
     assert_eq!(mesh.check(), []);
     let coarse = outline::squares(&rings, 3.0).expect("squares");
@@ -76,7 +76,7 @@ fn a_body_of_squares_has_the_holes_that_are_wider_than_a_square() {
     assert!(outline::squares(&rings, f64::NAN).is_err());
 }
 
-/// Two squares of the drawing that lie on a diagonal: between them lies a third.
+/// Two squares of the drawing on a diagonal: a third one is added between them.
 #[test]
 fn squares_never_hang_together_by_a_corner() {
     let rings = nested(vec![square(0.1, 0.9), square(1.1, 1.9)]);
@@ -92,7 +92,7 @@ fn a_body_without_cells_carries_by_triangles_between_its_nodes() {
     outline::carry(&mut mesh, &rings, &painted).expect("carried");
     let skin = mesh.skin.as_ref().expect("a skin");
     assert!((areas(skin, &mesh.positions).0 / painted[0].rings[0].area() - 1.0).abs() < 1e-6);
-    // The ring swells to twice its size, and the drawing with it.
+    // The ring expands to twice its size, and the drawing with it.
     let twice: Vec<[f64; 2]> = mesh.positions.iter().map(|p| p.map(|x| 2.0 * x)).collect();
     assert!((areas(skin, &twice).0 / painted[0].rings[0].area() - 4.0).abs() < 1e-5);
     assert_eq!(skin.areas[0].colour, Some([255, 0, 0, 255]));
@@ -128,7 +128,7 @@ proptest! {
         }
     }
 
-    /// Where the body moves by an affine map, so does every point of the drawing; at rest it lies where it was drawn.
+    /// If the body moves by an affine map, so does every point of the drawing; at rest it is where it was drawn.
     #[test]
     fn drawings_follow_every_affine_motion(
         radii in proptest::collection::vec(0.3f64..1.0, 5..20),
@@ -142,7 +142,7 @@ proptest! {
             1 => outline::filled(&rings, 0.3).expect("triangles").0,
             _ => outline::skin(&rings).expect("a skin"),
         };
-        // Also a part that lies outside of the body.
+        // This includes a part outside the body.
         let painted = [Painted { rings: rings.clone(), colour: None }, Painted { rings: vec![star(&[0.2; 7], [1.1, 0.0])], colour: None }];
         outline::carry(&mut mesh, &rings, &painted).expect("carried");
         let skin = mesh.skin.as_ref().expect("a skin");
@@ -159,7 +159,7 @@ proptest! {
     }
 }
 
-/// A body of squares touches with the outline of the drawing, in edges of about half a square, however it is moved; a mirrored one too.
+/// A body of squares touches with the outline of the drawing, in edges of about half a square, after any motion, and also if mirrored.
 #[test]
 fn lattices_touch_with_their_outline() {
     let rings = nested(vec![square(0.0, 2.0), square(0.7, 1.3)]);
@@ -186,7 +186,7 @@ fn lattices_touch_with_their_outline() {
     assert!((mirrored - hollow).abs() < 1e-9, "{mirrored}");
 }
 
-/// Detail that edges of half a square would cross is kept as it is drawn.
+/// Detail that edges of half a square would cross is kept as drawn.
 #[test]
 fn outlines_too_fine_for_their_squares_keep_their_points() {
     // Two prongs with a slit of a hundredth between them.

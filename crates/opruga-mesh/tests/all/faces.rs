@@ -1,4 +1,4 @@
-//! Faces with many corners as triangles: areas in closed form.
+//! Faces with many corners, cut into triangles: areas in closed form.
 #![allow(clippy::disallowed_methods, reason = "what tests expect needs no equal bits")]
 
 use opruga_mesh::{FaceError, cut_face};
@@ -24,9 +24,9 @@ fn outlines() -> Vec<(&'static str, Vec<[f64; 2]>, f64, bool)> {
             [r * c, r * s]
         })
         .collect();
-    // Ten triangles, each from the middle to a tip and a notch.
+    // Ten triangles, each from the centre to a tip and a notch.
     let of_star = 10.0 * 0.5 * 0.4 * (std::f64::consts::PI / 5.0).sin();
-    // A comb: no corner sees all of it.
+    // A comb: all of it is not visible from any corner.
     let mut comb = vec![[0.0, 0.0], [9.0, 0.0]];
     (0..5).rev().for_each(|k| {
         let x = 2.0 * f64::from(k);
@@ -49,10 +49,11 @@ fn outlines() -> Vec<(&'static str, Vec<[f64; 2]>, f64, bool)> {
     ]
 }
 
-/// Cut from every corner on, in both directions and in every pose: the areas of the triangles, all of them on the side of the face, sum to its area.
+/// Cut starting at every corner, in both directions and in every pose: the triangles all have the orientation of the face, and their areas add up to
+/// its area.
 #[test]
 fn faces_are_cut_inside_from_every_corner_and_keep_their_winding() {
-    // Turned about two axes, and far away.
+    // Rotated about two axes, and far away.
     let poses = [
         |[x, y]: [f64; 2]| [x, y, 0.0],
         |[x, y]: [f64; 2]| [0.0, 1e3 * x, 1e3 * y],
@@ -93,7 +94,7 @@ fn convex_quadrilaterals_are_cut_along_their_shorter_diagonal() {
     let kite = |half: f64| [[-1.0, 0.0, 0.0], [0.0, -half, 0.0], [1.0, 0.0, 0.0], [0.0, half, 0.0]];
     assert_eq!(cut_face(&kite(2.0)).expect("a kite").triangles, [[0, 1, 2], [0, 2, 3]]);
     assert_eq!(cut_face(&kite(0.5)).expect("a kite").triangles, [[1, 2, 3], [1, 3, 0]]);
-    // Both of a square are as long.
+    // Both diagonals of a square have the same length.
     assert_eq!(cut_face(&kite(1.0)).expect("a square").triangles, [[0, 1, 2], [0, 2, 3]]);
 }
 
@@ -118,7 +119,7 @@ fn faces_that_cross_themselves_or_are_folded_far_are_refused() {
     ] {
         assert_eq!(flat(&points), Err(FaceError::Crossing), "{name}");
     }
-    // A square folded along a diagonal: its corners lie a quarter of the height off the mean plane, either way.
+    // A square folded along a diagonal: its corners are a quarter of the height off the mean plane, on either side.
     let folded = |height: f64| cut_face(&[[0.0, 0.0, height], [1.0, 0.0, 0.0], [1.0, 1.0, height], [0.0, 1.0, 0.0]]);
     let bent = folded(0.4).expect("a face").bent;
     assert!((bent - 0.2).abs() < 1e-12, "{bent}");

@@ -37,7 +37,7 @@ fn ring_is_a_regular_polygon_of_many_sides() {
     assert_eq!(mesh.facets[0], [0, 1]);
     assert_eq!(mesh.facets[35], [35, 0]);
 
-    // Two runs: the sides, and the one that closes the ring.
+    // Two runs: the sides, and the edge that closes the ring.
     let edges = mesh.edges(EdgeSet::Boundary);
     let runs = edge_runs(&edges);
     assert_eq!(runs.len(), 2);
@@ -68,7 +68,7 @@ fn polygon_runs_counter_clockwise() {
         sound(mesh);
         close(volume(mesh), 1.0);
     }
-    // The first point may come again at the end.
+    // The first point may be repeated at the end.
     let mut closed = square.to_vec();
     closed.push(square[0]);
     assert_eq!(Mesh::polygon(&closed).unwrap(), with);
@@ -204,7 +204,7 @@ fn five_tetrahedra_a_box_alternate_and_fill_the_same_body() {
         ring.cells.hexahedra.push([0, near, far, next, 7, 7 + near, 7 + far, 7 + next]);
     }
     assert!(ring.clone().into_simplices_by(Cut::Five).is_ok(), "around an axis with spokes every loop is even");
-    // A wedge-like closure: an edge that leads back to a node of the same parity.
+    // A closure with a wedge: an edge that leads back to a node of the same parity.
     ring.cells.hexahedra.push([0, 2, 1, 4, 7, 9, 8, 11]);
     let refused = ring.into_simplices_by(Cut::Five).unwrap_err();
     assert!(matches!(refused, MeshError::OddLoop { .. }), "{refused}");
@@ -220,7 +220,7 @@ fn sheet_is_open() {
     let sides = 4 * 7 + 6 * 5;
     assert_eq!(mesh.edges(EdgeSet::All).len(), sides + 24);
     assert_eq!(mesh.edges(EdgeSet::AllWithShear).len(), sides + 48);
-    // Every edge but those of the border is a hinge.
+    // Every edge that is not on the border is a hinge.
     assert_eq!(mesh.hinges().unwrap().len(), sides + 24 - 20);
     assert!(Mesh::sheet([0.0; 3], [[1.0, 0.0, 0.0], [2.0, 0.0, 0.0]], [1, 1]).is_err());
 }
@@ -263,7 +263,7 @@ fn icosphere_counts_rings_and_order() {
             sound(&mesh);
         }
     }
-    // The icosahedron in closed form, and convergence to the ball at second order.
+    // The icosahedron in closed form, and second-order convergence to the ball.
     let edge = 1.0 / libm::sin(2.0 * PI / 5.0);
     close(volume(&Mesh::icosphere(1.0, 0).unwrap()), 5.0 / 12.0 * (3.0 + 5.0_f64.sqrt()) * edge * edge * edge);
     let error = |s| 4.0 / 3.0 * PI - volume(&Mesh::icosphere(1.0, s).unwrap());
@@ -296,7 +296,7 @@ fn impossible_numbers_are_refused() {
         assert!(Mesh::grid([0.0; 2], [radius, 1.0], [1, 1]).is_err());
     }
     assert!(Mesh::ring(1.0, 8, [0.0, f64::NAN], 0.0).is_err());
-    // So far round that all nodes would lie at one point.
+    // An angle so large that all nodes would be at one point.
     for angle in [1e20, -1e20, f64::NAN] {
         assert!(matches!(Mesh::ring(1.0, 8, [0.0; 2], angle), Err(MeshError::Size { what: Quantity::StartAngle, .. })));
         assert!(Mesh::regular_polygon(5, 1.0, 2, [0.0; 2], angle).is_err());

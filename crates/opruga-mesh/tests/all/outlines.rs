@@ -20,7 +20,7 @@ fn quality(mesh: &Mesh<2>) -> CellQuality {
     mesh.cell_quality().expect("triangles")
 }
 
-/// Whether the refinement of a filling came to its end.
+/// Whether the refinement of a filling was completed.
 fn complete(thin: Option<Thin>) -> bool {
     thin.is_none_or(|thin| thin.cause != Cause::Unfinished)
 }
@@ -38,7 +38,7 @@ fn rings_in_rings_are_holes_and_islands_whichever_way_they_run() {
             if mask >> k & 1 == 1 {
                 ring.points.reverse();
             }
-            // Even depth runs counter-clockwise.
+            // Rings at an even depth run counter-clockwise.
             wrong += usize::from((ring.area() > 0.0) != (k % 2 == 0));
         }
         assert_eq!(outline::nest(&mut rings), Ok(wrong));
@@ -96,7 +96,7 @@ fn corners_stay_where_they_are() {
     assert!((rings[0].area() - 1.0).abs() < 1e-14);
 }
 
-/// The corners of a regular polygon turn by 360° over their number: what turns by 45° and by 40° is a corner, 30° is a curve.
+/// The corners of a regular polygon turn by 360° divided by their number: turns by 45° and by 40° are corners, a turn by 30° is a curve.
 #[test]
 fn blunt_corners_stay_and_curves_are_cut_evenly() {
     for (corners, stay) in [(8, true), (9, true), (12, false)] {
@@ -109,7 +109,7 @@ fn blunt_corners_stay_and_curves_are_cut_evenly() {
 
 #[test]
 fn a_spacing_that_makes_edges_cross_is_refused() {
-    // A square hole that nearly fills its square: between them there is no room for long chords.
+    // A hole that nearly fills its outline: there is no space for long chords between them.
     let mut rings = vec![circle([0.0, 0.0], 1.0, 400), circle([0.0, 0.0], 0.99, 400)];
     outline::nest(&mut rings).expect("they do not touch");
     assert!(outline::resampled(&rings, 0.02).is_ok());
@@ -177,13 +177,13 @@ fn joined_parts_cover_what_they_should() {
     assert!((total(&union).abs() - 7.0).abs() < 1e-6);
     let mut odd = outline::joined(&parts, Overlap::EvenOdd);
     assert!((odd.iter().map(|r| r.area().abs()).sum::<f64>() - 6.0).abs() < 1e-6);
-    // A hole of one part covered by another is no hole.
+    // A hole of one part that another part covers is not a hole.
     let mut ring = vec![square(0.0, 4.0, 0), square(1.0, 3.0, 0), square(0.5, 3.5, 1)];
     ring[1].points.reverse();
     let filled = outline::joined(&ring, Overlap::Union);
     assert_eq!(filled.len(), 1);
     assert!((total(&filled).abs() - 16.0).abs() < 1e-6);
-    // Parts that do not meet stay what they are.
+    // Parts that do not meet are unchanged.
     odd = outline::joined(&[square(0.0, 1.0, 0), square(5.0, 6.0, 1)], Overlap::Union);
     assert_eq!(odd.len(), 2);
 }
@@ -192,7 +192,7 @@ fn ring(points: &[[f64; 2]]) -> Ring {
     Ring { points: points.to_vec(), part: 0 }
 }
 
-/// The rings as they bound a body, whose area must be what is wanted, also where triangles fill it.
+/// The rings as they bound a body, whose area must have the expected value, also if triangles fill it.
 fn body_of(rings: &[Ring], how: Overlap, wanted: f64, pieces: usize) -> Vec<Ring> {
     let mut made = outline::joined(rings, how);
     outline::nest(&mut made).expect("rings that meet nowhere");
@@ -222,7 +222,7 @@ fn a_pentagram_has_the_area_of_its_tips_or_of_the_whole_star() {
     let inner = ((3.0 - 5f64.sqrt()) / 2.0, 72f64.to_radians());
     let whole = 5.0 * inner.0 * 36f64.to_radians().sin();
     let tips = whole - 2.5 * inner.0 * inner.0 * inner.1.sin();
-    // By itself a part follows the even-odd rule, whatever the parts do to one another.
+    // A single part follows the even-odd rule, whatever the rule between parts.
     body_of(&star, Overlap::EvenOdd, tips, 5);
     body_of(&star, Overlap::Union, tips, 5);
     let wound = outline::wound(&star);
@@ -265,7 +265,7 @@ fn bow_ties_and_figures_of_eight_are_two_bodies() {
 fn areas_that_touch_in_points_are_apart() {
     let at_a_corner = [square(0.0, 1.0, 0), square(1.0, 2.0, 1)];
     let at_a_side = [square(0.0, 1.0, 0), Ring { part: 1, ..ring(&[[1.0, 0.5], [2.0, 0.0], [2.0, 1.0]]) }];
-    // A hole that touches its outline opens it; one that touches it twice cuts it in two.
+    // A hole that touches its outline opens it; a hole that touches it twice cuts it in two.
     let hole = [square(0.0, 4.0, 0), ring(&[[4.0, 2.0], [2.0, 3.0], [2.0, 1.0]])];
     let diamond = [square(0.0, 4.0, 0), ring(&[[4.0, 2.0], [2.0, 3.0], [0.0, 2.0], [2.0, 1.0]])];
     for how in [Overlap::EvenOdd, Overlap::Union] {
@@ -280,7 +280,7 @@ fn areas_that_touch_in_points_are_apart() {
     }
 }
 
-/// How much of a horizontal line lies inside rings by the even-odd rule.
+/// The length of a horizontal line inside rings by the even-odd rule.
 fn covered(rings: &[Ring], y: f64) -> f64 {
     let mut crossings = Vec::new();
     for ring in rings {
@@ -298,7 +298,7 @@ fn covered(rings: &[Ring], y: f64) -> f64 {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Corners on a small grid touch and cross in all ways: what is left bounds the same inside and is filled.
+    /// Corners on a small grid touch and cross in all ways: the result bounds the same inside and is filled.
     #[test]
     fn whatever_crosses_is_joined(places in proptest::collection::vec((0i8..6, 0i8..6), 3..16), line in 0.01f64..0.99) {
         let rings = [ring(&places.iter().map(|(x, y)| [f64::from(*x), f64::from(*y)]).collect::<Vec<_>>())];
@@ -320,7 +320,7 @@ proptest! {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Stars with any spikes: either refused, or filled with the area of their outline.
+    /// Stars with arbitrary spikes are either refused, or filled with the area of their outline.
     #[test]
     fn stars_are_filled_or_refused(radii in proptest::collection::vec(0.2f64..1.0, 3..14), spacing in 0.03f64..0.5) {
         let n = radii.len() as f64;
@@ -336,13 +336,13 @@ proptest! {
         prop_assert!((mesh.measure().expect("an area").value() / total(&rings) - 1.0).abs() < 1e-9);
         prop_assert!(mesh.chambers().is_ok());
         prop_assert!(quality.smallest_angle > 0.0 && quality.longest_edge < 4.0 * spacing, "{:?}", quality);
-        // What is thinner than promised is told, with the angle that is there.
+        // Triangles thinner than promised are reported, with the actual angle.
         let least = quality.smallest_angle.to_degrees();
         prop_assert_eq!(thin.is_some(), least < outline::SMALLEST_ANGLE - 1e-6, "{}", least);
         prop_assert!(thin.is_none_or(|thin| (thin.angle - least).abs() < 1e-9 && thin.count > 0), "{:?}", thin);
     }
 
-    /// Wherever it lies and however large it is, a filling has the same triangles.
+    /// A filling has the same triangles whatever its position and size.
     #[test]
     fn fillings_move_with_their_outline(power in -3i32..4) {
         let factor = 2f64.powi(power);
@@ -354,24 +354,24 @@ proptest! {
     }
 }
 
-/// Triangles thinner than promised are told with the place of the thinnest, and why it is there.
+/// Triangles thinner than promised are reported with the position of the thinnest and its cause.
 #[test]
 fn thin_triangles_are_told_with_their_cause() {
-    // A wedge of 15°: no triangle in its tip has a larger angle.
+    // A wedge of 15°: no triangle at its tip has a larger angle.
     let wedge = ring(&[[0.0, 0.0], [10.0, 0.0], [10.0, 10.0 * 15f64.to_radians().tan()]]);
     let rings = outline::resampled(&[wedge], 0.5).expect("a wedge");
     let thin = outline::filled(&rings, 0.5).expect("a filling").1.expect("thin triangles");
     assert!(thin.count > 0 && thin.angle <= 15.0 + 1e-9 && thin.position[0] < 0.5, "{thin:?}");
     assert!(matches!(thin.cause, Cause::Corner(corner) if (corner - 15.0).abs() < 1e-6), "{thin:?}");
-    // A slit that is far thinner than the spacing: its corners are right angles.
+    // A slit much thinner than the spacing: its corners are right angles.
     let slit =
         ring(&[[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [2.01, 2.0], [2.01, 0.5], [2.0, 0.5], [2.0, 2.0], [0.0, 2.0]]);
     let thin = outline::filled(&[slit], 1.0).expect("a filling").1.expect("thin triangles");
     assert!(thin.angle < 5.0 && thin.cause == Cause::Finer, "{thin:?}");
 }
 
-/// A strip whose one side has twenty thousand points. (That their number costs no more than itself is tested where they are
-/// triangulated.)
+/// A strip with twenty thousand points on one side. (That the time grows only in proportion to their number is tested in the module that triangulates
+/// them.)
 #[test]
 fn long_straight_sides_are_filled() {
     let count = 20_000;

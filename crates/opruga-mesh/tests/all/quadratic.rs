@@ -22,7 +22,7 @@ fn plate() -> Mesh<2> {
     grid.into_simplices().unwrap().into_quadratic().unwrap()
 }
 
-/// The ball of radius 1 as tetrahedra around its centre, mid-edge nodes of the surface pushed out to the sphere.
+/// The ball of radius 1 as tetrahedra around its centre, with mid-edge nodes of the surface projected onto the sphere.
 fn ball(subdivisions: u32, curved: bool) -> Mesh<3> {
     let mut mesh = Mesh::icosphere(1.0, subdivisions).unwrap();
     let center = mesh.nodes() as u32;
@@ -75,12 +75,12 @@ fn shares_of_quadratic_cells_are_positive_and_add_up() {
 
 #[test]
 fn curved_cells_measure_what_their_curves_enclose() {
-    // A side bulged as a parabola of height h over base b adds 2/3·b·h.
+    // A side curved as a parabola of height h over base b adds 2/3·b·h.
     let positions = vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, -0.1], [0.5, 0.5], [0.0, 0.5]];
     let cells = Cells { quadratic_triangles: vec![[0, 1, 2, 3, 4, 5]], ..Cells::default() };
     let mesh = Mesh::<2> { positions, cells, ..Mesh::default() };
     close(mesh.measure().unwrap().value(), 0.5 + 2.0 / 3.0 * 0.1);
-    // A ball of curved tetrahedra tends to the volume of the ball four orders faster than its edge, one of straight ones two.
+    // The volume of a ball of curved tetrahedra converges with the fourth power of the edge, that of straight ones with the second.
     let exact = 4.0 / 3.0 * std::f64::consts::PI;
     let error = |subdivisions, curved| (ball(subdivisions, curved).measure().unwrap().value() / exact - 1.0).abs();
     for (curved, order) in [(false, 2.0), (true, 4.0)] {
@@ -93,7 +93,7 @@ fn curved_cells_measure_what_their_curves_enclose() {
 #[test]
 fn the_boundary_runs_through_all_boundary_nodes() {
     let (solid, plate) = (solid(), plate());
-    // Every face of the box has 2·2·(cells) quarters; every side two edges.
+    // Every face of the box has 2·2·(cells) quarters; every side has two edges.
     assert_eq!(solid.facets.len(), 4 * 2 * 2 * (6 + 6 + 4));
     assert_eq!(plate.facets.len(), 2 * 2 * (3 + 2));
     close(signed_volume(&solid.facets, &solid.positions), 6.0);
@@ -120,7 +120,7 @@ fn quadratic_cells_stay_sound_when_they_are_mirrored() {
     assert_eq!(sorted(plate.facets_from_cells().unwrap()), sorted(plate.facets.clone()));
 }
 
-/// Facets as sets, from their lowest node on.
+/// Facets as sets, starting at their lowest node.
 fn sorted<const D: usize>(mut facets: Vec<[u32; D]>) -> Vec<[u32; D]> {
     for facet in &mut facets {
         if D == 3 {
@@ -134,7 +134,7 @@ fn sorted<const D: usize>(mut facets: Vec<[u32; D]>) -> Vec<[u32; D]> {
 
 #[test]
 fn a_cell_that_folds_over_at_a_node_is_inverted() {
-    // The middle of an edge beyond three quarters of it turns the Jacobian at the corner round, though the volume stays positive.
+    // If the mid-edge node is beyond three quarters of the edge, the Jacobian at the corner changes its sign, although the volume stays positive.
     let mut mesh = plate();
     let [a, b, _, middle, ..] = mesh.cells.quadratic_triangles[0];
     let (p, q) = (mesh.positions[a as usize], mesh.positions[b as usize]);
@@ -148,7 +148,7 @@ fn a_cell_that_folds_over_at_a_node_is_inverted() {
 
 #[test]
 fn a_cell_that_folds_over_between_its_nodes_is_inverted() {
-    // Numbers from −1 to 1, the same in every run.
+    // Pseudo-random numbers from −1 to 1, the same in every run.
     let mut state = 3_u64;
     let mut chance = || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -204,7 +204,7 @@ fn groups_and_values_of_cells_follow_them() {
 fn quadratic_cells_lend_their_middles_to_linear_neighbours() {
     let mut mesh = plate();
     let curved = mesh.cells.quadratic_triangles.clone();
-    // The second half of the triangles becomes linear again: the nodes between them and the others stay.
+    // The second half of the triangles becomes linear again; the nodes between them and the others are kept.
     let (kept, cut) = curved.split_at(6);
     mesh.cells.quadratic_triangles = kept.to_vec();
     mesh.cells.triangles = cut.iter().map(|cell| [cell[0], cell[1], cell[2]]).collect();
@@ -214,7 +214,7 @@ fn quadratic_cells_lend_their_middles_to_linear_neighbours() {
     let again = mesh.into_quadratic().unwrap();
     assert_eq!((again.nodes(), again.cells.len()), (35, 12));
     assert_eq!(again.check(), vec![]);
-    // The linear cells, counted first, have gone behind the others.
+    // The linear cells, numbered first, now come after the others.
     assert_eq!(again.cell_values["number"][..2], [6.0, 7.0]);
     let grid = Mesh::grid([0.0; 2], [1.0; 2], [1, 1]).unwrap();
     assert_eq!(grid.into_quadratic(), Err(MeshError::NotSimplices { element: Element::Quadrilateral }));

@@ -1,4 +1,4 @@
-//! Surfaces with edges of a wanted length: closed, outward, near the surface that was given, of good triangles.
+//! Surfaces with edges of a given length: closed, outward, near the original surface, with good triangles.
 #![allow(clippy::disallowed_methods, reason = "what tests expect needs no equal bits")]
 
 use opruga_mesh::{EdgeSet, Mesh};
@@ -18,7 +18,7 @@ fn smallest_angle(mesh: &Mesh<3>) -> f64 {
     smallest
 }
 
-/// The part of the edges whose length is between two parts of the wanted one.
+/// The fraction of edges with a length between two fractions of the target length.
 fn part_between(mesh: &Mesh<3>, length: f64, low: f64, high: f64) -> f64 {
     let edges = mesh.edges(EdgeSet::Boundary);
     let fits = |[a, b]: &&[u32; 2]| {
@@ -52,7 +52,7 @@ fn remeshed_surfaces_are_closed_outward_and_of_good_triangles() {
     let ball = Mesh::icosphere(1.0, 3).expect("a ball");
     let torus = Mesh::torus(1.0, 0.4, [60, 24]).expect("a torus");
     let cube = Mesh::box_surface([0.0; 3], [1.0, 2.0, 1.0], [2, 2, 2]).expect("a box");
-    // Creases of Spot are finer than these lengths: triangles beside them are thin.
+    // Creases of Spot are finer than these lengths, so triangles beside them are thin.
     for (name, mesh, lengths, drift, sharpest) in [
         ("ball", ball, [0.3, 0.08], 0.05, 25.0),
         ("torus", torus, [0.2, 0.1], 0.05, 25.0),
@@ -101,7 +101,7 @@ fn groups_stay_where_they_are_and_bad_lengths_are_refused() {
     assert!(cube.remeshed(0.2).is_err(), "it is open");
 }
 
-/// Spot, 1.5 m large: its horns and ears are finer than the longer edges, its legs than the longest.
+/// Spot, 1.5 m in size: its horns and ears are finer than the longer edges, its legs than the longest.
 #[test]
 fn coarse_triangles_do_not_let_a_fine_surface_cross_itself() {
     let mut spot = spot();

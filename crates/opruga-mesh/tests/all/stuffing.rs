@@ -22,7 +22,7 @@ fn spot() -> Mesh<3> {
     mesh
 }
 
-/// The filling, with what must hold for all of them.
+/// The filling, after checks that apply to all fillings.
 fn filled(surface: &Mesh<3>, spacing: f64) -> Mesh<3> {
     let body = surface.tetrahedra_filling(spacing).unwrap();
     sound(surface, spacing, &body);
@@ -61,7 +61,7 @@ fn spot_torus_and_sphere_are_filled_with_good_angles_and_their_volume() {
             let body = filled(surface, spacing / halving);
             let error = (body.cell_quality().unwrap().measure / surface.enclosed_volume() - 1.0).abs();
             println!("{name}: {error:e}");
-            // Second order: a quarter with every halving, with some noise.
+            // Second order: the error falls to about a quarter with every halving, with some noise.
             assert!(error < 0.5 * last, "{name}: {error} after {last}");
             last = error;
             if halving > 1.0 {
@@ -100,7 +100,7 @@ fn sharp_boxes_are_rounded_within_a_spacing() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, rng_seed: RngSeed::Fixed(7), ..ProptestConfig::default() })]
 
-    /// Surfaces that nobody would mesh so coarsely: the bounds hold all the same.
+    /// Unusually coarse meshes: the bounds hold nevertheless.
     #[test]
     fn angles_keep_their_bounds_on_any_surface(
         stretch in prop::array::uniform3(0.3..2.0f64),

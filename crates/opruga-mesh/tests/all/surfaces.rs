@@ -1,9 +1,9 @@
-//! Triangles as files give them: welding, orientation, closing, fillings.
+//! Triangles as files contain them: welding, orientation, closing, fillings.
 #![allow(clippy::disallowed_methods, reason = "what tests expect needs no equal bits")]
 
 use opruga_mesh::{Mesh, MeshError, Turned, weld};
 
-/// Every triangle with corners of its own.
+/// Every triangle with its own corners.
 fn soup(mesh: &Mesh<3>) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
     let positions: Vec<[f64; 3]> = mesh.facets.iter().flatten().map(|node| mesh.positions[*node as usize]).collect();
     let triangles = (0..mesh.facets.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
@@ -68,7 +68,7 @@ fn components_are_turned_outward_and_cavities_inward() {
     }
     let volumes: Vec<f64> = mesh.components().expect("closed").iter().map(|c| c.signed_volume).collect();
     let wanted = volumes[0] - volumes[1] + volumes[2];
-    // The other ball inside out, and one triangle against its neighbours.
+    // The other ball is inside out, and one triangle is reversed against its neighbours.
     let n = mesh.facets.len();
     mesh.facets[n - 80..].iter_mut().for_each(|f| f.swap(0, 1));
     mesh.facets[5].swap(0, 1);
@@ -129,13 +129,13 @@ fn a_lattice_fills_its_surface_and_carries_it() {
             let body = surface.lattice_filling(spacing).expect("a filling");
             assert_eq!(body.check(), [], "spacing {spacing}");
             let own = body.measure().expect("a volume").value();
-            // It reaches beyond the surface, less and less with finer cells.
+            // It extends beyond the surface, by less with finer cells.
             assert!(own / volume > 0.95 && own / volume < last, "{own} of {volume} at {spacing}");
             last = own / volume;
             let estimate = surface.lattice_estimate(spacing);
             let n = body.nodes() as f64;
             assert!(n < 1.5 * estimate + 50.0 && n > 0.4 * estimate, "{n} nodes, {estimate} estimated");
-            // All tetrahedra are alike: a volume of a³/12.
+            // All tetrahedra have the same volume of a³/12.
             for cell in &body.cells.tetrahedra {
                 let [a, b, c, d] = cell.map(|node| body.positions[node as usize]);
                 let e = |p: [f64; 3]| [p[0] - a[0], p[1] - a[1], p[2] - a[2]];
@@ -145,7 +145,7 @@ fn a_lattice_fills_its_surface_and_carries_it() {
                     + u[2] * (v[0] * w[1] - v[1] * w[0]);
                 assert!((det / 6.0 / (spacing * spacing * spacing / 12.0) - 1.0).abs() < 1e-9);
             }
-            // The skin lies on the surface, by means of weights between 0 and 1 at the points of the file.
+            // The skin is on the surface, by weights between 0 and 1 at the points of the file.
             let skin = body.skin.as_ref().expect("a skin");
             for (p, q) in skin.positions(&body.positions).iter().zip(&surface.positions) {
                 assert!((0..3).all(|d| (p[d] - q[d]).abs() < 1e-12));
@@ -178,8 +178,8 @@ fn a_skin_follows_its_body() {
     }
 }
 
-/// Large triangles of a surface are cut, so that pictures show how the body bends: the points added lie on the surface, and
-/// the nodes of the body are those that it had without them.
+/// Large triangles of a surface are cut, so that pictures show the bending of the body. The added points are on the surface, and the nodes of the
+/// body are the same as without them.
 #[test]
 fn a_skin_is_no_coarser_than_its_body() {
     let corner = |k: u32| [f64::from(k & 1), f64::from(k >> 1 & 1), f64::from(k >> 2 & 1)];
@@ -207,7 +207,7 @@ fn a_skin_is_no_coarser_than_its_body() {
             && p.iter().all(|x| (-1e-12..1.0 + 1e-12).contains(x))
     };
     assert!(points.iter().all(on_surface) && points.len() > 100);
-    // It is closed, and encloses the cube: each edge belongs to two triangles, once in either direction.
+    // It is closed and encloses the cube: each edge belongs to two triangles, once in each direction.
     let surface = Mesh::<3> { positions: points.clone(), facets: skin.triangles.clone(), ..Mesh::default() };
     assert!((surface.enclosed_volume() - 1.0).abs() < 1e-12);
     assert_eq!(surface.components().expect("closed").len(), 1);
@@ -238,7 +238,7 @@ fn sound_surfaces_do_not_meet_themselves() {
     for mesh in [torus(), Mesh::icosphere(1.0, 3).expect("a ball"), cube] {
         let found = mesh.crossing_facets();
         assert!(found.complete && found.pairs.is_empty(), "{found:?}");
-        // Neither do two that lie apart, or one in the other.
+        // Neither do two that are apart, or one inside the other.
         assert_eq!(beside(&mesh, &mesh, [9.0, 0.0, 0.0]).crossing_facets().pairs, Vec::<[u32; 2]>::new());
     }
     let (outer, inner) = (Mesh::icosphere(1.0, 2).expect("a ball"), Mesh::icosphere(0.5, 1).expect("a ball"));
@@ -268,7 +268,7 @@ fn surfaces_that_cross_touch_or_overlap_are_found_at_any_size() {
         let apart = by.contains(&1.0);
         assert_eq!(almost.crossing_facets().pairs.is_empty(), apart, "{what}, a little farther away");
     }
-    // A needle pulled through the other side of the ball; its neighbours share nodes with it.
+    // A needle pulled through the opposite side of the ball; its neighbours share nodes with it.
     let mut ball = Mesh::icosphere(1.0, 3).expect("a ball");
     let pulled = ball.facets[0][0];
     ball.positions[pulled as usize] = ball.positions[pulled as usize].map(|x| -1.5 * x);
@@ -279,7 +279,7 @@ fn surfaces_that_cross_touch_or_overlap_are_found_at_any_size() {
 
 #[test]
 fn triangles_folded_onto_a_neighbour_are_found() {
-    // A tetrahedron without height: two pairs of triangles lie on one another.
+    // A tetrahedron without height: two pairs of triangles overlap.
     let positions = vec![[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
     let facets = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
     let flat = Mesh::<3> { positions, facets, ..Mesh::default() };
@@ -296,7 +296,7 @@ proptest::proptest! {
         proptest::prop_assume!(length > 0.1);
         let (one, two) = (Mesh::icosphere(1.0, 3).expect("a ball"), Mesh::icosphere(0.5, 2).expect("a ball"));
         let both = beside(&one, &two, direction.map(|x| x / length * distance));
-        // Triangles of these balls lie at most 2 % and 7 % inside of the spheres.
+        // Triangles of these balls are at most 2 % and 7 % inside the spheres.
         let sure = distance > 0.54 && distance < 1.45;
         let may = (0.47..=1.5).contains(&distance);
         let found = both.crossing_facets().pairs.len();
@@ -310,7 +310,7 @@ fn many_triangles_are_compared_in_little_time() {
     let start = std::time::Instant::now();
     let found = ball.crossing_facets();
     assert!(found.complete && found.pairs.is_empty());
-    // A second for a million on an idle processor; busy machines take a few times as long.
+    // A second for a million on an idle processor; a busy machine takes a few times as long.
     assert!(start.elapsed().as_secs_f64() < 20.0, "{:?}", start.elapsed());
 }
 

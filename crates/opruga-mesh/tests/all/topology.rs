@@ -9,7 +9,7 @@ fn close(computed: f64, expected: f64) {
     assert!((computed - expected).abs() <= 1e-12 * (1.0 + expected.abs()), "{computed} is not {expected}");
 }
 
-/// Both meshes in one, the second with reversed facets where `hole`.
+/// Both meshes in one; the facets of the second are reversed if `hole`.
 fn joined<const D: usize>(mut first: Mesh<D>, second: Mesh<D>, hole: bool) -> Mesh<D> {
     let shift = first.nodes() as u32;
     first.positions.extend(second.positions);
@@ -59,12 +59,12 @@ fn a_hole_belongs_to_the_chamber_around_it() {
         12.0 * libm::sin(std::f64::consts::PI / 12.0) * (4.0 - 1.0 + 0.25),
     );
 
-    // In space, and a hole within the tighter of two nested skins.
+    // In space, and a hole inside the smaller of two nested skins.
     let sphere = |radius, s| Mesh::icosphere(radius, s).unwrap();
     let mesh = joined(joined(sphere(3.0, 2), sphere(2.0, 1), false), sphere(1.0, 0), true);
     assert_eq!(mesh.chambers().unwrap(), [(0..320).collect::<Vec<u32>>(), (320..420).collect()]);
 
-    // A hole in nothing.
+    // A hole without an enclosing component.
     let mesh = joined(sphere(1.0, 0), Mesh::<3>::default(), false);
     let mut inside_out = mesh.clone();
     inside_out.facets.iter_mut().for_each(|facet| facet.swap(0, 1));
@@ -132,7 +132,7 @@ fn surfaces_that_are_no_manifolds_are_refused() {
     assert_eq!(two.chambers().unwrap().len(), 2);
     assert_eq!(two.node_rings().unwrap_err(), MeshError::NonManifoldNodes { nodes: vec![0] });
 
-    // An outline through one node twice.
+    // An outline that passes through one node twice.
     let eight = Mesh::<2> {
         positions: vec![[0.0; 2], [1.0, 0.0], [1.0, 1.0], [-1.0, 0.0], [-1.0, -1.0]],
         facets: vec![[0, 1], [1, 2], [2, 0], [0, 3], [3, 4], [4, 0]],
@@ -175,7 +175,7 @@ fn hinges_and_bends() {
     assert_eq!(bends(&[[0, 1], [1, 2], [1, 3]]), [[0_u32; 3]; 0]);
     let sphere = Mesh::icosphere(1.0, 1).unwrap();
     assert_eq!(sphere.hinges().unwrap().len(), 120);
-    // Clockwise points still bend along the facets.
+    // Bending of clockwise points still follows the facets.
     let turned = Mesh::polygon(&[[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]]).unwrap();
     assert_eq!(turned.mesh.bends().unwrap(), [[1, 0, 2], [2, 1, 0], [0, 2, 1]]);
 }
@@ -204,7 +204,7 @@ fn areas_beside_edges() {
     for (edge, area) in edges.iter().zip(grid.edge_areas(&edges).unwrap()) {
         close(area, if *edge == [1, 4] { 0.5 } else { 0.25 });
     }
-    // A sheet with the diagonals of its triangulation counts whole triangles, with both diagonals the mean.
+    // A sheet with the diagonals of its triangulation counts whole triangles; with both diagonals it counts the mean.
     let sheet = Mesh::sheet([0.0; 3], [[2.0, 0.0, 0.0], [0.0, 2.0, 0.0]], [2, 2]).unwrap();
     let own = sheet.edges(EdgeSet::All);
     let areas = sheet.edge_areas(&own).unwrap();
@@ -249,7 +249,7 @@ fn transforms_keep_orientation() {
         Mesh::box_surface([0.0; 3], [1.0, 2.0, 3.0], [2, 1, 3]).unwrap(),
     ] {
         mesh.rotate([1.0, 1.0, 1.0], 2.0 * std::f64::consts::PI / 3.0, [0.0; 3]).unwrap();
-        // A third of a turn about the diagonal takes x to y to z.
+        // A third of a turn about the diagonal maps x to y to z.
         let far = mesh
             .positions
             .iter()
@@ -315,8 +315,8 @@ fn problems_are_listed() {
     assert_eq!(Mesh::<3>::default().check(), []);
 }
 
-/// Boxes whose corners a file numbers in turns of their own are cut into tetrahedra that fit together all the same: no face of one is
-/// left without the other, and the volume is that of the boxes.
+/// Boxes whose corners a file numbers with different rotations are nevertheless cut into tetrahedra that fit together: every inner face has a
+/// counterpart, and the volume is that of the boxes.
 #[test]
 fn boxes_that_are_turned_among_each_other_are_cut_into_tetrahedra_that_fit() {
     let mut mesh = Mesh::<3>::grid([0.0; 3], [3.0, 2.0, 2.0], [3, 2, 2]).unwrap();
@@ -329,7 +329,7 @@ fn boxes_that_are_turned_among_each_other_are_cut_into_tetrahedra_that_fit() {
     }
     let cut = mesh.clone().into_simplices().unwrap();
     assert_eq!(cut.cells.tetrahedra.len(), 6 * 12);
-    // Each square of the boundary is two triangles, and no crack is one.
+    // Each square of the boundary is two triangles, and there are no cracks.
     assert_eq!(cut.facets.len(), 2 * 32);
     let mut volume = 0.0;
     for tetrahedron in &cut.cells.tetrahedra {

@@ -11,7 +11,7 @@ fn volume(surface: &TouchingSurface<3>, nodes: &[[f64; 3]]) -> f64 {
 fn simplices_touch_with_their_boundary() {
     let mesh = Mesh::<3>::grid([0.0; 3], [1.0; 3], [2; 3]).expect("a cube").into_simplices().expect("tetrahedra");
     let surface = mesh.touching_surface(true);
-    // All but the node in the middle.
+    // All nodes except the one in the middle.
     assert_eq!((surface.nodes.len(), surface.carrying, surface.carried.len()), (26, 0, 0));
     assert_eq!((surface.facets.len(), surface.closed), (mesh.facets.len(), mesh.facets.len()));
     for (own, facet) in surface.facets.iter().zip(&mesh.facets) {
@@ -25,7 +25,7 @@ fn faces_of_hexahedra_are_four_triangles() {
     let surface = mesh.touching_surface(true);
     assert_eq!((surface.nodes.len(), surface.carried.len(), surface.facets.len()), (26, 24, 96));
     assert!((volume(&surface, &mesh.positions) - 1.0).abs() < 1e-15);
-    // The same volume as that of the hexahedra, however these are bent: two triangles a face have another one.
+    // The same volume as that of the hexahedra, however these are bent; two triangles per face would have another volume.
     let bent: Vec<[f64; 3]> =
         mesh.positions.iter().map(|[x, y, z]| [x + 0.1 * y * z, y + 0.2 * x * z, z - 0.1 * x * y]).collect();
     let twisted = Mesh { positions: bent, ..mesh.clone() };
