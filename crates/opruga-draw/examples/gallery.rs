@@ -1,4 +1,4 @@
-//! Draws a synthetic picture of each kind into a directory, which is the first argument (default: `gallery`).
+//! Draws a synthetic picture of each kind into a directory, given as the first argument (default: `gallery`).
 #![allow(clippy::disallowed_methods, reason = "no physics is made here")]
 
 #[path = "gallery/charts.rs"]
@@ -15,14 +15,14 @@ use std::time::Instant;
 /// The result of a step of the gallery.
 type Outcome = Result<(), Box<dyn std::error::Error>>;
 
-/// Writes an image and tells how long it took to draw.
+/// Writes an image and prints the time that it took to draw.
 fn save(directory: &Path, name: &str, start: Instant, image: &Image) -> Outcome {
     println!("{name}: {:.1} ms", start.elapsed().as_secs_f64() * 1e3);
     image.write_png(std::fs::File::create(directory.join(name))?)?;
     Ok(())
 }
 
-/// Draws one picture with a view of its own.
+/// Draws one picture in its own view.
 fn single(directory: &Path, name: &str, picture: &Picture, style: &Style) -> Outcome {
     let view = View::fit([picture])?;
     let mut best = f64::INFINITY;

@@ -1,19 +1,19 @@
-//! Films as MP4, and as GIF: one palette for all frames, and of every frame only what has changed.
+//! Films as MP4 and as GIF. A GIF has one palette for all frames, and contains only the changed part of every frame.
 
 use crate::error::{DrawError, Nothing};
 use crate::image::Image;
 use crate::palette::Palette;
 use std::io::Write;
 
-/// Writes a film with H.264 frame by frame (`opruga-video`).
+/// Writes an H.264 film frame by frame (`opruga-video`).
 #[derive(Debug)]
 pub struct Mp4Writer<W: Write>(opruga_video::Mp4Writer<W>);
 
 impl<W: Write> Mp4Writer<W> {
-    /// Begins a film of frames of one size, in pixels; an odd side is shown with its last column or row twice.
+    /// Begins a film with frames of one size, in pixels. If a side is odd, its last column or row is repeated.
     ///
     /// # Errors
-    /// [`DrawError::Video`] if the size or the rate is outside of what the format allows.
+    /// [`DrawError::Video`] if the size or the rate is outside the range that the format allows.
     pub fn new(out: W, size: [u32; 2], frames_per_second: f64) -> Result<Mp4Writer<W>, DrawError> {
         Ok(Mp4Writer(opruga_video::Mp4Writer::new(out, size, frames_per_second)?))
     }
@@ -21,15 +21,15 @@ impl<W: Write> Mp4Writer<W> {
     /// Adds a frame.
     ///
     /// # Errors
-    /// [`DrawError::Video`] if it has another size; the film goes on without it.
+    /// [`DrawError::Video`] if it has another size; the film can continue without it.
     pub fn push(&mut self, image: &Image) -> Result<(), DrawError> {
         Ok(self.0.push([image.width(), image.height()], image.pixels())?)
     }
 
-    /// Writes the file and gives the writer back.
+    /// Writes the file and returns the writer.
     ///
     /// # Errors
-    /// [`DrawError::Video`] if there is no frame, or the bytes cannot be written.
+    /// [`DrawError::Video`] if there is no frame, or if the bytes cannot be written.
     pub fn finish(self) -> Result<W, DrawError> {
         Ok(self.0.finish()?)
     }
@@ -41,7 +41,7 @@ pub struct GifWriter<W: Write> {
     size: [u32; 2],
     palette: Palette,
     last: Option<Vec<u8>>,
-    /// The length of a frame in hundredths of a second, which are what GIF counts.
+    /// The length of a frame in hundredths of a second, the unit of GIF.
     delay: f64,
     frames: u64,
 }
@@ -53,10 +53,10 @@ impl<W: Write> core::fmt::Debug for GifWriter<W> {
 }
 
 impl<W: Write> GifWriter<W> {
-    /// Begins an animation that repeats for ever; its palette is made for some sample frames.
+    /// Begins an animation that repeats forever, with a palette made from sample frames.
     ///
     /// # Errors
-    /// [`DrawError`] if there is no sample, an image is larger than a GIF may be, or `out` cannot be written.
+    /// [`DrawError`] if there is no sample, if an image is larger than a GIF may be, or if `out` cannot be written.
     pub fn new(out: W, frames_per_second: f64, samples: &[Image]) -> Result<GifWriter<W>, DrawError> {
         let first = samples.first().ok_or(DrawError::Empty { nothing: Nothing::Sample })?;
         let size = [first.width(), first.height()];
@@ -69,7 +69,7 @@ impl<W: Write> GifWriter<W> {
         let palette = Palette::of(samples);
         let mut encoder = gif::Encoder::new(out, width, height, palette.colours()).map_err(DrawError::from)?;
         encoder.set_repeat(gif::Repeat::Infinite).map_err(DrawError::from)?;
-        // Viewers play frames of less than two hundredths slowly.
+        // Viewers play frames shorter than two hundredths slowly.
         let delay = (100.0 / frames_per_second).clamp(2.0, 6000.0);
         Ok(GifWriter { encoder, size, palette, last: None, delay, frames: 0 })
     }
@@ -77,7 +77,7 @@ impl<W: Write> GifWriter<W> {
     /// Adds a frame.
     ///
     /// # Errors
-    /// [`DrawError`] if its size is another one or it cannot be written.
+    /// [`DrawError`] if its size differs, or if it cannot be written.
     pub fn push(&mut self, image: &Image) -> Result<(), DrawError> {
         if [image.width(), image.height()] != self.size {
             return Err(DrawError::FrameSize { expected: self.size, found: [image.width(), image.height()] });
@@ -92,7 +92,7 @@ impl<W: Write> GifWriter<W> {
         for row in top..bottom {
             part.extend(&pixels[row * width + left..row * width + right]);
         }
-        // Each frame ends at the nearest hundredth, so that what is rounded off does not add up.
+        // Each frame ends at the nearest hundredth, so that rounding errors do not add up.
         let end = |frames: u64| (frames as f64 * self.delay).round() as u64;
         let delay = (end(self.frames + 1) - end(self.frames)) as u16;
         self.frames += 1;
@@ -112,7 +112,7 @@ impl<W: Write> GifWriter<W> {
     }
 }
 
-/// Left, top, right and bottom of what differs; one pixel if nothing does.
+/// Left, top, right and bottom of the region that differs; one pixel if nothing does.
 fn changed(a: &[u8], b: &[u8], width: usize) -> [usize; 4] {
     let mut bounds = [width, a.len() / width, 0, 0];
     for (index, (x, y)) in a.iter().zip(b).enumerate() {

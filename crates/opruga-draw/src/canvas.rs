@@ -7,7 +7,7 @@ use tiny_skia::{
     FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, PixmapMut, Rect, Stroke, StrokeDash, Transform,
 };
 
-/// Where a text lies relative to its point.
+/// The position of a text relative to its point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Anchor {
     /// The text starts at the point.
@@ -18,7 +18,7 @@ pub(crate) enum Anchor {
     End,
 }
 
-/// The font of all pictures, as an OpenType file: Inter, cut down to Latin, Greek and Cyrillic letters, digits and signs.
+/// The font of all pictures, as an OpenType file: Inter, reduced to Latin, Greek and Cyrillic letters, digits and signs.
 pub const FONT: &[u8] = include_bytes!("../font/inter-subset.otf");
 
 fn font() -> &'static FontRef<'static> {
@@ -26,14 +26,14 @@ fn font() -> &'static FontRef<'static> {
     READ.get_or_init(|| FontRef::try_from_slice(FONT).expect("the font of the crate is a font"))
 }
 
-/// The space which a sign takes; all digits take the same, so that running numbers do not jump.
+/// The advance of a character. All digits have the same, so that changing numbers do not jump.
 fn advance(sign: char, size: f32) -> f32 {
     let font = font().as_scaled(size * font_scale());
     let wide = if sign.is_ascii_digit() { '0' } else { sign };
     font.h_advance(font.glyph_id(wide))
 }
 
-/// The ratio between the height of a line, which ab_glyph asks for, and the size of the letters.
+/// The ratio of the height of a line, which ab_glyph expects, to the size of the letters.
 fn font_scale() -> f32 {
     font().height_unscaled() / font().units_per_em().unwrap_or(1000.0)
 }
@@ -86,7 +86,7 @@ impl<'a> Canvas<'a> {
         self.pixmap.fill_path(path, paint, FillRule::EvenOdd, Transform::identity(), None);
     }
 
-    /// Fills all that the loops of a path enclose, which run all in one sense, however often.
+    /// Fills everything that the loops of a path enclose, however often. All loops have the same orientation.
     pub(crate) fn fill_all(&mut self, path: &Path, paint: &Paint) {
         self.pixmap.fill_path(path, paint, FillRule::Winding, Transform::identity(), None);
     }
@@ -129,7 +129,7 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    /// Fills a rectangle (left, top, width, height) without softened edges.
+    /// Fills a rectangle (left, top, width, height) without anti-aliased edges.
     pub(crate) fn rectangle(&mut self, [left, top, width, height]: [f32; 4], colour: [u8; 3], opacity: f64) {
         if let Some(rectangle) = Rect::from_xywh(left, top, width, height) {
             let mut paint = paint(colour, opacity);
@@ -138,7 +138,7 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    /// Draws the edge of a rectangle (left, top, width, height) with a line one pixel wide.
+    /// Draws the edge of a rectangle (left, top, width, height) with a line of one pixel.
     pub(crate) fn frame(&mut self, [left, top, width, height]: [f32; 4], colour: [u8; 3]) {
         let (left, top, width, height) = (left.round(), top.round(), width.round(), height.round());
         self.rectangle([left, top, width, 1.0], colour, 1.0);
@@ -152,7 +152,7 @@ impl<'a> Canvas<'a> {
         [self.pixmap.width() as f32, self.pixmap.height() as f32]
     }
 
-    /// How many pixels of a rectangle (left, top, width, height) are of another colour than wanted, to the eye.
+    /// The number of pixels of a rectangle (left, top, width, height) whose colour visibly differs from the given one.
     pub(crate) fn differing(&self, [left, top, width, height]: [f32; 4], colour: [u8; 3]) -> usize {
         let [wide, tall] = self.size().map(|size| size as usize);
         let (columns, rows) = (
@@ -167,7 +167,7 @@ impl<'a> Canvas<'a> {
         rows.map(|y| columns.clone().filter(|x| other(*x, y)).count()).sum()
     }
 
-    /// Writes a text whose base line goes through a point.
+    /// Writes a text whose baseline passes through a point.
     pub(crate) fn text(&mut self, text: &str, point: [f32; 2], size: f32, anchor: Anchor, colour: [u8; 3]) {
         let shift = match anchor {
             Anchor::Start => 0.0,

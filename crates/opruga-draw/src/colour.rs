@@ -1,16 +1,16 @@
-//! Colours which people with any colour vision can tell apart.
+//! Colours that people with any colour vision can distinguish.
 
 /// A colour map for scalars.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ColourMap {
-    /// From dark violet to yellow, evenly growing in lightness: for quantities from low to high.
+    /// From dark violet to yellow, with evenly increasing lightness: for quantities from low to high.
     #[default]
     Viridis,
-    /// From dark blue to yellow, the same for eyes that do not tell red from green.
+    /// From dark blue to yellow: the same for people who cannot distinguish red from green.
     Cividis,
-    /// From dark to light grey, for eyes that see no colours, and for print.
+    /// From dark to light grey, for people who see no colours, and for print.
     Grey,
-    /// From a pale grey over yellow and red to dark violet: for what is mostly small, such as stress, on bodies in the light.
+    /// From a pale grey over yellow and red to dark violet: for quantities that are mostly small, such as stress, on lit bodies.
     Embers,
     /// From blue through a light grey to red: for quantities around a middle value.
     Diverging,
@@ -54,7 +54,7 @@ const CIVIDIS: [[u8; 3]; 10] = [
 /// The ends of a map without colours.
 const GREY: [[u8; 3]; 2] = [[28, 30, 34], [244, 245, 247]];
 
-/// The stops of a map from a pale grey to dark violet, evenly falling in lightness.
+/// The stops of a map from a pale grey to dark violet, with evenly decreasing lightness.
 const EMBERS: [[u8; 3]; 9] = [
     [233, 236, 239],
     [244, 227, 183],
@@ -82,7 +82,7 @@ const DIVERGING: [[u8; 3]; 11] = [
     [103, 0, 31],
 ];
 
-/// The colours of Okabe and Ito in the order in which lines of a plot take them.
+/// The colours of Okabe and Ito, in the order in which lines of a plot use them.
 pub const OKABE_ITO: [[u8; 3]; 8] = [
     [0, 114, 178],
     [213, 94, 0],
@@ -94,25 +94,25 @@ pub const OKABE_ITO: [[u8; 3]; 8] = [
     [240, 228, 66],
 ];
 
-/// The soft colours which bodies without a colour take in turn.
+/// The soft colours that bodies without a colour use in turn.
 pub const BODIES: [[u8; 3]; 6] =
     [[122, 174, 214], [240, 178, 122], [122, 196, 168], [218, 166, 196], [238, 206, 124], [164, 172, 186]];
 
 /// The colour of text.
 pub(crate) const INK: [u8; 3] = [38, 42, 50];
-/// The colour of lesser text, frames and ticks.
+/// The colour of secondary text, frames and ticks.
 pub(crate) const SOFT_INK: [u8; 3] = [108, 114, 124];
 /// The colour of the frame around a scene.
 pub(crate) const FRAME: [u8; 3] = [206, 210, 216];
-/// The colour of the fill of an obstacle.
+/// The fill colour of an obstacle.
 pub(crate) const OBSTACLE: [u8; 3] = [226, 228, 232];
-/// The colour of the edge of an obstacle.
+/// The edge colour of an obstacle.
 pub(crate) const OBSTACLE_EDGE: [u8; 3] = [116, 122, 132];
 /// The colour of the rubber line of a pointer.
 pub(crate) const RUBBER: [u8; 3] = [196, 40, 90];
 
 impl ColourMap {
-    /// All of them, in the order of menus.
+    /// All maps, in the order of menus.
     pub const ALL: [ColourMap; 5] =
         [ColourMap::Viridis, ColourMap::Cividis, ColourMap::Embers, ColourMap::Grey, ColourMap::Diverging];
 
@@ -121,7 +121,7 @@ impl ColourMap {
         self == ColourMap::Embers
     }
 
-    /// The colour at a fraction of the map from 0 (low) to 1 (high); values outside take the nearest end.
+    /// The colour at a fraction of the map from 0 (low) to 1 (high); values outside get the nearest end.
     pub fn colour(self, fraction: f64) -> [u8; 3] {
         let stops: &[[u8; 3]] = match self {
             ColourMap::Viridis => &VIRIDIS,
@@ -139,7 +139,7 @@ impl ColourMap {
     }
 }
 
-/// A colour between two others: `share` 0 is the first, 1 the second.
+/// A mixture of two colours: `share` 0 is the first, 1 the second.
 pub(crate) fn mix(first: [u8; 3], second: [u8; 3], share: f64) -> [u8; 3] {
     std::array::from_fn(|channel| {
         let (a, b) = (f64::from(first[channel]), f64::from(second[channel]));

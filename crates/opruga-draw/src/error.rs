@@ -1,10 +1,10 @@
-//! What can go wrong while a picture is drawn or written.
+//! Errors of drawing or writing a picture.
 
 use opruga_math::message::Variant;
 use opruga_video::VideoError;
 
 opruga_math::terms! {
-    /// What a picture or a plot has nothing of.
+    /// The thing that a picture or a plot lacks.
     pub enum Nothing = "part.nothing_to_draw" {
         Picture = "a film strip needs a picture",
         FinitePlace = "no body has a node at a finite place",
@@ -18,7 +18,7 @@ opruga_math::terms! {
 }
 
 opruga_math::terms! {
-    /// A list of a picture whose items name nodes.
+    /// A list of a picture whose items refer to nodes.
     pub enum PictureList = "part.picture_list" {
         Areas = "areas",
         LinesAtRest = "lines at rest",
@@ -30,7 +30,7 @@ opruga_math::terms! {
 }
 
 opruga_math::messages! {
-    /// Why a picture, a plot or a video could not be made.
+    /// The reasons why a picture, a plot or a video could not be made.
     #[derive(Clone, Debug, PartialEq)]
     pub enum DrawError {
         /// The image has no area, or is larger than 16384 pixels on a side.
@@ -41,15 +41,15 @@ opruga_math::messages! {
         "draw.failed"
         #[error("there is nothing to draw: {nothing}")]
         Empty { nothing: Nothing },
-        /// A facet, a cell, a segment or a pin names a node which the body does not have; the body by its index in the picture.
+        /// A facet, a cell, a segment or a pin refers to a node that the body does not have. The body is given by its index in the picture.
         "draw.failed"
         #[error("body {body} has {nodes} nodes, but its {list} name node {node}")]
         Node { body: usize, nodes: usize, list: PictureList, node: u32 },
-        /// The list of scalars of a body has another length than the list of positions; the body by its index in the picture.
+        /// The list of scalars of a body has a different length from the list of positions. The body is given by its index in the picture.
         "draw.failed"
         #[error("body {body} has {nodes} nodes, but {scalars} scalars; there must be none, or one a node")]
         Scalars { body: usize, nodes: usize, scalars: usize },
-        /// A picture says that it is neither flat nor solid.
+        /// The dimension of a picture is neither 2 nor 3.
         "draw.failed"
         #[error("a picture has {dimensions} dimensions; it must have 2 or 3")]
         Dimension { dimensions: u8 },
@@ -65,11 +65,11 @@ opruga_math::messages! {
         "draw.failed"
         #[error("{cause}")]
         Video { cause: VideoError },
-        /// The encoder of PNG failed, or what it writes to; the reason of the system.
+        /// The PNG encoder or its output failed; contains the system's reason.
         "draw.failed"
         #[error("the PNG encoder failed: {reason}")]
         Png { reason: String },
-        /// The encoder of GIF failed, or what it writes to; the reason of the system.
+        /// The GIF encoder or its output failed; contains the system's reason.
         "draw.failed"
         #[error("the GIF encoder failed: {reason}")]
         Gif { reason: String },

@@ -1,4 +1,4 @@
-//! A free camera around a point, for those who turn a scene by hand, and drawing without anything around the scene.
+//! A free camera around a point, for scenes that are rotated by hand, and drawing of a scene without anything around it.
 
 use crate::error::DrawError;
 use crate::image::Image;
@@ -6,7 +6,7 @@ use crate::picture::Picture;
 use crate::solid::camera::{Camera, along, axes, dot};
 use crate::view::View;
 
-/// A camera that looks at a point from a direction; it sees a ball around that point.
+/// A camera that looks at a point from a direction; it shows a ball around that point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Eye {
     /// The point it looks at [m].
@@ -20,14 +20,14 @@ pub struct Eye {
 }
 
 impl Eye {
-    /// The eye that sees what a view shows.
+    /// The eye that sees the content of a view.
     pub fn of(view: &View) -> Eye {
         let half: [f64; 3] = std::array::from_fn(|axis| 0.5 * (view.high[axis] - view.low[axis]));
         let radius = (0.75 * dot(half, half).sqrt()).max(1e-9);
         Eye { target: view.center(), radius, azimuth: view.azimuth, elevation: view.elevation }
     }
 
-    /// The view of this eye, with the scales of another.
+    /// The view of this eye, with the scales of another view.
     pub fn view(&self, scales: &View) -> View {
         let mut view = View {
             low: self.target.map(|c| c - self.radius),
@@ -36,7 +36,7 @@ impl Eye {
             elevation: self.elevation,
             ..scales.clone()
         };
-        // Ends of a cross in the plane of the picture: the distance does not change while the eye turns.
+        // Ends of a cross in the plane of the picture, so that the distance does not change while the eye rotates.
         let [right, up, _] = axes(&view);
         let ends = [(right, 1.0), (right, -1.0), (up, 1.0), (up, -1.0)];
         view.points = ends.map(|(axis, sign)| along(self.target, axis, sign * self.radius)).to_vec();
@@ -48,24 +48,24 @@ impl Eye {
         axes(&self.view(scales))
     }
 
-    /// What turns points into pixels of a picture of this size.
+    /// The lens that maps points to pixels of a picture of this size.
     pub fn lens(&self, scales: &View, [width, height]: [f64; 2]) -> Lens {
         Lens(Camera::new(&self.view(scales), width.max(1.0), height.max(1.0)))
     }
 }
 
-/// Where points of space are seen in a picture, and what lies behind a pixel.
+/// The mapping from points in space to pixels of a picture, and back.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lens(Camera);
 
 impl Lens {
-    /// The pixel of a point and its distance along the axis of the camera [m]; none behind the camera.
+    /// The pixel of a point and its distance along the camera axis [m]; none behind the camera.
     pub fn see(&self, point: [f64; 3]) -> Option<([f64; 2], f64)> {
         let seen = self.0.see(point)?;
         Some((seen.pixel.map(f64::from), 1.0 / f64::from(seen.inverse_distance)))
     }
 
-    /// The point behind a pixel at a distance along the axis of the camera [m].
+    /// The point behind a pixel at a distance along the camera axis [m].
     pub fn point(&self, pixel: [f64; 2], distance: f64) -> [f64; 3] {
         let [right, up, forward] = self.0.axes;
         let share = [0, 1].map(|axis| (pixel[axis] - self.0.middle[axis]) / self.0.focus * distance);
@@ -76,7 +76,7 @@ impl Lens {
 /// Draws a picture without anything around it.
 ///
 /// # Errors
-/// [`DrawError`] for a picture whose lists do not fit together, or a size that no image has.
+/// [`DrawError`] for a picture with inconsistent lists, or a size that no image can have.
 pub fn scene(picture: &Picture, view: &View, background: [u8; 3], size: [u32; 2]) -> Result<Image, DrawError> {
     Image::new(size[0], size[1], background)?;
     let unit = (size[0].min(size[1]) as f32 / 600.0).clamp(0.7, 8.0);

@@ -1,4 +1,4 @@
-//! Finds the view of a run, one picture after the other.
+//! Finds the view of a run, one picture after another.
 
 use crate::error::{DrawError, Nothing};
 use crate::flat::BORDER;
@@ -7,12 +7,12 @@ use crate::solid::{cast, directions_of_view};
 use crate::view::View;
 use std::collections::BTreeMap;
 
-/// The scalars of a picture which are looked at to find the range of the colours.
+/// The number of scalars of a picture that are sampled to find the range of the colours.
 const SAMPLE: usize = 20_000;
-/// The share of the scalars which may be left out at each end of the colours.
+/// The fraction of the scalars that may be outside the colour range at each end.
 const STRAYS: f64 = 0.03;
 
-/// What was seen of a run so far; no picture is kept.
+/// The extents of a run so far; no picture is kept.
 #[derive(Clone, Debug)]
 pub struct Fitting {
     /// The box around everything.
@@ -31,13 +31,13 @@ pub struct Fitting {
     starts: Bounds,
     /// The sizes of the bodies of the first picture.
     sizes: Vec<f64>,
-    /// Whether some picture counts y downwards.
+    /// Whether a picture has y pointing downwards.
     y_down: bool,
-    /// What the first picture is to show.
+    /// The sight of the first picture.
     sight: Option<Sight>,
 }
 
-/// A box along the axes which grows with each point.
+/// An axis-aligned box that grows with each point.
 #[derive(Clone, Copy, Debug)]
 struct Bounds {
     /// The lowest corner.
@@ -47,12 +47,12 @@ struct Bounds {
 }
 
 impl Bounds {
-    /// A box around nothing.
+    /// An empty box.
     fn empty() -> Bounds {
         Bounds { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] }
     }
 
-    /// Takes a ball into the box; points which are not finite are left out.
+    /// Extends the box to include a ball; points that are not finite are ignored.
     fn add(&mut self, point: [f64; 3], radius: f64) {
         if point.iter().all(|value| value.is_finite()) && radius.is_finite() {
             for axis in 0..3 {
@@ -112,7 +112,7 @@ impl Default for Fitting {
 }
 
 impl Fitting {
-    /// Looks at a picture.
+    /// Adds a picture.
     pub fn add(&mut self, picture: &Picture) {
         self.y_down |= picture.y_down;
         self.sight.get_or_insert(picture.sight);
@@ -164,7 +164,7 @@ impl Fitting {
         self.sample(picture);
     }
 
-    /// Takes another box into the box.
+    /// Extends the box to include another box.
     fn take(&mut self, other: &Bounds) {
         self.bounds.add(other.low, 0.0);
         self.bounds.add(other.high, 0.0);
@@ -183,10 +183,10 @@ impl Fitting {
         }
     }
 
-    /// Keeps some of the scalars of a picture, evenly spread.
+    /// Keeps a sample of the scalars of a picture, evenly distributed.
     fn sample(&mut self, picture: &Picture) {
         let all: usize = picture.bodies.iter().map(|body| body.scalar.len()).sum();
-        // An odd distance does not meet the same nodes of every body.
+        // An odd step does not select the same nodes of every body.
         let every = (all / SAMPLE) | 1;
         let scalars = picture.bodies.iter().flat_map(|body| &body.scalar).copied();
         for (index, scalar) in scalars.filter(|scalar| scalar.is_finite()).enumerate() {
@@ -197,13 +197,13 @@ impl Fitting {
         }
     }
 
-    /// The same without the region that the pictures ask for: all that was seen.
+    /// The same without the region that the pictures request: everything seen.
     pub fn everything(mut self) -> Fitting {
         self.sight.iter_mut().for_each(|sight| sight.region = None);
         self
     }
 
-    /// The view which shows everything that was seen, or the region that the pictures ask for.
+    /// The view that shows everything seen, or the region that the pictures request.
     pub fn finish(mut self) -> Result<View, DrawError> {
         if self.bounds.is_empty() {
             return Err(DrawError::Empty { nothing: Nothing::FinitePlace });
@@ -222,7 +222,7 @@ impl Fitting {
         }
         let sight = self.sight.unwrap_or_default();
         if let Some([low, high]) = sight.region {
-            // With the border that is drawn around what must be seen, a flat region is seen and no more.
+            // The border around the visible part is subtracted, so that a flat region is shown exactly.
             let border = if low[2] == high[2] { BORDER / (1.0 + 2.0 * BORDER) } else { 0.0 };
             let side = border * Bounds { low, high }.side();
             self.bounds = Bounds { low, high };
@@ -247,7 +247,7 @@ impl Fitting {
             elevation: sight.elevation.unwrap_or(20.0),
         };
         if sight.region.is_some() {
-            // The corners of the box are what the camera must see.
+            // The camera must see the corners of the box.
             return Ok(view);
         }
         let spread = if self.starts.is_empty() { 0.0 } else { arrow };
@@ -265,22 +265,22 @@ impl Fitting {
     }
 }
 
-/// The value which a share of the values does not exceed; 0 of none.
+/// The value that a fraction of the values does not exceed; 0 without values.
 fn quantile(values: &mut [f64], share: f64) -> f64 {
     values.sort_by(f64::total_cmp);
     let index = (share * values.len().saturating_sub(1) as f64).round() as usize;
     values.get(index).copied().unwrap_or(0.0)
 }
 
-/// The range of the colours of scalars, and whether some are left out below and above.
+/// The colour range of scalars, and whether some are outside it at the low and the high end.
 ///
-/// At each end three in a hundred may be left out, where this makes the range smaller by a sixth.
+/// At each end three per cent may be outside, if this reduces the range by a sixth.
 fn range_of(scalars: &mut [f64], ends: [f64; 2]) -> (Option<[f64; 2]>, [bool; 2]) {
     let width = ends[1] - ends[0];
     if width.is_nan() || width < 0.0 || scalars.is_empty() {
         return (None, [false; 2]);
     }
-    // Rounding is no data.
+    // Rounding errors are not data.
     if width <= 1e-9 * ends[0].abs().max(ends[1].abs()).max(1.0) {
         return (Some([ends[0]; 2]), [false; 2]);
     }
@@ -290,7 +290,7 @@ fn range_of(scalars: &mut [f64], ends: [f64; 2]) -> (Option<[f64; 2]>, [bool; 2]
     if range[1] > range[0] { (Some(range), strays) } else { (Some(ends), [false; 2]) }
 }
 
-/// Takes an obstacle with an end into the box.
+/// Extends the box to include a bounded obstacle.
 fn add_collider(bounds: &mut Bounds, collider: &ColliderPicture) {
     match collider {
         ColliderPicture::HalfSpace { .. } => {}
@@ -310,7 +310,7 @@ fn add_collider(bounds: &mut Bounds, collider: &ColliderPicture) {
     }
 }
 
-/// Makes the box reach the surface of a half space, unless that is far away.
+/// Extends the box to the surface of a half space, unless that is far away.
 fn take_plane(bounds: &mut Bounds, point: [f64; 3], normal: [f64; 3], diagonal: f64) {
     let height = |corner: [f64; 3]| (0..3).map(|axis| (corner[axis] - point[axis]) * normal[axis]).sum::<f64>();
     let gap = bounds.corners().map(height).fold(f64::INFINITY, f64::min);
@@ -325,7 +325,7 @@ fn take_plane(bounds: &mut Bounds, point: [f64; 3], normal: [f64; 3], diagonal: 
 }
 
 impl View {
-    /// The view which shows everything in all pictures of a run.
+    /// The view that shows everything in all pictures of a run.
     pub fn fit<'a>(pictures: impl IntoIterator<Item = &'a Picture>) -> Result<View, DrawError> {
         let mut fitting = Fitting::default();
         pictures.into_iter().for_each(|picture| fitting.add(picture));

@@ -6,14 +6,14 @@ use std::io::Write;
 /// The longest side of an image, in pixels.
 const LONGEST_SIDE: u32 = 16384;
 
-/// An image whose pixels are red, green, blue and a full opacity, row by row from the top.
+/// An image whose pixels are red, green, blue and full opacity, row by row from the top.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Image {
     /// The width in pixels.
     width: u32,
     /// The height in pixels.
     height: u32,
-    /// Four bytes a pixel.
+    /// Four bytes per pixel.
     pixels: Vec<u8>,
 }
 
@@ -37,12 +37,12 @@ impl Image {
         self.height
     }
 
-    /// Four bytes a pixel: red, green, blue and 255.
+    /// Four bytes per pixel: red, green, blue and 255.
     pub fn pixels(&self) -> &[u8] {
         &self.pixels
     }
 
-    /// The bytes of the pixels, to be changed.
+    /// The bytes of the pixels, for modification.
     pub(crate) fn pixels_mut(&mut self) -> &mut [u8] {
         &mut self.pixels
     }
@@ -56,7 +56,7 @@ impl Image {
         [self.pixels[offset], self.pixels[offset + 1], self.pixels[offset + 2]]
     }
 
-    /// Copies another image to a position; what sticks out is left away.
+    /// Copies another image to a position; parts outside are cut off.
     pub fn paste(&mut self, other: &Image, x: u32, y: u32) {
         let columns = other.width.min(self.width.saturating_sub(x)) as usize;
         let rows = other.height.min(self.height.saturating_sub(y)) as usize;

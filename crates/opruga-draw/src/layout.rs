@@ -1,4 +1,4 @@
-//! Where the scene lies within an image, and what is written around it.
+//! The position of the scene within an image, and the text around it.
 
 use crate::canvas::{Anchor, Canvas, text_width};
 use crate::colour::{FRAME, INK, SOFT_INK};
@@ -7,7 +7,7 @@ use crate::picture::{ArrowKind, ColliderPicture, Legend, Picture};
 use crate::ticks::{format_tick, format_value, nice_length, nice_ticks};
 use crate::view::View;
 
-/// The size of an image and what is written around the scene.
+/// The size of an image, and the text around the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Style {
     /// The width in pixels.
@@ -20,7 +20,7 @@ pub struct Style {
     pub header: bool,
     /// Whether the length scale and the names of the arrows are written below the scene.
     pub footer: bool,
-    /// Whether the colours of the scalars are explained at the right.
+    /// Whether the legend of the colours is drawn at the right.
     pub legend: bool,
 }
 
@@ -31,14 +31,14 @@ impl Default for Style {
 }
 
 impl Style {
-    /// The style of a film whose frames have the shape of the view, and the size which viewers like.
+    /// The style of a film whose frames have the aspect ratio of the view, in a size suitable for viewers.
     pub fn film(view: &View, dimension: u8, longest: u32) -> Style {
-        // What stands beside and above a scene takes about as much as this.
+        // The approximate space beside and above a scene.
         let (beside, above) = (90.0, 78.0);
         let (longest, aspect) = (f64::from(longest), view.aspect(dimension));
         let tall = ((longest - beside) * aspect + above).clamp(0.45 * longest, 0.75 * longest);
         let wide = ((tall - above) / aspect + beside).clamp(0.6 * longest, longest);
-        // Videos store colours for two pixels together.
+        // Videos store one colour for two pixels.
         let even = |side: f64| 2 * (0.5 * side).round() as u32;
         Style { width: even(wide), height: even(tall), ..Style::default() }
     }
@@ -48,7 +48,7 @@ impl Style {
 pub(crate) struct Layout {
     /// The left, the top, the width and the height of the scene.
     pub(crate) scene: [u32; 4],
-    /// The size of everything that does not belong to the scene, relative to an image of 600 pixels.
+    /// The size of text and lines outside the scene, relative to an image of 600 pixels.
     pub(crate) unit: f32,
 }
 
@@ -66,19 +66,19 @@ impl Layout {
         Layout { scene: scene.map(|value| value.round() as u32), unit }
     }
 
-    /// The height which the line below everything takes that says whose drawings are seen, if there is one.
+    /// The height of the credit line at the bottom, if there is one.
     pub(crate) fn credit_space(credit: &str, unit: f32) -> f32 {
         if credit.is_empty() { 0.0 } else { 18.0 * unit }
     }
 
-    /// Writes whose drawings are seen, on a line of its own, smaller where it would not fit.
+    /// Writes the credit on its own line, in smaller letters if it would not fit.
     pub(crate) fn credit(&self, canvas: &mut Canvas, credit: &str, [left, base]: [f32; 2], space: f32) {
         let size = 11.5 * self.unit;
         let fits = (space / text_width(credit, size).max(1.0)).min(1.0);
         canvas.text(credit, [left, base], size * fits, Anchor::Start, SOFT_INK);
     }
 
-    /// The width which the legend takes, if there is one and it is wanted.
+    /// The width of the legend, if there is one and it is requested.
     pub(crate) fn legend_space(picture: &Picture, view: &View, unit: f32, wanted: bool) -> f32 {
         match view.legend(picture) {
             Some(legend) if wanted => legend_width(legend, view.range(picture), unit),
@@ -91,7 +91,7 @@ impl Layout {
         (style.width.min(style.height) as f32 / 600.0).clamp(0.7, 8.0)
     }
 
-    /// Writes everything around the scene; `scale` is the number of pixels in a metre.
+    /// Writes everything around the scene; `scale` is the number of pixels per metre.
     pub(crate) fn annotate(&self, canvas: &mut Canvas, picture: &Picture, view: &View, style: &Style, scale: f64) {
         let [left, top, width, height] = self.scene.map(|value| value as f32);
         let unit = self.unit;
@@ -116,8 +116,8 @@ impl Layout {
         }
     }
 
-    /// Writes what stands below a scene: lengths at the left, arrows at the right; `bar` is the most that the bar of
-    /// lengths may take and the number of pixels in a metre.
+    /// Writes the line below a scene: lengths at the left, arrows at the right. `bar` contains the maximum length of the scale bar and the number of
+    /// pixels per metre.
     pub(crate) fn foot(
         &self,
         canvas: &mut Canvas,
@@ -132,7 +132,7 @@ impl Layout {
         let mut end = if first.dimension == 3 && floored {
             self.squares(canvas, [left, base], first, view)
         } else {
-            // In space the length is one in the middle of the scene, square to the line of sight.
+            // In space the length applies at the centre of the scene, perpendicular to the line of sight.
             self.scale_bar(canvas, [left, base], f64::from(bar), f64::from(scale), &first.length_unit)
         };
         if view.y_down {
@@ -146,7 +146,7 @@ impl Layout {
         self.arrow_scales(canvas, pictures, view, [end + 24.0 * self.unit, left + width], base, f64::from(scale));
     }
 
-    /// Draws a bar of a round length, and gives the position where its text ends.
+    /// Draws a bar of a round length, and returns the position where its text ends.
     fn scale_bar(&self, canvas: &mut Canvas, [left, base]: [f32; 2], most: f64, scale: f64, length_unit: &str) -> f32 {
         let unit = self.unit;
         let length = nice_length(most / scale);
@@ -162,7 +162,7 @@ impl Layout {
         left + bar + 8.0 * unit + text_width(&text, 14.0 * unit)
     }
 
-    /// Writes how large the squares of a floor in three dimensions are, and gives the position where the text ends.
+    /// Writes the size of the squares of a floor in three dimensions, and returns the position where the text ends.
     fn squares(&self, canvas: &mut Canvas, [left, base]: [f32; 2], picture: &Picture, view: &View) -> f32 {
         let size = 14.0 * self.unit;
         let text = format!("squares of {}", length_text(view.square(), &picture.length_unit));
@@ -170,7 +170,7 @@ impl Layout {
         left + text_width(&text, size)
     }
 
-    /// Draws for each kind of arrow one of a round value, from the right.
+    /// Draws one arrow of a round value for each kind of arrow, from the right.
     fn arrow_scales(
         &self,
         canvas: &mut Canvas,
@@ -182,7 +182,7 @@ impl Layout {
     ) {
         let (unit, size) = (self.unit, 13.0 * self.unit);
         let length_unit = &pictures[0].length_unit;
-        // What each is called, the pixels of its arrow, and those of both.
+        // The name of each, the length of its arrow in pixels, and that of both together.
         let entries = |most: f32| -> Vec<(ArrowKind, String, f32, f32)> {
             let drawn = |kind| pictures.iter().any(|picture| picture.arrows.iter().any(|arrow| arrow.kind == kind));
             let entry = |(&kind, &longest): (&ArrowKind, &f64)| {
@@ -193,7 +193,7 @@ impl Layout {
                 let value = nice_length((f64::from(most) / pixels).min(longest));
                 let long = (value * pixels) as f32;
                 let text = match kind {
-                    // All of them are one.
+                    // All normals have length one.
                     ArrowKind::Normal => arrow_name(kind).into(),
                     kind => {
                         format!("{} {} {}", arrow_name(kind), format_value(value), arrow_unit(kind, length_unit))
@@ -207,7 +207,7 @@ impl Layout {
         let gap = 20.0 * unit;
         let total_width =
             |entries: &[(ArrowKind, String, f32, f32)]| entries.iter().map(|(.., wide)| wide + gap).sum::<f32>();
-        // As long as there is room for all of them.
+        // As long as possible, so that all of them fit.
         let lengths = [70.0, 45.0, 30.0, 20.0].map(|most| most * unit);
         let whole = lengths.into_iter().map(entries).find(|entries| total_width(entries) - gap <= to - from);
         let mut end = to;
@@ -224,7 +224,7 @@ impl Layout {
         }
     }
 
-    /// Draws the bar of colours with its values.
+    /// Draws the colour bar with its values.
     pub(crate) fn legend(&self, canvas: &mut Canvas, legend: &Legend, view: &View, picture: &Picture) {
         let unit = self.unit;
         let range = view.range(picture);
@@ -244,7 +244,7 @@ impl Layout {
             canvas.rectangle([bar[0], bar[1] + row as f32, bar[2], 1.0], legend.map.colour(fraction), 1.0);
         }
         if legend.range.is_none() {
-            // A point at an end says that a few scalars lie beyond it.
+            // A pointed end shows that a few scalars are beyond it.
             let ends = [(bar[1] + bar[3], 1.0, 0.0), (bar[1], -1.0, 1.0)];
             for (&(end, outwards, fraction), _) in ends.iter().zip(view.strays).filter(|(_, strays)| *strays) {
                 let tip = [bar[0] + 0.5 * bar[2], end + outwards * 7.0 * unit];
@@ -272,7 +272,7 @@ fn legend_lines(legend: &Legend) -> Vec<String> {
     lines
 }
 
-/// The width which a legend takes.
+/// The width of a legend.
 fn legend_width(legend: &Legend, range: [f64; 2], unit: f32) -> f32 {
     let ticks = nice_ticks(range[0], range[1], 5);
     let step = if ticks.len() > 1 { ticks[1] - ticks[0] } else { range[0].abs() };
@@ -281,7 +281,7 @@ fn legend_width(legend: &Legend, range: [f64; 2], unit: f32) -> f32 {
     values.chain(lines).fold(0.0, f32::max) + 16.0 * unit
 }
 
-/// A time as text, with three digits after the point.
+/// A time as text, with three decimals.
 fn time_text(time: f64) -> String {
     if !time.is_finite() {
         return String::new();
@@ -289,7 +289,7 @@ fn time_text(time: f64) -> String {
     if time.abs() >= 100.0 { format!("t = {time:.1} s") } else { format!("t = {time:.3} s") }
 }
 
-/// Times as texts, all with as many digits after the point as the longest needs, but three at most.
+/// Times as texts, all with the number of decimals that the longest needs, but at most three.
 pub(crate) fn time_texts(times: &[f64]) -> Vec<String> {
     let exact = |digits: i32| {
         let scale = 10_f64.powi(digits);
@@ -299,7 +299,7 @@ pub(crate) fn time_texts(times: &[f64]) -> Vec<String> {
     times.iter().map(|time| format!("t = {time:.digits$} s")).collect()
 }
 
-/// A length as text; small ones in millimetres where the unit is the metre.
+/// A length as text; small lengths in millimetres if the unit is the metre.
 fn length_text(length: f64, unit: &str) -> String {
     if unit == "m" && length < 0.0099 {
         format!("{} mm", format_value(length * 1e3))

@@ -1,8 +1,8 @@
 //! Pictures, film strips, plots and videos of deformable bodies, without a graphics card.
 //!
-//! A [`Picture`] says what is seen at one moment. A [`View`], fitted to all pictures of a run, says from where. Then
-//! [`draw`] makes an [`Image`], [`strip`] a row of them, and [`Mp4Writer`] or [`GifWriter`] a film.
-// The fixed elementary functions are for physics; a picture may differ in a last bit.
+//! A [`Picture`] describes what is seen at one moment. A [`View`], fitted to all pictures of a run, describes from where. Then [`draw`] makes an
+//! [`Image`], [`strip`] a row of them, and [`Mp4Writer`] or [`GifWriter`] a film.
+// The reproducible elementary functions are for physics; a picture may differ in the last bit.
 #![allow(clippy::disallowed_methods)]
 
 mod animation;
@@ -42,7 +42,7 @@ pub use strip::{StripStyle, best_count, captioned_strip, spread, strip};
 pub use ticks::{decades, format_tick, format_value, nice_length, nice_step, nice_ticks, scientific};
 pub use view::View;
 
-/// Draws a picture as it is seen in a view.
+/// Draws a picture as seen in a view.
 pub fn draw(picture: &Picture, view: &View, style: &Style) -> Result<Image, DrawError> {
     let mut image = Image::new(style.width, style.height, style.background)?;
     let layout = layout::Layout::new(picture, view, style);
@@ -53,7 +53,7 @@ pub fn draw(picture: &Picture, view: &View, style: &Style) -> Result<Image, Draw
     Ok(image)
 }
 
-/// Draws a picture without anything around it, and gives the number of pixels in a metre; in space, at the centre.
+/// Draws a picture without anything around it, and returns the number of pixels per metre; in space, at the centre.
 fn scene(
     picture: &Picture,
     view: &View,

@@ -1,4 +1,4 @@
-//! Arrows, pins and the rubber lines of pointers, drawn over flat and solid scenes alike.
+//! Arrows, pins and the rubber lines of pointers, which are drawn over flat and solid scenes alike.
 
 use crate::canvas::{Anchor, Canvas, paint, text_width};
 use crate::colour::{INK, OKABE_ITO, RUBBER};
@@ -6,9 +6,9 @@ use crate::picture::{ArrowKind, ArrowPicture, Picture};
 use crate::view::View;
 use tiny_skia::PathBuilder;
 
-/// The number of pins of a body up to which each may be drawn as a support.
+/// The maximum number of pins of a body for which each may be drawn as a support.
 const SUPPORTS: usize = 40;
-/// How far apart neighbours must be for that, in units of lines.
+/// The minimum distance of neighbours for that, in units of lines.
 const SUPPORT_SPACING: f32 = 17.0;
 
 /// The number of arrows above which they are drawn thinner.
@@ -42,7 +42,7 @@ pub(crate) fn arrow_name(kind: ArrowKind) -> &'static str {
     }
 }
 
-/// The unit of a kind of arrow, where lengths have a unit of their own.
+/// The unit of a kind of arrow, if lengths have a special unit.
 pub fn arrow_unit(kind: ArrowKind, length: &str) -> String {
     match (kind, length) {
         (ArrowKind::Normal, _) => String::new(),
@@ -54,8 +54,8 @@ pub fn arrow_unit(kind: ArrowKind, length: &str) -> String {
     }
 }
 
-/// Draws the pins, the names and the rubber lines of a picture, and some arrows; `project` gives the pixel of a point, and
-/// `in_sight` says whether a point of a surface is seen.
+/// Draws the pins, names and rubber lines of a picture, and some arrows. `project` returns the pixel of a point, and `in_sight` whether a point of a
+/// surface is visible.
 pub(crate) fn draw_marks(
     canvas: &mut Canvas,
     (picture, arrows): (&Picture, &[ArrowPicture]),
@@ -68,7 +68,7 @@ pub(crate) fn draw_marks(
     for body in &picture.bodies {
         let pins = body.pinned.iter().map(|node| body.positions[*node as usize]);
         let points: Vec<[f32; 2]> = pins.filter(|position| in_sight(*position)).filter_map(project).collect();
-        // Marks that would lie on one another are one, and where supports would stand in a row there are dots.
+        // Marks that would overlap are merged; if supports would stand in a row, dots are drawn instead.
         let supports = marks_apart(&points, 12.0 * unit);
         let row = marks_apart(&supports, SUPPORT_SPACING * unit).len() < supports.len();
         if body.pinned.len() <= SUPPORTS && !row {
@@ -83,11 +83,11 @@ pub(crate) fn draw_marks(
             rubber_line(canvas, node, pointer, unit);
         }
     }
-    // Names are read over everything else.
+    // Names are drawn over everything else.
     labels(canvas, picture, background, unit, project);
 }
 
-/// Those of some points that lie so far from all before them.
+/// The points that are farther than `apart` from all earlier ones.
 fn marks_apart(points: &[[f32; 2]], apart: f32) -> Vec<[f32; 2]> {
     let close = |a: [f32; 2], b: [f32; 2]| (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2) < apart * apart;
     let mut marked: Vec<[f32; 2]> = Vec::new();
@@ -129,7 +129,7 @@ struct Label<'a> {
     high: [f32; 2],
 }
 
-/// Where a name lies relative to its body.
+/// The position of a name relative to its body.
 #[derive(Clone, Copy)]
 enum Side {
     Above,
@@ -138,8 +138,8 @@ enum Side {
     Left,
 }
 
-/// Writes the names of bodies: all above them or all below, where less lies under them, so that none is taken for that of a
-/// neighbour; those that still cover something at a free side; on a light ground where nothing is free.
+/// Writes the names of bodies: all above or all below them, whichever covers less, so that no name seems to belong to a neighbour. Names that still
+/// cover something are written at a free side; if no side is free, on a light background.
 fn labels(
     canvas: &mut Canvas,
     picture: &Picture,
@@ -151,7 +151,7 @@ fn labels(
     let mut all: Vec<Label<'_>> = Vec::new();
     for body in picture.bodies.iter().filter(|body| !body.label.is_empty()) {
         let (mut low, mut high) = ([f32::INFINITY; 2], [f32::NEG_INFINITY; 2]);
-        // Names stay where they are while a body swings about where it lay.
+        // Names stay in place while a body oscillates about its rest position.
         for pixel in body.positions.iter().chain(&body.rest.positions).filter_map(|x| project(*x)) {
             for axis in 0..2 {
                 low[axis] = low[axis].min(pixel[axis]);
@@ -166,13 +166,13 @@ fn labels(
     let covered = |canvas: &Canvas, side: Side| -> usize {
         all.iter().map(|label| canvas.differing(rect(label, side), background)).sum()
     };
-    // Above unless much more is covered there: names do not jump from picture to picture.
+    // Above, unless much more is covered there, so that names do not jump from picture to picture.
     let area: f32 = all.iter().map(|label| rect(label, Side::Above)).map(|[.., wide, tall]| wide * tall).sum();
     let much = covered(canvas, Side::Below) + (0.15 * area) as usize;
     let side = if much < covered(canvas, Side::Above) { Side::Below } else { Side::Above };
     for label in &all {
         let own = rect(label, side);
-        // A corner of something else under it is no reason to leave the row.
+        // A small overlap with something else is no reason to leave the row.
         let enough = (0.1 * own[2] * own[3]) as usize;
         let free = [Side::Right, Side::Left].map(|side| rect(label, side));
         let free = free.into_iter().find(|rect| canvas.differing(*rect, background) == 0);
@@ -207,7 +207,7 @@ impl Label<'_> {
     }
 }
 
-/// Draws an arrow with a filled head, and a light rim where it lies over a scene.
+/// Draws an arrow with a filled head, and with a light rim if it is over a scene.
 pub(crate) fn arrow(canvas: &mut Canvas, [from, to]: [[f32; 2]; 2], width: f32, colour: [u8; 3], rim: bool) {
     let along = [to[0] - from[0], to[1] - from[1]];
     let length = (along[0] * along[0] + along[1] * along[1]).sqrt();
@@ -222,7 +222,7 @@ pub(crate) fn arrow(canvas: &mut Canvas, [from, to]: [[f32; 2]; 2], width: f32, 
     let right = [neck[0] + half * direction[1], neck[1] - half * direction[0]];
     let inner = [neck[0] + 0.2 * head * direction[0], neck[1] + 0.2 * head * direction[1]];
     if rim {
-        // The rim spares the outline from which the arrow starts.
+        // The rim does not cover the outline from which the arrow starts.
         let start = [from[0] + 3.0 * width * direction[0], from[1] + 3.0 * width * direction[1]];
         canvas.line(&[start, neck], width + 2.0, [255; 3], 0.6);
         canvas.line(&[to, left, right, to], 2.4, [255; 3], 0.75);
@@ -231,7 +231,7 @@ pub(crate) fn arrow(canvas: &mut Canvas, [from, to]: [[f32; 2]; 2], width: f32, 
     canvas.polygon(&[to, left, inner, right], colour, 1.0);
 }
 
-/// Draws the sign of a support under a pinned node.
+/// Draws the symbol of a support under a pinned node.
 fn support(canvas: &mut Canvas, point: [f32; 2], unit: f32) {
     let (half, tall) = (5.5 * unit, 9.0 * unit);
     let corners = [point, [point[0] - half, point[1] + tall], [point[0] + half, point[1] + tall]];

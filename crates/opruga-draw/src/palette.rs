@@ -3,31 +3,31 @@
 use crate::image::Image;
 use color_quant::NeuQuant;
 
-/// The bits of a channel by which colours are told apart.
+/// The bits per channel by which colours are distinguished.
 const BITS: u32 = 6;
-/// The most colours of a palette.
+/// The maximum number of colours of a palette.
 const MOST: usize = 256;
-/// Those of them that are the most frequent colours themselves: backgrounds, lines, arrows.
+/// The number of them that are the most frequent colours themselves: backgrounds, lines, arrows.
 const KEPT: usize = 64;
 
-/// The colours of an animation, and which of them stands for a colour.
+/// The colours of an animation, and the palette entry for each colour.
 pub(crate) struct Palette {
-    /// Red, green and blue of one after the other.
+    /// Red, green and blue of one colour after another.
     colours: Vec<u8>,
-    /// For every coarse colour the number of the nearest one, once it was asked for.
+    /// For every coarse colour, the number of the nearest palette colour, once it has been requested.
     nearest: Vec<Option<u8>>,
 }
 
-/// The number of a colour at six bits a channel.
+/// The number of a colour at six bits per channel.
 fn coarse(pixel: &[u8]) -> usize {
     pixel[..3].iter().fold(0, |number, channel| (number << BITS) | usize::from(channel >> (8 - BITS)))
 }
 
 impl Palette {
-    /// The palette for some frames: their own colours where these are few, else the most frequent ones, and those that a network learns from the
+    /// The palette for some frames: their own colours if there are few, otherwise the most frequent ones and those that a network learns from the
     /// others (Dekker 1994, "Kohonen neural networks for optimal colour quantization").
     pub(crate) fn of(samples: &[Image]) -> Palette {
-        // How often each coarse colour is there, and the sums of its channels.
+        // The count of each coarse colour, and the sums of its channels.
         let mut sums = vec![[0u64; 4]; 1 << (3 * BITS)];
         for pixel in samples.iter().flat_map(|sample| sample.pixels().chunks_exact(4)) {
             let sum = &mut sums[coarse(pixel)];
@@ -41,7 +41,8 @@ impl Palette {
         } else {
             sums.sort_by_key(|sum| std::cmp::Reverse(sum[0]));
             let (kept, others) = sums.split_at(KEPT);
-            // By the roots of their numbers: plain squares of a floor would else take what the shades of bodies need.
+            // Weighted by the square roots of their counts: otherwise the plain squares of a floor would take the colours that the shades of bodies
+            // need.
             let learnt: Vec<u8> = others
                 .iter()
                 .flat_map(|sum| {
@@ -56,7 +57,7 @@ impl Palette {
         Palette { colours, nearest: vec![None; 1 << (3 * BITS)] }
     }
 
-    /// Red, green and blue of one after the other.
+    /// Red, green and blue of one colour after another.
     pub(crate) fn colours(&self) -> &[u8] {
         &self.colours
     }
@@ -67,7 +68,7 @@ impl Palette {
         if let Some(number) = self.nearest[index] {
             return number;
         }
-        // All colours of a coarse one have the same, so that a still picture stays as it is: that of its middle.
+        // All colours with the same coarse colour get the same entry, the nearest to its centre, so that a still picture does not change.
         let middle = [0, 1, 2].map(|c| i32::from(pixel[c] >> (8 - BITS) << (8 - BITS)) + (1 << (7 - BITS)));
         let distance = |colour: &[u8]| -> i32 { (0..3).map(|c| (middle[c] - i32::from(colour[c])).pow(2)).sum() };
         let numbers = self.colours.chunks_exact(3).map(distance).enumerate();
@@ -81,7 +82,7 @@ impl Palette {
 mod tests {
     use super::*;
 
-    /// The root of the mean square of the distances between the colours of an image and those that stand for them.
+    /// The root mean square of the distances between the colours of an image and their palette colours.
     fn off(image: &Image, palette: &mut Palette) -> f64 {
         let mut sum = 0.0;
         for pixel in image.pixels().chunks_exact(4) {
@@ -92,7 +93,7 @@ mod tests {
         (sum / (image.width() * image.height()) as f64).sqrt()
     }
 
-    /// An image of which a pixel has this colour.
+    /// An image with the given colour at each pixel.
     fn image(size: [u32; 2], colour: impl Fn(u32, u32) -> [u8; 3]) -> Image {
         let mut image = Image::new(size[0], size[1], [0; 3]).expect("an image");
         for y in 0..size[1] {
@@ -113,7 +114,7 @@ mod tests {
 
     #[test]
     fn shades_of_a_small_body_before_a_large_background_are_told_apart() {
-        // Blue to yellow, light to dark, on a hundredth of a plain picture: the 256 most frequent colours are 59 off here.
+        // Blue to yellow, light to dark, on a hundredth of a plain picture: with the 256 most frequent colours the distance is 59 here.
         let wide = 600;
         let body = |x: u32, y: u32| [(4 * x) as u8, (2 * x + 2 * y) as u8, (4 * (63 - y)) as u8];
         let colour = |x, y| if x < 64 && y < 64 { body(x, y) } else { [252, 252, 253] };
@@ -123,7 +124,7 @@ mod tests {
         let far = off(&small, &mut palette);
         assert!(far < 15.0, "{far}");
         assert!(off(&whole, &mut palette) < 2.0, "{}", off(&whole, &mut palette));
-        // The background is none of its neighbours.
+        // The background is not confused with its neighbours.
         let number = usize::from(palette.nearest(&[252, 252, 253]));
         assert_eq!(palette.colours()[3 * number..3 * number + 3], [252, 252, 253]);
     }

@@ -1,20 +1,20 @@
-//! The plain description of one moment, which is all that a renderer needs to know.
+//! The description of one moment that a renderer needs.
 
 use crate::colour::ColourMap;
 use crate::error::{DrawError, PictureList};
 
-/// Everything that is seen at one moment.
+/// Everything that is visible at one moment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
     /// The number of dimensions: 2 (seen along z) or 3 (seen by a camera, with y upwards).
     pub dimension: u8,
-    /// The time [s]; not a number for a picture of no moment, which has no time written on it.
+    /// The time [s]; NaN for a picture without a moment, on which no time is written.
     pub time: f64,
-    /// The title, which may be empty.
+    /// The title; may be empty.
     pub title: String,
-    /// Whose drawings are seen and under which licence, written small below; may be empty.
+    /// The authors and licences of the drawings that are visible, written in small letters at the bottom; may be empty.
     pub credit: String,
-    /// What is seen and from where, as far as it is not left to what there is.
+    /// The visible part and the direction of view, if these are not chosen automatically.
     pub sight: Sight,
     /// The deformable bodies.
     pub bodies: Vec<BodyPicture>,
@@ -22,13 +22,13 @@ pub struct Picture {
     pub colliders: Vec<ColliderPicture>,
     /// The arrows of forces and other vectors.
     pub arrows: Vec<ArrowPicture>,
-    /// The rubber lines of pointers which pull a node.
+    /// The rubber lines of pointers that pull a node.
     pub pulls: Vec<PullPicture>,
-    /// What the scalars of the bodies mean.
+    /// The meaning of the scalars of the bodies.
     pub legend: Option<Legend>,
-    /// Whether y counts downwards, as on a screen; only in two dimensions.
+    /// Whether y points downwards, as on a screen; only in two dimensions.
     pub y_down: bool,
-    /// The unit of lengths: metres, unless the scene has another.
+    /// The unit of lengths: metres, unless the scene has another unit.
     pub length_unit: String,
 }
 
@@ -51,7 +51,7 @@ impl Default for Picture {
     }
 }
 
-/// What a picture shows and from where; what is absent is chosen by what there is.
+/// The visible part and the direction of view of a picture. Values that are not given are chosen from the content.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sight {
     /// The lowest and the highest corner of the box that is shown [m].
@@ -67,9 +67,9 @@ pub struct Sight {
 pub struct Legend {
     /// The name of the quantity, such as "stress".
     pub label: String,
-    /// The unit of the quantity, such as "kPa"; empty where there is none.
+    /// The unit of the quantity, such as "kPa"; empty if there is none.
     pub unit: String,
-    /// The values at the ends of the colour map; the view measures them where this is absent.
+    /// The values at the ends of the colour map; if they are not given, the view measures them.
     pub range: Option<[f64; 2]>,
     /// The colour map.
     pub map: ColourMap,
@@ -87,17 +87,17 @@ pub enum Facets {
 /// An area that is painted on a flat body.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct AreaPicture {
-    /// Red, green, blue and opacity; the body's own colours, cut off at the area, where this is absent.
+    /// Red, green, blue and opacity; if it is not given, the body's own colours, clipped at the area.
     pub colour: Option<[u8; 4]>,
     /// The points that bound the area [m].
     pub positions: Vec<[f64; 3]>,
-    /// The places behind the last point of each closed line; a line within another bounds a hole.
+    /// The indices after the last point of each closed line; a line within another bounds a hole.
     pub ends: Vec<usize>,
-    /// The area as triangles between its points, for those who cannot fill what lines bound; may be empty.
+    /// The area as triangles between its points, for renderers that cannot fill the inside of lines; may be empty.
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// Where a body lay before it was deformed.
+/// The shape of a body before it was deformed.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct RestPicture {
     /// The points [m].
@@ -117,27 +117,27 @@ pub struct BodyPicture {
     pub cells: Vec<[u32; 3]>,
     /// The springs, drawn as lines.
     pub segments: Vec<[u32; 2]>,
-    /// One scalar a node, which decides the colour; may be empty.
+    /// One scalar per node, which determines its colour; may be empty.
     pub scalar: Vec<f64>,
-    /// The colour of a body without scalars; the palette gives one where this is absent.
+    /// The colour of a body without scalars; if it is not given, the palette provides one.
     pub colour: Option<[u8; 3]>,
-    /// The colour of a line around all that is seen of the body, in three dimensions; none where this is absent.
+    /// The colour of a line around the visible part of the body, in three dimensions; if it is not given, there is no line.
     pub outlined: Option<[u8; 3]>,
     /// Whether the nodes are drawn as dots.
     pub nodes_drawn: bool,
-    /// How far apart neighbours were at the start [m]: where that leaves no room for dots in a flat picture there are none,
-    /// in all pictures of a run alike. Dots are drawn in any case where this is absent.
+    /// The distance of neighbours at the start [m]. If it leaves no space for dots in a flat picture, none are drawn, in any picture of a run. If it
+    /// is not given, dots are always drawn.
     pub node_spacing: Option<f64>,
-    /// The larger side of the body at the start [m]: what is drawn of it and how thick is decided by that, in all pictures of a
-    /// run alike; by its size in this picture where this is absent.
+    /// The larger side of the body at the start [m]. It determines what is drawn of the body and how thick, equally in all pictures of a run. If it
+    /// is not given, the size in this picture is used.
     pub extent: Option<f64>,
-    /// Lines where the body once lay, drawn beneath it; may be empty.
+    /// Lines of the rest shape, drawn beneath the body; may be empty.
     pub rest: RestPicture,
-    /// The areas which are drawn in two dimensions instead of the outline, one over another; may be empty.
+    /// The areas that are drawn in two dimensions instead of the outline, one over another; may be empty.
     pub areas: Vec<AreaPicture>,
-    /// The nodes which are held in place.
+    /// The pinned nodes.
     pub pinned: Vec<u32>,
-    /// A name that is written under the body; may be empty.
+    /// A name that is written beside the body; may be empty.
     pub label: String,
 }
 
@@ -172,7 +172,7 @@ pub enum ColliderPicture {
         /// The direction out of the obstacle.
         normal: [f64; 3],
     },
-    /// A box along the axes.
+    /// An axis-aligned box.
     Box {
         /// The lowest corner [m].
         min: [f64; 3],
@@ -210,7 +210,7 @@ pub enum ColliderPicture {
     },
 }
 
-/// What an arrow stands for, which decides its colour and its scale.
+/// The quantity that an arrow shows, which determines its colour and its scale.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum ArrowKind {
     /// The sum of all forces on a node.
@@ -234,15 +234,15 @@ pub enum ArrowKind {
 /// One arrow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ArrowPicture {
-    /// What the arrow stands for.
+    /// The quantity that the arrow shows.
     pub kind: ArrowKind,
-    /// Where the arrow starts [m].
+    /// The start of the arrow [m].
     pub from: [f64; 3],
     /// The vector, in the unit of its kind; the view chooses one scale for each kind.
     pub vector: [f64; 3],
 }
 
-/// The rubber line between a node and the pointer which pulls it.
+/// The rubber line between a node and the pointer that pulls it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PullPicture {
     /// The position of the node [m].
@@ -252,7 +252,7 @@ pub struct PullPicture {
 }
 
 impl Picture {
-    /// Refuses a picture whose lists do not fit together.
+    /// Refuses a picture with inconsistent lists.
     pub fn check(&self) -> Result<(), DrawError> {
         if self.dimension != 2 && self.dimension != 3 {
             return Err(DrawError::Dimension { dimensions: self.dimension });
@@ -262,7 +262,7 @@ impl Picture {
 }
 
 impl BodyPicture {
-    /// Refuses a body whose lists do not fit together; `body` is its place in the picture.
+    /// Refuses a body with inconsistent lists; `body` is its index in the picture.
     fn check(&self, body: usize) -> Result<(), DrawError> {
         let nodes = self.positions.len();
         if !self.scalar.is_empty() && self.scalar.len() != nodes {

@@ -1,4 +1,4 @@
-//! A film strip: some frames of a run, side by side, with one scale.
+//! A film strip: some frames of a run, side by side, with a common scale.
 
 use crate::canvas::{Anchor, Canvas, text_width};
 use crate::colour::INK;
@@ -11,15 +11,15 @@ use crate::view::View;
 /// The size and the order of the panels of a film strip.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StripStyle {
-    /// The most that the whole strip is wide in pixels; a strip of few panels is narrower.
+    /// The maximum width of the strip in pixels; a strip with few panels is narrower.
     pub width: u32,
-    /// The number of panels in a row; chosen by the shape of the view where this is absent.
+    /// The number of panels in a row; if it is not given, it is chosen from the aspect ratio of the view.
     pub columns: Option<usize>,
-    /// The height of a panel divided by its width; the view decides where this is absent.
+    /// The ratio of height to width of a panel; if it is not given, that of the view.
     pub aspect: Option<f64>,
     /// The colour around and behind the scenes.
     pub background: [u8; 3],
-    /// Whether the colours of the scalars are explained at the right.
+    /// Whether the legend of the colours is drawn at the right.
     pub legend: bool,
 }
 
@@ -29,10 +29,10 @@ impl Default for StripStyle {
     }
 }
 
-/// The most that a panel is high, in pixels of a strip 1400 pixels wide.
+/// The maximum height of a panel, in pixels of a strip 1400 pixels wide.
 const TALLEST: f32 = 560.0;
 
-/// Picks up to `count` pictures at even distances, with the first and the last.
+/// Selects up to `count` pictures at even distances, including the first and the last.
 pub fn spread<T>(pictures: &[T], count: usize) -> Vec<&T> {
     let kept = count.min(pictures.len());
     (0..kept)
@@ -43,58 +43,58 @@ pub fn spread<T>(pictures: &[T], count: usize) -> Vec<&T> {
         .collect()
 }
 
-/// The height of a strip divided by its width at which it is read best.
+/// The best ratio of height to width of a strip for readers.
 const BEST_SHAPE: f32 = 0.42;
 
-/// How the panels of a strip are laid out, in pixels.
+/// The layout of the panels of a strip, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Grid {
-    /// The panels in a row.
+    /// The number of panels in a row.
     columns: usize,
-    /// The rows.
+    /// The number of rows.
     rows: usize,
     /// The width and the height of a panel.
     panel: [f32; 2],
     /// The free space between panels.
     gap: f32,
-    /// The height of the line below a panel.
+    /// The height of the text line below a panel.
     line: f32,
 }
 
 impl Grid {
-    /// The grid of so many panels in so many columns within a width.
+    /// The grid of `count` panels in `columns` columns within a width.
     fn new(count: usize, columns: usize, aspect: f32, available_width: f32, unit: f32) -> Grid {
         let columns = columns.clamp(1, count.max(1));
         let rows = count.div_ceil(columns);
-        // No row is shorter than it must be.
+        // No row is shorter than necessary.
         let columns = count.div_ceil(rows.max(1)).max(1);
         let gap = (10.0 * unit).round();
         let wide = ((available_width - gap * (columns as f32 - 1.0)) / columns as f32).floor();
-        // Few panels are not larger than can be seen at once.
+        // If there are few panels, they are small enough to be seen at once.
         let wide = wide.min((TALLEST * unit / aspect).floor());
         Grid { columns, rows, panel: [wide, (wide * aspect).round()], gap, line: (26.0 * unit).round() }
     }
 
-    /// The width and the height of all panels with their lines.
+    /// The width and the height of all panels with their text lines.
     fn size(&self) -> [f32; 2] {
         let (columns, rows) = (self.columns as f32, self.rows as f32);
         let wide = columns * (self.panel[0] + self.gap) - self.gap;
         [wide, rows * (self.panel[1] + self.line) + (rows - 1.0) * 0.4 * self.gap]
     }
 
-    /// How far the grid is from the best: a strip of a good shape without empty places, whose bodies are large enough; `body`
-    /// is how much of the width of a panel a body takes.
+    /// The penalty of the grid: a good strip has a suitable shape, no empty places, and bodies that are large enough. `body` is the fraction of the
+    /// width of a panel that a body takes.
     fn fault(&self, count: usize, available_width: f32, body: f32) -> f32 {
         let [wide, tall] = self.size();
         let empty = (self.columns * self.rows - count) as f32;
         let shape = (tall / (BEST_SHAPE * wide)).ln();
         let small = if body > 0.0 { (LARGE_ENOUGH / (body * self.panel[0]).max(1.0)).log2().max(0.0) } else { 0.0 };
-        // A page is turned up and down: what is tall is read more easily than what is wide and low, but for towers.
+        // Pages scroll vertically, so tall strips are easier to read than wide and low ones, up to a limit.
         let shape = shape.max(-2.0 * shape) * 0.5 + 1.5 * (shape - 0.8).max(0.0);
         shape + (available_width / wide).ln() + 0.2 * empty + SMALL_BODIES * small
     }
 
-    /// The best grid of so many panels.
+    /// The best grid for the given number of panels.
     fn best(count: usize, aspect: f32, available_width: f32, unit: f32, body: f32) -> Grid {
         let grids = (1..=6).map(|columns| Grid::new(count, columns, aspect, available_width, unit));
         let best = grids
@@ -102,7 +102,7 @@ impl Grid {
         best.unwrap_or(Grid::new(count, 1, aspect, available_width, unit))
     }
 
-    /// The left and upper corner of a panel.
+    /// The upper left corner of a panel.
     fn corner(&self, index: usize, [left, top]: [f32; 2]) -> [f32; 2] {
         let (row, column) = (index / self.columns, index % self.columns);
         let down = row as f32 * (self.panel[1] + self.line + 0.4 * self.gap);
@@ -110,32 +110,32 @@ impl Grid {
     }
 }
 
-/// The pixels that a body should have at least along its larger side to be looked at.
+/// The minimum size in pixels of a body along its larger side, so that it is easy to see.
 const LARGE_ENOUGH: f32 = 130.0;
-/// How much worse a strip is whose bodies are half as large as they should be.
+/// The penalty of a strip whose bodies have half of that size.
 const SMALL_BODIES: f32 = 1.2;
 
-/// How much worse a strip is for each moment that it does not show.
+/// The penalty for each moment that is missing.
 const MISSED: f32 = 0.12;
 
-/// The number of panels, of nine to twelve or as many as there are, which makes the best strip of a view; fewer where the
-/// bodies would be too small to be looked at.
+/// The number of panels, from nine to twelve or as many as there are, that gives the best strip of a view; fewer if the bodies would be too small to
+/// be seen well.
 pub fn best_count(view: &View, dimension: u8, most: usize) -> usize {
     let style = StripStyle::default();
     let (aspect, available_width) = (view.aspect(dimension) as f32, style.width as f32);
     let body = view.share_of_body(dimension) as f32;
     let fault = |count: usize| {
-        // Moments that are not shown are missed; more than nine are not.
+        // Missing moments are penalised, but not those beyond nine.
         let missed = MISSED * 9_usize.saturating_sub(count) as f32;
         Grid::best(count, aspect, available_width, 1.0, body).fault(count, available_width, body) + missed
     };
     (4..=12.min(most)).min_by(|a, b| fault(*a).total_cmp(&fault(*b))).unwrap_or(most)
 }
 
-/// Draws pictures side by side in rows, with one view, one length scale and one legend for all; below each its time.
+/// Draws pictures side by side in rows, with a common view, length scale and legend, and the time below each.
 pub fn strip(pictures: &[&Picture], view: &View, style: &StripStyle) -> Result<Image, DrawError> {
     let times: Vec<f64> = pictures.iter().map(|picture| picture.time).collect();
-    // Pictures of no moment are told apart by their titles; that of the first stands above them all.
+    // Pictures without a moment are distinguished by their titles; the title of the first is written above all.
     let own =
         |picture: &&Picture| if picture.title == pictures[0].title { String::new() } else { picture.title.clone() };
     let moments = times.iter().all(|time| time.is_finite());
@@ -143,7 +143,7 @@ pub fn strip(pictures: &[&Picture], view: &View, style: &StripStyle) -> Result<I
     captioned_strip(pictures, &captions, view, style)
 }
 
-/// The same with a text of its own below each picture.
+/// The same with a given text below each picture.
 pub fn captioned_strip(
     pictures: &[&Picture],
     captions: &[String],
@@ -162,7 +162,7 @@ pub fn captioned_strip(
         Some(columns) => Grid::new(pictures.len(), columns, aspect, available_width, unit),
         None => Grid::best(pictures.len(), aspect, available_width, unit, view.share_of_body(first.dimension) as f32),
     };
-    // Captions that are longer than their panels are wide take several lines.
+    // Captions that are wider than their panels take several lines.
     let (mut grid, size, line) = (grid, 15.0 * unit, 18.0 * unit);
     let captions: Vec<Vec<String>> =
         captions.iter().take(pictures.len()).map(|text| lines_of(text, grid.panel[0], size)).collect();
@@ -209,7 +209,7 @@ pub fn captioned_strip(
     Ok(image)
 }
 
-/// A text in lines that are no wider than a width, but where a single word is.
+/// A text in lines that are no wider than a limit, unless a single word is.
 fn lines_of(text: &str, width: f32, size: f32) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split(' ') {
@@ -304,7 +304,7 @@ mod tests {
     #[test]
     fn small_bodies_get_fewer_and_larger_panels() {
         use crate::picture::BodyPicture;
-        // How many panels, and how wide each of them is.
+        // The number of panels, and the width of each.
         let crowd = |side: f64| {
             let body = |k: usize| {
                 let [x, y] = [(k % 8) as f64, (k / 8) as f64];

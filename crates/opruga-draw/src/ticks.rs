@@ -22,7 +22,7 @@ pub fn nice_ticks(low: f64, high: f64, count: usize) -> Vec<f64> {
     ticks
 }
 
-/// The smallest of 1, 2, 2.5 and 5 times a power of ten which is at least `rough`.
+/// The smallest of 1, 2, 2.5 and 5 times a power of ten that is at least `rough`.
 pub fn nice_step(rough: f64) -> f64 {
     let power = power_of_ten(rough);
     let mantissa = rough / power;
@@ -30,7 +30,7 @@ pub fn nice_step(rough: f64) -> f64 {
     round.unwrap_or(10.0) * power
 }
 
-/// The largest of 1, 2 and 5 times a power of ten which is at most `limit`.
+/// The largest of 1, 2 and 5 times a power of ten that is at most `limit`.
 pub fn nice_length(limit: f64) -> f64 {
     let power = power_of_ten(limit);
     let mantissa = limit / power;
@@ -45,7 +45,7 @@ pub fn decades(low: f64, high: f64) -> Vec<f64> {
     (first..=last).map(ten_to).collect()
 }
 
-/// The largest power of ten which is at most the value.
+/// The largest power of ten that is at most the value.
 fn power_of_ten(value: f64) -> f64 {
     if !(value.is_finite() && value > 0.0) {
         return 1.0;
@@ -58,13 +58,13 @@ fn ten_to(exponent: i32) -> f64 {
     format!("1e{exponent}").parse().unwrap_or(1.0)
 }
 
-/// A number as short text, with the digits which a step between neighbours calls for.
+/// A number as short text, with the digits that a step between neighbours requires.
 pub fn format_tick(value: f64, step: f64) -> String {
     if value == 0.0 || value.abs() < step.abs() * 1e-6 {
         return "0".to_string();
     }
     let magnitude = value.abs();
-    // Three digits of a power of ten must be enough to tell neighbours apart.
+    // Three digits of a power of ten must be enough to distinguish neighbours.
     let fine = step.abs() < 0.0099 * magnitude && magnitude < 1e12;
     let small = magnitude < 1e-3 && step.abs() < 0.99e-4;
     if small || magnitude >= 1e6 && !fine {
@@ -88,9 +88,9 @@ pub fn format_value(value: f64) -> String {
     format_tick(value, ten_to((value.abs().log10() + 1e-9).floor() as i32 - 2)).trim_end_matches_fraction()
 }
 
-/// Takes the zeros from the end of a decimal fraction.
+/// Removes trailing zeros of a decimal fraction.
 trait TrimFraction {
-    /// The text without the zeros at the end of its decimal fraction.
+    /// The text without trailing zeros of its decimal fraction.
     fn trim_end_matches_fraction(self) -> String;
 }
 
@@ -130,7 +130,7 @@ pub fn scientific(value: f64) -> String {
     }
 }
 
-/// Puts a thin space between groups of three digits of a whole part with five digits or more.
+/// Inserts a thin space between groups of three digits of an integer part with five digits or more.
 fn grouped(text: &str) -> String {
     let (sign, rest) = text.strip_prefix('-').map_or(("", text), |rest| ("-", rest));
     let (whole, fraction) = rest.split_once('.').map_or((rest, None), |(whole, fraction)| (whole, Some(fraction)));

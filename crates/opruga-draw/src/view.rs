@@ -1,33 +1,33 @@
-//! What all pictures of a run have in common: the part of space, the range of scalars and the scale of arrows.
+//! The properties that all pictures of a run share: the part of space, the range of scalars and the scale of arrows.
 
 use crate::picture::{ArrowKind, Legend, Picture};
 use std::collections::BTreeMap;
 
-/// The length of a long arrow, as a share of the larger side of the view.
+/// The length of a long arrow, as a fraction of the larger side of the view.
 const LONG_ARROW: f64 = 0.14;
-/// The most that a long arrow has of the size of a body.
+/// The maximum length of a long arrow, as a fraction of the size of a body.
 const ARROW_OF_BODY: f64 = 0.45;
 
-/// The part of space which is seen, and the common scales of a run.
+/// The visible part of space, and the common scales of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct View {
-    /// The lowest corner of the box which must be seen [m].
+    /// The lowest corner of the box that must be visible [m].
     pub low: [f64; 3],
-    /// The highest corner of the box which must be seen [m].
+    /// The highest corner of the box that must be visible [m].
     pub high: [f64; 3],
-    /// What sticks out farthest in many directions, with its shadow; the camera keeps these points in sight [m].
+    /// The extreme points in many directions, including shadows; the camera keeps these points in sight [m].
     pub points: Vec<[f64; 3]>,
-    /// The scalars at the ends of the colours, where there is any: the smallest and the largest, but for a few strays.
+    /// The scalars at the ends of the colours, if there are any: the smallest and the largest, except a few outliers.
     pub scalars: Option<[f64; 2]>,
-    /// Whether there are strays below and above these.
+    /// Whether there are outliers below and above these.
     pub strays: [bool; 2],
-    /// Whether y counts downwards, as on a screen; only in two dimensions.
+    /// Whether y points downwards, as on a screen; only in two dimensions.
     pub y_down: bool,
-    /// The vector of each kind of arrow which nineteen of twenty do not exceed.
+    /// The length of vector of each kind of arrow that 95 per cent do not exceed.
     pub longest: BTreeMap<ArrowKind, f64>,
-    /// The length at which that vector is drawn [m].
+    /// The length at which such a vector is drawn [m].
     pub arrow: f64,
-    /// The larger side of most bodies at the start [m]; 0 where there are none.
+    /// The larger side of most bodies at the start [m]; 0 without bodies.
     pub body: f64,
     /// The angle of the camera around the y axis, from z towards x [degrees]; only in three dimensions.
     pub azimuth: f64,
@@ -46,12 +46,12 @@ impl View {
         std::array::from_fn(|axis| 0.5 * (self.low[axis] + self.high[axis]))
     }
 
-    /// The length of a long arrow beside bodies of a size [m].
+    /// The length of a long arrow beside bodies of a given size [m].
     pub(crate) fn long_arrow(extent: f64, body: f64) -> f64 {
         (LONG_ARROW * extent).min(ARROW_OF_BODY * body)
     }
 
-    /// The length which an arrow of a kind is drawn with, for each unit of its vector [m].
+    /// The drawn length of an arrow of a kind, per unit of its vector [m].
     pub fn arrow_scale(&self, kind: ArrowKind) -> f64 {
         match self.longest.get(&kind) {
             Some(&longest) if longest > 0.0 => self.arrow / longest,
@@ -64,17 +64,17 @@ impl View {
         crate::ticks::nice_length(0.3 * self.extent())
     }
 
-    /// The fraction from 0 to 1 at which a scalar lies between the ends of a range.
+    /// The fraction from 0 to 1 of a scalar between the ends of a range.
     pub(crate) fn fraction(range: [f64; 2], scalar: f64) -> f64 {
         if range[1] > range[0] || scalar.is_nan() { (scalar - range[0]) / (range[1] - range[0]) } else { 0.5 }
     }
 
-    /// What the colours of a picture mean, where any of the run shows a number.
+    /// The legend of the colours of a picture, if any picture of the run has a value.
     pub(crate) fn legend<'a>(&self, picture: &'a Picture) -> Option<&'a Legend> {
         picture.legend.as_ref().filter(|legend| legend.range.is_some() || self.scalars.is_some())
     }
 
-    /// The range of scalars which a picture uses: its own, or the one of the run.
+    /// The range of scalars that a picture uses: its own, or that of the run.
     pub(crate) fn range(&self, picture: &Picture) -> [f64; 2] {
         let own = picture.legend.as_ref().and_then(|legend| legend.range);
         own.or(self.scalars).unwrap_or([0.0, 1.0])

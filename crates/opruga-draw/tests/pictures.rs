@@ -1,4 +1,4 @@
-//! What lies over what in pictures, what is written around them, and what is the same in all pictures of a run.
+//! The order of layers in pictures, the text around them, and the properties shared by all pictures of a run.
 #![allow(clippy::disallowed_methods)] // no physics here
 
 use opruga_draw::{
@@ -32,7 +32,7 @@ fn fitted(bodies: Vec<BodyPicture>) -> View {
     View::fit([&Picture { bodies, ..Picture::default() }]).expect("a view")
 }
 
-/// The places at which two images differ.
+/// The pixels at which two images differ.
 fn changed(a: &Image, b: &Image) -> Vec<[u32; 2]> {
     let places = (0..a.height()).flat_map(|y| (0..a.width()).map(move |x| [x, y]));
     places.filter(|[x, y]| a.pixel(*x, *y) != b.pixel(*x, *y)).collect()
@@ -44,7 +44,7 @@ fn dots_are_in_all_pictures_of_a_run_or_in_none() {
     let dots = |squash: f64, nodes_drawn: bool, node_spacing: Option<f64>| {
         image(vec![BodyPicture { nodes_drawn, node_spacing, ..ring(0.0, squash) }], Vec::new(), &view)
     };
-    // Round or flat: 0.26 m have room and 0.05 m do not; what is asked for whatever the room is drawn.
+    // Round or flat: there is space for dots at 0.26 m, but not at 0.05 m; dots requested unconditionally are always drawn.
     for squash in [1.0, 0.7, 0.4] {
         let without = dots(squash, false, None);
         assert!(!changed(&dots(squash, true, Some(0.26)), &without).is_empty(), "{squash}");
@@ -61,7 +61,7 @@ fn pressure_covers_no_neighbour_and_no_name() {
         from: [from[0], from[1], 0.0],
         vector: [vector[0], vector[1], 0.0],
     };
-    // One metre a pascal: longer than the gap of 0.2 m.
+    // One metre per pascal: longer than the gap of 0.2 m.
     let mut view = fitted(pair());
     (view.arrow, view.longest) = (1.0, [(ArrowKind::Pressure, 1.0)].into());
     let plain = image(pair(), Vec::new(), &view);
@@ -69,16 +69,16 @@ fn pressure_covers_no_neighbour_and_no_name() {
     let neighbour = changed(&plain, &image(vec![ring(0.0, 1.0)], Vec::new(), &view));
     let outward = image(pair(), vec![arrow([1.0, 0.0], [1.0, 0.0])], &view);
     let seen = changed(&outward, &plain);
-    // The soft border of the neighbour lets through what lies beneath.
+    // The soft border of the neighbour is partly transparent.
     let covered = |[x, y]: &[u32; 2]| neighbour.contains(&[x - 2, *y]) && neighbour.contains(&[*x, *y]);
     assert!(!seen.is_empty() && !seen.iter().any(covered), "over the neighbour");
-    // Where the pressure outside is larger, arrows lie over the body into which they lead.
+    // If the pressure outside is larger, arrows are drawn over the body into which they point.
     let inward = changed(&image(pair(), vec![arrow([1.0, 0.0], [-1.0, 0.0])], &view), &plain);
     assert!(inward.iter().filter(|place| first.contains(place)).count() > 20, "within its own body");
 
     let named = || vec![BodyPicture { label: "hard".into(), ..ring(0.0, 1.0) }, ring(2.2, 1.0)];
     let (plain, name) = (image(pair(), Vec::new(), &view), image(named(), Vec::new(), &view));
-    // On all sides, so that the name finds no free one.
+    // On all sides, so that no side is free for the name.
     let around = |k: i32| {
         let at = 0.02 * f64::from(k);
         [([at, -1.0], [0.0, -0.4]), ([at, 1.0], [0.0, 0.4]), ([-1.0, at], [-0.4, 0.0]), ([1.0, at], [0.4, 0.0])]
@@ -163,7 +163,7 @@ fn a_floor_fades_into_the_background_whatever_lies_over_the_corner_of_the_pictur
     let eye = opruga_draw::Eye { target: view.center(), radius: 4.0, azimuth: 0.0, elevation: 8.0 };
     let lens = eye.lens(&view, seen);
     let image = |covered: bool| {
-        // A triangle before the upper left corner.
+        // A triangle in front of the upper left corner.
         let corner = |x, y| lens.point([x, y], 1.0);
         let positions = vec![corner(-30.0, -30.0), corner(60.0, -30.0), corner(-30.0, 60.0)];
         let facets = Facets::Triangles(vec![[0, 1, 2], [0, 2, 1]]);

@@ -47,7 +47,7 @@ pub(crate) fn ledger() -> Chart {
     }
 }
 
-/// Frames a second over the number of vertices.
+/// Frames per second against the number of vertices.
 pub(crate) fn speed() -> Chart {
     let curve = |name: &str, rate: f64, marker: Marker| Line {
         name: name.to_string(),

@@ -10,12 +10,12 @@ fn floor() -> ColliderPicture {
     ColliderPicture::HalfSpace { point: [0.0; 3], normal: [0.0, 1.0, 0.0] }
 }
 
-/// The edges of a closed outline of some nodes, from a first one.
+/// The edges of a closed outline of `count` nodes, starting at `first`.
 fn outline(first: u32, count: u32) -> Vec<[u32; 2]> {
     (0..count).map(|node| [first + node, first + (node + 1) % count]).collect()
 }
 
-/// A ring which bounces and is flattened at each bounce.
+/// A ring that bounces and is flattened at each bounce.
 pub(crate) fn bouncing_ring(frames: usize) -> Vec<Picture> {
     let count = 36;
     (0..frames)

@@ -15,7 +15,7 @@ pub(super) fn path(area: &AreaPicture, projection: &Projection) -> Option<Path> 
     for &end in &area.ends {
         let line = &area.positions[from..end];
         from = end;
-        // A line with a broken node has no place.
+        // A line with a node that is not finite has no position.
         if line.len() < 3 || line.iter().flatten().any(|x| !x.is_finite()) {
             continue;
         }
@@ -25,7 +25,7 @@ pub(super) fn path(area: &AreaPicture, projection: &Projection) -> Option<Path> 
             if number == 0 {
                 builder.move_to(point[0], point[1]);
             } else if (point[0] - last[0]).abs() + (point[1] - last[1]).abs() < 0.3 {
-                // Points which fall on the same pixel are one.
+                // Points on the same pixel count as one.
                 continue;
             } else {
                 builder.line_to(point[0], point[1]);
@@ -37,8 +37,8 @@ pub(super) fn path(area: &AreaPicture, projection: &Projection) -> Option<Path> 
     builder.finish()
 }
 
-/// What an area covers: its triangles, all in one sense. Where a body is folded, the lines around the area run over one
-/// another and would leave a hole; its triangles lie twofold there.
+/// The region that an area covers: its triangles, all with the same orientation. If a body is folded, the lines around the area overlap and would
+/// leave a hole, but its triangles cover the overlap twice.
 fn covered(area: &AreaPicture, projection: &Projection) -> Option<Path> {
     let mut builder = PathBuilder::new();
     for triangle in &area.triangles {
@@ -66,13 +66,13 @@ pub(super) fn fill(canvas: &mut Canvas, area: &AreaPicture, projection: &Project
     }
 }
 
-/// Fills the areas that have a colour of their own, one over another.
+/// Fills the areas that have their own colour, one over another.
 pub(super) fn draw(canvas: &mut Canvas, areas: &[AreaPicture], projection: &Projection) {
     for area in areas {
         if let Some([red, green, blue, opacity]) = area.colour {
             let paint = paint([red, green, blue], f64::from(opacity) / 255.0);
             fill(canvas, area, projection, &paint);
-            // What is squeezed to nothing is still there: a thin line holds the ends of a stem together.
+            // An area that is squeezed to nothing is still visible: a thin line connects its ends.
             if let (255, Some(lines)) = (opacity, path(area, projection)) {
                 canvas.stroke(&lines, HAIRLINE, &paint);
             }

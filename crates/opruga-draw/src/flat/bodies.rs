@@ -9,12 +9,12 @@ use crate::picture::{BodyPicture, Facets, Picture};
 use crate::view::View;
 use tiny_skia::{FilterQuality, Paint, Path, PathBuilder, Pattern, Pixmap, SpreadMode, Transform};
 
-/// The length in pixels below which an edge of a coloured outline is joined to the next.
+/// The length in pixels below which an edge of a coloured outline is joined to the next one.
 const SHORT: f32 = 1.2;
-/// The spacing of nodes from which on they are drawn as dots, in units of lines.
+/// The smallest spacing of nodes at which they are drawn as dots, in units of lines.
 const DOT_SPACING: f32 = 15.0;
 
-/// How the scalars of a picture become colours.
+/// The mapping of the scalars of a picture to colours.
 struct Scalars {
     /// The colour map.
     map: ColourMap,
@@ -23,7 +23,7 @@ struct Scalars {
 }
 
 impl Scalars {
-    /// The fraction of the map at which a scalar lies.
+    /// The fraction of the map for a scalar.
     fn fraction(&self, scalar: f64) -> f64 {
         View::fraction(self.range, scalar)
     }
@@ -68,32 +68,32 @@ pub(crate) fn draw(canvas: &mut Canvas, picture: &Picture, view: &View, projecti
     }
 }
 
-/// The colour of a body without scalars; many bodies take colours without a visible order.
+/// The colour of a body without scalars; if there are many bodies, the colours have no visible order.
 pub(crate) fn body_colour(index: usize, count: usize) -> [u8; 3] {
     let shuffled = (index as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 33;
     let choice = if count <= 2 * BODIES.len() { index } else { shuffled as usize };
     BODIES[choice % BODIES.len()]
 }
 
-/// One body on its way to the canvas.
+/// The data for drawing one body.
 struct Drawing<'a> {
     /// The body.
     body: &'a BodyPicture,
     /// The pixels of its nodes.
     pixels: &'a [[f32; 2]],
-    /// The left and upper ends of the body in pixels.
+    /// The left and upper limits of the body in pixels.
     low: [f32; 2],
-    /// The right and lower ends of the body in pixels.
+    /// The right and lower limits of the body in pixels.
     high: [f32; 2],
     /// The larger side of the body at the start in pixels.
     size: f32,
     /// The size of lines.
     unit: f32,
-    /// The colour where there are no scalars.
+    /// The colour without scalars.
     base: [u8; 3],
     /// The colours of scalars.
     scalars: &'a Scalars,
-    /// How points become pixels.
+    /// The mapping of points to pixels.
     projection: &'a Projection,
 }
 
@@ -123,7 +123,7 @@ impl Drawing<'_> {
         if coloured && !cells.is_empty() && self.size > 4.0 {
             self.fill_cells(canvas, cells, outline.as_ref());
         } else if coloured && outline.is_some() {
-            // What one line and its holes enclose has a colour of its own, as each chamber has a pressure of its own.
+            // The inside of one line without its holes has its own colour, because each chamber has its own pressure.
             for part in parts(&loops, &body.positions) {
                 let Some(path) = self.outline(part.iter().copied()) else { continue };
                 let nodes = part.iter().flat_map(|chain| chain.nodes.iter().copied());
@@ -148,7 +148,7 @@ impl Drawing<'_> {
         self.nodes(canvas);
     }
 
-    /// Draws where the body once lay.
+    /// Draws the rest shape of the body.
     fn rest(&self, canvas: &mut Canvas) {
         let rest = &self.body.rest;
         for chain in chain(&rest.segments) {
@@ -162,7 +162,7 @@ impl Drawing<'_> {
         }
     }
 
-    /// Draws the areas that the body carries: the colours of its nodes within those that have none of their own.
+    /// Draws the areas that the body carries; areas without their own colour get the colours of the nodes.
     fn carried(&self, canvas: &mut Canvas, cells: &[[u32; 3]]) {
         for area in self.body.areas.iter().filter(|area| area.colour.is_none()) {
             let Some(path) = areas::path(area, self.projection) else { continue };
@@ -177,7 +177,7 @@ impl Drawing<'_> {
         areas::draw(canvas, &self.body.areas, self.projection);
     }
 
-    /// The path of the loops, without points which fall on the same pixel.
+    /// The path of the loops, without repeated points on the same pixel.
     fn outline<'l>(&self, loops: impl Iterator<Item = &'l Loop>) -> Option<Path> {
         let mut builder = PathBuilder::new();
         for chain in loops {
@@ -200,13 +200,13 @@ impl Drawing<'_> {
         builder.finish()
     }
 
-    /// Fills cells with the colours of their nodes, cut off at the outline of small bodies.
+    /// Fills cells with the colours of their nodes, clipped at the outline of small bodies.
     fn fill_cells(&self, canvas: &mut Canvas, cells: &[[u32; 3]], outline: Option<&Path>) {
-        // A line as thick as on large bodies hides the hard edge of cells; there, folds are not taken for holes.
+        // On large bodies the line is thick enough to hide the hard edges of cells; without clipping, folds do not look like holes there.
         self.fill_within(canvas, cells, outline.filter(|_| self.size < 48.0));
     }
 
-    /// Fills cells with the colours of their nodes, cut off at an outline.
+    /// Fills cells with the colours of their nodes, clipped at an outline.
     fn fill_within(&self, canvas: &mut Canvas, cells: &[[u32; 3]], outline: Option<&Path>) {
         let limit = [canvas.pixmap.width() as f32, canvas.pixmap.height() as f32];
         let low: [f32; 2] = std::array::from_fn(|axis| (self.low[axis] - 2.0).floor().clamp(0.0, limit[axis]));
@@ -215,7 +215,7 @@ impl Drawing<'_> {
             return;
         };
         let fractions: Vec<f64> = self.body.scalar.iter().map(|&scalar| self.scalars.fraction(scalar)).collect();
-        // The first pass reaches beyond the cells, so that the soft edge of the outline has a colour to take.
+        // The first pass extends beyond the cells, so that the soft edge of the outline has a colour.
         let passes: &[f32] = if outline.is_some() { &[1.5, 0.01] } else { &[0.01] };
         for &reach in passes {
             for cell in cells {
@@ -238,7 +238,7 @@ impl Drawing<'_> {
         }
     }
 
-    /// Draws the edges of cells where they are large enough to be told apart.
+    /// Draws the edges of cells if they are large enough to be distinguished.
     fn cell_edges(&self, canvas: &mut Canvas, cells: &[[u32; 3]]) {
         let spacing = self.size / (cells.len().max(1) as f32).sqrt();
         if spacing < 7.0 {
@@ -252,12 +252,12 @@ impl Drawing<'_> {
         self.lines(canvas, &edges, 0.6 * self.unit, colour, opacity);
     }
 
-    /// Whether its colours begin with a light one, over which lines must be dark.
+    /// Whether its colour map begins with a light colour, over which lines must be dark.
     fn is_light(&self) -> bool {
         !self.body.scalar.is_empty() && self.scalars.map.is_light_below()
     }
 
-    /// Draws springs, where they are long enough to be seen.
+    /// Draws springs if they are long enough to be visible.
     fn segments(&self, canvas: &mut Canvas, filled: bool) {
         let segments = &self.body.segments;
         if segments.is_empty() || self.size < 6.0 {
@@ -269,7 +269,7 @@ impl Drawing<'_> {
             let colour = if filled && self.is_light() { INK } else { darker(self.base) };
             let opacity = match filled {
                 false => 1.0,
-                // These lines lie on those of the cells.
+                // These lines coincide with those of the cells.
                 true if self.is_light() => 0.2,
                 true => 0.45,
             };
@@ -298,13 +298,13 @@ impl Drawing<'_> {
         }
     }
 
-    /// Draws an outline whose colour runs from node to node, with a dark rim.
+    /// Draws an outline whose colour varies from node to node, with a dark rim.
     fn coloured_outline(&self, canvas: &mut Canvas, loops: &[Loop], path: &Path) {
         let width = (0.045 * self.size).clamp(1.0, 5.0 * self.unit);
         if self.size > 30.0 {
             canvas.stroke(path, width + 1.4 * self.unit, &paint(INK, 0.85));
         }
-        // Neighbours of nearly the same colour are one line; on small bodies fewer colours can be told apart.
+        // Neighbours with nearly the same colour form one line; on small bodies fewer colours can be distinguished.
         let shades = if self.size > 60.0 { 64.0 } else { 24.0 };
         let mut points: Vec<[f32; 2]> = Vec::new();
         for chain in loops {
@@ -316,7 +316,7 @@ impl Drawing<'_> {
                 let to = self.pixels[ends[1] as usize];
                 sum += Scalars::mean(self.body, ends.into_iter());
                 edges += 1.0;
-                // Edges too short to be seen are drawn together, in the colour of their mean.
+                // Edges too short to be visible are drawn together, in their mean colour.
                 if (to[0] - from[0]).abs() + (to[1] - from[1]).abs() < SHORT && edge + 1 < count {
                     continue;
                 }
@@ -333,7 +333,7 @@ impl Drawing<'_> {
         }
     }
 
-    /// Draws a part of an outline, and forgets it.
+    /// Draws a part of an outline and clears it.
     fn coloured_line(&self, canvas: &mut Canvas, points: &mut Vec<[f32; 2]>, width: f32, shade: Option<f64>) {
         if let Some(shade) = shade {
             canvas.line(points, width, self.scalars.map.colour(shade), 1.0);
@@ -341,7 +341,7 @@ impl Drawing<'_> {
         points.clear();
     }
 
-    /// Draws the nodes where they are wanted: smaller ones where they are close together.
+    /// Draws the nodes if requested, with smaller dots where they are close together.
     fn nodes(&self, canvas: &mut Canvas) {
         if !self.body.nodes_drawn {
             return;
@@ -350,7 +350,7 @@ impl Drawing<'_> {
             Some(spacing) if ((spacing * self.projection.scale) as f32) < DOT_SPACING * self.unit => return,
             Some(_) => 2.6 * self.unit,
             None => {
-                // The distance of neighbours, if they lie around the body or fill it.
+                // The distance of neighbours, for nodes around the body or nodes that fill it.
                 let count = self.pixels.len().max(1) as f32;
                 let spacing = if self.body.cells.is_empty() { 3.0 / count } else { 1.0 / count.sqrt() } * self.size;
                 (0.25 * spacing).clamp(0.8 * self.unit, 2.6 * self.unit)

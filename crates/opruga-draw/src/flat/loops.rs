@@ -1,4 +1,4 @@
-//! Chains edges in any order into loops.
+//! Chaining of unordered edges into loops.
 
 /// The nodes of one loop, and whether the last is joined to the first.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -9,8 +9,8 @@ pub(crate) struct Loop {
     pub(crate) closed: bool,
 }
 
-/// Groups loops: each line that encloses something with the holes in it. Lines run around what they enclose
-/// counter-clockwise, around holes clockwise; where that tells nothing, all are one group.
+/// Groups loops: each outer line with the holes in it. Outer lines run counter-clockwise, holes clockwise; if this gives no grouping, all loops form
+/// one group.
 pub(crate) fn parts<'a>(loops: &'a [Loop], positions: &[[f64; 3]]) -> Vec<Vec<&'a Loop>> {
     let at = |node: u32| [positions[node as usize][0], positions[node as usize][1]];
     let corners = |chain: &Loop| chain.nodes.iter().map(|node| at(*node)).collect::<Vec<[f64; 2]>>();
@@ -32,7 +32,7 @@ pub(crate) fn parts<'a>(loops: &'a [Loop], positions: &[[f64; 3]]) -> Vec<Vec<&'
     parts
 }
 
-/// Whether a closed line goes around a point, by the even-odd rule.
+/// Whether a closed line encloses a point, by the even-odd rule.
 pub(crate) fn encloses(line: &[[f64; 2]], point: [f64; 2]) -> bool {
     let next = line.iter().cycle().skip(1);
     line.iter().zip(next).filter(|(a, b)| crosses(**a, **b, point)).count() % 2 == 1
@@ -43,7 +43,7 @@ pub(crate) fn crosses(a: [f64; 2], b: [f64; 2], point: [f64; 2]) -> bool {
     (a[1] > point[1]) != (b[1] > point[1]) && point[0] < a[0] + (point[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
 }
 
-/// Chains edges into loops; an edge may point either way.
+/// Chains edges into loops; an edge may have either direction.
 pub(crate) fn chain(edges: &[[u32; 2]]) -> Vec<Loop> {
     if let Some(whole) = chain_ordered(edges) {
         return vec![whole];
@@ -67,7 +67,7 @@ pub(crate) fn chain(edges: &[[u32; 2]]) -> Vec<Loop> {
     let mut used = vec![false; edges.len()];
     let around = |node: u32| &incident[starts[node as usize] as usize..starts[node as usize + 1] as usize];
     let is_end = |edge: &[u32; 2]| edge.iter().any(|&node| around(node).len() == 1);
-    // Open lines first, from their ends; what is left then are closed loops.
+    // Open lines first, from their ends; the rest are closed loops.
     let mut order: Vec<usize> = (0..edges.len()).collect();
     order.sort_by_key(|&index| !is_end(&edges[index]));
     let mut loops = Vec::new();
@@ -93,7 +93,7 @@ pub(crate) fn chain(edges: &[[u32; 2]]) -> Vec<Loop> {
     loops
 }
 
-/// The single loop of edges which already follow each other.
+/// The single loop of edges that are already in order.
 fn chain_ordered(edges: &[[u32; 2]]) -> Option<Loop> {
     let (first, last) = (edges.first()?, edges.last()?);
     let follows = edges.windows(2).all(|pair| pair[0][1] == pair[1][0] && pair[1][0] != first[0]);
@@ -121,7 +121,7 @@ mod tests {
 
     #[test]
     fn a_hole_belongs_to_the_tightest_line_around_it() {
-        // Two squares side by side; a square hole and, in it, a smaller square of its own.
+        // Two squares side by side; a square hole, and a smaller square inside it.
         let square = |x: f64, s: f64, turn: bool| {
             let mut corners = [[x - s, -s, 0.0], [x + s, -s, 0.0], [x + s, s, 0.0], [x - s, s, 0.0]];
             if turn {
@@ -135,7 +135,7 @@ mod tests {
         let loops: Vec<Loop> = (0..4).map(ring).collect();
         let found = parts(&loops, positions.as_flattened());
         assert_eq!(found, [vec![&loops[0], &loops[2]], vec![&loops[1]], vec![&loops[3]]]);
-        // A hole in nothing: a body that is turned inside out is drawn as one.
+        // A hole without an outer line: an inverted body is drawn as a body.
         assert_eq!(parts(&loops[2..3], positions.as_flattened()).len(), 1);
     }
 

@@ -13,24 +13,24 @@ use crate::marks::{draw_arrows, draw_marks};
 use crate::picture::{ArrowKind, ArrowPicture, Facets, Picture};
 use crate::view::View;
 
-/// The free border between what must be seen and the frame, as a share of the larger side.
+/// The free border between the visible part and the frame, as a fraction of the larger side.
 pub(crate) const BORDER: f64 = 0.04;
 
-/// How points of the plane become pixels of the scene.
+/// The mapping of points in the plane to pixels of the scene.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Projection {
-    /// The number of pixels in a metre.
+    /// The number of pixels per metre.
     pub(crate) scale: f64,
-    /// 1 where y counts downwards as pixels do, otherwise -1.
+    /// 1 if y points downwards as for pixels, otherwise -1.
     pub(crate) down: f64,
-    /// The point which is drawn in the middle [m].
+    /// The point that is drawn in the middle [m].
     center: [f64; 2],
     /// The size of the scene in pixels.
     pub(crate) size: [f32; 2],
 }
 
 impl Projection {
-    /// The projection which shows the whole view in a scene.
+    /// The projection that shows the whole view in a scene.
     pub(crate) fn new(view: &View, width: u32, height: u32) -> Projection {
         let border = BORDER * view.extent();
         let wide = view.high[0] - view.low[0] + 2.0 * border;
@@ -53,7 +53,7 @@ impl Projection {
     }
 }
 
-/// Draws the scene of a picture in two dimensions, and gives the number of pixels in a metre.
+/// Draws the scene of a picture in two dimensions, and returns the number of pixels per metre.
 pub(crate) fn scene(
     picture: &Picture,
     view: &View,
@@ -68,7 +68,7 @@ pub(crate) fn scene(
         colliders::draw(&mut canvas, collider, &projection, unit);
     }
     let project = |point: [f64; 3]| point.iter().all(|value| value.is_finite()).then(|| projection.pixel(point));
-    // What pushes outwards starts at the outline and lies beneath all bodies, so that no neighbour is covered.
+    // Arrows that point outwards start at the outline and are drawn beneath all bodies, so that they do not cover neighbours.
     let (beneath, above): (Vec<ArrowPicture>, Vec<ArrowPicture>) =
         picture.arrows.iter().partition(|arrow| arrow.kind == ArrowKind::Pressure && leaves(picture, view, arrow));
     draw_arrows(&mut canvas, &beneath, view, unit, &project, &|_| true);
@@ -77,9 +77,9 @@ pub(crate) fn scene(
     Ok((scene, projection.scale))
 }
 
-/// Whether an arrow leads from where it starts out of all bodies.
+/// Whether an arrow points from its start out of all bodies.
 fn leaves(picture: &Picture, view: &View, arrow: &ArrowPicture) -> bool {
-    // A small part of the arrow as it is drawn.
+    // A small part of the arrow as drawn.
     let share = 0.02 * view.arrow_scale(arrow.kind);
     let point: [f64; 2] = std::array::from_fn(|axis| arrow.from[axis] + share * arrow.vector[axis]);
     picture.bodies.iter().all(|body| {
@@ -134,7 +134,7 @@ mod tests {
         assert_eq!(painted(0.75, 0.0), [255, 0, 0]);
         assert_eq!(painted(0.0, 0.0), [0, 0, 255], "the dot in the hole");
         assert_eq!([painted(0.4, 0.4), painted(1.5, 0.0)], [[255; 3]; 2], "the hole, and the body around the drawing");
-        // Without a colour: those of the nodes, cut off at the area.
+        // Without a colour: the colours of the nodes, clipped at the area.
         let shaded = at(vec![frame(None)], vec![1.0; 4]);
         assert_eq!(shaded(0.75, 0.0), [253, 231, 37]);
         assert_eq!([shaded(0.0, 0.0), shaded(1.5, 0.0)], [[255; 3]; 2]);
@@ -146,8 +146,8 @@ mod tests {
         assert!(Picture { bodies: vec![body], ..Default::default() }.check().is_err());
     }
 
-    /// An area whose lower half is folded up over its upper half covers what it covered, without the hole that the even-odd rule
-    /// leaves where its line runs over itself.
+    /// An area whose lower half is folded up over its upper half covers the same region, without the hole that the even-odd rule leaves where its
+    /// line overlaps itself.
     #[test]
     fn a_folded_drawing_has_no_holes() {
         let positions =
@@ -156,7 +156,7 @@ mod tests {
             colour: Some([0, 90, 200, 255]),
             positions: positions.clone(),
             ends: vec![6],
-            // The upper part between 1, 2, 3 and 0, and the part folded over it, turned round.
+            // The upper part between 1, 2, 3 and 0, and the part folded over it, with reversed orientation.
             triangles: vec![[0, 1, 2], [0, 2, 3], [0, 5, 4], [0, 4, 1]],
         };
         let ring = [0, 3, 2, 1, 4, 5].map(|point: usize| positions[point]).to_vec();
@@ -178,7 +178,7 @@ mod tests {
         assert_eq!(seen(&by_lines), [255; 3], "the line alone leaves a hole, which is why triangles are filled");
     }
 
-    /// Whether the cells of a body are drawn is decided once in a run: a body that is squeezed shows those that it showed.
+    /// Whether the cells of a body are drawn is decided once per run: a squeezed body shows the same as before.
     #[test]
     fn the_lattice_is_drawn_in_all_pictures_of_a_run_or_in_none() {
         let side = 24;
@@ -223,7 +223,7 @@ mod tests {
         assert!(shown(600)[0] && !shown(120)[0]);
     }
 
-    /// Names lie all above their bodies or all below, and not on a floor; in a pile of two each is nearer to its own body.
+    /// Names are either all above their bodies or all below, and not on a floor; in a pile of two each is nearer to its own body.
     #[test]
     fn names_lie_where_nothing_is_in_the_way() {
         let body = |x: f64, y: f64, label: &str| BodyPicture {
@@ -234,7 +234,7 @@ mod tests {
         };
         let floor = || vec![ColliderPicture::HalfSpace { point: [0.0; 3], normal: [0.0, 1.0, 0.0] }];
         let rows = |bodies: Vec<BodyPicture>, colliders: Vec<ColliderPicture>| -> (Vec<u32>, Projection) {
-            // The view leaves room at the top and at the bottom.
+            // The view leaves space at the top and at the bottom.
             let frame = BodyPicture { positions: vec![[-3.0, -1.5, 0.0], [3.0, 4.5, 0.0]], ..Default::default() };
             let mut picture = Picture { bodies, colliders, ..Default::default() };
             picture.bodies.push(frame);
@@ -249,12 +249,12 @@ mod tests {
         let (written, at) = rows(vec![body(-1.5, 0.0, "left"), body(1.5, 0.1, "right")], floor());
         let ground = at.pixel([0.0; 3])[1] as u32;
         assert!(!written.is_empty() && written.iter().all(|y| *y < ground), "{written:?} {ground}");
-        // Hung from above: below them.
+        // Hung from above: names below the bodies.
         let ceiling = vec![ColliderPicture::HalfSpace { point: [0.0, 1.05, 0.0], normal: [0.0, -1.0, 0.0] }];
         let (written, at) = rows(vec![body(-1.5, 0.0, "left"), body(1.5, 0.0, "right")], ceiling);
         let feet = at.pixel([0.0; 3])[1] as u32;
         assert!(!written.is_empty() && written.iter().all(|y| *y >= feet), "{written:?} {feet}");
-        // One over the other: two rows of letters, both above their bodies.
+        // One above the other: two rows of letters, both above their bodies.
         let (written, at) = rows(vec![body(0.0, 0.0, "low"), body(0.0, 2.0, "high")], floor());
         let rows_of =
             |y: f64| written.iter().filter(|row| (at.pixel([0.0, y, 0.0])[1] - **row as f32).abs() < 12.0).count();

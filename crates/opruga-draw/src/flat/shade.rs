@@ -1,18 +1,18 @@
-//! Fills triangles with colours which run evenly from corner to corner.
+//! Fills triangles with colours that vary linearly between the corners.
 
 use tiny_skia::{PixmapMut, PremultipliedColorU8};
 
-/// A corner of a triangle: its pixel and the fraction of the colour map of its scalar, from 0 to 1.
+/// A corner of a triangle: its pixel, and the fraction of the colour map for its scalar, from 0 to 1.
 pub(crate) type Corner = ([f32; 2], f64);
 
-/// Fills a triangle; `reach` is how far, in pixels, its colours go beyond its edges.
+/// Fills a triangle; its colours extend `reach` pixels beyond its edges.
 pub(crate) fn triangle(pixmap: &mut PixmapMut, corners: [Corner; 3], reach: f32, colour: &dyn Fn(f64) -> [u8; 3]) {
     let [a, b, c] = corners.map(|corner| corner.0);
     let area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
     if !area.is_finite() || area.abs() < 1e-4 {
         return;
     }
-    // The share of a corner falls from 1 at the corner to 0 at the opposite side.
+    // The weight of a corner falls from 1 at the corner to 0 at the opposite side.
     let height = |p: [f32; 2], q: [f32; 2]| ((q[0] - p[0]).powi(2) + (q[1] - p[1]).powi(2)).sqrt() / area.abs();
     let slack = [height(b, c) * reach, height(c, a) * reach, height(a, b) * reach];
     let span = |axis: usize, limit: u32| {

@@ -7,11 +7,11 @@ use crate::colour::{ColourMap, INK, SOFT_INK};
 use crate::ticks::format_tick;
 use std::collections::BTreeMap;
 
-/// The size of the letters within cells.
+/// The size of the letters in cells.
 const CELL_SIZE: f64 = 11.0;
 /// The colour of a cell without a number.
 const NOTHING: [u8; 3] = [226, 228, 232];
-/// The space right of the cells: colour bar and its ticks.
+/// The space to the right of the cells, for the colour bar and its ticks.
 const BAR_SPACE: f64 = 96.0;
 
 /// Writes a map.
@@ -38,7 +38,7 @@ pub(super) fn write(map: &HeatMap) -> String {
         }
     }
     svg.text(&map.x_label, [0.5 * (left + right), y + 42.0], SIZE, "middle", INK, "");
-    // All maps have the same rows: one title for them all, no longer than they are high.
+    // All maps have the same rows, so there is one title for all, no longer than their total height.
     let middle = 0.5 * (first + y);
     let turn = format!(r#" transform="rotate(-90 16 {middle:.1})""#);
     let size = SIZE * ((y - first) / width_of(&map.y_label, SIZE).max(1.0)).min(1.0);
@@ -56,18 +56,18 @@ pub(super) fn write(map: &HeatMap) -> String {
     document(svg, map.width, y, &map.credit, left)
 }
 
-/// All cells: column and row.
+/// All cells, as column and row.
 fn cell_indices(map: &HeatMap) -> impl Iterator<Item = [usize; 2]> {
     let (columns, rows) = (map.x.len(), map.y.len());
     (0..rows).flat_map(move |row| (0..columns).map(move |column| [column, row]))
 }
 
-/// The value of a cell, where it has one.
+/// The value of a cell, if it has one.
 fn value(panel: &HeatPanel, [column, row]: [usize; 2]) -> Option<f64> {
     panel.values.get(row).and_then(|values| values.get(column)).copied().filter(|value| value.is_finite())
 }
 
-/// What stands in a cell without a number.
+/// The mark in a cell without a value.
 fn mark(panel: &HeatPanel, at: [usize; 2]) -> Option<&'static str> {
     match value(panel, at) {
         Some(_) => None,
@@ -76,7 +76,7 @@ fn mark(panel: &HeatPanel, at: [usize; 2]) -> Option<&'static str> {
     }
 }
 
-/// What stands in the cells: numbers with three digits, and more where cells of other colours would bear the same.
+/// The texts in the cells: numbers with three digits, and more if cells of different colours would otherwise have the same text.
 fn texts(map: &HeatMap, panel: &HeatPanel, scale: &Scale) -> Vec<([usize; 2], Option<String>)> {
     let cells: Vec<([usize; 2], Option<f64>)> = cell_indices(map).map(|at| (at, value(panel, at))).collect();
     let largest = cells.iter().filter_map(|cell| cell.1).fold(0.0, |most: f64, value| most.max(value.abs()));
@@ -100,7 +100,7 @@ fn texts(map: &HeatMap, panel: &HeatPanel, scale: &Scale) -> Vec<([usize; 2], Op
     cells.into_iter().map(|cell| cell.0).zip(texts).collect()
 }
 
-/// Whether the eye hardly tells two colours apart.
+/// Whether two colours are hard to distinguish.
 fn alike(a: [u8; 3], b: [u8; 3]) -> bool {
     a.iter().zip(&b).map(|(a, b)| u32::from(a.abs_diff(*b))).sum::<u32>() < 24
 }
@@ -140,7 +140,7 @@ fn colour_bar(svg: &mut Svg, scale: &Scale, [left, top, right, bottom]: [f64; 4]
     let strip = (bottom - top) / f64::from(strips);
     for number in 0..strips {
         let colour = ColourMap::Viridis.colour((f64::from(number) + 0.5) / f64::from(strips));
-        // Each strip reaches into the one above it, so that no seam is seen.
+        // Each strip overlaps the one above it, so that no seam is visible.
         let reach = if number + 1 < strips { 0.6 } else { 0.0 };
         let corner = [left, bottom - f64::from(number + 1) * strip - reach];
         rectangle(svg, corner, [right - left, strip + reach], colour);
@@ -154,7 +154,7 @@ fn colour_bar(svg: &mut Svg, scale: &Scale, [left, top, right, bottom]: [f64; 4]
     }
 }
 
-/// Writes the labels of the columns, as many as have room.
+/// Writes the labels of the columns, as many as fit.
 fn column_labels(svg: &mut Svg, map: &HeatMap, left: f64, y: f64, cell: f64) {
     let widest = map.x.iter().map(|label| width_of(label, TICK_SIZE)).fold(1.0, f64::max);
     let every = ((widest + 8.0) / cell).ceil().max(1.0) as usize;
@@ -172,7 +172,7 @@ fn rectangle(svg: &mut Svg, [x, y]: [f64; 2], [width, height]: [f64; 2], colour:
     ));
 }
 
-/// The colour of letters on a colour: light on dark, dark on light.
+/// The colour of letters on a background colour: light on dark, dark on light.
 fn ink_on([red, green, blue]: [u8; 3]) -> [u8; 3] {
     let light = 0.2126 * f64::from(red) + 0.7152 * f64::from(green) + 0.0722 * f64::from(blue);
     if light < 130.0 { [255; 3] } else { INK }
@@ -227,7 +227,7 @@ mod tests {
         assert!(!whole.to_svg().expect("a map").contains("failed"));
     }
 
-    /// The texts within cells.
+    /// The texts in cells.
     fn cell_texts(map: &HeatMap) -> Vec<String> {
         let scale = Scale::fit(&map.panels[0].scale, cell_indices(map).filter_map(|at| value(&map.panels[0], at)), 0.0);
         texts(map, &map.panels[0], &scale).into_iter().filter_map(|(_, text)| text).collect()

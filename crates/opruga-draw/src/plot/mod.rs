@@ -6,7 +6,7 @@ mod svg;
 
 use crate::error::{DrawError, Nothing};
 
-/// A plot: panels above each other, over one axis.
+/// A plot: panels above each other, over a common axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chart {
     /// The title, which may be empty.
@@ -17,7 +17,7 @@ pub struct Chart {
     pub x: Axis,
     /// The panels from the top.
     pub panels: Vec<Panel>,
-    /// Whose data are behind it, small below everything; empty where nobody asks for it.
+    /// The credit for the data, in small letters at the bottom; empty if none is needed.
     pub credit: String,
 }
 
@@ -32,11 +32,11 @@ impl Default for Chart {
 pub struct Axis {
     /// The name of the quantity.
     pub label: String,
-    /// The unit of the quantity; empty where there is none.
+    /// Unit of the quantity; empty if there is none.
     pub unit: String,
-    /// Whether equal distances mean equal ratios; values which are not above zero are left out then.
+    /// Whether equal distances mean equal ratios; values that are not positive are then omitted.
     pub logarithmic: bool,
-    /// The values at the ends; measured where this is absent.
+    /// The values at the ends; if they are not given, they are measured.
     pub range: Option<[f64; 2]>,
 }
 
@@ -55,7 +55,7 @@ impl Axis {
 /// One panel of a plot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
-    /// The height of the area of the lines in pixels.
+    /// The height of the plotting area in pixels.
     pub height: f64,
     /// The axis along y.
     pub y: Axis,
@@ -76,19 +76,19 @@ impl Default for Panel {
 pub struct Line {
     /// The name in the list of lines; a line without a name is not listed.
     pub name: String,
-    /// The points; a point which is not finite makes a gap.
+    /// The points; a point that is not finite makes a gap.
     pub points: Vec<[f64; 2]>,
-    /// A band behind the line: places along x, each with the values where the band begins and ends.
+    /// A band behind the line: positions along x, each with the lower and upper value of the band.
     pub band: Vec<[f64; 3]>,
-    /// The sign at each point.
+    /// The marker at each point.
     pub marker: Option<Marker>,
-    /// Whether the line has dashes.
+    /// Whether the line is dashed.
     pub dashed: bool,
-    /// The colour; the colours of Okabe and Ito follow each other where this is absent.
+    /// The colour; if it is not given, the colours of Okabe and Ito are used in turn.
     pub colour: Option<[u8; 3]>,
 }
 
-/// The sign at each point of a line.
+/// The marker at each point of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Marker {
     /// A disc.
@@ -97,7 +97,7 @@ pub enum Marker {
     Square,
     /// A triangle.
     Triangle,
-    /// A square on its corner.
+    /// A square standing on its corner.
     Diamond,
 }
 
@@ -106,28 +106,28 @@ pub enum Marker {
 pub struct Level {
     /// The value.
     pub value: f64,
-    /// What the value means.
+    /// The meaning of the value.
     pub label: String,
 }
 
-/// A map of quantities over two others: cells in colours, panels above each other.
+/// A map of quantities over two others: coloured cells, with panels above each other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeatMap {
     /// The title, which may be empty.
     pub title: String,
     /// The width of the whole plot in pixels.
     pub width: f64,
-    /// What the columns are.
+    /// The meaning of the columns.
     pub x_label: String,
-    /// The columns from the left.
+    /// The labels of the columns, from the left.
     pub x: Vec<String>,
-    /// What the rows are.
+    /// The meaning of the rows.
     pub y_label: String,
-    /// The rows from below.
+    /// The labels of the rows, from below.
     pub y: Vec<String>,
     /// The panels from the top.
     pub panels: Vec<HeatPanel>,
-    /// Whose data are behind it, small below everything; empty where nobody asks for it.
+    /// The credit for the data, in small letters at the bottom; empty if none is needed.
     pub credit: String,
 }
 
@@ -149,11 +149,11 @@ impl Default for HeatMap {
 /// One quantity of a [`HeatMap`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct HeatPanel {
-    /// The quantity, and how its values become colours.
+    /// The quantity, and the mapping of its values to colours.
     pub scale: Axis,
-    /// The values, row by row; what is not finite has no colour.
+    /// The values, row by row; values that are not finite have no colour.
     pub values: Vec<Vec<f64>>,
-    /// Cells, each a column and a row, that have no value because something went wrong.
+    /// Cells, each a column and a row, without a value because of an error.
     pub failed: Vec<[usize; 2]>,
 }
 

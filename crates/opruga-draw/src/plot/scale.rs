@@ -1,4 +1,4 @@
-//! How the values of an axis become fractions of its length, and where its ticks are.
+//! The mapping of the values of an axis to fractions of its length, and the positions of its ticks.
 
 use super::Axis;
 use crate::ticks::{decades, format_tick, nice_ticks, scientific};
@@ -24,7 +24,7 @@ pub(crate) struct Tick {
 }
 
 impl Scale {
-    /// The scale which shows all values; `margin` is the free share at both ends.
+    /// The scale that shows all values; `margin` is the free fraction at both ends.
     pub(crate) fn fit(axis: &Axis, values: impl Iterator<Item = f64>, margin: f64) -> Scale {
         let logarithmic = axis.logarithmic;
         let seen = values.filter(|value| value.is_finite() && (!logarithmic || *value > 0.0));
@@ -37,7 +37,7 @@ impl Scale {
             let factor = (high / low).powf(margin).max(1.15);
             return Scale { low: low / factor, high: high * factor, logarithmic };
         }
-        // A line which is constant to a millionth is drawn flat: its ticks could not be told apart.
+        // A line that is constant to a millionth is drawn flat, because its ticks could not be distinguished.
         let width = if high - low > 1e-6 * low.abs().max(high.abs()) { high - low } else { 0.0 };
         let pad = if width > 0.0 {
             margin * width
@@ -49,7 +49,7 @@ impl Scale {
         Scale { low: low - pad, high: high + pad, logarithmic }
     }
 
-    /// The fraction at which a value lies, or nothing where it has none.
+    /// The fraction for a value; none if it has no position on the scale.
     pub(crate) fn fraction(&self, value: f64) -> Option<f64> {
         let fraction = if self.logarithmic {
             (value / self.low).ln() / (self.high / self.low).ln()

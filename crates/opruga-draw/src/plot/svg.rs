@@ -18,7 +18,7 @@ const GAP: f64 = 16.0;
 /// The text of an SVG file.
 #[derive(Default)]
 pub(super) struct Svg {
-    /// What is written so far.
+    /// The text so far.
     text: String,
 }
 
@@ -49,12 +49,12 @@ impl Svg {
     }
 }
 
-/// A colour as SVG writes it.
+/// A colour in the notation of SVG.
 pub(super) fn hex([red, green, blue]: [u8; 3]) -> String {
     format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
-/// A text in which the signs of XML stand for themselves.
+/// A text in which the special characters of XML are escaped.
 fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for sign in text.chars() {
@@ -119,7 +119,7 @@ pub(crate) fn write(chart: &Chart) -> String {
     document(svg, chart.width, y + 56.0, &chart.credit, left)
 }
 
-/// A whole SVG file: white, with what was drawn on it, and below that a credit, no longer than the file is wide.
+/// A complete SVG file: a white background, the drawing, and below it a credit, no wider than the file.
 pub(super) fn document(mut svg: Svg, width: f64, mut height: f64, credit: &str, left: f64) -> String {
     if !credit.is_empty() {
         let size = TICK_SIZE * ((width - left - 8.0) / width_of(credit, TICK_SIZE).max(1.0)).min(1.0);
@@ -134,7 +134,7 @@ pub(super) fn document(mut svg: Svg, width: f64, mut height: f64, credit: &str, 
     )
 }
 
-/// The number of ticks which fit along a height.
+/// The number of ticks that fit along a height.
 pub(super) fn tick_count(height: f64) -> usize {
     (height / 42.0).clamp(2.0, 10.0) as usize
 }
@@ -146,7 +146,7 @@ fn fit_panel(panel: &Panel) -> Scale {
     Scale::fit(&panel.y, values.chain(bands).chain(panel.levels.iter().map(|level| level.value)), 0.07)
 }
 
-/// Lists the names of the lines above a panel, and gives the number of rows.
+/// Lists the names of the lines above a panel, and returns the number of rows.
 fn names(svg: &mut Svg, panel: &Panel, [left, right]: [f64; 2], top: f64) -> usize {
     let (mut x, mut rows) = (left, 0);
     for (index, line) in panel.lines.iter().enumerate().filter(|(_, line)| !line.name.is_empty()) {
@@ -211,7 +211,7 @@ fn draw_panel(svg: &mut Svg, panel: &Panel, [x, y]: [&Scale; 2], area: [f64; 4],
             let pixel_of = move |point: &[f64; 3]| Some([at_x(x.fraction(point[0])?), at_y(y.fraction(point[end])?)]);
             thinned(line.band.iter().map(pixel_of))
         };
-        // There along the upper ends, and back along the lower ones.
+        // Forward along the upper ends, and back along the lower ones.
         let around = edge(2).into_iter().flatten().chain(edge(1).into_iter().flatten().rev());
         let points: Vec<String> = around.map(|[x, y]| format!("{x:.1},{y:.1}")).collect();
         let (points, colour) = (points.join(" "), hex(colour_of(line, number)));
@@ -251,7 +251,7 @@ fn draw_panel(svg: &mut Svg, panel: &Panel, [x, y]: [&Scale; 2], area: [f64; 4],
     svg.text(&axis_text(&panel.y), [16.0, middle], SIZE, "middle", INK, &turn);
 }
 
-/// Writes what a level means, above or below its line, at the end where the lines of the panel are farthest away.
+/// Writes the meaning of a level, above or below its line, at the end where the lines of the panel are farthest away.
 fn level_label(svg: &mut Svg, panel: &Panel, level: &Level, [x, y]: [&Scale; 2], area: [f64; 4]) {
     let [left, top, right, bottom] = area;
     let Some(fraction) = y.fraction(level.value) else { return };
@@ -279,7 +279,7 @@ fn level_label(svg: &mut Svg, panel: &Panel, level: &Level, [x, y]: [&Scale; 2],
     }
 }
 
-/// Draws the sign of a point.
+/// Draws the marker of a point.
 fn draw_marker(svg: &mut Svg, marker: Marker, [x, y]: [f64; 2], colour: [u8; 3]) {
     let colour = hex(colour);
     let corners: &[[f64; 2]] = match marker {
@@ -298,8 +298,8 @@ fn draw_marker(svg: &mut Svg, marker: Marker, [x, y]: [f64; 2], colour: [u8; 3])
     svg.add(format_args!(r##"<polygon points="{points}" fill="{colour}" stroke="#ffffff" stroke-width="1"/>"##));
 }
 
-/// The pieces of a line between its gaps; of many points in the same half pixel only the ends and the extremes are
-/// kept, so that a line which swings faster than pixels can show fills the height through which it swings.
+/// The pieces of a line between its gaps. Of many points in the same half pixel only the ends and the extremes are kept, so that a line that
+/// oscillates faster than pixels can show fills the full height of its oscillation.
 fn thinned(points: impl Iterator<Item = Option<[f64; 2]>>) -> Vec<Vec<[f64; 2]>> {
     let mut pieces = vec![Vec::new()];
     let mut column: Vec<[f64; 2]> = Vec::new();
@@ -391,7 +391,7 @@ mod tests {
 
     #[test]
     fn a_fast_swing_fills_the_height_through_which_it_swings() {
-        // Forty swings in each pixel.
+        // Forty oscillations in each pixel.
         let swing =
             |index: u32| Some([f64::from(index) / 160.0, (f64::from(index) * std::f64::consts::FRAC_PI_2).sin()]);
         for piece in thinned((0..16_000).map(swing)) {

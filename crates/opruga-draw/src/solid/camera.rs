@@ -2,7 +2,7 @@
 
 use crate::view::View;
 
-/// The height of the picture divided by the distance, for one half: the tangent of half the angle of view.
+/// Half of the height of the picture divided by the distance: the tangent of half of the angle of view.
 const HALF_HEIGHT: f64 = 0.27;
 
 /// The dot product.
@@ -20,7 +20,7 @@ pub(crate) fn between(from: [f64; 3], to: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|axis| to[axis] - from[axis])
 }
 
-/// The vector with the length one; a vector without a length stays as it is.
+/// The vector scaled to length one; a vector of length zero is unchanged.
 pub(crate) fn unit(vector: [f64; 3]) -> [f64; 3] {
     let length = dot(vector, vector).sqrt();
     if length > 0.0 { vector.map(|value| value / length) } else { vector }
@@ -31,12 +31,12 @@ pub(crate) fn along(point: [f64; 3], vector: [f64; 3], factor: f64) -> [f64; 3] 
     std::array::from_fn(|axis| point[axis] + factor * vector[axis])
 }
 
-/// A point on the screen: its pixel and the inverse of its distance along the axis of the camera.
+/// A point on the screen: its pixel and its inverse distance along the camera axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Seen {
     /// The pixel, from the left and from the top.
     pub(crate) pixel: [f32; 2],
-    /// One divided by the distance along the axis of the camera.
+    /// One divided by the distance along the camera axis.
     pub(crate) inverse_distance: f32,
 }
 
@@ -49,7 +49,7 @@ pub(crate) fn axes(view: &View) -> [[f64; 3]; 3] {
     [right, cross(right, forward), forward]
 }
 
-/// The points which a camera must see: those that stick out, or the corners of the box of the view.
+/// The points that a camera must see: the extreme points, or the corners of the box of the view.
 fn must_see(view: &View) -> Vec<[f64; 3]> {
     if !view.points.is_empty() {
         return view.points.clone();
@@ -58,7 +58,7 @@ fn must_see(view: &View) -> Vec<[f64; 3]> {
     (0..8).map(|corner| std::array::from_fn(|axis| end(corner, axis))).collect()
 }
 
-/// The width and the height of what the camera of a view must see, without perspective [m].
+/// The width and the height of the part that the camera of a view must see, without perspective [m].
 pub(crate) fn seen_size(view: &View) -> [f64; 2] {
     let (axes, points) = (axes(view), must_see(view));
     [0, 1].map(|axis| {
@@ -80,12 +80,12 @@ pub(crate) struct Camera {
     pub(crate) axes: [[f64; 3]; 3],
     /// The number of pixels for a tangent of one.
     pub(crate) focus: f64,
-    /// The pixel on the axis of the camera.
+    /// The pixel on the camera axis.
     pub(crate) middle: [f64; 2],
 }
 
 impl Camera {
-    /// The camera which sees the whole view in an image of some pixels.
+    /// The camera that sees the whole view in an image of the given size.
     pub(crate) fn new(view: &View, width: f64, height: f64) -> Camera {
         let axes = axes(view);
         let forward = axes[2];
@@ -98,7 +98,7 @@ impl Camera {
         };
         let far_enough = |seen: &[[f64; 3]]| {
             let need = |p: &[f64; 3]| (0..2).map(|axis| p[axis].abs() / slope[axis] - p[2]).fold(0.0, f64::max);
-            // The camera does not creep up to a point that lies before the middle.
+            // The camera does not come too close to a point in front of the centre.
             let free = |p: &[f64; 3]| 0.8 * view.extent() - p[2];
             seen.iter().map(|p| need(p).max(free(p))).fold(1e-9, f64::max)
         };
@@ -122,7 +122,7 @@ impl Camera {
         }
     }
 
-    /// The number of pixels in a metre at the distance of a point.
+    /// The number of pixels per metre at the distance of a point.
     pub(crate) fn scale(&self, point: [f64; 3]) -> f64 {
         self.focus / self.turn(between(self.position, point))[2].max(1e-9)
     }
@@ -132,7 +132,7 @@ impl Camera {
         self.axes.map(|axis| dot(axis, direction))
     }
 
-    /// Where a point is seen, unless it is behind the camera or not finite.
+    /// The position on the screen of a point, unless it is behind the camera or not finite.
     pub(crate) fn see(&self, point: [f64; 3]) -> Option<Seen> {
         let [x, y, z] = self.turn(between(self.position, point));
         if !(z > 1e-9 && z.is_finite()) {

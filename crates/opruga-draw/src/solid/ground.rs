@@ -1,4 +1,4 @@
-//! Floors and walls without an end, and the shadows on a floor.
+//! Infinite floors and walls, and shadows on a floor.
 
 use super::camera::{Camera, Seen, along, between, cross, dot, unit};
 use super::raster::{Cover, Screen, line_triangles};
@@ -7,23 +7,23 @@ use crate::view::View;
 
 /// The two colours of the squares of a floor.
 const SQUARES: [[u8; 3]; 2] = [[238, 240, 243], [224, 227, 232]];
-/// How dark a shadow is.
+/// The darkness of a shadow.
 const SHADOW: f64 = 0.36;
 
-/// A plane which looks to the camera.
+/// A plane that faces the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Plane {
     /// A point of the plane [m].
     pub(crate) point: [f64; 3],
-    /// The direction out of the obstacle, with the length one.
+    /// The direction out of the obstacle, of length one.
     pub(crate) normal: [f64; 3],
 }
 
-/// The parts of a screen which lie in a shadow.
+/// The parts of a screen in a shadow.
 pub(crate) struct Shadow {
-    /// How much each sample is in the shadow, from 0 to 255.
+    /// The shade of each sample, from 0 to 255.
     shade: Vec<u8>,
-    /// The first and the last column and row with a shadow, the last ones not included.
+    /// The first column and row with a shadow, and one past the last.
     span: [usize; 4],
     /// The direction towards the light.
     light: [f64; 3],
@@ -37,20 +37,20 @@ impl Plane {
         self.normal[1] > 0.6
     }
 
-    /// The height of a point over the plane.
+    /// The height of a point above the plane.
     fn height(&self, point: [f64; 3]) -> f64 {
         dot(self.normal, between(self.point, point))
     }
 }
 
 impl Shadow {
-    /// A shadow of nothing.
+    /// An empty shadow.
     pub(crate) fn new(screen: &Screen, plane: Plane, light: [f64; 3]) -> Shadow {
         let span = [screen.width, 0, screen.height, 0];
         Shadow { shade: vec![0; screen.width * screen.height], span, light, plane }
     }
 
-    /// Where the shadow of a point is seen.
+    /// The position on the screen of the shadow of a point.
     fn cast(&self, camera: &Camera, point: [f64; 3]) -> Option<Seen> {
         let height = self.plane.height(point).max(0.0);
         camera.see(along(point, self.light, -height / dot(self.light, self.plane.normal)))
@@ -153,14 +153,14 @@ fn tones(background: [u8; 3], strength: f64) -> [[[u8; 3]; 256]; 2] {
     })
 }
 
-/// The whole number below a number; `floor` is a call of a function on machines without an instruction for it.
+/// The largest integer not above a number; on machines without an instruction for it, `floor` is a function call.
 #[inline(always)]
 fn below(number: f64) -> i64 {
     let whole = number as i64;
     whole - i64::from(number < whole as f64)
 }
 
-/// Draws a plane with squares which fade into the background with the distance.
+/// Draws a plane with squares that fade into the background with distance.
 pub(crate) fn draw(
     screen: &mut Screen,
     background: [u8; 3],

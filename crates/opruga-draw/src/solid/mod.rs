@@ -1,4 +1,4 @@
-//! Pictures in three dimensions, drawn by a rasteriser of its own.
+//! Pictures in three dimensions, drawn by a built-in rasteriser.
 
 pub(crate) mod camera;
 mod ground;
@@ -21,10 +21,10 @@ use raster::{SAMPLES, Screen};
 use shade::{Colouring, Light, Surface};
 use shapes::{FACES, corner, shape};
 
-/// The colour of an obstacle in the light.
+/// The colour of an obstacle in full light.
 const SOLID: [u8; 3] = [188, 193, 202];
 
-/// The width of the line around a body, in the size of lines.
+/// The width of the line around a body, in units of lines.
 const OUTLINE: f32 = 2.0;
 
 /// Draws the scene of a picture in three dimensions.
@@ -53,7 +53,7 @@ pub(crate) fn scene(
         let shadow = shadow.as_ref().filter(|_| Some(plane) == floor);
         ground::draw(&mut screen, background, &painter.camera, view, *plane, shadow);
     }
-    // The dot of a node lies before its position: it would hide the arrow that begins there.
+    // The dot of a node is in front of its position and would hide an arrow that begins there.
     let dotted = picture.bodies.iter().any(|body| body.nodes_drawn);
     let surfaces = (dotted && !picture.arrows.is_empty()).then(|| screen.inverse_distances.clone());
     for (index, body) in picture.bodies.iter().enumerate() {
@@ -81,17 +81,17 @@ pub(crate) fn directions_of_view(view: &View) -> ([[f64; 3]; 3], [f64; 3]) {
     (axes, shade::light_of(&axes))
 }
 
-/// Where the shadow of a point falls on a plane; points below the plane stay where they are.
+/// The shadow of a point on a plane; points below the plane are unchanged.
 pub(crate) fn cast(point: [f64; 3], plane: [f64; 3], normal: [f64; 3], light: [f64; 3]) -> [f64; 3] {
     let height = dot(normal, between(plane, point)).max(0.0);
     camera::along(point, light, -height / dot(light, normal))
 }
 
-/// What all parts of a scene need.
+/// The data that all parts of a scene need.
 struct Painter<'a> {
     /// The picture.
     picture: &'a Picture,
-    /// The part of space which is seen.
+    /// The visible part of space.
     view: &'a View,
     /// The camera, whose pixels are samples.
     camera: Camera,
@@ -130,7 +130,7 @@ impl Painter<'_> {
         shadow
     }
 
-    /// Whether nothing hides a point of a surface on a screen of this size with surfaces at these inverse distances.
+    /// Whether a point of a surface is not hidden, on a screen of this size with surfaces at these inverse distances.
     fn in_sight(&self, [width, height]: [usize; 2], inverse_distances: &[f32], point: [f64; 3]) -> bool {
         let Some(seen) = self.camera.see(point) else { return false };
         let [column, row] = seen.pixel.map(|value| value as usize);
@@ -144,7 +144,7 @@ impl Painter<'_> {
         }
     }
 
-    /// Draws an obstacle, but no plane.
+    /// Draws an obstacle, unless it is a plane.
     fn collider(&self, screen: &mut Screen, collider: &ColliderPicture) {
         match collider {
             ColliderPicture::HalfSpace { .. } => {}
@@ -164,7 +164,7 @@ impl Painter<'_> {
         }
     }
 
-    /// Draws the walls of a container which are seen from inside: their edges, and lines at round distances.
+    /// Draws the walls of a container that are seen from inside: their edges, and lines at round distances.
     fn container(&self, screen: &mut Screen, min: [f64; 3], max: [f64; 3]) {
         let square = self.view.square();
         for (corners, axis, high) in FACES {
@@ -193,19 +193,19 @@ impl Painter<'_> {
         }
     }
 
-    /// The width in which the springs of a body are drawn, in samples.
+    /// The width of the springs of a body, in samples.
     fn spring(&self, body: &BodyPicture) -> f32 {
         if triangles(body).is_empty() { 1.6 * self.unit } else { 0.8 * self.unit }
     }
 
-    /// The fractions of its map at which the scalars of a body lie.
+    /// The fractions of the colour map for the scalars of a body.
     fn fractions(&self, body: &BodyPicture) -> (ColourMap, Vec<f32>) {
         let range = self.view.range(self.picture);
         let map = self.picture.legend.as_ref().map_or(ColourMap::Viridis, |legend| legend.map);
         (map, body.scalar.iter().map(|&scalar| View::fraction(range, scalar) as f32).collect())
     }
 
-    /// Draws the nodes of a body, where they are wanted.
+    /// Draws the nodes of a body, if requested.
     fn nodes(&self, screen: &mut Screen, body: &BodyPicture, base: [u8; 3]) {
         if !body.nodes_drawn {
             return;
@@ -221,7 +221,7 @@ impl Painter<'_> {
         }
     }
 
-    /// Draws a body but for its nodes.
+    /// Draws a body without its nodes.
     fn body(&self, screen: &mut Screen, body: &BodyPicture, base: [u8; 3]) {
         for ends in &body.rest.segments {
             let ends = ends.map(|node| body.rest.positions[node as usize]);
@@ -241,7 +241,7 @@ impl Painter<'_> {
         let width = self.spring(body);
         for &[a, b] in &body.segments {
             if let (Some(from), Some(to)) = (seen[a as usize], seen[b as usize]) {
-                // On a surface of the same colour a line must be darker to be seen.
+                // On a surface of the same colour a line must be darker to be visible.
                 let colours = [colour(a), colour(b)].map(|colour| if filled { darker(colour) } else { colour });
                 screen.line([from, to], width, colours);
             }
@@ -262,7 +262,7 @@ mod tests {
     use super::*;
     use crate::picture::{ArrowKind, ArrowPicture, Legend};
 
-    /// A square that lies before the camera of its view, with an arrow at its first corner.
+    /// A square in front of the camera of its view, with an arrow at its first corner.
     fn square() -> Picture {
         let body = BodyPicture {
             positions: vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]],
@@ -307,10 +307,10 @@ mod tests {
         }
     }
 
-    /// Every face of a box has one colour up to its edges: the light of its neighbours does not run over.
+    /// Every face of a box has one colour up to its edges: the shading of its neighbours does not affect it.
     #[test]
     fn the_edges_of_a_box_are_sharp() {
-        // Two triangles a face, and four squares a face: nodes at edges, corners and within.
+        // Two triangles per face, and four squares per face: nodes at edges, at corners and inside.
         for cells in [1_usize, 2] {
             let found =
                 shapes::shape(&ColliderPicture::Box { min: [0.0; 3], max: [1.0; 3], inside: false }).expect("a box");
@@ -348,7 +348,7 @@ mod tests {
             counts.remove(&[255; 3]);
             let (all, large): (u32, u32) =
                 counts.values().fold((0, 0), |(all, large), n| (all + n, large + if *n > 300 { *n } else { 0 }));
-            // Gloss varies a little over a face seen in perspective; the rest are the pixels of the edges.
+            // Gloss varies slightly over a face seen in perspective; the rest are the pixels of the edges.
             assert!(large > all * 9 / 10, "{cells}: {large} of {all}");
         }
     }

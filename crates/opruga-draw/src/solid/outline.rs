@@ -1,4 +1,4 @@
-//! The line around all that is seen of a body: outside what covers it, and nowhere within.
+//! The line around the visible part of a body: outside the region that covers it, and nowhere inside.
 
 use super::camera::Seen;
 use super::raster::{Cover, SAMPLES, Screen, line_triangles};
@@ -6,7 +6,7 @@ use super::triangles;
 use crate::image::Image;
 use crate::picture::BodyPicture;
 
-/// The samples that a body covers, whatever stands before it, and those of the line around them.
+/// The samples that a body covers, whatever is in front of it, and those of the line around them.
 struct Mask {
     width: usize,
     height: usize,
@@ -14,7 +14,7 @@ struct Mask {
 }
 
 impl Mask {
-    /// What a body covers: its surface from either side, and its springs.
+    /// The region that a body covers: its surface seen from either side, and its springs.
     fn new(screen: &Screen, body: &BodyPicture, seen: &[Option<Seen>], spring: f32) -> Mask {
         let (width, height) = (screen.width, screen.height);
         let mut mask = Mask { width, height, covered: vec![false; width * height] };
@@ -36,11 +36,11 @@ impl Mask {
         }
     }
 
-    /// The samples outside that are no farther than a radius from what is covered: the borders, each made a disc.
+    /// The samples outside whose distance from the covered region is at most a radius: a disc around each border sample.
     fn around(&self, radius: f32) -> Vec<bool> {
         let mut around = vec![false; self.covered.len()];
         let reach = radius.floor().max(1.0) as isize;
-        // For every row of a disc, how far it reaches to either side.
+        // For every row of a disc, its extent to either side.
         let disc: Vec<(isize, usize)> = (-reach..=reach)
             .map(|y| (y, (radius * radius - (y * y) as f32).max(0.0).sqrt().floor() as usize))
             .collect();
@@ -60,7 +60,7 @@ impl Mask {
         around
     }
 
-    /// Whether a sample is covered and has a neighbour that is not; the border of the picture is none of the body.
+    /// Whether a sample is covered and has a neighbour that is not; the border of the picture does not count as border of the body.
     fn is_border(&self, row: usize, column: usize) -> bool {
         let index = row * self.width + column;
         self.covered[index]
@@ -71,8 +71,7 @@ impl Mask {
     }
 }
 
-/// Draws the line around a body over a finished picture; it is so many pixels wide, and springs as many samples as they are
-/// drawn with.
+/// Draws the line around a body over a finished picture. Its width is given in pixels, and that of springs in samples, as drawn.
 pub(super) fn draw(
     image: &mut Image,
     screen: &Screen,
@@ -111,13 +110,13 @@ mod tests {
             let bodies = vec![BodyPicture { outlined, colour: Some([180, 60, 60]), ..body.clone() }];
             let picture = Picture { dimension: 3, bodies, ..Picture::default() };
             let mut view = View::fit([&picture]).expect("a view");
-            // From the side on which the sheets of the tests lie one behind another.
+            // From the side on which the sheets of the tests are one behind another.
             (view.azimuth, view.elevation) = (10.0, 20.0);
             draw_scene(&picture, &view, [255; 3], [SIZE, SIZE]).expect("a picture")
         })
     }
 
-    /// A sheet folded twice, as a Z: from the front its folds lie within what it covers.
+    /// A sheet folded twice, as a Z: from the front its folds are inside the covered region.
     fn folded() -> BodyPicture {
         let profile = [[0.0, 0.0], [2.0, 0.4], [0.5, 0.9], [2.5, 1.4]];
         let positions = profile.iter().flat_map(|&[x, z]| [[x, 0.0, -z], [x, 1.5, -z]]).collect();
@@ -140,7 +139,7 @@ mod tests {
             let beside = |x: u32, y: u32| [(x - 1, y), (x + 1, y), (x, y - 1), (x, y + 1)];
             let mut around = 0;
             for (x, y) in (2..SIZE - 2).flat_map(|y| (2..SIZE - 2).map(move |x| (x, y))) {
-                // Pixels at the border are covered in part: what has the body all around it is within.
+                // Pixels at the border are partly covered; a pixel surrounded by the body is inside.
                 let within = (x - 2..=x + 2).all(|x| (y - 2..=y + 2).all(|y| !empty(x, y)));
                 if within {
                     assert_eq!(plain.pixel(x, y), outlined.pixel(x, y), "({x}, {y}) is within");

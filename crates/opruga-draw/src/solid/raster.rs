@@ -1,4 +1,4 @@
-//! Fills triangles on a screen of samples where the nearest wins; four samples make a pixel.
+//! Fills triangles on a screen of samples where the nearest sample wins; four samples make a pixel.
 
 use super::camera::Seen;
 use crate::error::DrawError;
@@ -15,22 +15,22 @@ pub(crate) struct Screen {
     pub(crate) height: usize,
     /// The colours.
     pub(crate) colours: Vec<[u8; 3]>,
-    /// The inverses of the distances; 0 is infinitely far.
+    /// The inverse distances; 0 is infinitely far.
     pub(crate) inverse_distances: Vec<f32>,
 }
 
-/// The samples which a triangle covers.
+/// The samples that a triangle covers.
 pub(crate) struct Cover {
     /// The corners.
     corners: [Seen; 3],
     /// One divided by twice the area.
     inverse: f32,
-    /// The first and the last column and row, the last ones not included.
+    /// The first column and row, and one past the last.
     span: [usize; 4],
 }
 
 impl Cover {
-    /// The samples of a triangle on a screen, unless there are none.
+    /// The samples of a triangle on a screen; none if it covers no sample.
     pub(crate) fn new(corners: [Seen; 3], width: usize, height: usize) -> Option<Cover> {
         let [a, b, c] = corners.map(|corner| corner.pixel);
         let area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
@@ -40,7 +40,7 @@ impl Cover {
         let span = |axis: usize, limit: usize| {
             let low = a[axis].min(b[axis]).min(c[axis]);
             let high = a[axis].max(b[axis]).max(c[axis]);
-            // A sample lies in the middle of its cell.
+            // A sample is at the centre of its cell.
             let first = (low - 0.5).ceil().max(0.0) as usize;
             let last = ((high - 0.5).floor() + 1.0).max(0.0) as usize;
             [first, last.min(limit)]
@@ -53,12 +53,12 @@ impl Cover {
         })
     }
 
-    /// The first and the last column and row, the last ones not included.
+    /// The first column and row, and one past the last.
     pub(crate) fn span(&self) -> [usize; 4] {
         self.span
     }
 
-    /// Calls a function with the index of each sample and the shares of the corners in it.
+    /// Calls a function with the index of each sample and the weights of the corners in it.
     #[inline(always)]
     pub(crate) fn each(&self, width: usize, mut call: impl FnMut(usize, [f32; 3])) {
         let [a, b, c] = self.corners.map(|corner| corner.pixel);
@@ -87,7 +87,7 @@ impl Cover {
 }
 
 impl Screen {
-    /// An empty screen for an image of some pixels.
+    /// An empty screen for an image of the given size in pixels.
     pub(crate) fn new(width: u32, height: u32, background: [u8; 3]) -> Screen {
         let (width, height) = (width as usize * SAMPLES, height as usize * SAMPLES);
         Screen {
@@ -98,7 +98,7 @@ impl Screen {
         }
     }
 
-    /// Fills a triangle; the function gives the colour from the shares of the corners, seen in perspective.
+    /// Fills a triangle; the function returns the colour from the perspective-correct weights of the corners.
     #[inline(always)]
     pub(crate) fn triangle(&mut self, corners: [Seen; 3], colour: impl Fn([f32; 3]) -> [u8; 3]) {
         let Some(cover) = Cover::new(corners, self.width, self.height) else { return };
@@ -115,7 +115,7 @@ impl Screen {
         });
     }
 
-    /// Draws a line with a width in samples, a little nearer than it is, so that it is seen on a surface.
+    /// Draws a line with a width in samples, slightly nearer than it is, so that it is visible on a surface.
     pub(crate) fn line(&mut self, ends: [Seen; 2], width: f32, colours: [[u8; 3]; 2]) {
         for corners in line_triangles(ends, width) {
             let corners = corners.map(|corner| Seen { inverse_distance: corner.inverse_distance * 1.004, ..corner });
@@ -136,7 +136,7 @@ impl Screen {
         }
     }
 
-    /// Draws a disc with a radius in samples, a little nearer than it is.
+    /// Draws a disc with a radius in samples, slightly nearer than it is.
     pub(crate) fn disc(&mut self, center: Seen, radius: f32, colour: [u8; 3]) {
         let [x, y] = center.pixel;
         let span = |middle: f32, limit: usize| {

@@ -4,10 +4,10 @@ use super::camera::{Camera, Seen, between, cross, dot, unit};
 use super::raster::Screen;
 use crate::colour::ColourMap;
 
-/// The side in samples below which the light is found at the corners of a triangle alone.
+/// The side in samples below which the light is computed only at the corners of a triangle.
 const SMALL: f32 = 40.0;
 
-/// The cosine of the angle between faces beyond which an edge is sharp.
+/// The cosine of the angle between faces above which an edge is sharp.
 const SHARP: f64 = 0.77;
 /// The cosine of the angle between a face and the mean of the faces at its corner up to which no edge there is sharp.
 const BLUNT: f64 = 0.94;
@@ -16,22 +16,22 @@ const BLUNT: f64 = 0.94;
 pub(crate) struct Light {
     /// The direction towards the light in the world.
     pub(crate) world: [f64; 3],
-    /// The direction towards the light, as the camera sees it.
+    /// The direction towards the light, in camera coordinates.
     towards: [f32; 3],
-    /// The upward direction, as the camera sees it.
+    /// The upward direction, in camera coordinates.
     up: [f32; 3],
-    /// The direction half way between the light and the camera: a mirror that looks there shows the light.
+    /// The direction halfway between the light and the camera: a mirror with this normal shows the light.
     half: [f32; 3],
 }
 
-/// The direction towards the light: from above, from the left and a little from behind the camera.
+/// The direction towards the light: from above, from the left and slightly from behind the camera.
 pub(crate) fn light_of(axes: &[[f64; 3]; 3]) -> [f64; 3] {
     let flat = unit([axes[2][0], 0.0, axes[2][2]]);
     unit(std::array::from_fn(|axis| [0.0, 1.0, 0.0][axis] - 0.42 * axes[0][axis] - 0.38 * flat[axis]))
 }
 
 impl Light {
-    /// A light from above, from the left and a little from behind the camera.
+    /// A light from above, from the left and slightly from behind the camera.
     pub(crate) fn new(camera: &Camera) -> Light {
         let world = light_of(&camera.axes);
         let turned = |direction: [f64; 3]| camera.turn(direction).map(|value| value as f32);
@@ -47,17 +47,17 @@ pub(crate) struct Surface<'a> {
     pub(crate) positions: &'a [[f64; 3]],
     /// The triangles.
     pub(crate) triangles: &'a [[u32; 3]],
-    /// Whether the light runs evenly over blunt edges.
+    /// Whether the shading is smooth over blunt edges.
     pub(crate) smooth: bool,
 }
 
-/// The colour of a surface before the light.
+/// The colour of a surface without light.
 pub(crate) enum Colouring<'a> {
     /// The same everywhere.
     Plain([u8; 3]),
     /// From a fraction of a colour map at each corner.
     Mapped {
-        /// The colours of the map, and behind them that of what is no number.
+        /// The colours of the map, followed by the colour for NaN.
         colours: Vec<[u8; 3]>,
         /// The fractions of the corners, from 0 to 1.
         fractions: &'a [f32],
@@ -103,7 +103,7 @@ pub(crate) fn fill(screen: &mut Screen, camera: &Camera, light: &Light, surface:
             let chosen = match normals[node as usize] {
                 _ if !smooth => face,
                 normal if dot(normal, face) > BLUNT => normal,
-                // The light runs evenly over the faces on this side of the edge, and breaks at the edge.
+                // The shading is smooth over the faces on this side of the edge, and breaks at the edge.
                 _ => unit(around.faces(node).fold([0.0; 3], |sum: [f64; 3], other| {
                     let other = faces[other as usize];
                     let beside = dot(unit(other), face) > SHARP;
@@ -127,14 +127,14 @@ pub(crate) fn fill(screen: &mut Screen, camera: &Camera, light: &Light, surface:
 
 /// The triangles at every node.
 struct Around {
-    /// Where those of a node begin in the list; one more than there are nodes.
+    /// The start of the list of each node; one more entry than nodes.
     starts: Vec<u32>,
     /// The triangles, node by node.
     triangles: Vec<u32>,
 }
 
 impl Around {
-    /// Looks for them.
+    /// Finds them.
     fn new(nodes: usize, triangles: &[[u32; 3]]) -> Around {
         let mut starts = vec![0_u32; nodes + 1];
         triangles.iter().flatten().for_each(|node| starts[*node as usize + 1] += 1);
@@ -152,20 +152,20 @@ impl Around {
         Around { starts, triangles: list }
     }
 
-    /// Those at a node.
+    /// The triangles at a node.
     fn faces(&self, node: u32) -> impl Iterator<Item = u32> + '_ {
         let (from, to) = (self.starts[node as usize], self.starts[node as usize + 1]);
         self.triangles[from as usize..to as usize].iter().copied()
     }
 }
 
-/// The sum of the values of corners by their weights.
+/// The weighted sum of the values of corners.
 #[inline(always)]
 fn total(weights: [f32; 3], values: [f32; 3]) -> f32 {
     weights[0] * values[0] + weights[1] * values[1] + weights[2] * values[2]
 }
 
-/// The larger side of a triangle along the axes of the screen.
+/// The larger side of the bounding box of a triangle on the screen.
 fn size(corners: [Seen; 3]) -> f32 {
     let side = |axis: usize| {
         let [a, b, c] = corners.map(|corner| corner.pixel[axis]);
@@ -174,7 +174,7 @@ fn size(corners: [Seen; 3]) -> f32 {
     side(0).max(side(1))
 }
 
-/// Fills one triangle in the light that falls on each of its samples.
+/// Fills one triangle with the light computed for each of its samples.
 #[inline(always)]
 fn paint(
     screen: &mut Screen,
@@ -197,7 +197,7 @@ fn paint(
 }
 
 impl Light {
-    /// The brightness and the gloss of a normal, as the camera sees it.
+    /// The brightness and the gloss for a normal in camera coordinates.
     #[inline(always)]
     fn on(&self, normal: [f32; 3]) -> [f32; 2] {
         let product = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -213,7 +213,7 @@ impl Light {
     }
 }
 
-/// A colour in some light.
+/// A colour under some light.
 #[inline(always)]
 fn lit(colour: [u8; 3], [brightness, gloss]: [f32; 2]) -> [u8; 3] {
     colour.map(|channel| {

@@ -4,7 +4,7 @@ use super::camera::{along, cross, unit};
 use crate::picture::ColliderPicture;
 use std::f64::consts::{PI, TAU};
 
-/// How large round obstacles are drawn: cloth lies on them with its nodes, and between these it lies deeper.
+/// The scale at which round obstacles are drawn: cloth touches them with its nodes, and is deeper between the nodes.
 const ROUND: f64 = 0.985;
 
 /// A surface of triangles.
@@ -16,7 +16,7 @@ pub(crate) struct Shape {
     pub(crate) triangles: Vec<[u32; 3]>,
 }
 
-/// The faces of a box as corners, each a number whose bits say low or high along the axes, with the axis and the side.
+/// The faces of a box as corners, each a number whose bits mean low or high along the axes, with the axis and the side.
 pub(crate) const FACES: [([usize; 4], usize, bool); 6] = [
     ([0, 4, 6, 2], 0, false),
     ([1, 3, 7, 5], 0, true),
@@ -31,7 +31,7 @@ pub(crate) fn corner(min: [f64; 3], max: [f64; 3], bits: usize) -> [f64; 3] {
     std::array::from_fn(|axis| if bits >> axis & 1 == 0 { min[axis] } else { max[axis] })
 }
 
-/// The surface of an obstacle which has one; rooms, planes and lines have none.
+/// The surface of an obstacle that has one; rooms, planes and lines have none.
 pub(crate) fn shape(collider: &ColliderPicture) -> Option<Shape> {
     match collider {
         ColliderPicture::HalfSpace { .. } | ColliderPicture::Box { inside: true, .. } => None,
@@ -58,7 +58,7 @@ pub(crate) fn shape(collider: &ColliderPicture) -> Option<Shape> {
     }
 }
 
-/// The surface of a capsule; a ball where both ends are the same.
+/// The surface of a capsule; a ball if both ends are equal.
 fn capsule(a: [f64; 3], b: [f64; 3], radius: f64) -> Shape {
     let axis = unit(super::camera::between(a, b));
     let axis = if axis == [0.0; 3] { [0.0, 1.0, 0.0] } else { axis };
