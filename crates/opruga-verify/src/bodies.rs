@@ -1,11 +1,11 @@
-//! Bodies at rest whose sides follow circles, ellipses and spheres, and what is measured on them.
+//! Bodies at rest with sides along circles, ellipses and spheres, and the quantities measured on them.
 
 use crate::lab::Trouble;
 use opruga::World;
 use opruga::mesh::Mesh;
 use std::collections::BTreeMap;
 
-/// The cells that a body is made of.
+/// The kind of cells of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Cells {
     /// Quadrilaterals, hexahedra.
@@ -17,7 +17,7 @@ pub(crate) enum Cells {
 }
 
 impl Cells {
-    /// The fields of a body whose shape has boxes.
+    /// The fields of a body whose shape consists of boxes.
     pub(crate) fn fields(self) -> &'static str {
         match self {
             Cells::Boxes => "",
@@ -36,7 +36,7 @@ impl Cells {
     }
 }
 
-/// Equal cells of the unit square or cube, moved by a map; nodes in the middle of edges are moved too, so that sides are curved.
+/// Equal cells of the unit square or cube, transformed by a map; nodes at midpoints of edges are transformed too, so that sides are curved.
 pub(crate) fn mapped<const D: usize>(
     counts: [u32; D],
     cells: Cells,
@@ -49,7 +49,7 @@ pub(crate) fn mapped<const D: usize>(
     Ok(mesh)
 }
 
-/// A quarter of a disc or an eighth of a ball, or of a shell of it, where all coordinates are positive.
+/// A quarter of a disc or an eighth of a ball, or of a shell, with positive coordinates.
 ///
 /// ```text
 /// ┌───┬──╮      n cells along each side of a block, `layers` from the core (a square with side ½ of the outer radius,
@@ -72,7 +72,7 @@ pub(crate) fn octant<const D: usize>(
         t.map(|c| c / length)
     };
     let core = |s: &[f64; D]| -> [f64; D] {
-        // Half way between a cube and a ball: no angle becomes flat.
+        // Halfway between a cube and a ball, so that no angle becomes flat.
         let most = s.iter().copied().fold(0.0, f64::max);
         let round = if most > 0.0 { direction(&s.map(|c| c / most)) } else { [0.0; D] };
         core::array::from_fn(|d| 0.5 * outer * (0.6 * s[d] / (D as f64).sqrt() * 1.4 + 0.4 * most * round[d]))
@@ -81,7 +81,7 @@ pub(crate) fn octant<const D: usize>(
     let mut known: BTreeMap<[i64; D], u32> = BTreeMap::new();
     let first = usize::from(inner.is_some());
     for block in first..=D {
-        // Block 0 is the core, block 1 + a lies beyond its face across axis a.
+        // Block 0 is the core; block 1 + a is beyond its face across axis a.
         let mut counts = [n; D];
         if block > 0 {
             counts[block - 1] = layers;
@@ -113,7 +113,7 @@ pub(crate) fn octant<const D: usize>(
     }
     merged.facets = merged.facets_from_cells()?;
     let mut mesh = cells.cut(merged)?;
-    // Nodes between two of the same distance from the centre go to that distance.
+    // Mid-edge nodes between two nodes at the same distance from the centre are moved to that distance.
     if cells == Cells::Quadratic {
         let radius = |x: &[f64; D]| x.iter().map(|c| c * c).sum::<f64>().sqrt();
         let round = |r: f64| inner.is_some() || (r - outer).abs() < 1e-9 * outer;
@@ -129,7 +129,7 @@ pub(crate) fn octant<const D: usize>(
     Ok(mesh)
 }
 
-/// Both ends and the middle of every edge of quadratic cells.
+/// Both ends and the midpoint of every edge of quadratic cells.
 fn middles<const D: usize>(mesh: &Mesh<D>) -> Vec<[usize; 3]> {
     let mut out: BTreeMap<u32, [usize; 3]> = BTreeMap::new();
     for cell in &mesh.cells.quadratic_triangles {
@@ -145,12 +145,12 @@ fn middles<const D: usize>(mesh: &Mesh<D>) -> Vec<[usize; 3]> {
     out.into_values().collect()
 }
 
-/// Numbers of the nodes whose place at rest fulfils a condition.
+/// Numbers of the nodes whose rest position satisfies a condition.
 pub(crate) fn nodes<const D: usize>(mesh: &Mesh<D>, which: impl Fn(&[f64; D]) -> bool) -> Vec<u32> {
     (0..mesh.positions.len() as u32).filter(|node| which(&mesh.positions[*node as usize])).collect()
 }
 
-/// Numbers of the nodes at a distance from the origin.
+/// Numbers of the nodes at a given distance from the origin.
 pub(crate) fn at_radius<const D: usize>(mesh: &Mesh<D>, radius: f64) -> Vec<u32> {
     nodes(mesh, |x| (x.iter().map(|c| c * c).sum::<f64>().sqrt() - radius).abs() < 1e-6 * radius)
 }
@@ -163,7 +163,7 @@ pub(crate) fn boundary<const D: usize>(mesh: &Mesh<D>) -> Vec<u32> {
     out
 }
 
-/// Planes of symmetry through the origin across every axis: rows for `pin = [ … ]`.
+/// Planes of symmetry through the origin, perpendicular to every axis: rows for `pin = [ … ]`.
 pub(crate) fn symmetric<const D: usize>(mesh: &Mesh<D>) -> String {
     let rows: Vec<String> = (0..D)
         .map(|d| {
@@ -174,7 +174,7 @@ pub(crate) fn symmetric<const D: usize>(mesh: &Mesh<D>) -> String {
     format!("pin = [{}]", rows.join(", "))
 }
 
-/// The displacement of the node of body 0 that lies nearest to a place at rest.
+/// The displacement of the node of body 0 that is nearest to a rest position.
 pub(crate) fn displacement<const D: usize>(world: &World<D>, at: [f64; D]) -> [f64; D] {
     let rest = &world.blueprint().bodies[0].mesh.positions;
     let far = |x: &[f64; D]| (0..D).map(|d| (x[d] - at[d]) * (x[d] - at[d])).sum::<f64>();
@@ -195,8 +195,8 @@ pub(crate) fn outward<const D: usize>(world: &World<D>, which: &[u32]) -> f64 {
     which.iter().map(of).sum::<f64>() / which.len() as f64
 }
 
-/// A component of the Cauchy stress of body 0 at a place at rest: the mean stresses of the cells near by, continued by the
-/// quadratic polynomial that fits them best (recovery on a patch: Zienkiewicz and Zhu 1992).
+/// A component of the Cauchy stress of body 0 at a rest position: the mean stresses of the nearby cells, extrapolated by the quadratic polynomial
+/// that fits them best (patch recovery: Zienkiewicz and Zhu 1992).
 pub(crate) fn stress_at<const D: usize>(world: &World<D>, at: [f64; D], [i, j]: [usize; 2]) -> Result<f64, Trouble> {
     let samples = cell_stresses(world).into_iter().map(|(middle, stress)| {
         let away: Vec<f64> = (0..D).map(|d| middle[d] - at[d]).collect();
@@ -205,8 +205,8 @@ pub(crate) fn stress_at<const D: usize>(world: &World<D>, at: [f64; D], [i, j]: 
     continued(samples.collect(), 3 * (D + 1) * (D + 2) / 2)
 }
 
-/// The stress around the origin at a radius, of a body of space whose stress depends on the distance from the origin alone: half
-/// of what is not radial of the mean stresses of the nearest `count` cells, continued by the quadratic polynomial of the radius.
+/// The hoop stress at a radius, for a body in space whose stress depends only on the distance from the origin: half of the non-radial part of the
+/// mean stresses of the nearest `count` cells, extrapolated by the quadratic polynomial in the radius.
 pub(crate) fn hoop_stress_at(world: &World<3>, radius: f64, count: usize) -> Result<f64, Trouble> {
     let states = cell_stresses(world);
     let samples = states.into_iter().map(|(middle, stress)| {
@@ -219,7 +219,7 @@ pub(crate) fn hoop_stress_at(world: &World<3>, radius: f64, count: usize) -> Res
     continued(samples.collect(), count)
 }
 
-/// Where cells of body 0 have their middle at rest, and their mean stress.
+/// The centres at rest of the cells of body 0, and their mean stresses.
 fn cell_stresses<const D: usize>(world: &World<D>) -> Vec<([f64; D], [[f64; 3]; 3])> {
     let mesh = &world.blueprint().bodies[0].mesh;
     let corners = |nodes: &[u32]| match nodes.len() {
@@ -238,8 +238,8 @@ fn cell_stresses<const D: usize>(world: &World<D>) -> Vec<([f64; D], [[f64; 3]; 
     mesh.cells.iter().zip(world.cell_states(0)).map(|((_, _, nodes), state)| (middle_of(nodes), state.stress)).collect()
 }
 
-/// Samples, each with its distance, its way from the place that is asked for, and its value: the value there of the quadratic
-/// polynomial that fits the nearest `count` of them best.
+/// The value at a point of the quadratic polynomial that fits the nearest `count` samples best. Each sample contains its distance, its displacement
+/// from the point, and its value.
 fn continued(mut samples: Vec<(f64, Vec<f64>, f64)>, count: usize) -> Result<f64, Trouble> {
     samples.sort_by(|a, b| a.0.total_cmp(&b.0));
     samples.truncate(count);
@@ -264,7 +264,7 @@ fn continued(mut samples: Vec<(f64, Vec<f64>, f64)>, count: usize) -> Result<f64
     solve(matrix).map(|solution| solution[0])
 }
 
-/// Gauss's elimination with pivots.
+/// Gaussian elimination with pivoting.
 fn solve(mut matrix: Vec<Vec<f64>>) -> Result<Vec<f64>, Trouble> {
     let n = matrix.len();
     for k in 0..n {

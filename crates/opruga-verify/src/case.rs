@@ -1,29 +1,29 @@
-//! What a case says before it is run, and the row that comes of it.
+//! The definition of a case before it is run, and the resulting row.
 
 use crate::lab::{Lab, Trouble};
 
-/// By how much the observed order may fall short of the theory.
+/// The largest difference by which the observed order may fall below the theoretical one.
 pub(crate) const ORDER_MARGIN: f64 = 0.2;
 
-/// The part of mechanics that a case is about.
+/// The area of mechanics to which a case belongs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Family {
     /// Equilibria of solids, beams and chains.
     Statics,
-    /// Laws of materials.
+    /// Material laws.
     Materials,
     /// Gas, balloons, rings.
     Pressure,
     /// Vibrations, waves, impact, friction.
     Dynamics,
-    /// Rules that step through time.
+    /// Integrators in time.
     Integrators,
     /// Energy and momentum.
     Ledgers,
 }
 
 impl Family {
-    /// All, in the order of the reports.
+    /// All families, in the order of the reports.
     pub const ALL: [Family; 6] =
         [Family::Statics, Family::Materials, Family::Pressure, Family::Dynamics, Family::Integrators, Family::Ledgers];
     /// Its name.
@@ -39,19 +39,19 @@ impl Family {
     }
 }
 
-/// What the numbers are that a case visits one after the other.
+/// The meaning of the successive levels of a case.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Over {
-    /// Cells along a side: their size goes like one over the number.
+    /// Cells along a side; their size is proportional to one over the number.
     Cells(&'static str),
-    /// A step [s], or another size that shrinks.
+    /// A step [s], or another size that decreases.
     Step(&'static str),
     /// A parameter of the problem; every value has its own reference.
     Parameter(&'static str),
 }
 
 impl Over {
-    /// The size that goes to zero.
+    /// The size that converges to zero.
     pub(crate) fn size(self, level: f64) -> f64 {
         match self {
             Over::Cells(_) => 1.0 / level,
@@ -60,69 +60,67 @@ impl Over {
     }
 }
 
-/// What the difference of measured and expected is divided by.
+/// The divisor of the difference between the measured and the expected value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Scale {
     /// The expected value.
     Relative,
-    /// A size that belongs to the problem, in the unit of the quantity.
+    /// A characteristic size of the problem, in the unit of the quantity.
     Of(f64),
 }
 
-/// How a case passes.
+/// The criterion by which a case passes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Check {
-    /// The error at the finest level is within the tolerance, is smaller at every level than at the one before, and falls at
-    /// this order (less 0.2) over all levels.
+    /// The error at the finest level is within the tolerance, decreases from level to level, and falls at this order (minus 0.2) over all levels.
     Order(f64),
-    /// The error at the finest level is within the tolerance: the reference has too few digits for an order, or is that of
-    /// a body that differs a little.
+    /// The error at the finest level is within the tolerance. The reference has too few digits for an order, or belongs to a slightly different body.
     Finest,
     /// The errors at all levels are within the tolerance.
     Everywhere,
 }
 
-/// A case, frozen before it is run.
+/// A case, fixed before it is run.
 #[derive(Clone, Copy, Debug)]
 pub struct Case {
-    /// Its name, unique.
+    /// Its unique name.
     pub name: &'static str,
-    /// Where it belongs.
+    /// The family to which it belongs.
     pub family: Family,
-    /// What is measured, in words of physics.
+    /// The measured quantity, in physical terms.
     pub quantity: &'static str,
-    /// The unit of that.
+    /// The unit of the quantity.
     pub unit: &'static str,
-    /// Where the expected values come from.
+    /// The source of the expected values.
     pub source: &'static str,
-    /// What the levels are.
+    /// The meaning of the levels.
     pub over: Over,
-    /// Meshes, steps or values of the parameter, coarse ones first.
+    /// Meshes, steps or values of the parameter, with coarse ones first.
     pub levels: &'static [f64],
     /// The expected value, or one for each level.
     pub expected: &'static [f64],
-    /// What errors are divided by.
+    /// The divisor of errors.
     pub scale: Scale,
-    /// The largest error that passes.
+    /// The largest allowed error.
     pub tolerance: f64,
-    /// At which levels, and at which order.
+    /// The levels to which the tolerance applies, and the order.
     pub check: Check,
-    /// Whether it takes a moment only, so that the tests of the program run it.
+    /// Whether it takes only a moment, so that the tests of the program run it.
     pub quick: bool,
     /// Runs a scene at a level and measures.
     pub measure: fn(&Lab, f64) -> Result<f64, Trouble>,
 }
 
-/// What was found at a level.
+/// The result at a level.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
     /// The level.
     pub level: f64,
-    /// What was measured.
+    /// The measured value.
     pub computed: f64,
-    /// What was expected.
+    /// The expected value.
     pub expected: f64,
-    /// The difference over the scale of the case.
+    /// The difference divided by the scale of the case.
     pub error: f64,
 }
 
@@ -131,20 +129,20 @@ pub struct Point {
 pub struct Row {
     /// The case.
     pub case: &'static Case,
-    /// What was found, level by level.
+    /// The results, level by level.
     pub points: Vec<Point>,
-    /// The slope of the error over the size of the level, by least squares in logarithms; where an order is expected.
+    /// The slope of the error over the size of the level, by a least-squares fit of the logarithms; only if an order is expected.
     pub observed_order: Option<f64>,
     /// Whether the case passes.
     pub pass: bool,
-    /// Why there are no numbers, where the engine has refused something.
+    /// The reason why there are no numbers, if the engine has refused something.
     pub trouble: Option<String>,
-    /// How long it took [s].
+    /// The computing time [s].
     pub seconds: f64,
 }
 
 impl Case {
-    /// When it passes, in a few words: `order 2 ≤ 0.01`.
+    /// The criterion in short form: `order 2 ≤ 0.01`.
     pub fn passes_when(&self) -> String {
         let theory = match self.check {
             Check::Order(order) => format!("order {order}"),
@@ -154,7 +152,7 @@ impl Case {
         format!("{theory} ≤ {}", self.limit())
     }
 
-    /// The largest error that passes, as a text.
+    /// The largest allowed error as text.
     pub(crate) fn limit(&self) -> String {
         if self.tolerance < 1e-3 { format!("{:e}", self.tolerance) } else { self.tolerance.to_string() }
     }
@@ -203,7 +201,7 @@ impl Case {
 }
 
 impl Row {
-    /// The point that decides: the finest one, or that of the largest error where all count.
+    /// The point that decides: the finest one, or the one with the largest error if all count.
     pub fn decisive(&self) -> Option<&Point> {
         match self.case.check {
             Check::Everywhere => {
@@ -214,7 +212,7 @@ impl Row {
     }
 }
 
-/// The slope of ln error over ln size by least squares; none for fewer than three points or an error of zero.
+/// The slope of ln error over ln size by least squares; none for fewer than three points or for an error of zero.
 fn slope(points: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
     let logs: Vec<(f64, f64)> = points.map(|(size, error)| (size.ln(), error.ln())).collect();
     if logs.len() < 3 || logs.iter().any(|(_, y)| !y.is_finite()) {

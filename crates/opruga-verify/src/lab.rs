@@ -1,4 +1,4 @@
-//! From the text of a scene to a world, and what is read off it.
+//! Builds a world from the text of a scene, and reads results from it.
 
 use opruga::blueprint::{AnyBlueprint, Blueprint};
 use opruga::core::spec::{Role, Value};
@@ -7,16 +7,16 @@ use opruga::mesh::Mesh;
 use opruga::{Options, Registries, Registry, Simd, World, catalogue_of};
 use std::sync::Arc;
 
-/// Why a case has no numbers.
+/// The reason why a case has no numbers.
 pub type Trouble = Box<dyn std::error::Error + Send + Sync>;
 
-/// Where scenes are run.
+/// The settings with which scenes are run.
 #[derive(Clone, Debug)]
 pub struct Lab {
-    /// Vector instructions; none: the best that the processor has.
+    /// Vector instructions; none: the best that the processor supports.
     pub simd: Option<Simd>,
-    /// A factor on the shear modulus of every solid and on the stiffness of every spring and hinge: 1. Another factor shows
-    /// which cases would notice an error of that size.
+    /// A factor on the shear modulus of every solid and on the stiffness of every spring and hinge; the default is 1. Another factor shows which
+    /// cases would detect an error of that size.
     pub stiffer: f64,
     /// The models and integrators that scenes can name.
     pub registries: Registries,
@@ -35,7 +35,7 @@ pub(crate) struct Scene {
 }
 
 impl Scene {
-    /// A scene that steps through time; `rule` is the integrator, with further fields of it on lines of their own.
+    /// A scene that is stepped through time; `rule` is the integrator, with its further fields on separate lines.
     pub(crate) fn new(dimension: usize, frame: f64, substeps: u32, rule: &str) -> Scene {
         let (kind, fields) = rule.split_once('\n').unwrap_or((rule, ""));
         let text = format!(
@@ -45,36 +45,36 @@ impl Scene {
         Scene { text, files: Vec::new() }
     }
 
-    /// Statics: every frame of 1 s ends in the equilibrium of that time. The tolerance is a part of the body's extent.
+    /// Statics: every frame of 1 s ends in the equilibrium at that time. The tolerance is relative to the extent of the body.
     pub(crate) fn statics(dimension: usize, tolerance: f64) -> Scene {
         Scene::new(dimension, 1.0, 1, &format!("equilibrium\ntolerance = {tolerance:?}"))
     }
 
-    /// More text.
+    /// Appends text.
     pub(crate) fn add(mut self, text: &str) -> Scene {
         self.text.push_str(text);
         self.text.push('\n');
         self
     }
 
-    /// A file that the scene names.
+    /// Adds a file that the scene refers to.
     pub(crate) fn file(mut self, name: &str, text: String) -> Scene {
         self.files.push((name.into(), text.into_bytes().into()));
         self
     }
 
-    /// A body of a mesh, with what else it says on lines of their own.
+    /// Adds a body with a mesh, and its further fields on separate lines.
     pub(crate) fn body<const D: usize>(self, mesh: &Mesh<D>, rest: &str) -> Result<Scene, Trouble> {
         self.named("body", mesh, rest)
     }
 
-    /// The same of a body with a name.
+    /// The same for a body with a name.
     pub(crate) fn named<const D: usize>(mut self, body: &str, mesh: &Mesh<D>, rest: &str) -> Result<Scene, Trouble> {
         let written = opruga::io::meshes::write(mesh, "vtk").map_err(|e| e.to_string())?;
         let name = format!("mesh-{}.vtk", self.files.len());
         let bytes = written.files.into_iter().next().ok_or("no file of the mesh")?.1;
         self.files.push((name.clone(), bytes.into()));
-        // Meshes of linear cells are meant as they are.
+        // Meshes of linear cells are used as they are.
         let linear = !mesh.cells.triangles.is_empty() || !mesh.cells.tetrahedra.is_empty();
         let rest = if linear { format!("order = 1\n{rest}") } else { rest.to_string() };
         Ok(self.add(&format!("[[body]]\nname = \"{body}\"\nshape = {{ kind = \"mesh\", file = \"{name}\" }}\n{rest}")))
@@ -128,7 +128,7 @@ impl Lab {
     }
 }
 
-/// Multiplies μ of solids, with λ as it is, and the stiffness of springs and hinges.
+/// Multiplies μ of solids, keeping λ, and the stiffness of springs and hinges.
 fn stiffen<const D: usize>(blueprint: &mut Blueprint<D>, factor: f64) -> Result<(), Trouble> {
     for values in blueprint.bodies.iter_mut().flat_map(|body| &mut body.models) {
         let spec = values.spec();
@@ -141,7 +141,7 @@ fn stiffen<const D: usize>(blueprint: &mut Blueprint<D>, factor: f64) -> Result<
                 changed.push(("youngs_modulus", mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu)));
                 changed.push(("poissons_ratio", lambda / (2.0 * (lambda + mu))));
             }
-            // The published program is compared with numbers of its own.
+            // The published program is compared with its own numbers.
             None if values.spec().has_role(Role::Published) => {}
             None => {
                 let known = |name: &'static str| values.number(name).map(|value| (name, factor * value));

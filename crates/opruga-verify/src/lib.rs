@@ -1,12 +1,11 @@
 //! # Verification
 //!
-//! The engine against closed forms and published numbers, by the way that every user goes: the text of a scene, a world,
-//! its frames, its readings. Nothing here looks into the engine.
+//! This crate compares the engine with closed forms and published numbers through the public interface: the text of a scene, a world, its frames, its
+//! readings. Nothing here accesses the internals of the engine.
 //!
-//! A [`Case`] says, before it is run, what is measured, which value is expected (a literal with its source, never a
-//! number of ours), at which meshes or steps, how large the error may be on the finest and at which order it must fall.
-//! [`Case::run`] makes a [`Row`] of it; [`run_all`] does so for many at once; [`table`], [`to_json`], [`markdown`] and
-//! [`html`] show them, [`plot`] draws one.
+//! A [`Case`] defines, before it is run, the measured quantity, the expected value (a literal with its source, never a number of this engine), the
+//! meshes or steps, the largest error on the finest one, and the order at which the error must fall. [`Case::run`] makes a [`Row`] of it, and
+//! [`run_all`] runs many cases at once. [`table`], [`to_json`], [`markdown`] and [`html`] show the rows, and [`plot`] draws one.
 //!
 //! ```
 //! use opruga_verify::{Lab, cases};

@@ -3,11 +3,11 @@
 use crate::case::{Check, Over, Row};
 use opruga::draw::{Axis, Chart, DrawError, Level, Line, Marker, Nothing, Panel};
 
-/// What an error of zero is drawn as, on an axis that has no zero.
+/// The value that replaces an error of zero on a logarithmic axis.
 const NOTHING: f64 = 1e-17;
 
-/// The plot of a row as the text of an SVG file: its error over the size of cells or steps with the slope of the theory and
-/// the limit, or its values over a parameter beside what was expected.
+/// The plot of a row as the text of an SVG file: its error over the size of cells or steps with the theoretical slope and the limit, or its values
+/// over a parameter beside the expected ones.
 ///
 /// # Errors
 /// [`DrawError`] for a row without numbers.
@@ -43,7 +43,7 @@ fn size_axis(row: &Row) -> Axis {
     }
 }
 
-/// Errors over sizes, both in logarithms.
+/// Errors over sizes, both on logarithmic axes.
 fn errors(rows: &[&Row]) -> Panel {
     let mut lines = Vec::new();
     let alone = rows.len() == 1;
@@ -68,7 +68,7 @@ fn errors(rows: &[&Row]) -> Panel {
         if levels.iter().any(|level| level.value == value) {
             continue;
         }
-        // Where not all have the same limit, it says whose it is.
+        // If the limits differ, the label names the rows to which each belongs.
         let own = rows.iter().zip(&names).filter(|(other, _)| other.case.tolerance == value);
         let own: Vec<&str> = own.map(|(_, name)| name.as_str()).collect();
         let whose = if own.len() == rows.len() { String::new() } else { format!(" of {}", own.join(" and ")) };
@@ -77,7 +77,7 @@ fn errors(rows: &[&Row]) -> Panel {
     Panel { height: 260.0, y: Axis::logarithmic("error", ""), lines, levels }
 }
 
-/// The names of cases without the words with which all of them begin: what the axis says need not be said again.
+/// The names of cases without their common leading words, which the axis already contains.
 fn without_common_words(names: &[&str]) -> Vec<String> {
     let words: Vec<Vec<&str>> = names.iter().map(|name| name.split('-').collect()).collect();
     let most = words.iter().map(|words| words.len() - 1).min().unwrap_or(0);
@@ -103,7 +103,7 @@ fn over_parameter(row: &Row) -> Result<String, DrawError> {
             },
             Line {
                 name: "measured".into(),
-                // A gap after each: the line is that of what is expected.
+                // A gap after each point: the line shows the expected values.
                 points: of(|p| p.computed).into_iter().flat_map(|point| [point, [f64::NAN; 2]]).collect(),
                 marker: Some(Marker::Circle),
                 ..Line::default()
@@ -117,7 +117,7 @@ fn over_parameter(row: &Row) -> Result<String, DrawError> {
         lines: vec![Line { points: of(|p| p.error.max(NOTHING)), marker: Some(Marker::Circle), ..Line::default() }],
         levels: vec![Level { value: case.tolerance, label: format!("limit {}", case.limit()) }],
     };
-    // Where nothing is expected, the value is the error.
+    // If all expected values are zero, the value is the error.
     let panels = if case.expected.iter().all(|x| *x == 0.0) { vec![errors] } else { vec![values, errors] };
     Chart { width: 640.0, x: Axis::linear(what, ""), panels, ..Chart::default() }.to_svg()
 }

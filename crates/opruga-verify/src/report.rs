@@ -6,7 +6,7 @@ use crate::plots::{plot, together};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 
-/// A number in a few digits.
+/// A number with a few digits.
 fn short(value: f64) -> String {
     if value == 0.0 {
         return "0".into();
@@ -20,7 +20,7 @@ fn short(value: f64) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text }
 }
 
-/// An error in two digits.
+/// An error with two digits.
 fn rough(value: f64) -> String {
     if value == 0.0 { "0".into() } else { format!("{value:.1e}") }
 }
@@ -29,7 +29,7 @@ fn with_unit(value: f64, case: &Case) -> String {
     if case.unit.is_empty() { short(value) } else { format!("{} {}", short(value), case.unit) }
 }
 
-/// Theory and observation.
+/// The theoretical and the observed order.
 fn orders(row: &Row) -> String {
     match (row.case.check, row.observed_order) {
         (Check::Order(order), Some(seen)) => format!("{seen:.2} of {order}"),
@@ -85,7 +85,7 @@ pub fn table(rows: &[Row]) -> String {
     text
 }
 
-/// `rows` with what was measured and expected at the finest or worst level, and all levels.
+/// `rows` as JSON, with the measured and expected values at the finest or worst level, and all levels.
 pub fn to_json(rows: &[Row]) -> Value {
     let row = |row: &Row| {
         let (case, point) = (row.case, row.decisive());
@@ -121,7 +121,7 @@ pub fn to_json(rows: &[Row]) -> Value {
     })
 }
 
-/// What is drawn beside the table: errors of several kinds of cells together.
+/// The figure beside the table: errors of several kinds of cells together.
 pub fn overview(rows: &[Row]) -> Option<String> {
     let named = |names: &[&str]| -> Vec<&Row> {
         names
@@ -144,7 +144,7 @@ fn level(row: &Row) -> &'static str {
     }
 }
 
-/// The lines of the Markdown table of a case: what it is, then what came of it.
+/// The row of a case in the Markdown table: its definition, then its results.
 fn markdown_row(row: &Row) -> String {
     let case = row.case;
     let (computed, expected, error) = match row.decisive() {
@@ -162,13 +162,13 @@ fn markdown_row(row: &Row) -> String {
     )
 }
 
-/// A text in a cell of a table.
+/// Text for a cell of a table.
 fn escaped(text: &str) -> String {
     text.replace('|', "\\|")
 }
 
-/// The report as Markdown: a table for every family, what fails, what is left out. `plots` says where the plots lie; without it
-/// none are named.
+/// The report as Markdown: a table for every family, the failures, and the omitted cases. `plots` is the location of the plots; without it none are
+/// referenced.
 pub fn markdown(rows: &[Row], plots: Option<&str>) -> String {
     let mut text = String::new();
     for family in Family::ALL {
@@ -262,7 +262,7 @@ pub fn html(rows: &[Row]) -> String {
                 let _ = writeln!(text, "<pre>{}</pre>", plain(trouble));
             }
             if let Ok(svg) = plot(row) {
-                // Names in one page are unique.
+                // Makes names unique within one page.
                 text.push_str(&svg.replace("panel-", &format!("{name}-panel-")));
             }
             text.push_str("</section>\n");

@@ -1,4 +1,4 @@
-//! Many cases at once.
+//! Runs many cases in parallel.
 
 use crate::case::{Case, Row};
 use crate::lab::Lab;
@@ -9,16 +9,15 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::Duration;
 
-/// How often it is looked whether to stop while no row comes.
+/// The interval at which the request to stop is checked while no row arrives.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// Runs cases on some threads, each case on one, and returns their rows in the order of the cases.
+/// Runs cases on several threads, each case on one thread, and returns their rows in the order of the cases.
 ///
-/// `done` sees every row as it comes. Where `stop` is set, what has not ended is left out: no case begins any more, and those
-/// that run are not waited for. Nobody looks at what they still compute, and they end with the program at the latest; a case
-/// may take minutes, and none writes anything.
+/// `done` is called for every row as it arrives. If `stop` is set, unfinished cases are omitted: no further case begins, and running ones are not
+/// waited for. Their results are discarded, and they end with the program at the latest; a case may take minutes, but none writes anything.
 pub fn run_all(cases: &[&'static Case], lab: &Lab, threads: usize, stop: &AtomicBool, done: &dyn Fn(&Row)) -> Vec<Row> {
-    // What takes long begins first.
+    // Long cases begin first.
     let mut order: Vec<(usize, &'static Case)> = cases.iter().copied().enumerate().collect();
     order.sort_by_key(|(_, case)| case.quick);
     let (order, next, lab) = (Arc::new(order), Arc::new(AtomicUsize::new(0)), lab.clone());
@@ -47,7 +46,7 @@ pub fn run_all(cases: &[&'static Case], lab: &Lab, threads: usize, stop: &Atomic
             }
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => {
-                // A worker that has not ended by itself had a panic, which is nobody's row.
+                // A worker that did not end normally has panicked, which produces no row.
                 for worker in workers {
                     if let Err(panic) = worker.join() {
                         resume_unwind(panic);
@@ -57,7 +56,7 @@ pub fn run_all(cases: &[&'static Case], lab: &Lab, threads: usize, stop: &Atomic
             }
         }
         if stop.load(Ordering::Relaxed) && rows.len() < cases.len() {
-            // Nobody takes a case any more.
+            // No further case begins.
             next.store(order.len(), Ordering::Relaxed);
             break;
         }
@@ -74,7 +73,7 @@ mod tests {
     use std::sync::Mutex;
     use std::sync::PoisonError;
 
-    /// What the second case waits for, which the test holds until it has its rows.
+    /// The second case waits for this gate, which the test holds until it has its rows.
     static GATE: Mutex<()> = Mutex::new(());
 
     fn at_once(_: &Lab, _: f64) -> Result<f64, Trouble> {
@@ -108,7 +107,7 @@ mod tests {
         let held = GATE.lock().unwrap_or_else(PoisonError::into_inner);
         let cases: Vec<&'static Case> = CASES.iter().collect();
         let stop = AtomicBool::new(false);
-        // Would wait for ever for the second case, which ends when the gate is open.
+        // Would wait forever for the second case, which ends only when the gate is open.
         let rows = run_all(&cases, &Lab::default(), 1, &stop, &|_| stop.store(true, Ordering::Relaxed));
         assert_eq!(rows.iter().map(|row| row.case.name).collect::<Vec<_>>(), ["quick"]);
         drop(held);

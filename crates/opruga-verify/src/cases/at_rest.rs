@@ -1,4 +1,4 @@
-//! Bodies at rest that touch one another, by `equilibrium`.
+//! Bodies at rest that touch one another, with `equilibrium`.
 
 use super::BASE;
 use super::pressed::{BARRIER, patch_at_rest_by_barrier, pressures_at_rest, weight};

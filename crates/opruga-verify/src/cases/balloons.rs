@@ -1,4 +1,4 @@
-//! Thick walls of nearly incompressible rubber, blown up from inside.
+//! Thick walls of nearly incompressible rubber, inflated from inside.
 
 use super::BASE;
 use super::springs::summit;
@@ -34,7 +34,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "thick-tube-quadratic-triangles",
-        // Changed after its first run, from 4 cells on and ν = 0.49999, which moved the wall by 6e-6: most of the error.
+        // Changed after its first run. It started at 4 cells and had ν = 0.49999, which moved the wall by 6e-6; this was most of the error.
         quantity: "growth of the inner radius of a thick rubber tube, A = 1 m, B = 2 m, at p = 0.275712 μ; neo-Hookean, plane strain, ν = 0.4999999",
         levels: &[8.0, 16.0, 32.0],
         measure: |lab, n| tube(lab, n, Cells::Quadratic, 0.499_999_9),
@@ -63,8 +63,8 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "thin-balloon-quadratic-tetrahedra",
-        // Changed after its first run, from one cell through the wall, which no finer sides make better, and ν = 0.49999,
-        // which moved the wall by 1e-4.
+        // Changed after its first run. It started with one cell through the wall, which finer sides do not improve, and had ν = 0.49999, which moved
+        // the wall by 1e-4.
         quantity: "growth of the inner radius of a rubber sphere, A = 1 m, B = 1.1 m, two cells through the wall, at p = 0.1 μ; neo-Hookean, ν = 0.499999",
         source: "incompressible: p/μ = f(λ_B) − f(λ_A), f = 2/λ + 1/2λ⁴ (A. E. Green, W. Zerna, Theoretical Elasticity, art. 3.10; the same by quadrature), λ_A = 1.195255",
         over: Over::Cells("cells along a side of an eighth"),
@@ -120,7 +120,7 @@ fn gas_in_a_tube(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     Ok(outward(&world, &inner))
 }
 
-/// A tube of inner radius 1 m and outer radius 2 m all around, of quadrilaterals.
+/// A full tube of inner radius 1 m and outer radius 2 m, made of quadrilaterals.
 fn whole_tube(layers: u32) -> Result<Mesh<2>, Trouble> {
     let around = 8 * layers;
     let mut mesh = Mesh::<2>::default();

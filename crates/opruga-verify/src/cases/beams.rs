@@ -1,4 +1,4 @@
-//! Beams and rods that bend: the elastica, rolling up, sagging.
+//! Bending of beams and rods: the elastica, rolling up, sagging.
 
 use super::BASE;
 use crate::bodies::{Cells, displacement, mapped, nodes};
@@ -54,8 +54,8 @@ pub(super) const CASES: &[Case] = &[
         name: "elastica-quadrilaterals",
         quantity: "sinking of the tip of a clamped strip of thickness L/50 under a force across, over its length, PL²/EI = 2, St. Venant–Kirchhoff",
         over: Over::Cells("cells along the strip"),
-        // Changed after its first run, which had half as many along: how much of the shear is false depends on the length of
-        // a cell over the thickness alone.
+        // Changed after its first run, which had half as many cells along the strip: the spurious part of the shear depends only on the ratio of the
+        // length of a cell to the thickness.
         levels: &[100.0, 200.0, 400.0],
         measure: |lab, n| strip(lab, n, Cells::Boxes, 4.0),
         ..ELASTICA
@@ -85,7 +85,7 @@ pub(super) const CASES: &[Case] = &[
     Case {
         name: "heavy-beam-hexahedra",
         quantity: "sinking of the end of a beam of 1 × 0.1 × 0.1 m by its weight, E = 1e8 Pa, ν = 0.3, ρ = 1000 kg/m³, neo-Hookean",
-        // Changed after its first run, which had half as many along, as that of the strip.
+        // Changed after its first run, which had half as many cells along it, like the strip.
         levels: &[20.0, 40.0, 80.0],
         expected: &[0.014686],
         measure: |lab, n| heavy(lab, n, Cells::Boxes, 1e8, 20.0),
@@ -102,8 +102,8 @@ pub(super) const CASES: &[Case] = &[
     },
 ];
 
-/// A chain of n segments of length ℓ with hinges of stiffness EI/ℓ and springs that hardly give. Two nodes are clamped, so
-/// that the rod begins in the middle of the first segment.
+/// A chain of n segments of length ℓ with hinges of stiffness EI/ℓ and springs that hardly stretch. Two nodes are clamped, so the rod begins at the
+/// midpoint of the first segment.
 fn chain(lab: &Lab, n: f64, load: f64) -> Result<f64, Trouble> {
     let l = 1.0 / (n - 0.5);
     let scene = Scene::statics(2, 1e-8).add(&format!(
@@ -122,7 +122,7 @@ fn chain(lab: &Lab, n: f64, load: f64) -> Result<f64, Trouble> {
     Ok(-displacement(&world, [1.0, 0.0])[1])
 }
 
-/// A strip of plane stress with EI = 1 N m² in n cells along and `across / n`-th as many across.
+/// A strip in plane stress with EI = 1 N m², with n cells along it and `across` cells across it.
 fn strip(lab: &Lab, n: f64, cells: Cells, across: f64) -> Result<f64, Trouble> {
     let thickness: f64 = 0.02;
     let scene = Scene::statics(2, 1e-8).add(&format!(
@@ -141,7 +141,7 @@ fn strip(lab: &Lab, n: f64, cells: Cells, across: f64) -> Result<f64, Trouble> {
     Ok(-displacement(&world, [1.0, 0.0])[1])
 }
 
-/// A chain whose last two nodes are led until it is a closed polygon of equal angles, and the moment of what leads them.
+/// A chain whose last two nodes are moved until it is a closed polygon with equal angles, and the moment that moves them.
 fn roll_up(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     let l = 1.0 / (n - 1.0);
     let models = format!(
@@ -152,7 +152,7 @@ fn roll_up(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     roll_up_by(lab, n, &models)
 }
 
-/// The same by models with EI = 1 N m² that hardly stretch.
+/// The same with models of EI = 1 N m² that hardly stretch.
 pub(super) fn roll_up_by(lab: &Lab, n: f64, models: &str) -> Result<f64, Trouble> {
     let (count, l) = (n as usize, 1.0 / (n - 1.0));
     let position_at = |angle: f64, node: usize| {
@@ -186,7 +186,7 @@ pub(super) fn roll_up_by(lab: &Lab, n: f64, models: &str) -> Result<f64, Trouble
     Ok(moment[0] + moment[1])
 }
 
-/// A beam that one end holds, n cells long and `n / slender` thick, under its weight.
+/// A beam clamped at one end, n cells long and `n / slender` thick, under its weight.
 fn heavy(lab: &Lab, n: f64, cells: Cells, young: f64, slender: f64) -> Result<f64, Trouble> {
     let across = (n / slender) as u32;
     let mesh = mapped([n as u32, across, across], cells, |x| [x[0], 0.1 * x[1] - 0.05, 0.1 * x[2] - 0.05])?;
@@ -200,7 +200,7 @@ fn heavy(lab: &Lab, n: f64, cells: Cells, young: f64, slender: f64) -> Result<f6
         ))?;
     let mut world = lab.space(scene)?;
     world.frame()?;
-    // The mean of the end.
+    // The mean over the nodes at the end.
     let end = nodes(&mesh, |x| x[0] == 1.0);
     Ok(-end.iter().map(|k| world.position(0, *k)[1] - mesh.positions[*k as usize][1]).sum::<f64>() / end.len() as f64)
 }

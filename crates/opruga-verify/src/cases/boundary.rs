@@ -1,4 +1,4 @@
-//! Boundary elements: identities, closed solutions of balls, tubes, shells, holes and cavities, a cantilever, flight.
+//! Boundary elements: identities, closed-form solutions for balls, tubes, shells, holes and cavities, a cantilever, flight.
 
 use super::BASE;
 use super::boundary_bodies::{SMALL, body, outward, pinned, pressed, radius, solid};
@@ -39,8 +39,8 @@ const BALL: Case = Case {
     ..BASE
 };
 
-// Changed after its first run, on balls of equal numbers of vertices: 2 × 642 left 1.3 % and 2.0 %, most of it at the inner wall, whose edges
-// are now a quarter of the outer ones. The limits stay as they were set.
+// Changed after its first run, which had balls with equal numbers of vertices: 2 × 642 vertices left errors of 1.3 % and 2.0 %, mostly at the inner
+// wall, whose edges are now a quarter as long as those of the outer one. The limits were not changed.
 const SHELL: Case = Case {
     quantity: "displacement of the inner wall of a thick sphere under inner pressure, times E/p; a = 1 m, b = 2 m, ν = 0.3",
     source: "G. Lamé 1852: u(a) = p a³/(b³ − a³) · ((1 − 2ν) a + (1 + ν) b³/2a²)/E",
@@ -181,7 +181,7 @@ fn subdivisions(edges: f64) -> f64 {
 fn forces<const D: usize>(forces: &[[f64; D]]) -> String {
     let mut out = String::new();
     for (node, force) in forces.iter().enumerate() {
-        // A string takes everything.
+        // Writing to a string cannot fail.
         let _ = write!(
             out,
             "[[load]]\nkind = \"force\"\nbody = \"body\"\nselect = {{ node = {node} }}\nvalue = {force:?}\n"
@@ -240,7 +240,7 @@ fn tube(lab: &Lab, vertices: f64, stress: bool) -> Result<f64, Trouble> {
     if !stress {
         return Ok(outward(&world, count..2 * count) / SMALL);
     }
-    // σθθ = E ε/(1 − ν²) + ν/(1 − ν) σrr in plane strain: the growth of the circumference.
+    // σθθ = E ε/(1 − ν²) + ν/(1 − ν) σrr in plane strain, with ε from the growth of the circumference.
     let length = |now: bool| -> f64 {
         let rest = &world.blueprint().bodies[0].mesh.positions;
         let at = |node: u32| if now { world.position(0, node) } else { rest[node as usize] };
@@ -255,7 +255,7 @@ fn tube(lab: &Lab, vertices: f64, stress: bool) -> Result<f64, Trouble> {
     Ok(strain / 0.91 - 0.3 / 0.7)
 }
 
-/// Tension along y, from the strain of the two edges at the end of the hole along x: their mean is that of a chord about the end.
+/// Tension along y, from the strain of the two edges at the end of the hole along x: their mean is that of a chord about this end.
 fn hole(lab: &Lab, vertices: f64) -> Result<f64, Trouble> {
     let mesh = Mesh::ring(1.0, vertices as u32, [0.0, 0.0], 0.0)?;
     let mut pulls = vec![[0.0; 2]; mesh.positions.len()];
@@ -278,7 +278,7 @@ fn hole(lab: &Lab, vertices: f64) -> Result<f64, Trouble> {
     Ok(1.0 + 0.5 * (strain(0, 1) + strain(last, 0)) / SMALL)
 }
 
-/// Tension along x, at the pole of the z axis: the mean strain of the triangles around it, weighed by their areas.
+/// Tension along x, at the pole of the z axis: the mean strain of the triangles around it, weighted by their areas.
 fn cavity(lab: &Lab, edges: f64, poisson: f64) -> Result<f64, Trouble> {
     let mesh = Mesh::icosphere(1.0, subdivisions(edges) as u32)?;
     let mut pulls = vec![[0.0; 3]; mesh.positions.len()];
@@ -293,7 +293,7 @@ fn cavity(lab: &Lab, edges: f64, poisson: f64) -> Result<f64, Trouble> {
         .add(&forces(&pulls));
     let mut world = lab.space(scene)?;
     world.frame()?;
-    // ∂u/∂x of each triangle in its plane over the horizontal plane, since those at the pole are nearly horizontal.
+    // ∂u/∂x of each triangle, projected onto the horizontal plane, because those at the pole are nearly horizontal.
     let (mut strain, mut all) = ([0.0; 2], 0.0);
     for facet in mesh.facets.iter().filter(|facet| facet.contains(&0)) {
         let x = facet.map(|node| mesh.positions[node as usize]);
@@ -349,7 +349,7 @@ enum Kept {
     Energy,
 }
 
-/// A box that is thrown turning, and stretched along one axis.
+/// A box that is thrown with a rotation and stretched along one axis.
 fn flight(lab: &Lab, h: f64, kept: Kept) -> Result<f64, Trouble> {
     let scene = Scene::new(3, 1.0 / 60.0, (1.0 / 60.0 / h).round() as u32, "verlet").add(
         "[[body]]\nname = \"body\"\nmass = 1.0\nshape = { kind = \"box\", size = [1.0, 0.6, 0.4], cells = [3, 2, 1], corner = [-0.5, -0.3, -0.2] }\n\

@@ -1,11 +1,11 @@
-//! Bodies, pins and loads of the cases of boundary elements.
+//! Bodies, pins and loads of the cases with boundary elements.
 
 use opruga::World;
 
-/// Pressures and stresses that strain the body so little that the small change of its shape does not matter [E].
+/// Pressures and stresses with strains so small that the change of shape of the body does not matter [E].
 pub(super) const SMALL: f64 = 1e-6;
 
-/// A solid of E = 1 Pa, by further fields of its model.
+/// A solid of E = 1 Pa, with further fields of its model.
 pub(super) fn solid(poisson: f64, fields: &str) -> String {
     format!(
         "mass = 1.0\nmodels = [{{ kind = \"boundary_element\", youngs_modulus = 1.0, poissons_ratio = {poisson:?}{fields} }}]\n"
@@ -24,8 +24,8 @@ pub(super) fn radius<const D: usize>(x: &[f64; D]) -> f64 {
     x.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// Pins that hold a ball or a ring of so many nodes as a whole, and pull at nothing where loads balance: they stand at the two poles and beside
-/// the equator in space, at both ends of a diameter in the plane.
+/// Pins that hold a ball or a ring of `count` nodes as a whole, without reaction forces if the loads balance. In space they are at the two poles and
+/// beside the equator, in the plane at both ends of a diameter.
 pub(super) fn pinned(dimension: usize, count: u32) -> String {
     let pin = |node: u32, axes: &str| format!("{{ select = {{ node = {node} }}, axes = \"{axes}\" }}");
     let pins = if dimension == 2 {
@@ -36,7 +36,7 @@ pub(super) fn pinned(dimension: usize, count: u32) -> String {
     format!("pin = [{}]\n", pins.join(", "))
 }
 
-/// The mean displacement of some nodes away from their middle [m].
+/// The mean displacement of some nodes away from their centre [m].
 pub(super) fn outward<const D: usize>(world: &World<D>, nodes: std::ops::Range<u32>) -> f64 {
     let rest = &world.blueprint().bodies[0].mesh.positions;
     let count = f64::from(nodes.end - nodes.start);

@@ -1,4 +1,4 @@
-//! The thick sphere of Lamé by boundary elements.
+//! Lamé's thick sphere with boundary elements.
 
 use super::boundary_bodies::{SMALL, body, outward, pinned, pressed, radius, solid};
 use crate::lab::{Lab, Scene, Trouble};
@@ -7,7 +7,7 @@ use opruga::mesh::Mesh;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-/// A ball: the faces of an icosahedron cut into n² triangles each; the first and the last node are poles.
+/// A ball: the faces of an icosahedron, divided into n² triangles each; the first and the last node are poles.
 fn ball(radius_of: f64, n: u32) -> Result<Mesh<3>, Trouble> {
     let coarse = Mesh::icosphere(1.0, 0)?;
     let mut known: BTreeMap<[i64; 3], u32> = BTreeMap::new();
@@ -35,7 +35,7 @@ fn ball(radius_of: f64, n: u32) -> Result<Mesh<3>, Trouble> {
         }
         mesh.facets.extend(facets);
     }
-    // Poles first and last, as those of an icosphere are.
+    // Poles come first and last, as for an icosphere.
     let last = mesh.positions.len() as u32 - 1;
     let lowest = mesh.positions.iter().position(|x| x[2] < -0.999_999 * radius_of).ok_or("no pole")? as u32;
     mesh.positions.swap(lowest as usize, last as usize);
@@ -51,7 +51,7 @@ fn ball(radius_of: f64, n: u32) -> Result<Mesh<3>, Trouble> {
     Ok(mesh)
 }
 
-/// Two balls, one in the other, as the text of a file.
+/// Two balls, one inside the other, as the text of a file.
 fn shell_surface(edges: f64) -> Result<String, Trouble> {
     let mut out = String::new();
     let mut first = 1;
@@ -69,7 +69,8 @@ fn shell_surface(edges: f64) -> Result<String, Trouble> {
     Ok(out)
 }
 
-/// A thick sphere of E = 1 Pa under inner pressure, whose inner ball has so many edges for one of the icosahedron and its outer one half as many.
+/// A thick sphere of E = 1 Pa under inner pressure. Its inner ball has `edges` edges for each edge of the icosahedron, and its outer ball half as
+/// many.
 pub(super) fn shell(lab: &Lab, edges: f64, stress: bool) -> Result<f64, Trouble> {
     let count = 10 * (edges * edges) as u32 + 2;
     let scene = Scene::statics(3, 1e-13)
@@ -82,7 +83,7 @@ pub(super) fn shell(lab: &Lab, edges: f64, stress: bool) -> Result<f64, Trouble>
     if !stress {
         return Ok(moved);
     }
-    // σθθ = E ε/(1 − ν) + ν/(1 − ν) σrr with the same strain in both directions: the growth of the area of the wall.
+    // σθθ = E ε/(1 − ν) + ν/(1 − ν) σrr with the same strain in both directions, from the growth of the area of the wall.
     let strain = 0.5 * (area(&world, count, true) / area(&world, count, false) - 1.0) / SMALL;
     Ok((strain - 0.3) / 0.7)
 }

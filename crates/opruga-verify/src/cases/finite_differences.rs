@@ -205,7 +205,7 @@ pub(super) const DYNAMICS: &[Case] = &[
     },
 ];
 
-/// The thickness of a rod that hardly stretches, and E of one with EI = 1 N m² for a metre of depth.
+/// The thickness of a rod that hardly stretches, and E of a rod with EI = 1 N m² per metre of depth.
 const THIN: f64 = 1e-3;
 fn stiff() -> String {
     format!(
@@ -214,7 +214,7 @@ fn stiff() -> String {
     )
 }
 
-/// A rod of n segments from −½ℓ to 1, whose clamp of two nodes lies in the middle of the first segment.
+/// A rod of n segments from −½ℓ to 1, clamped by two nodes at the midpoint of the first segment.
 fn rod(n: f64, mass: f64) -> String {
     let l = 1.0 / (n - 0.5);
     format!(
@@ -234,7 +234,7 @@ fn elastica(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     Ok(-displacement(&world, [1.0, 0.0])[1])
 }
 
-/// Where the square of the lowest frequency is zero, by the line through two loads.
+/// The load at which the square of the lowest frequency is zero, by linear extrapolation from two loads.
 fn critical(loads: [f64; 2], square: impl Fn(f64) -> Result<f64, Trouble>) -> Result<f64, Trouble> {
     let [low, high] = [square(loads[0])?, square(loads[1])?];
     Ok(loads[0] + (loads[1] - loads[0]) * low / (low - high))
@@ -274,7 +274,7 @@ fn ring_buckles(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     })
 }
 
-/// Pins along the circle at four points of the axes: the ring cannot turn around, and its oval motion has none there.
+/// Pins along the circle at four points of the axes: the ring cannot rotate, and its oval motion has no tangential component there.
 fn tangential_pins(n: f64) -> String {
     let count = n as u32;
     format!(
@@ -285,12 +285,12 @@ fn tangential_pins(n: f64) -> String {
     )
 }
 
-/// Half of a pressure on each of two edges of 2 sin π/n along their normals.
+/// Half of a pressure on each of two edges of length 2 sin π/n, along their normals.
 fn node_force(n: f64, pressure: f64) -> f64 {
     pressure * (TAU / n).sin()
 }
 
-/// Forces on the nodes that keep their direction, those of a pressure of the round ring.
+/// Forces on the nodes with constant direction, equal to those of a pressure on the round ring.
 fn ring_buckles_under_dead_load(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     ring_loses_its_roundness(lab, n, &tangential_pins(n), |pressure| {
         let force = -node_force(n, pressure);
@@ -313,13 +313,13 @@ fn ring_buckles_under_centred_load(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     })
 }
 
-/// No time passes: any rule will do that has no limit of its step.
+/// No time passes, so any integrator without a limit of the step can be used.
 fn still(dimension: usize) -> Scene {
     Scene::new(dimension, 0.001, 1, "newmark")
 }
 
 fn beam(lab: &Lab, n: f64, number: usize) -> Result<f64, Trouble> {
-    // A kilogram for the length of 1 m, which is half a segment shorter than the rod.
+    // The mass is 1 kg for a length of 1 m, which is half a segment shorter than the rod.
     let world = lab.plane(still(2).add(&rod(n, n / (n - 0.5))))?;
     Ok(world.modes(0, number + 1)?.get(number).ok_or("too few modes")?.omega())
 }
@@ -327,11 +327,11 @@ fn beam(lab: &Lab, n: f64, number: usize) -> Result<f64, Trouble> {
 fn free_ring(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     let world = lab.plane(still(2).add(&ring(n, "")))?;
     let omega = world.modes(0, 4)?.get(3).ok_or("too few modes")?.omega();
-    // A kilogram on 2πR.
+    // The mass is 1 kg on 2πR.
     Ok(omega / TAU.sqrt())
 }
 
-/// A plate of 1 m along with D = 1 N m under a load of 0.01 N/m², which sinks by a two-hundredth of its thickness at most.
+/// A plate of 1 m length with D = 1 N m under a load of 0.01 N/m², which deflects by at most a two-hundredth of its thickness.
 fn plate(lab: &Lab, [n, across]: [f64; 2], square: bool) -> Result<f64, Trouble> {
     let (poisson, width) = if square { (0.3, 1.0) } else { (0.0, across / n) };
     let thickness: f64 = 0.01;
@@ -339,7 +339,7 @@ fn plate(lab: &Lab, [n, across]: [f64; 2], square: bool) -> Result<f64, Trouble>
     let sides = if square { &["left", "right", "bottom", "top"][..] } else { &["left", "right"] };
     let mut pins: Vec<String> =
         sides.iter().map(|side| format!("{{ select = {{ group = \"{side}\" }}, axes = \"z\" }}")).collect();
-    // In its plane only rigid motions are held.
+    // In its plane only rigid motions are pinned.
     pins.push("{ select = { node = 0 }, axes = \"xy\" }".into());
     pins.push(format!("{{ select = {{ node = {n} }}, axes = \"y\" }}"));
     let scene = Scene::statics(3, 1e-11).add(&format!(
@@ -354,7 +354,7 @@ fn plate(lab: &Lab, [n, across]: [f64; 2], square: bool) -> Result<f64, Trouble>
     Ok(-displacement(&world, [0.5, 0.5 * width, 0.0])[2] / 0.01)
 }
 
-/// The force on a block of 1 m³ between slippery plates, and its stretch across.
+/// The force on a block of 1 m³ between frictionless plates, and its lateral stretch.
 fn block(lab: &Lab, stretch: f64) -> Result<[f64; 2], Trouble> {
     let scene = Scene::new(3, 0.05, 1, "equilibrium\ntolerance = 1e-11").add(&format!(
         "[[body]]\nname = \"block\"\ndensity = 1.0\nshape = {{ kind = \"grid\", size = [1, 1, 1], cells = [2, 2, 1] }}\n\
@@ -378,7 +378,7 @@ fn turning_point(lab: &Lab, difference: f64) -> Result<f64, Trouble> {
     Ok((high - low) / difference / 1e5)
 }
 
-/// A bar of plane stress with ν = 0 and c = 1 m/s.
+/// A bar in plane stress with ν = 0 and c = 1 m/s.
 fn bar(lab: &Lab, n: f64, number: usize) -> Result<f64, Trouble> {
     let world = lab.plane(still(2).add(&format!(
         "[[body]]\nname = \"bar\"\ndensity = 1.0\nshape = {{ kind = \"grid\", size = [1.0, 0.1], cells = [{n}, 1] }}\n\

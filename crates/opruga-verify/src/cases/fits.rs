@@ -1,4 +1,4 @@
-//! Bodies that begin nearer to one another than their surfaces keep: a shrink fit.
+//! Bodies that start closer to one another than the distance of their surfaces: a shrink fit.
 
 use super::BASE;
 use crate::bodies::{Cells, mapped, symmetric};
@@ -32,7 +32,7 @@ fn tube(sides: u32, layers: u32, inner: f64, outer: f64) -> Result<Mesh<2>, Trou
     })
 }
 
-/// Two light tubes in the first steps: backward Euler takes them to rest at once. Their surfaces keep a distance of 2 mm and begin at 1 mm.
+/// The first steps of two light tubes, which backward Euler brings to rest at once. Their surfaces keep a distance of 2 mm and start at 1 mm.
 fn shrink_fit(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     let (apart, interference) = (1e-3, 1e-3);
     let sides = n as u32;

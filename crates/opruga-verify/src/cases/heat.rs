@@ -58,7 +58,7 @@ pub(super) const CASES: &[Case] = &[
     Case { name: "column-quadratic-triangles", measure: |lab, n| column(lab, n, Cells::Quadratic), ..COLUMN },
 ];
 
-/// A start with a velocity field: among the ledgers.
+/// A start with a velocity field, listed among the ledgers.
 pub(super) const START: Case = Case {
     name: "stretching-start",
     family: Family::Ledgers,
@@ -74,7 +74,7 @@ pub(super) const START: Case = Case {
     ..HEATED_BAR
 };
 
-/// A solid of E = 1 Pa that has grown by 1 + αΔT, with further fields of its model and its pins.
+/// A solid of E = 1 Pa that has expanded by the factor 1 + αΔT, with further fields of its model and its pins.
 fn warm(poisson: f64, more: &str, pins: &str) -> String {
     format!(
         "density = 1.0\nmodels = [{{ kind = \"fem\", material = \"linear\", youngs_modulus = 1.0, poissons_ratio = {poisson:?}, \
@@ -95,7 +95,7 @@ fn bar(lab: &Lab, n: f64, cells: Cells) -> Result<f64, Trouble> {
     let mut world = lab.plane(scene)?;
     world.frame()?;
     let states = world.cell_states(0);
-    // With another modulus than 1 Pa it is another stress.
+    // With a modulus other than 1 Pa the stress is different.
     Ok(states.iter().map(|state| state.stress[0][0]).sum::<f64>() / states.len() as f64)
 }
 

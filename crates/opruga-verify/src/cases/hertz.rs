@@ -1,7 +1,8 @@
-//! Hertz's contact between two elastic bodies at rest: how far it reaches, at the force that is measured.
+//! Hertz's contact between two elastic bodies at rest: the extent of the contact at the measured force.
 //!
-//! Hertz's pressure on a line of half width b is p₀ √(1 − x²/b²), so the mean of x² weighted by the force is b²/4. On a circle of radius a it is
-//! p₀ √(1 − r²/a²), and the mean of r² is 2a²/5. These means count every force by its place, so they do not jump by a cell where one more node touches.
+//! Hertz's pressure on a line of half-width b is p₀ √(1 − x²/b²), so the mean of x² weighted by the force is b²/4. On a circle of radius a it is p₀
+//! √(1 − r²/a²), and the mean of r² is 2a²/5. These means weight every force by its position, so they do not jump by the size of a cell if one more
+//! node touches.
 
 use super::BASE;
 use super::pressed::Worlds;
@@ -41,15 +42,15 @@ const POISSON: f64 = 0.3;
 /// Half of a cylinder, or half of a ball.
 #[derive(Clone, Copy)]
 struct Round {
-    /// m
+    /// The radius [m].
     radius: f64,
-    /// Pa
+    /// Young's modulus [Pa].
     young: f64,
     /// Cells along an axis.
     cells: u32,
 }
 
-/// What two bodies do to each other.
+/// The interaction of two bodies.
 struct Press {
     /// The force between them [N].
     force: f64,
@@ -58,9 +59,9 @@ struct Press {
 }
 
 impl Round {
-    /// A half of it (in space a quarter) about the origin, with its pole up or down. Cells are small near the pole.
+    /// A half of it (in space a quarter) about the origin, with its pole up or down. Cells near the pole are small.
     fn mesh<const D: usize>(self, up: bool) -> Result<Mesh<D>, Trouble> {
-        // Bodies touch half of the thickness outside of their meshes.
+        // Bodies touch at half of the thickness outside their meshes.
         let radius = self.radius - 0.5 * THICKNESS;
         // Cells grow by a factor of 27 from the pole to the rim.
         let graded = |s: f64| (4.0 * s).sinh() / 4f64.sinh();
@@ -70,7 +71,7 @@ impl Round {
                 1 => 1.0 - graded(s[1]),
                 _ => graded(s[d]),
             });
-            // From a cube at the centre to a ball at the surface, on which equal lengths of the cube's sides have equal angles.
+            // From a cube at the centre to a ball at the surface, such that equal lengths on the cube's sides have equal angles.
             let most = cube.iter().copied().fold(0.0, f64::max);
             let ray = cube.map(|c| if most > 0.0 { (FRAC_PI_4 * c / most).tan() } else { 1.0 });
             let length = ray.iter().map(|c| c * c).sum::<f64>().sqrt();
@@ -81,7 +82,7 @@ impl Round {
         })
     }
 
-    /// The lines of its body, whose centre is at a height, with the plane through it moving by so much.
+    /// The lines of its body, whose centre is at the given height, with the plane through the centre displaced by `by`.
     fn text<const D: usize>(self, mesh: &Mesh<D>, height: f64, by: f64) -> String {
         let upward =
             |y: f64| (0..D).map(|d| if d == 1 { format!("{y:?}") } else { "0".into() }).collect::<Vec<_>>().join(", ");
@@ -93,7 +94,7 @@ impl Round {
             })
             .collect();
         let base = nodes(mesh, |x| x[1].abs() < 1e-9);
-        // Hertz's theory is linear: forces belong to places at rest.
+        // Hertz's theory is linear: forces refer to rest positions.
         format!(
             "density = 1.0\nposition = [{}]\n\
              models = [{{ kind = \"fem\", material = \"linear\", youngs_modulus = {:?}, poissons_ratio = {POISSON:?} }}]\n\
@@ -107,8 +108,7 @@ impl Round {
     }
 }
 
-/// Two bodies whose planes through their centres approach by so much [m]. The force is that on whole bodies, of which the scene has a half or a
-/// quarter.
+/// Two bodies whose central planes approach by `approach` [m]. The force is that on whole bodies, of which the scene contains a half or a quarter.
 fn press<const D: usize>(lab: &Lab, lower: Round, upper: Round, approach: f64) -> Result<Press, Trouble>
 where
     Lab: Worlds<D>,
@@ -120,7 +120,7 @@ where
         .named("upper", &meshes[1], &upper.text(&meshes[1], upper.radius, -approach))?;
     let mut world = lab.world(scene)?;
     world.frame()?;
-    // Both bodies feel the same pressure at nodes of their own.
+    // Both bodies have the same pressure, at their own nodes.
     let (mut force, mut moment) = (0.0, 0.0);
     for (body, (mesh, half)) in meshes.iter().zip([-0.5, 0.5]).enumerate() {
         for (x, push) in mesh.positions.iter().zip(world.contact_forces(body)) {

@@ -1,4 +1,4 @@
-//! Momentum and energy: what must not change, and where the rest went.
+//! Conservation of momentum and energy, and the account of energies.
 
 use super::BASE;
 use crate::case::{Case, Check, Family, Over, Scale};
@@ -115,14 +115,14 @@ pub(super) const CASES: &[Case] = &[
     super::heat::START,
 ];
 
-/// What a ball keeps in flight.
+/// The conserved quantity of a ball in flight.
 enum Kept {
     Momentum,
     AngularMomentum,
     Energy,
 }
 
-/// A ring of springs around gas that is not at rest, turning, without gravity.
+/// A rotating ring of springs around gas, out of equilibrium, without gravity.
 fn flight(lab: &Lab, h: f64, rule: &str, kept: Kept) -> Result<f64, Trouble> {
     let frame = 1.0 / 60.0;
     let scene = Scene::new(2, frame, (frame / h).round() as u32, rule).add(

@@ -1,4 +1,4 @@
-//! Shape matching: natural frequencies, and a sag that no step changes.
+//! Shape matching: natural frequencies, and a sag that is independent of the step.
 
 use super::BASE;
 use crate::case::{Case, Check, Family, Over, Scale};
@@ -66,7 +66,7 @@ pub(super) const DYNAMICS: &[Case] = &[
 /// κ [1/s²].
 const STIFFNESS: f64 = 900.0;
 
-/// Which frequency, from the slowest.
+/// The requested frequency, counted from the slowest.
 #[derive(Clone, Copy)]
 enum Wanted {
     Number(usize),
@@ -101,7 +101,7 @@ fn space(lab: &Lab, share: f64, fit: &str, wanted: Wanted) -> Result<f64, Troubl
     found(&modes.iter().map(|mode| mode.omega()).collect::<Vec<f64>>(), wanted)
 }
 
-/// The tip after 3 s of a heavily braked fall, over that of the largest step.
+/// The tip after 3 s of strongly damped motion, relative to the value with the largest step.
 fn sag(lab: &Lab, step: f64) -> Result<f64, Trouble> {
     let tip = |step: f64| -> Result<f64, Trouble> {
         let scene = Scene::new(2, 1.0 / 60.0, (1.0 / 60.0 / step).round() as u32, "backward_euler").add(

@@ -1,11 +1,11 @@
-//! The laws of materials: uniaxial stress, shear, damping.
+//! Material laws: uniaxial stress, shear, damping.
 
 use super::BASE;
 use crate::bodies::{Cells, displacement, mapped, nodes};
 use crate::case::{Case, Check, Family, Over};
 use crate::lab::{Lab, Scene, Trouble};
 
-/// What a uniaxial pull gives.
+/// The measured quantity of uniaxial tension.
 #[derive(Clone, Copy)]
 enum Of {
     Stress,
@@ -31,10 +31,10 @@ const SIDE: Case =
 pub(super) const PULLED_STRAIGHT: &[f64] = &[-50_000.0, -20_000.0, 20_000.0, 50_000.0, 100_000.0, 200_000.0];
 const NARROWED_STRAIGHT: &[f64] = &[1.225, 1.09, 0.91, 0.775, 0.55, 0.1];
 
-/// With the largest compressive stress of the law, at 1/√3.
+/// Including the largest compressive stress of the law, at 1/√3.
 pub(super) const KIRCHHOFF: &[f64] = &[0.577_350_269_189_625_8, 0.6, 0.8, 1.2, 1.5];
 
-/// What the laws give in the quantity of [`STRESS`]; finite volumes are compared with the same numbers.
+/// The values of the laws in the quantity of [`STRESS`]; finite volumes are compared with the same numbers.
 pub(super) const PULLED_KIRCHHOFF: &[f64] = &[-19_245.008_972_987_5, -19_200.0, -14_400.0, 26_400.0, 93_750.0];
 pub(super) const FIXED_COROTATED: &[f64] = &[
     -95_785.440_613_027,
@@ -84,7 +84,7 @@ pub(super) const CASES: &[Case] = &[
         measure: |lab, x| pull(lab, "linear", x, Of::Side),
         ..SIDE
     },
-    // Changed after its first run, of a hexahedron: that is not stable under this law near a stretch of 3.
+    // Changed after its first run, with a hexahedron, which is not stable under this law near a stretch of 3.
     Case {
         name: "uniaxial-stress-corotated",
         quick: false,
@@ -221,12 +221,12 @@ pub(super) const CASES: &[Case] = &[
 /// e^(−a) (cos ωd + a/ωd sin ωd) with a = τω²/2 = 0.246740…, ωd = 1.551296….
 const DAMPED: f64 = 0.139_487_533_964_552_74;
 
-/// A hexahedron between slippery plates that are drawn apart.
+/// A hexahedron between frictionless plates that are pulled apart.
 fn pull(lab: &Lab, material: &str, stretch: f64, of: Of) -> Result<f64, Trouble> {
     pull_of(lab, material, Cells::Boxes, stretch, of)
 }
 
-/// A cube of such cells, one to a side, between slippery plates that are drawn apart in twenty steps.
+/// A cube of the given cells, one per side, between frictionless plates that are pulled apart in twenty steps.
 fn pull_of(lab: &Lab, material: &str, cells: Cells, stretch: f64, of: Of) -> Result<f64, Trouble> {
     let scene = Scene::new(3, 0.05, 1, "equilibrium\ntolerance = 1e-11").add(&format!(
         "[[body]]\nname = \"cube\"\ndensity = 1.0\nshape = {{ kind = \"grid\", size = [1, 1, 1], cells = [1, 1, 1] }}\n{}\n\
@@ -260,8 +260,8 @@ fn shear(lab: &Lab, angle: f64) -> Result<f64, Trouble> {
     ))?;
     let mut world = lab.space(scene)?;
     world.frame()?;
-    // Forces on nodes of the top that belong to its sides too carry the stress of the sides: the work of a further shear
-    // counts each as it should, Σ fₓ y over the volume.
+    // Forces on nodes at the top that also belong to the sides include the stress of the sides. The work of an additional shear weights each
+    // correctly: Σ fₓ y over the volume.
     let forces: Vec<(f64, f64)> =
         outside.iter().map(|k| (world.reaction(0, &[*k])[0], mesh.positions[*k as usize][1])).collect();
     Ok(forces.iter().map(|(force, y)| force * y).sum())

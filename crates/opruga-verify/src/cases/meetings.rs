@@ -1,4 +1,4 @@
-//! Bodies that meet one another: impacts of bars, friction of one body on another, momentum.
+//! Contact between bodies: impacts of bars, friction of one body on another, momentum.
 
 use super::BASE;
 use super::pressed::weight;
@@ -187,20 +187,20 @@ pub(super) const LEDGERS: &[Case] = &[
     },
 ];
 
-/// What becomes of two bars.
+/// The results for two bars.
 struct Impact {
-    /// The speed of the second over that of the first before it.
+    /// The speed of the second bar divided by the speed of the first before the impact.
     gained: f64,
-    /// The time to half of the momentum [s].
+    /// The time until half of the momentum is transferred [s].
     half: f64,
-    /// The compression in the middle of the second over half of the approach, over c.
+    /// The compression at the middle of the second bar divided by half of the approach speed, over c.
     stress: f64,
-    /// The speed apart over the speed of approach.
+    /// The speed of separation divided by the speed of approach.
     apart: f64,
 }
 
-/// Bars of equal springs with c = 1 m/s and 1 kg/m: one of 1 m with n springs comes with 1 cm/s and hits another one, which comes with so
-/// many times that.
+/// Bars of equal springs with c = 1 m/s and 1 kg/m: one of 1 m with n springs moves at 1 cm/s and hits another one, which moves at `times` that
+/// speed.
 fn impact(lab: &Lab, n: f64, length: f64, times: f64) -> Result<Impact, Trouble> {
     let (speed, frame, gap) = (0.01, 0.25 / n, 1e-4);
     let bar = |name: &str, from: f64, to: f64, v: f64| {
@@ -246,7 +246,7 @@ fn momentum(world: &World<2>, body: usize) -> f64 {
     (0..world.node_count(body) as u32).map(|n| world.node_mass(body, n) * world.velocity(body, n)[0]).sum()
 }
 
-/// Two rods that meet flat at 4 m/s: their speed apart over that, and the loss over ½ m v² with m = ⅔ kg.
+/// Two rods that collide flat at 4 m/s: their speed of separation divided by this, and the loss divided by ½ m v² with m = ⅔ kg.
 fn bounce(lab: &Lab, restitution: f64, rule: &str) -> Result<[f64; 2], Trouble> {
     let rod = |name: &str, x: f64, v: f64, mass: f64| {
         format!(
@@ -267,7 +267,7 @@ fn bounce(lab: &Lab, restitution: f64, rule: &str) -> Result<[f64; 2], Trouble> 
     Ok([(second - first) / 4.0, world.energy().loss_contact / (0.5 * 2.0 / 3.0 * 16.0)])
 }
 
-/// The way of a chain down a line that is held, after 150 frames [m].
+/// The displacement of a chain that slides down a pinned line, after 150 frames [m].
 fn slide_down(lab: &Lab, h: f64, friction: f64, rule: &str) -> Result<f64, Trouble> {
     let (frame, gap) = (1.0 / 60.0, 1e-3);
     let [x, y] = [gap / 5f64.sqrt(), 2.0 * gap / 5f64.sqrt()];
@@ -289,7 +289,7 @@ fn slide_down(lab: &Lab, h: f64, friction: f64, rule: &str) -> Result<f64, Troub
     Ok((x[0] - start[0]).hypot(x[1] - start[1]))
 }
 
-/// The momentum of two balls of gas after they have met, over that before.
+/// The momentum of two balls of gas after their contact, divided by that before.
 fn balls(lab: &Lab, n: f64, substeps: u32, rule: &str) -> Result<f64, Trouble> {
     let ball = |name: &str, x: f64, y: f64, v: f64| {
         format!(

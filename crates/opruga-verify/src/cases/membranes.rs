@@ -1,13 +1,13 @@
-//! Cook's membrane: a trapezoid of 48 × (44 → 16), clamped at the left, pulled up along the right side.
+//! Cook's membrane: a trapezoid of 48 × (44 → 16), clamped at the left, pulled upwards along the right side.
 
 use super::BASE;
 use crate::bodies::{Cells, displacement};
 use crate::case::{Case, Check, Over};
 use crate::lab::{Lab, Scene, Trouble};
 
-/// Twice the exponent of the singularity at the clamped upper corner, where the angle is 108.4° and clamped meets free:
-/// sin² λα = (κ + 1)²/4κ − λ²/κ sin² α with κ = 2 in plane stress and 2.2 in plane strain (M. L. Williams 1952). Displacements
-/// under a load far from the corner converge at that order on even meshes.
+/// Twice the exponent of the singularity at the clamped upper corner, where the angle is 108.4° between the clamped and the free side: sin² λα = (κ +
+/// 1)²/4κ − λ²/κ sin² α with κ = 2 in plane stress and 2.2 in plane strain (M. L. Williams 1952). Displacements under a load far from the corner
+/// converge at that order on uniform meshes.
 const SINGULAR: f64 = 1.354;
 
 const LINEAR: Case = Case {
@@ -155,7 +155,7 @@ const STRESS: &str =
     "material = \"linear\", youngs_modulus = 1.0, poissons_ratio = 0.3333333333333333, plane = \"stress\"";
 const NEARLY: &str = "material = \"neo_hookean\", youngs_modulus = 240.565, poissons_ratio = 0.4999";
 
-/// The upward displacement at a height of the right side.
+/// The upward displacement at a given height of the right side.
 fn cook(lab: &Lab, n: f64, cells: Cells, law: &str, force: f64, height: f64) -> Result<f64, Trouble> {
     let steps = if law.contains("linear") { 1 } else { 5 };
     let scene = Scene::statics(2, 1e-9).add(&format!(

@@ -1,7 +1,7 @@
-//! The table of cases: names, quantities, references, levels, tolerances and orders, frozen before they are run.
+//! The table of cases: names, quantities, references, levels, tolerances and orders, fixed before they are run.
 //!
-//! Where nothing else is said, a case passes if the error on the finest mesh is at most 1 % and falls, over at least three
-//! meshes, at the order of the theory less 0.2. Tighter tolerances belong to what is exact on every mesh.
+//! Unless specified otherwise, a case passes if the error on the finest mesh is at most 1 % and falls, over at least three meshes, at the theoretical
+//! order minus 0.2. Cases that are exact on every mesh have tighter tolerances.
 
 mod at_rest;
 mod balloons;
@@ -31,7 +31,7 @@ mod volumes;
 
 use crate::case::{Case, Check, Family, Over, Scale};
 
-/// What the cases have in common.
+/// The common values of the cases.
 const BASE: Case = Case {
     name: "",
     family: Family::Statics,
@@ -86,7 +86,7 @@ pub fn cases() -> impl Iterator<Item = &'static Case> {
     lists.into_iter().flatten()
 }
 
-/// What a reader may look for and not find, and why.
+/// Cases that a reader may miss, and the reasons for their absence.
 pub const LEFT_OUT: &[(&str, &str)] =
     &[("thin membranes of rubber", "there is no model of membranes; springs have another law")];
 

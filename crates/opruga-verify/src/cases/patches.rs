@@ -1,4 +1,4 @@
-//! Patch tests: what a kind of cells must represent exactly, on irregular meshes.
+//! Patch tests: solutions that a kind of cells must represent exactly on irregular meshes.
 
 use super::BASE;
 use crate::bodies::{Cells, boundary};

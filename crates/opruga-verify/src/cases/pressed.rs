@@ -1,4 +1,4 @@
-//! Bodies that press on one another at rest: patches, Hertz's contact with an obstacle, stacks.
+//! Bodies at rest that press on one another: patches, Hertz's contact with an obstacle, stacks.
 
 use super::BASE;
 use crate::bodies::{Cells, mapped, nodes};
@@ -57,7 +57,7 @@ pub(super) const CASES: &[Case] = &[
         quantity: "height of a block that presses on another one, by a barrier less by a constraint",
         source: "the limit of no reach: the constraint",
         unit: "m",
-        // What the pressure takes from the height of each.
+        // The reduction of the height of each by the pressure.
         scale: Scale::Of(1e-3),
         measure: |lab, reach| {
             let by = |reach| Ok::<f64, Trouble>(patch::<2>(lab, 3.0, Cells::Linear, reach, DAMPED)?.height);
@@ -98,7 +98,7 @@ pub(super) const CASES: &[Case] = &[
     },
 ];
 
-/// Equal cells of a block with its lowest corner at a height, the inner nodes of which are moved by up to an eighth of a cell.
+/// Equal cells of a block with its lowest corner at a given height; its inner nodes are moved at random by up to an eighth of a cell.
 fn block<const D: usize>(n: u32, cells: Cells, height: f64) -> Result<Mesh<D>, Trouble> {
     let random = Cell::new(11u64);
     mapped([n; D], cells, |x| {
@@ -114,7 +114,7 @@ fn block<const D: usize>(n: u32, cells: Cells, height: f64) -> Result<Mesh<D>, T
     })
 }
 
-/// Rows for `pin = [ … ]`: nodes that fulfil a condition, pinned along an axis.
+/// Rows for `pin = [ … ]`: nodes that satisfy a condition, pinned along an axis.
 fn pinned<const D: usize>(mesh: &Mesh<D>, axis: usize, which: impl Fn(&[f64; D]) -> bool) -> String {
     format!("{{ select = {{ nodes = {:?} }}, axes = \"{}\" }}", nodes(mesh, which), ["x", "y", "z"][axis])
 }
@@ -132,7 +132,7 @@ fn solid(law: &str, pins: &[String]) -> String {
     )
 }
 
-/// The area (in the plane the length) of the boundary at a height that belongs to each node.
+/// The area (in the plane the length) of the boundary at a given height that belongs to each node.
 fn shares<const D: usize>(mesh: &Mesh<D>, height: f64) -> Vec<f64> {
     let surface = mesh.touching_surface(true);
     let (positions, mut of_points) = (surface.positions(&mesh.positions), vec![0.0; surface.points()]);
@@ -158,7 +158,7 @@ fn shares<const D: usize>(mesh: &Mesh<D>, height: f64) -> Vec<f64> {
     out
 }
 
-/// The same by a constraint.
+/// The same with a constraint.
 fn pressures<const D: usize>(lab: &Lab, n: f64, cells: Cells) -> Result<f64, Trouble>
 where
     Lab: Worlds<D>,
@@ -166,28 +166,29 @@ where
     Ok(patch(lab, n, cells, None, DAMPED)?.worst)
 }
 
-/// The same by statics.
+/// The same with statics.
 pub(super) fn pressures_at_rest(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     Ok(patch::<2>(lab, n, Cells::Boxes, None, "equilibrium")?.worst)
 }
 
-/// The same by statics and a barrier of a reach [m].
+/// The same with statics and a barrier of a given reach [m].
 pub(super) fn patch_at_rest_by_barrier(lab: &Lab, reach: f64) -> Result<f64, Trouble> {
     Ok(patch::<2>(lab, 3.0, Cells::Linear, Some(reach), "equilibrium")?.worst)
 }
 
-/// The rule that comes to rest in steps of 0.1 s, since it damps all.
+/// An integrator that comes to rest in steps of 0.1 s, because it damps everything.
 const DAMPED: &str = "backward_euler";
 
-/// What became of two blocks.
+/// The results for two blocks.
 struct Patch {
-    /// The largest difference of the pressure on a node, over it.
+    /// The largest relative difference of the pressure on a node.
     worst: f64,
-    /// The mean height of the nodes on top [m].
+    /// The mean height of the nodes at the top [m].
     height: f64,
 }
 
-/// Two blocks without friction, the upper one pressed by 1 kPa, at rest. By a barrier of a reach [m], beyond which they begin, or by a constraint.
+/// Two blocks without friction at rest, the upper one under a pressure of 1 kPa; with a barrier of a given reach [m], beyond which they start, or
+/// with a constraint.
 fn patch<const D: usize>(lab: &Lab, n: f64, cells: Cells, reach: Option<f64>, rule: &str) -> Result<Patch, Trouble>
 where
     Lab: Worlds<D>,
@@ -221,7 +222,7 @@ where
     Ok(Patch { worst, height })
 }
 
-/// Worlds of a dimension.
+/// Access to worlds of either dimension.
 pub(super) trait Worlds<const D: usize> {
     fn world(&self, scene: Scene) -> Result<World<D>, Trouble>;
 }
@@ -238,8 +239,8 @@ impl Worlds<3> for Lab {
     }
 }
 
-/// The part of a cylinder of 1 m about the origin where x is positive and below `width`, from its lowest line up to the middle: cells are small
-/// near that line.
+/// The part of a cylinder of 1 m about the origin with positive x below `width`, from its lowest line up to the middle; cells near that line are
+/// small.
 fn lens(n: u32, width: f64) -> Result<Mesh<2>, Trouble> {
     mapped([n; 2], Cells::Boxes, |[s, t]| {
         let x = width * s * s;
@@ -247,7 +248,7 @@ fn lens(n: u32, width: f64) -> Result<Mesh<2>, Trouble> {
     })
 }
 
-/// Half of a cylinder that is pressed onto a plane by 1 cm. The pressure of Hertz has ∫ p x² = F a²/4.
+/// Half of a cylinder that is pressed onto a plane by 1 cm. Hertz's pressure has ∫ p x² = F a²/4.
 fn hertz_line(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     let mesh = lens(n as u32, 0.85)?;
     let top = nodes(&mesh, |x| x[1].abs() < 1e-9);
@@ -272,8 +273,8 @@ fn hertz_line(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     Ok(2.0 * (moment / force).sqrt() / (4.0 * 2.0 * force / (std::f64::consts::PI * young)).sqrt())
 }
 
-/// The force between two blocks of solid after 5 s, over the weight of the upper one, which has so many times the mass and the stiffness of
-/// the lower one. The stiffness of both grows with the mass above: so the lower one is pressed by as much of its height.
+/// The force between two blocks after 5 s, divided by the weight of the upper one, whose mass and stiffness are the given multiples of those of the
+/// lower one. The stiffness of both grows with the mass above, so the relative compression of the lower block is always the same.
 pub(super) fn weight(lab: &Lab, rule: &str, contact: &str, masses: f64, stiffness: f64) -> Result<f64, Trouble> {
     let base = 1e5 * masses.max(1.0);
     let block = |name: &str, x: f64, y: f64, width: f64, mass: f64, young: f64, more: &str| {

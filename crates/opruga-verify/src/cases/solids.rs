@@ -1,11 +1,11 @@
-//! Elastic solids of small strain with closed solutions: bars, tubes, spheres, holes.
+//! Elastic solids at small strain with closed-form solutions: bars, tubes, spheres, holes.
 
 use super::BASE;
 use crate::bodies::{Cells, at_radius, hoop_stress_at, mapped, nodes, octant, outward, stress_at, symmetric};
 use crate::case::{Case, Check, Over};
 use crate::lab::{Lab, Scene, Trouble, moved_pins};
 
-/// Pressures and stresses that strain the body so little that the small change of its shape does not matter [E].
+/// Pressures and stresses with strains so small that the change of shape of the body does not matter [E].
 const SMALL: f64 = 1e-6;
 
 const BAR: Case = Case {
@@ -56,8 +56,8 @@ pub(super) const CASES: &[Case] = &[
         ..BAR
     },
     Case {
-        // Changed: consistent masses. By lumped ones the weight is not that of the shape functions, and the growth has an error
-        // of 0.3 % that does not go with the mesh.
+        // Changed to consistent masses. With lumped masses the weight does not match the shape functions, and the elongation has an error of 0.3 %
+        // that does not depend on the mesh.
         name: "hanging-bar-quadratic-triangles",
         measure: |lab, n| bar(lab, n, Cells::Quadratic),
         ..BAR
@@ -65,8 +65,8 @@ pub(super) const CASES: &[Case] = &[
     Case { name: "lame-tube-quadrilaterals", quick: true, measure: |lab, n| tube(lab, n, Cells::Boxes, false), ..TUBE },
     Case { name: "lame-tube-triangles", quick: true, measure: |lab, n| tube(lab, n, Cells::Linear, false), ..TUBE },
     Case {
-        // Changed after its first run, from 4 cells on and of pressure alone: its part of second order was most of the error,
-        // which changes its sign between 4 and 8 cells.
+        // Changed after its first run. It started at 4 cells and had only the pressure, whose second-order part was most of the error, which changes
+        // its sign between 4 and 8 cells.
         name: "lame-tube-quadratic-triangles",
         levels: &[8.0, 16.0, 32.0],
         quick: false,
@@ -96,7 +96,7 @@ pub(super) const CASES: &[Case] = &[
         unit: "",
         source: "G. Lamé 1852: (2a³ + b³)/2(b³ − a³)",
         expected: &[0.714_285_714_285_714_3],
-        // Changed after its first run, which ended with 9 through the wall.
+        // Changed after its first run, which ended with 9 cells through the wall.
         levels: &[6.0, 9.0, 14.0],
         measure: |lab, n| sphere(lab, n, Cells::Boxes, true),
         ..SPHERE
@@ -167,7 +167,7 @@ fn pressed(select: &[u32], pressure: f64) -> String {
     format!("[[load]]\nkind = \"pressure\"\nbody = \"body\"\nselect = {{ nodes = {select:?} }}\nvalue = {pressure:?}")
 }
 
-/// Half the difference of pressure and suction: a pressure follows the wall, which gives a part of second order.
+/// Half of the difference between pressure and suction: a pressure follows the wall, which causes a second-order part.
 fn tube(lab: &Lab, n: f64, cells: Cells, stress: bool) -> Result<f64, Trouble> {
     let mesh = octant::<2>(n as u32, n as u32, Some(1.0), 2.0, cells)?;
     let inner = at_radius(&mesh, 1.0);
@@ -198,7 +198,7 @@ fn ball(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     Ok(outward(&world, &outer) / SMALL)
 }
 
-/// A quarter of the plate between the ellipses of half axes 2, 1 and 3.25, 2.75 m, with E = 210 GPa and a thousandth of the tension.
+/// A quarter of the plate between the ellipses with semi-axes 2, 1 and 3.25, 2.75 m, with E = 210 GPa and a thousandth of the tension.
 fn plate(lab: &Lab, n: f64, cells: Cells) -> Result<f64, Trouble> {
     let mesh = mapped([n as u32; 2], cells, |s| {
         let angle = std::f64::consts::FRAC_PI_2 * s[1];
@@ -216,16 +216,16 @@ fn plate(lab: &Lab, n: f64, cells: Cells) -> Result<f64, Trouble> {
     ))?.add(&pressed(&outer, -10e3));
     let mut world = lab.plane(scene)?;
     world.frame()?;
-    // Of a thousandth of the tension, in MPa.
+    // Stress at a thousandth of the tension, converted to MPa.
     Ok(stress_at(&world, [2.0, 0.0], [1, 1])? * 1e-3)
 }
 
-/// A quarter of the sheet between the hole of 1 m and the circle of 4 m, whose points move as Kirsch says.
+/// A quarter of the sheet between the hole of 1 m and the circle of 4 m, whose points move according to Kirsch.
 fn hole(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     let poisson = 0.3;
     let mesh = mapped([n as u32; 2], Cells::Boxes, |s| {
         let (angle, radius) = (std::f64::consts::FRAC_PI_2 * s[1], 4.0f64.powf(s[0]));
-        // On the axes without a rounding.
+        // Exactly on the axes, without rounding.
         [if s[1] == 1.0 { 0.0 } else { radius * angle.cos() }, radius * angle.sin()]
     })?;
     let outer = at_radius(&mesh, 4.0);

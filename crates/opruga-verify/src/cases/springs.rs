@@ -80,7 +80,7 @@ fn catenary(lab: &Lab, links: f64) -> Result<f64, Trouble> {
     Ok(-(0..=count).map(|k| world.position(0, k)[1]).fold(0.0, f64::min))
 }
 
-/// Twice the energy over area and strain², with all of the boundary moved.
+/// Twice the energy divided by area and strain², with the whole boundary displaced.
 fn lattice(lab: &Lab, strain: f64, by: impl Fn(&[f64; 2], f64) -> [f64; 2]) -> Result<f64, Trouble> {
     let (columns, rows, height) = (6u32, 4u32, 0.75f64.sqrt());
     let mut mesh = Mesh::<2>::default();
@@ -106,7 +106,7 @@ fn lattice(lab: &Lab, strain: f64, by: impl Fn(&[f64; 2], f64) -> [f64; 2]) -> R
     Ok(2.0 * world.energy().elastic / (strain * strain * area))
 }
 
-/// The largest load on the way through the snap.
+/// The largest load on the path through the snap.
 fn snap(lab: &Lab, arc_length: f64) -> Result<f64, Trouble> {
     let load = 10.0;
     let scene = Scene::new(2, 1.0, 1, &format!("equilibrium\narc_length = {arc_length:?}\ntolerance = 1e-11")).add(&format!(
@@ -129,13 +129,13 @@ fn snap(lab: &Lab, arc_length: f64) -> Result<f64, Trouble> {
     Err("it does not snap".into())
 }
 
-/// The top of the parabola through the highest point of a path and its neighbours.
+/// The maximum of the parabola through the highest point of a path and its neighbours.
 pub(super) fn summit(path: &[[f64; 2]]) -> Option<f64> {
     let top = (0..path.len()).reduce(|a, b| if path[b][1] > path[a][1] { b } else { a })?;
     let [p, q, r] = [*path.get(top.checked_sub(1)?)?, path[top], *path.get(top + 1)?];
     let (left, right) = ((q[1] - p[1]) / (q[0] - p[0]), (r[1] - q[1]) / (r[0] - q[0]));
     let bend = (right - left) / (r[0] - p[0]);
-    // Slope at q, and the way from there to the top.
+    // The slope at q, and the distance from there to the maximum.
     let slope = left + bend * (q[0] - p[0]);
     Some(q[1] - 0.25 * slope * slope / bend)
 }

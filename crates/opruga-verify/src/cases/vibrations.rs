@@ -1,4 +1,4 @@
-//! Natural frequencies of bars, beams, discs and balls, by the modes of bodies at rest.
+//! Natural frequencies of bars, beams, discs and balls, from the modes of bodies at rest.
 
 use super::BASE;
 use crate::bodies::{Cells, mapped, nodes, octant, symmetric};
@@ -54,8 +54,8 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "beam-first-bending-quadrilaterals",
-        // Changed after its first run, which had half as many along: how much of the shear is false depends on the length of
-        // a cell over the thickness alone.
+        // Changed after its first run, which had half as many cells along the beam: the spurious part of the shear depends only on the ratio of the
+        // length of a cell to the thickness.
         levels: &[100.0, 200.0, 400.0],
         measure: |lab, n| beam(lab, [n as u32, 4], Cells::Boxes, true, 0),
         ..BEAM
@@ -131,7 +131,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "ball-becomes-oval-hexahedra",
-        // Changed, from 6 cells on: with 2 to 4 the errors of masses and of stiffness, of opposite signs, cancel (5e-4, 6e-4, 4e-4).
+        // Changed to start at 6 cells: with 2 to 4 the errors of masses and of stiffness have opposite signs and cancel (5e-4, 6e-4, 4e-4).
         levels: &[6.0, 8.0, 12.0],
         quantity: "ωa/c_s of the slowest spheroidal vibration (l = 2) of a free ball, ν = 0.3",
         source: "H. Lamb 1882; Love, Treatise, art. 197: spheroidal vibrations, l = 2",
@@ -170,7 +170,7 @@ fn solid(poisson: f64, plane: &str, pins: &str) -> String {
     )
 }
 
-/// No time passes: any rule will do that has no limit of its step.
+/// No time passes, so any integrator without a limit of the step can be used.
 fn still(dimension: usize) -> Scene {
     Scene::new(dimension, 0.001, 1, "newmark")
 }
@@ -189,7 +189,7 @@ fn beam(lab: &Lab, counts: [u32; 2], cells: Cells, clamped: bool, number: usize)
 }
 
 fn chain(lab: &Lab, n: f64) -> Result<f64, Trouble> {
-    // The clamp of two nodes lies in the middle of the first segment.
+    // The clamp of two nodes is at the midpoint of the first segment.
     let l = 1.0 / (n - 0.5);
     let world = lab.plane(still(2).add(&format!(
         "[[body]]\nname = \"rod\"\nmass = {:?}\nshape = {{ kind = \"line\", from = [{:?}, 0.0], to = [1.0, 0.0], segments = {n} }}\n\
@@ -212,11 +212,11 @@ fn bar(lab: &Lab, n: f64, number: usize) -> Result<f64, Trouble> {
     omega(&world, number)
 }
 
-/// The relative distance of modes so close to one another in ω that a mesh mixes them.
+/// The relative difference in ω of modes so close to one another that a mesh mixes them.
 const CLOSE_MODES: f64 = 0.03;
 
-/// The frequency of the mode that is most like an even swelling. Where a mesh mixes it with neighbours of other shapes, ω² is
-/// the mean of theirs by how much of the swelling is in each: what the swelling has in the space of these modes.
+/// The frequency of the mode most similar to a uniform expansion. If a mesh mixes it with neighbouring modes of other shapes, ω² is their mean,
+/// weighted by the part of the expansion in each: the value for the expansion in the space of these modes.
 fn breathing<const D: usize>(world: &World<D>, count: usize) -> Result<f64, Trouble> {
     let rest = &world.blueprint().bodies[0].mesh.positions;
     let likeness = |shape: &[[f64; D]]| -> f64 {
@@ -259,7 +259,7 @@ fn ball(lab: &Lab, n: f64, cells: Cells, motion: Motion) -> Result<f64, Trouble>
     let mesh = octant::<3>(n as u32, n as u32, None, 1.0, cells)?;
     let pins = match motion {
         Motion::Twist => {
-            // About z, odd in z: planes through the axis move across themselves alone, that of the equator not at all.
+            // About z and odd in z: planes through the axis move only perpendicular to themselves, the plane of the equator does not move.
             let rows: Vec<String> = ["yz", "xz", "xy"]
                 .iter()
                 .enumerate()

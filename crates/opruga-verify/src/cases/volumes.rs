@@ -6,7 +6,7 @@ use crate::bodies::{Cells, at_radius, boundary, displacement, mapped, nodes, oct
 use crate::case::{Case, Check, Family, Over, Scale};
 use crate::lab::{Lab, Scene, Trouble, moved_pins};
 
-/// Pressures that strain the body so little that the small change of its shape does not matter [E].
+/// Pressures with strains so small that the change of shape of the body does not matter [E].
 const SMALL: f64 = 1e-6;
 
 const AFFINE: Case = Case {
@@ -186,7 +186,7 @@ fn bar(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     Ok(-bottom.iter().map(|k| world.position(0, *k)[1]).sum::<f64>() / bottom.len() as f64)
 }
 
-/// Half the difference of pressure and suction: a pressure follows the wall, which gives a part of second order.
+/// Half of the difference between pressure and suction: a pressure follows the wall, which causes a second-order part.
 fn tube(lab: &Lab, n: f64, cells: Cells) -> Result<f64, Trouble> {
     let mesh = octant::<2>(n as u32, n as u32, Some(1.0), 2.0, cells)?;
     let inner = at_radius(&mesh, 1.0);
@@ -229,7 +229,7 @@ fn wave(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     Ok(world.modes(0, 1)?.first().ok_or("too few modes")?.omega())
 }
 
-/// A cube of such cells, one to a side, between slippery plates that are drawn apart in twenty steps.
+/// A cube of the given cells, one per side, between frictionless plates that are pulled apart in twenty steps.
 fn pull(lab: &Lab, material: &str, cells: Cells, stretch: f64) -> Result<f64, Trouble> {
     let scene = Scene::new(3, 0.05, 1, "equilibrium\ntolerance = 1e-11").add(&format!(
         "[[body]]\nname = \"cube\"\ndensity = 1.0\nshape = {{ kind = \"grid\", size = [1, 1, 1], cells = [1, 1, 1] }}\n{}\n{}\n\

@@ -1,4 +1,4 @@
-//! `docs/verification.md` tells of every case as the table says it.
+//! `docs/verification.md` describes every case as the table does.
 
 use opruga_verify::cases;
 

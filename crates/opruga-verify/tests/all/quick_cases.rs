@@ -1,4 +1,4 @@
-//! The cases that take a moment, run as `opruga verify` runs them, and run with a wrong modulus.
+//! The quick cases, run as `opruga verify` runs them, and run with a wrong modulus.
 
 use opruga_verify::{Case, Lab, Row, cases, html, markdown, plot, run_all, table, to_json};
 use std::sync::LazyLock;
@@ -24,7 +24,7 @@ fn a_modulus_that_is_wrong_by_a_hundredth_is_noticed() {
     let wrong = run(&Lab { stiffer: 1.01, ..Lab::default() });
     let noticed = wrong.iter().zip(ROWS.iter()).filter(|(wrong, right)| right.pass && !wrong.pass).count();
     assert!(noticed >= 10, "{noticed} cases notice it\n{}", table(&wrong));
-    // What no modulus enters stays as it was.
+    // Cases that do not depend on a modulus are unchanged.
     let untouched = |name: &str| wrong.iter().find(|row| row.case.name == name).is_some_and(|row| row.pass);
     assert!(untouched("gas-law-adiabatic") && untouched("fall-bdf2") && untouched("patch-hexahedra"));
 }
