@@ -1,18 +1,18 @@
-//! Bits, Exp-Golomb numbers, and the units which a stream is made of (H.264, clauses 7.2, 7.3.1 and 9.1).
+//! Bits, Exp-Golomb codes, and the units of a stream (H.264, clauses 7.2, 7.3.1 and 9.1).
 
-/// Bits in the order in which they were put.
+/// Bits in the order in which they were written.
 #[derive(Debug, Default)]
 pub(crate) struct Bits {
-    /// The bytes that are full.
+    /// The complete bytes.
     bytes: Vec<u8>,
-    /// The bits that do not fill a byte yet, the latest one lowest.
+    /// The bits that do not fill a byte yet, with the latest one lowest.
     rest: u64,
     /// Their number, below 8 between two calls.
     count: u32,
 }
 
 impl Bits {
-    /// Puts the lowest `count` bits of a value, the highest of them first; at most 32.
+    /// Writes the lowest `count` bits of a value, the highest of them first; at most 32.
     #[inline]
     pub(crate) fn put(&mut self, value: u32, count: u32) {
         debug_assert!(count <= 32 && (count == 32 || value >> count == 0));
@@ -24,12 +24,12 @@ impl Bits {
         }
     }
 
-    /// Puts one bit.
+    /// Writes one bit.
     pub(crate) fn flag(&mut self, value: bool) {
         self.put(u32::from(value), 1);
     }
 
-    /// Puts a number in the unsigned Exp-Golomb code, `ue(v)`.
+    /// Writes a number in the unsigned Exp-Golomb code, `ue(v)`.
     pub(crate) fn ue(&mut self, value: u32) {
         debug_assert!(value < u32::MAX);
         let code = value + 1;
@@ -38,13 +38,13 @@ impl Bits {
         self.put(code, length);
     }
 
-    /// Puts a number in the signed Exp-Golomb code, `se(v)`.
+    /// Writes a number in the signed Exp-Golomb code, `se(v)`.
     pub(crate) fn se(&mut self, value: i32) {
         let doubled = 2 * value.unsigned_abs();
         self.ue(if value > 0 { doubled - 1 } else { doubled });
     }
 
-    /// Ends the unit with a one and zeros up to the next byte.
+    /// Ends the unit with a one and zeros up to the next byte boundary.
     pub(crate) fn finish(mut self) -> Vec<u8> {
         self.flag(true);
         if self.count > 0 {
@@ -63,17 +63,17 @@ pub(crate) fn se_bits(value: i32) -> u32 {
 /// The kinds of units that are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Unit {
-    /// A picture that needs the one before.
+    /// A picture that depends on the previous one.
     Slice = 0x61,
-    /// A picture that needs no other.
+    /// A picture that does not depend on others.
     Refresh = 0x65,
-    /// What holds for the whole stream.
+    /// Parameters of the whole stream.
     Sequence = 0x67,
-    /// What holds for its pictures.
+    /// Parameters of its pictures.
     Picture = 0x68,
 }
 
-/// Packs a unit: its head, and the bytes with a 3 wherever they could be taken for the start of a unit.
+/// Packs a unit: its header, and the bytes with a 3 inserted wherever they could be mistaken for the start of a unit.
 pub(crate) fn pack(unit: Unit, bytes: &[u8]) -> Vec<u8> {
     let mut out = Vec::with_capacity(bytes.len() + bytes.len() / 64 + 1);
     out.push(unit as u8);

@@ -1,4 +1,4 @@
-//! From images to the pictures of a stream: what a decoder draws is drawn here too, so that errors do not grow.
+//! Encodes images as the pictures of a stream. The encoder also draws what a decoder draws, so that errors do not accumulate.
 
 use super::bits::{Bits, Unit, pack, se_bits};
 use super::frame::{BLOCK, Frame};
@@ -8,10 +8,10 @@ use super::residual::{Counts, Quantisers, Residual};
 use super::tables::PATTERNS;
 use crate::image::Image;
 
-/// The furthest motion that is looked for, in pixels; every level allows it.
+/// The largest motion that is searched, in pixels; every level allows it.
 const FURTHEST: i32 = 56;
 
-/// The most steps of a search.
+/// The maximum number of steps of a search.
 const STEPS: usize = 24;
 
 /// A picture of the stream.
@@ -19,36 +19,36 @@ const STEPS: usize = 24;
 pub(crate) struct Coded {
     /// Its unit, without a start code.
     pub(crate) unit: Vec<u8>,
-    /// Whether it needs no other.
+    /// Whether it does not depend on others.
     pub(crate) refresh: bool,
 }
 
-/// Codes image after image.
+/// Encodes one image after another.
 #[derive(Clone, Debug)]
 pub(crate) struct Encoder {
-    /// Macroblocks in a row, and rows.
+    /// The number of macroblocks in a row, and of rows.
     blocks: [usize; 2],
     /// The pixels of the last image.
     last: Vec<u8>,
     source: Frame,
-    /// What a decoder has drawn of the frame before, and what it draws of this one.
+    /// The previous frame as a decoder has drawn it, and the present one as it draws it.
     before: Frame,
     drawn: Frame,
     quantisers: Quantisers,
     counts: Counts,
-    /// The motion of each macroblock; none where it was not taken from the frame before.
+    /// The motion of each macroblock; none if it was not predicted from the previous frame.
     motion: Vec<Option<Motion>>,
-    /// What a bit costs, in sums of differences.
+    /// The cost of a bit, in sums of differences.
     bit_cost: u32,
-    /// Pictures from one that needs no other to the next.
+    /// The number of pictures from one independent picture to the next.
     period: u32,
-    /// The number of the next picture since then.
+    /// The number of the next picture, counted from the last independent one.
     number: u32,
-    /// How many there have been that need no other.
+    /// The number of independent pictures so far.
     refreshes: u32,
 }
 
-/// A macroblock taken from its neighbours.
+/// A macroblock predicted from its neighbours.
 struct Alone {
     luma: Direction,
     colour: Direction,
@@ -77,13 +77,13 @@ impl Encoder {
         }
     }
 
-    /// What a decoder shows of the latest picture.
+    /// The latest picture as a decoder shows it.
     #[cfg(test)]
     pub(crate) fn shown(&self) -> &Frame {
         &self.before
     }
 
-    /// Codes an image.
+    /// Encodes an image.
     pub(crate) fn code(&mut self, image: Image<'_>) -> Coded {
         let changed = self.take(image);
         let refresh = self.number.is_multiple_of(self.period);
@@ -116,7 +116,7 @@ impl Encoder {
         Coded { unit: pack(if refresh { Unit::Refresh } else { Unit::Slice }, &bits.finish()), refresh }
     }
 
-    /// Takes the changed macroblocks of an image over, and says which they are.
+    /// Copies the changed macroblocks of an image; returns which have changed.
     fn take(&mut self, image: Image<'_>) -> Vec<bool> {
         let pixels = image.pixels();
         let row_bytes = 4 * image.width() as usize;
@@ -131,7 +131,7 @@ impl Encoder {
                 for (x, (part, last)) in line.chunks(4 * BLOCK).zip(last.chunks(4 * BLOCK)).enumerate() {
                     if part != last {
                         flags[x] = true;
-                        // A colour at the left edge of a macroblock takes in the pixel before it.
+                        // The chroma at the left edge of a macroblock depends on the pixel to the left of it.
                         if let Some(next) = flags.get_mut(x + 1) {
                             *next = true;
                         }
@@ -147,7 +147,7 @@ impl Encoder {
         changed
     }
 
-    /// Writes the head of a picture, which is one slice.
+    /// Writes the header of a picture, which consists of one slice.
     fn head(&self, bits: &mut Bits, refresh: bool) {
         bits.ue(0);
         bits.ue(if refresh { 7 } else { 5 });
@@ -155,11 +155,11 @@ impl Encoder {
         bits.put(self.number, NUMBER_BITS);
         if refresh {
             bits.ue(self.refreshes % 2);
-            // Nothing before is kept.
+            // No earlier picture is kept.
             bits.flag(false);
             bits.flag(false);
         } else {
-            // One picture before, in its place, and the oldest one is dropped.
+            // One earlier picture, in default order, and the oldest one is dropped.
             bits.flag(false);
             bits.flag(false);
             bits.flag(false);
@@ -169,7 +169,7 @@ impl Encoder {
         bits.ue(1);
     }
 
-    /// The motion that a macroblock is expected to have, the one it has if it is left out, and those of neighbours.
+    /// The predicted motion of a macroblock, its motion if it is skipped, and the motions of neighbours.
     fn neighbours(&self, [x, y]: [usize; 2]) -> ([Motion; 2], [Neighbour; 3]) {
         let wide = self.blocks[0];
         let at = |x: usize, y: usize| self.motion[y * wide + x];
@@ -183,12 +183,12 @@ impl Encoder {
         (expected_motion(left, above, corner), [left, above, corner])
     }
 
-    /// What the frame before lets expect.
+    /// The prediction from the previous frame.
     fn moved(&self, macroblock: [usize; 2], motion: Motion) -> [Pixels; 3] {
         std::array::from_fn(|plane| from_before(&self.before, plane, macroblock, motion))
     }
 
-    /// Codes a macroblock that shows what it showed before.
+    /// Encodes an unchanged macroblock.
     fn repeat(&mut self, bits: &mut Bits, macroblock: [usize; 2], skipped: &mut u32) {
         let ([expected, left_out], _) = self.neighbours(macroblock);
         self.drawn.copy_block(&self.before, macroblock);
@@ -206,11 +206,11 @@ impl Encoder {
         bits.ue(u32::from(PATTERNS[0]));
     }
 
-    /// Codes a macroblock that has changed.
+    /// Encodes a changed macroblock.
     fn renew(&mut self, bits: &mut Bits, macroblock: [usize; 2], skipped: &mut u32) {
         let ([expected, left_out], neighbours) = self.neighbours(macroblock);
         let (motion, pixels, cost) = self.search(macroblock, expected, left_out, neighbours);
-        // What a body leaves behind is drawn anew where it is empty, so that no traces stay.
+        // Macroblocks that a body has left are drawn again if they are empty, so that no traces remain.
         let empty = cost > 0 && self.source.is_empty(macroblock);
         if cost > 256 || empty {
             let alone = self.alone(macroblock);
@@ -242,7 +242,7 @@ impl Encoder {
         residual.write(bits, &mut self.counts, macroblock);
     }
 
-    /// Looks for a macroblock in the frame before, beginning with what the neighbours say.
+    /// Searches for a macroblock in the previous frame, starting with the motions of the neighbours.
     fn search(
         &self,
         macroblock: [usize; 2],
@@ -297,7 +297,7 @@ impl Encoder {
         best
     }
 
-    /// The best expectation from the neighbours.
+    /// The best prediction from the neighbours.
     fn alone(&self, macroblock: [usize; 2]) -> Alone {
         let best = |plane: usize| {
             let directions: &[Direction] = match self.source.is_empty(macroblock) {
@@ -320,7 +320,7 @@ impl Encoder {
         Alone { luma, colour, expected: [brightness, blue, red], cost: cost + 12 * self.bit_cost }
     }
 
-    /// Codes a macroblock from its neighbours; `offset` is how many other kinds come first in this kind of picture.
+    /// Encodes a macroblock predicted from its neighbours; `offset` is the number of other kinds that come first in this kind of picture.
     fn write_alone(&mut self, bits: &mut Bits, macroblock: [usize; 2], alone: &Alone, offset: u32) {
         let residual =
             Residual::new(&self.source, &mut self.drawn, macroblock, &alone.expected, true, &self.quantisers);

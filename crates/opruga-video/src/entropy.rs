@@ -1,18 +1,18 @@
-//! Levels as bits: CAVLC (H.264, clause 9.2).
+//! Encoding of levels: CAVLC (H.264, clause 9.2).
 
 use super::bits::Bits;
 use super::tables::{COUNTS, RUNS, SUM_COUNTS, SUM_ZEROS, ZEROS};
 
-/// Which code tells the number of levels.
+/// The code for the number of levels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Context {
-    /// That of a block whose neighbours have so many levels.
+    /// The code for a block whose neighbours have this mean number of levels.
     Near(u8),
-    /// That of the sums of the differences of colour.
+    /// The code for the chroma DC levels.
     Sums,
 }
 
-/// Writes up to 16 levels, from the slowest frequency to the fastest; gives the number of those that are not zero.
+/// Writes up to 16 levels, from the lowest frequency to the highest; returns the number of nonzero levels.
 pub(crate) fn write_levels(bits: &mut Bits, levels: &[i32], context: Context) -> u8 {
     let mut found = [(0, 0); 16];
     let mut total = 0;
@@ -39,7 +39,7 @@ pub(crate) fn write_levels(bits: &mut Bits, levels: &[i32], context: Context) ->
     }
     let mut suffix = u32::from(total > 10 && ones < 3);
     for (index, &(_, level)) in found.iter().rev().enumerate().skip(ones) {
-        // The first level after fewer than three ones is larger than one.
+        // If there are fewer than three trailing ones, the first other level is larger than one.
         let smaller = i32::from(index == ones && ones < 3);
         let code = (2 * (level.abs() - smaller) - 1 - i32::from(level > 0)) as u32;
         write_level(bits, code, suffix);
@@ -66,7 +66,7 @@ pub(crate) fn write_levels(bits: &mut Bits, levels: &[i32], context: Context) ->
     total as u8
 }
 
-/// Writes the code of a level: zeros, a one, and a rest.
+/// Writes the code of a level: zeros, a one, and a remainder.
 fn write_level(bits: &mut Bits, code: u32, suffix: u32) {
     let (prefix, rest, length) = match suffix {
         0 if code < 14 => (code, 0, 0),

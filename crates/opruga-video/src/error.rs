@@ -1,9 +1,9 @@
-//! What can go wrong while a film is written.
+//! Errors of writing a film.
 
 use opruga_math::words::number;
 
 opruga_math::messages! {
-    /// Why a film could not be made.
+    /// The reasons why a film could not be made.
     #[derive(Clone, Debug, PartialEq)]
     pub enum VideoError {
         /// A frame has no pixels, or more than the format allows.
@@ -15,7 +15,7 @@ opruga_math::messages! {
         "video.frame_size"
         #[error("a frame has {width} by {height} pixels; the film has {film_width} by {film_height}")]
         FrameSize { width: u32, height: u32, film_width: u32, film_height: u32 },
-        /// The rate is outside of what the clock of the format counts.
+        /// The rate is outside the range of the clock of the format.
         "video.rate"
         #[error("a film cannot have {} frames per second", number(*rate))]
         #[allowed("0.0001 to 10000")]
@@ -24,7 +24,7 @@ opruga_math::messages! {
         "video.empty"
         #[error("a film needs at least one frame")]
         Empty {},
-        /// The system could not write the bytes; its reason.
+        /// The system could not write the bytes; contains the reason.
         "write.failed"
         #[error("cannot write the film: {reason}")]
         Write { reason: String },

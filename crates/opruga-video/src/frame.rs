@@ -1,18 +1,18 @@
-//! A frame as H.264 knows it, and how the colours of an image become one.
+//! A frame in the format of H.264, and the conversion of the colours of an image to it.
 
 use crate::image::Image;
 
-/// The number of pixels along a side of a macroblock, the piece that a frame is coded by.
+/// The number of pixels along a side of a macroblock, the unit in which a frame is encoded.
 pub(crate) const BLOCK: usize = 16;
 
-/// Brightness for every pixel and two differences of colour for every four, in whole macroblocks.
+/// Luma for every pixel and two chroma values for every four pixels, in whole macroblocks.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Frame {
     /// The number of macroblocks in a row.
     pub(crate) wide: usize,
     /// The number of rows of macroblocks.
     pub(crate) high: usize,
-    /// Brightness (Y), and the differences of blue (Cb) and red (Cr) from it.
+    /// Luma (Y), and chroma of blue (Cb) and red (Cr).
     pub(crate) planes: [Vec<u8>; 3],
 }
 
@@ -33,12 +33,12 @@ impl Frame {
         self.wide * Frame::side(plane)
     }
 
-    /// Where a macroblock begins in a plane.
+    /// The index of the first pixel of a macroblock in a plane.
     pub(crate) fn start(&self, plane: usize, [x, y]: [usize; 2]) -> usize {
         (y * self.stride(plane) + x) * Frame::side(plane)
     }
 
-    /// Whether a macroblock has the same brightness everywhere.
+    /// Whether a macroblock has uniform luma.
     pub(crate) fn is_empty(&self, macroblock: [usize; 2]) -> bool {
         let (stride, start) = (self.stride(0), self.start(0, macroblock));
         let pixels = &self.planes[0];
@@ -56,10 +56,10 @@ impl Frame {
         }
     }
 
-    /// Takes a macroblock over from an image, whose last column and row go on beyond its edge.
+    /// Copies a macroblock from an image, whose last column and row are repeated beyond its edge.
     ///
-    /// The colours become those of BT.709 in the limited range. As decoders expect it, a difference of colour lies on
-    /// the left one of its two columns, and between its two rows.
+    /// The colours are converted to BT.709 in the limited range. As decoders expect, a chroma sample is at the left one of its two columns, and
+    /// between its two rows.
     pub(crate) fn take(&mut self, image: Image<'_>, [x, y]: [usize; 2]) {
         let (width, height) = (image.width() as usize, image.height() as usize);
         let pixels = image.pixels();

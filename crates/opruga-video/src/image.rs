@@ -1,6 +1,6 @@
 //! The pixels of a frame.
 
-/// A frame: four bytes a pixel, row by row from the top.
+/// A frame: four bytes per pixel, row by row from the top.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Image<'a> {
     pub(crate) size: [u32; 2],
@@ -16,7 +16,7 @@ impl<'a> Image<'a> {
     pub(crate) fn height(&self) -> u32 {
         self.size[1]
     }
-    /// Four bytes a pixel.
+    /// Four bytes per pixel.
     pub(crate) fn pixels(&self) -> &'a [u8] {
         self.pixels
     }

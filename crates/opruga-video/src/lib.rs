@@ -1,10 +1,10 @@
-//! Films as MP4 with H.264, the constrained baseline profile, in plain Rust.
+//! Films as MP4 with H.264, constrained baseline profile, in pure Rust.
 //!
-//! It is made for drawn pictures: a macroblock that has not changed costs hardly any time and bits, one that has moved
-//! is looked for in the frame before, and there is no deblocking, so that lines and letters stay sharp. The same frames
-//! give the same bytes everywhere. ITU-T recommendation H.264 is the source of every table and formula.
+//! The encoder is made for drawn pictures. An unchanged macroblock costs hardly any time and bits, a moved one is searched in the previous frame, and
+//! there is no deblocking, so that lines and letters stay sharp. The same frames give the same bytes everywhere. ITU-T recommendation H.264 is the
+//! source of all tables and formulas.
 
-// Only tests compute with floating-point functions: they compare pictures, not physics.
+// Only tests use floating-point functions: they compare pictures, not physics.
 #![cfg_attr(test, allow(clippy::disallowed_methods))]
 
 mod bits;
@@ -28,10 +28,10 @@ use mp4::{Film, Sample};
 use parameters::{Parameters, Rate};
 use std::io::Write;
 
-/// The quantiser: small numbers keep more of the pictures.
+/// The quantiser: smaller numbers keep more detail.
 const QUANTISER: u8 = 20;
 
-/// The time from a frame that needs no other to the next [s]: how exactly a player can jump.
+/// The time from one independent frame to the next [s], which determines how precisely a player can seek.
 const PERIOD: f64 = 2.0;
 
 /// Writes a film frame by frame; only the coded frames stay in memory until [`Mp4Writer::finish`].
@@ -55,11 +55,11 @@ impl<W: Write> core::fmt::Debug for Mp4Writer<W> {
 }
 
 impl<W: Write> Mp4Writer<W> {
-    /// Begins a film of frames of one size, in pixels; an odd side is shown with its last column or row twice.
+    /// Begins a film with frames of one size, in pixels. If a side is odd, its last column or row is repeated.
     ///
     /// # Errors
-    /// [`VideoError`] if there are no pixels, more than the format allows (about 35 million), or the rate is not between
-    /// 0.0001 and 10,000 frames a second.
+    /// [`VideoError`] if there are no pixels or more than the format allows (about 35 million), or if the rate is not between 0.0001 and 10,000
+    /// frames per second.
     pub fn new(out: W, size: [u32; 2], frames_per_second: f64) -> Result<Mp4Writer<W>, VideoError> {
         let [width, height] = size;
         if width == 0 || height == 0 || width > 16_384 || height > 16_384 {
@@ -78,10 +78,10 @@ impl<W: Write> Mp4Writer<W> {
         })
     }
 
-    /// Adds a frame: four bytes a pixel, red, green, blue and an opacity that is not looked at, row by row from the top.
+    /// Adds a frame: four bytes per pixel, red, green, blue and an opacity that is ignored, row by row from the top.
     ///
     /// # Errors
-    /// [`VideoError::FrameSize`] if it has another size; the film goes on without it.
+    /// [`VideoError::FrameSize`] if it has another size; the film can continue without it.
     pub fn push(&mut self, size: [u32; 2], pixels: &[u8]) -> Result<(), VideoError> {
         let image = Image { size, pixels };
         if size != self.size || pixels.len() as u64 != 4 * u64::from(size[0]) * u64::from(size[1]) {
@@ -95,10 +95,10 @@ impl<W: Write> Mp4Writer<W> {
         Ok(())
     }
 
-    /// Writes the file and gives the writer back.
+    /// Writes the file and returns the writer.
     ///
     /// # Errors
-    /// [`VideoError`] if there is no frame, or the bytes cannot be written.
+    /// [`VideoError`] if there is no frame, or if the bytes cannot be written.
     pub fn finish(mut self) -> Result<W, VideoError> {
         if self.samples.is_empty() {
             return Err(VideoError::Empty {});

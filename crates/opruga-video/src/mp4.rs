@@ -1,4 +1,4 @@
-//! The boxes of an MP4 file with one film in it (ISO/IEC 14496-12 and 14496-15); what a player needs comes first.
+//! The boxes of an MP4 file with one film in it (ISO/IEC 14496-12 and 14496-15), with the data that a player needs first.
 
 use super::parameters::{Parameters, Rate};
 use std::io::{Result, Write};
@@ -8,24 +8,24 @@ use std::io::{Result, Write};
 pub(crate) struct Sample {
     /// Its length in bytes.
     pub(crate) size: u32,
-    /// Whether it needs no other.
+    /// Whether it does not depend on others.
     pub(crate) refresh: bool,
 }
 
-/// What the boxes say.
+/// The content of the boxes.
 #[derive(Clone, Debug)]
 pub(crate) struct Film<'a> {
     /// The width and the height of the film.
     pub(crate) size: [u32; 2],
-    /// The length of a picture.
+    /// The length of a picture as a fraction of a second.
     pub(crate) rate: Rate,
-    /// What a decoder must know.
+    /// The parameters for the decoder.
     pub(crate) parameters: &'a Parameters,
     /// The pictures.
     pub(crate) samples: &'a [Sample],
 }
 
-/// A box: its length, its name and what is in it.
+/// A box: its length, its name and its content.
 fn boxed(name: &[u8; 4], parts: &[&[u8]]) -> Vec<u8> {
     let length: usize = parts.iter().map(|part| part.len()).sum();
     let mut out = Vec::with_capacity(8 + length);
@@ -35,7 +35,7 @@ fn boxed(name: &[u8; 4], parts: &[&[u8]]) -> Vec<u8> {
     out
 }
 
-/// Bytes from numbers of different lengths.
+/// Bytes from integers of different sizes.
 macro_rules! bytes {
     ($($number:expr),* $(,)?) => {{
         let mut out: Vec<u8> = Vec::new();
@@ -44,7 +44,7 @@ macro_rules! bytes {
     }};
 }
 
-/// The matrix that changes nothing.
+/// The identity matrix.
 fn unit_matrix() -> Vec<u8> {
     [0x1_0000_u32, 0, 0, 0, 0x1_0000, 0, 0, 0, 0x4000_0000].iter().flat_map(|number| number.to_be_bytes()).collect()
 }
@@ -53,13 +53,13 @@ fn unit_matrix() -> Vec<u8> {
 const LONG: u32 = 1 << 24;
 
 impl Film<'_> {
-    /// Writes the head of the file; the pictures follow, each with its length in four bytes.
+    /// Writes the header of the file; the pictures follow, each with its length in four bytes.
     pub(crate) fn write_head(&self, out: &mut impl Write) -> Result<()> {
         let kind = boxed(b"ftyp", &[b"isom", &bytes![512_u32], b"isomiso2avc1mp41"]);
         let data: u64 = self.samples.iter().map(|sample| u64::from(sample.size)).sum();
         let long = data + 8 > u64::from(u32::MAX);
         let data_head = if long { 16 } else { 8 };
-        // The offset of the data has the same length whatever it is.
+        // The size of the header does not depend on the value of the offset.
         let length = kind.len() + self.movie(0).len() + data_head;
         out.write_all(&kind)?;
         out.write_all(&self.movie(length as u64))?;
@@ -72,7 +72,7 @@ impl Film<'_> {
         out.write_all(b"mdat")
     }
 
-    /// Everything but the pictures, which begin at an offset in the file.
+    /// Everything except the pictures, which begin at the given offset in the file.
     fn movie(&self, start: u64) -> Vec<u8> {
         let duration = self.samples.len() as u64 * u64::from(self.rate.frame);
         let ticks = self.rate.ticks;
@@ -90,14 +90,14 @@ impl Film<'_> {
         let track = boxed(
             b"tkhd",
             &[
-                // It is on, and in the film.
+                // Enabled, and part of the film.
                 &bytes![LONG | 3, 0_u64, 0_u64, 1_u32, 0_u32, duration],
                 &[0; 16],
                 &unit_matrix(),
                 &bytes![width << 16, height << 16],
             ],
         );
-        // The language is not known: `und`.
+        // The language is undetermined: `und`.
         let media = boxed(b"mdhd", &[&bytes![LONG, 0_u64, 0_u64, ticks, duration, 0x55C4_u16, 0_u16]]);
         let handler = boxed(b"hdlr", &[&[0; 8], b"vide", &[0; 12], b"Opruga\0"]);
         let look = boxed(b"vmhd", &[&bytes![1_u32], &[0; 8]]);
@@ -128,7 +128,7 @@ impl Film<'_> {
         boxed(b"stbl", &[&description, &times, &starts, &chunks, &sizes, &offsets])
     }
 
-    /// What a decoder must know.
+    /// The parameters for the decoder.
     fn entry(&self) -> Vec<u8> {
         let Parameters { sequence, picture } = self.parameters;
         let configuration = boxed(

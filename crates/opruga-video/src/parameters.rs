@@ -1,13 +1,13 @@
-//! What a decoder must know before the first picture (H.264, clauses 7.3.2.1, 7.3.2.2 and annexes A and E).
+//! The parameters that a decoder needs before the first picture (H.264, clauses 7.3.2.1, 7.3.2.2 and annexes A and E).
 
 use super::bits::{Bits, Unit, pack};
 use super::frame::BLOCK;
 use crate::error::VideoError;
 
-/// The number of bits of the number of a picture.
+/// The number of bits of a picture number.
 pub(crate) const NUMBER_BITS: u32 = 16;
 
-/// Levels: ten times their number, the most macroblocks a second, the most in a frame.
+/// Levels: ten times the level number, the maximum number of macroblocks per second, and per frame.
 const LEVELS: [(u8, u64, u64); 18] = [
     (10, 1_485, 99),
     (11, 3_000, 396),
@@ -32,14 +32,14 @@ const LEVELS: [(u8, u64, u64); 18] = [
 /// The length of a frame as a fraction of a second.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Rate {
-    /// Ticks of the clock in a second.
+    /// Clock ticks per second.
     pub(crate) ticks: u32,
-    /// Ticks for a frame.
+    /// Ticks per frame.
     pub(crate) frame: u32,
 }
 
 impl Rate {
-    /// The fraction of a number of frames a second: exact for numbers such as 20, 12.5 and 30000/1001.
+    /// The fraction for a number of frames per second; exact for numbers such as 20, 12.5 and 30000/1001.
     pub(crate) fn new(frames_per_second: f64) -> Result<Rate, VideoError> {
         if !(1e-4..=1e4).contains(&frames_per_second) {
             return Err(VideoError::Rate { rate: frames_per_second });
@@ -55,18 +55,18 @@ impl Rate {
         Ok(Rate { ticks: 90_000, frame: (90_000.0 / frames_per_second).round() as u32 })
     }
 
-    /// Frames a second.
+    /// Frames per second.
     pub(crate) fn frames_per_second(self) -> f64 {
         f64::from(self.ticks) / f64::from(self.frame)
     }
 }
 
-/// The two units that a stream begins with.
+/// The two units at the beginning of a stream.
 #[derive(Clone, Debug)]
 pub(crate) struct Parameters {
-    /// What holds for the whole stream.
+    /// Parameters of the whole stream.
     pub(crate) sequence: Vec<u8>,
-    /// What holds for its pictures.
+    /// Parameters of its pictures.
     pub(crate) picture: Vec<u8>,
 }
 
@@ -81,7 +81,7 @@ impl Parameters {
         let fits = |most: u64| size <= most && blocks.iter().all(|side| side * side <= 8 * most);
         let speed = (size as f64 * rate.frames_per_second()).ceil() as u64;
         let level = LEVELS.iter().find(|level| fits(level.2) && speed <= level.1);
-        // A film of too many frames a second is played more slowly, but one of too large frames not at all.
+        // A film with too many frames per second is played more slowly, but a film with too large frames is not played at all.
         let level = level.or(LEVELS.last().filter(|level| fits(level.2)));
         let level = level.ok_or(VideoError::Size { width, height })?.0;
         Ok(Parameters {
@@ -91,7 +91,7 @@ impl Parameters {
     }
 }
 
-/// What holds for the whole stream.
+/// The parameters of the whole stream.
 fn sequence(size: [u32; 2], blocks: [u32; 2], rate: Rate, level: u8) -> Vec<u8> {
     let mut bits = Bits::default();
     // The constrained baseline profile.
@@ -100,7 +100,7 @@ fn sequence(size: [u32; 2], blocks: [u32; 2], rate: Rate, level: u8) -> Vec<u8> 
     bits.put(level.into(), 8);
     bits.ue(0);
     bits.ue(NUMBER_BITS - 4);
-    // Pictures are shown in the order in which they come, and the next one may need the last one.
+    // Pictures are shown in the order of the stream, and each may depend on the previous one.
     bits.ue(2);
     bits.ue(1);
     bits.flag(false);
@@ -108,7 +108,7 @@ fn sequence(size: [u32; 2], blocks: [u32; 2], rate: Rate, level: u8) -> Vec<u8> 
     bits.ue(blocks[1] - 1);
     bits.flag(true);
     bits.flag(true);
-    // What macroblocks have more than the picture is cut off, in pairs of pixels.
+    // The part of macroblocks beyond the picture is cropped, in pairs of pixels.
     let extra: [u32; 2] = std::array::from_fn(|axis| (blocks[axis] * BLOCK as u32 - size[axis]) / 2);
     bits.flag(extra != [0, 0]);
     if extra != [0, 0] {
@@ -117,7 +117,7 @@ fn sequence(size: [u32; 2], blocks: [u32; 2], rate: Rate, level: u8) -> Vec<u8> 
         }
     }
     bits.flag(true);
-    // Square pixels; no overscan; the limited range and the three words for BT.709.
+    // Square pixels; no overscan; the limited range and the three codes for BT.709.
     bits.flag(true);
     bits.put(1, 8);
     bits.flag(false);
@@ -127,12 +127,12 @@ fn sequence(size: [u32; 2], blocks: [u32; 2], rate: Rate, level: u8) -> Vec<u8> 
     bits.flag(true);
     [1, 1, 1].into_iter().for_each(|word| bits.put(word, 8));
     bits.flag(false);
-    // The clock counts fields, two a frame.
+    // The clock counts fields, two per frame.
     bits.flag(true);
     bits.put(rate.frame, 32);
     bits.put(2 * rate.ticks, 32);
     bits.flag(true);
-    // No buffer model and no structure; no picture waits for a later one.
+    // No buffer model and no picture structure; no picture depends on a later one.
     [false; 3].into_iter().for_each(|flag| bits.flag(flag));
     bits.flag(true);
     bits.flag(true);
@@ -140,12 +140,12 @@ fn sequence(size: [u32; 2], blocks: [u32; 2], rate: Rate, level: u8) -> Vec<u8> 
     pack(Unit::Sequence, &bits.finish())
 }
 
-/// What holds for the pictures.
+/// The parameters of the pictures.
 fn picture(quantiser: u8) -> Vec<u8> {
     let mut bits = Bits::default();
     bits.ue(0);
     bits.ue(0);
-    // CAVLC, no fields, one group of slices, one picture before, no weights.
+    // CAVLC, no fields, one slice group, one reference picture, no weights.
     bits.flag(false);
     bits.flag(false);
     [0, 0, 0].into_iter().for_each(|number| bits.ue(number));
@@ -154,7 +154,7 @@ fn picture(quantiser: u8) -> Vec<u8> {
     bits.se(i32::from(quantiser) - 26);
     bits.se(0);
     bits.se(0);
-    // Slices say how they are deblocked; prediction is free; nothing is sent twice.
+    // Slices control their deblocking; prediction is unconstrained; nothing is sent redundantly.
     bits.flag(true);
     bits.flag(false);
     bits.flag(false);

@@ -1,20 +1,20 @@
-//! What a macroblock is expected to look like: from its neighbours, or from the frame before (H.264, clauses 8.3, 8.4).
+//! The prediction of a macroblock: from its neighbours, or from the previous frame (H.264, clauses 8.3, 8.4).
 
 use super::frame::Frame;
 
-/// How a macroblock is expected from its neighbours.
+/// The prediction of a macroblock from its neighbours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Direction {
-    /// As the row above.
+    /// Equal to the row above.
     Down,
-    /// As the column at the left.
+    /// Equal to the column at the left.
     Right,
-    /// As their mean.
+    /// Equal to their mean.
     Mean,
 }
 
 impl Direction {
-    /// Whether the neighbours are there that it needs.
+    /// Whether the neighbours that it needs exist.
     pub(crate) fn is_possible(self, [x, y]: [usize; 2]) -> bool {
         match self {
             Direction::Down => y > 0,
@@ -22,7 +22,7 @@ impl Direction {
             Direction::Mean => true,
         }
     }
-    /// Its number for the brightness.
+    /// Its number for luma.
     pub(crate) fn luma(self) -> u32 {
         match self {
             Direction::Down => 0,
@@ -30,7 +30,7 @@ impl Direction {
             Direction::Mean => 2,
         }
     }
-    /// Its number for the differences of colour.
+    /// Its number for chroma.
     pub(crate) fn chroma(self) -> u32 {
         match self {
             Direction::Mean => 0,
@@ -40,10 +40,10 @@ impl Direction {
     }
 }
 
-/// The pixels of a macroblock in one plane; those of a difference of colour fill the first 64.
+/// The pixels of a macroblock in one plane; chroma fills only the first 64.
 pub(crate) type Pixels = [u8; 256];
 
-/// What the neighbours let expect.
+/// The prediction from the neighbours.
 pub(crate) fn from_neighbours(frame: &Frame, plane: usize, macroblock: [usize; 2], direction: Direction) -> Pixels {
     let (side, stride, start) = (Frame::side(plane), frame.stride(plane), frame.start(plane, macroblock));
     let pixels = &frame.planes[plane];
@@ -74,7 +74,7 @@ pub(crate) fn from_neighbours(frame: &Frame, plane: usize, macroblock: [usize; 2
             out.fill(mean as u8);
         }
         Direction::Mean => {
-            // Each quarter has a mean of its own; those off the diagonal take one side alone where it is there.
+            // Each quarter has its own mean; those off the diagonal use only one side if it exists.
             for (right, lower) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
                 let above = || sum(4 * right..4 * right + 4, true);
                 let left = || sum(4 * lower..4 * lower + 4, false);
@@ -95,10 +95,10 @@ pub(crate) fn from_neighbours(frame: &Frame, plane: usize, macroblock: [usize; 2
     out
 }
 
-/// How far a macroblock has moved, in quarters of a pixel.
+/// The motion of a macroblock, in quarters of a pixel.
 pub(crate) type Motion = [i32; 2];
 
-/// What the frame before lets expect after a motion by whole pixels.
+/// The prediction from the previous frame after a motion by whole pixels.
 pub(crate) fn from_before(before: &Frame, plane: usize, [x, y]: [usize; 2], motion: Motion) -> Pixels {
     let (side, stride) = (Frame::side(plane), before.stride(plane));
     let rows = before.high * side;
@@ -109,7 +109,7 @@ pub(crate) fn from_before(before: &Frame, plane: usize, [x, y]: [usize; 2], moti
     debug_assert!(plane > 0 || right_share == 0 && lower_share == 0, "brightness moves by whole pixels");
     let pixels = &before.planes[plane];
     let mut out = [0; 256];
-    // Beyond the edge the last column and row go on.
+    // Beyond the edge the last column and row are repeated.
     let column = |x: i32| x.clamp(0, stride as i32 - 1) as usize;
     let row = |y: i32| y.clamp(0, rows as i32 - 1) as usize * stride;
     let inside = left >= 0 && left as usize + side <= stride;
@@ -134,7 +134,7 @@ pub(crate) fn from_before(before: &Frame, plane: usize, [x, y]: [usize; 2], moti
     out
 }
 
-/// The sum of the differences between a macroblock of a frame and what is expected; it stops above a limit.
+/// The sum of the absolute differences between a macroblock of a frame and its prediction; it stops above a limit.
 pub(crate) fn difference(frame: &Frame, plane: usize, macroblock: [usize; 2], expected: &Pixels, limit: u32) -> u32 {
     let (side, stride, start) = (Frame::side(plane), frame.stride(plane), frame.start(plane, macroblock));
     let mut sum = 0;
@@ -148,9 +148,9 @@ pub(crate) fn difference(frame: &Frame, plane: usize, macroblock: [usize; 2], ex
     sum
 }
 
-/// The motion that the neighbours let expect, and the one of a macroblock that is left out.
+/// The motion predicted from the neighbours, and that of a skipped macroblock.
 ///
-/// A neighbour is none outside the picture, and none within where it was not taken from the frame before.
+/// A neighbour is `None` outside the picture, and `Some(None)` if it was not predicted from the previous frame.
 pub(crate) fn expected_motion(left: Neighbour, above: Neighbour, corner: Neighbour) -> [Motion; 2] {
     let known = |neighbour: Neighbour| neighbour.flatten();
     let motion = match (left, above, corner) {
@@ -170,7 +170,7 @@ pub(crate) fn expected_motion(left: Neighbour, above: Neighbour, corner: Neighbo
     [motion, if rests(left) || rests(above) { [0, 0] } else { motion }]
 }
 
-/// The motion of a neighbour: none outside of the picture, none within where it was not taken from the frame before.
+/// The motion of a neighbour: `None` outside the picture, `Some(None)` if it was not predicted from the previous frame.
 pub(crate) type Neighbour = Option<Option<Motion>>;
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! What is left of a macroblock after the expectation: levels, and the pixels that come of them.
+//! The residual of a macroblock after prediction: levels, and the pixels restored from them.
 
 use super::bits::Bits;
 use super::entropy::{Context, write_levels};
@@ -9,14 +9,14 @@ use super::transform::{Block, Quantiser, ZIGZAG, add_inverse, chroma_quantiser, 
 /// The quantisers of a film.
 #[derive(Clone, Debug)]
 pub(crate) struct Quantisers {
-    /// For what is expected from neighbours: brightness, colour.
+    /// For predictions from neighbours: luma, chroma.
     alone: [Quantiser; 2],
-    /// For what is expected from the frame before: brightness, colour.
+    /// For predictions from the previous frame: luma, chroma.
     moved: [Quantiser; 2],
 }
 
 impl Quantisers {
-    /// The quantisers of a number from 12 (fine) to 51 (coarse).
+    /// The quantisers for a number from 12 (fine) to 51 (coarse).
     pub(crate) fn new(quantiser: u8) -> Quantisers {
         let both = |share| [quantiser, chroma_quantiser(quantiser)].map(|number| Quantiser::new(number, share));
         Quantisers { alone: both(3), moved: both(6) }
@@ -26,23 +26,23 @@ impl Quantisers {
 /// The levels of a macroblock.
 #[derive(Clone, Debug)]
 pub(crate) struct Residual {
-    /// Whether the brightness has its sums apart.
+    /// Whether the luma DC values are encoded separately.
     alone: bool,
-    /// The sixteen sums of the brightness, where they are apart.
+    /// The sixteen luma DC values, if they are separate.
     sums: Block,
-    /// The brightness, in quarters of quarters.
+    /// The luma, in blocks of 4 × 4 pixels.
     luma: [Block; 16],
-    /// The four sums of both differences of colour.
+    /// The four DC values of both chroma planes.
     colour_sums: [[i32; 4]; 2],
-    /// The differences of colour.
+    /// The chroma.
     colour: [[Block; 4]; 2],
-    /// The quarters of the brightness which have levels, one bit each.
+    /// The quarters of the luma that have levels, one bit each.
     pub(crate) luma_coded: u32,
-    /// 0 without colour, 1 with its sums alone, 2 with all of it.
+    /// 0 without chroma, 1 with only its DC values, 2 with all of it.
     pub(crate) colour_coded: u32,
 }
 
-/// How many levels every block has, which the codes of its neighbours depend on.
+/// The number of levels of every block, on which the codes of its neighbours depend.
 #[derive(Clone, Debug)]
 pub(crate) struct Counts {
     /// Blocks in a row of each plane.
@@ -51,7 +51,7 @@ pub(crate) struct Counts {
 }
 
 impl Counts {
-    /// No levels yet.
+    /// All counts zero.
     pub(crate) fn new(wide: usize, high: usize) -> Counts {
         Counts { wide: [4 * wide, 2 * wide, 2 * wide], planes: [16, 4, 4].map(|blocks| vec![0; blocks * wide * high]) }
     }
@@ -67,12 +67,12 @@ impl Counts {
         })
     }
 
-    /// Keeps the number of levels of a block.
+    /// Stores the number of levels of a block.
     fn set(&mut self, plane: usize, [x, y]: [usize; 2], count: u8) {
         self.planes[plane][y * self.wide[plane] + x] = count;
     }
 
-    /// Forgets a macroblock.
+    /// Clears the counts of a macroblock.
     pub(crate) fn clear(&mut self, [x, y]: [usize; 2]) {
         for plane in 0..3 {
             let side = if plane == 0 { 4 } else { 2 };
@@ -84,12 +84,12 @@ impl Counts {
     }
 }
 
-/// The column and the row of a block in its macroblock, in the order in which blocks of the brightness are coded.
+/// The column and the row of a block in its macroblock, in the coding order of luma blocks.
 fn luma_position(block: usize) -> [usize; 2] {
     [block & 1 | block >> 1 & 2, block >> 1 & 1 | block >> 2 & 2]
 }
 
-/// The frequencies of what a block differs by from the expectation.
+/// The transform of the difference between a block and its prediction.
 fn differences(source: &Frame, plane: usize, start: usize, expected: &Pixels, [x, y]: [usize; 2]) -> Block {
     let (side, stride) = (Frame::side(plane), source.stride(plane));
     let mut block = [0; 16];
@@ -105,7 +105,7 @@ fn differences(source: &Frame, plane: usize, start: usize, expected: &Pixels, [x
 }
 
 impl Residual {
-    /// Finds the levels of a macroblock of `source`, and draws in `drawn` what a decoder makes of them.
+    /// Finds the levels of a macroblock of `source`, and draws what a decoder restores from them in `drawn`.
     pub(crate) fn new(
         source: &Frame,
         drawn: &mut Frame,
@@ -135,7 +135,7 @@ impl Residual {
         out
     }
 
-    /// Finds the levels of the brightness and draws it.
+    /// Finds the levels of the luma and draws it.
     fn take_luma(
         &mut self,
         source: &Frame,
@@ -178,7 +178,7 @@ impl Residual {
         }
     }
 
-    /// Finds the levels of the differences of colour and draws them.
+    /// Finds the levels of the chroma and draws it.
     fn take_colour(
         &mut self,
         source: &Frame,
@@ -215,7 +215,7 @@ impl Residual {
         }
     }
 
-    /// Whether nothing is left.
+    /// Whether there are no levels.
     pub(crate) fn is_empty(&self) -> bool {
         self.luma_coded == 0 && self.colour_coded == 0 && !self.alone
     }

@@ -1,9 +1,9 @@
 //! The codes of levels and runs (H.264, tables 9-5 and 9-7 to 9-10), as lengths and values.
 
-/// A code: how many bits, and which.
+/// A code: its number of bits, and its value.
 pub(crate) type Code = (u8, u8);
 
-/// Joins a table of lengths and one of values.
+/// Combines a table of lengths and a table of values.
 const fn join<const N: usize>(lengths: [u8; N], values: [u8; N]) -> [Code; N] {
     let mut codes = [(0, 0); N];
     let mut index = 0;
@@ -72,7 +72,7 @@ pub(crate) const COUNTS: [[[Code; 17]; 4]; 3] = [
     ],
 ];
 
-/// The same for the sums of the differences of colour.
+/// The same for the chroma DC levels.
 pub(crate) const SUM_COUNTS: [[Code; 5]; 4] = [
     join([2, 6, 6, 6, 6], [1, 7, 4, 3, 2]),
     join([0, 1, 6, 7, 8], [0, 1, 6, 3, 3]),
@@ -99,11 +99,11 @@ pub(crate) const ZEROS: [&[Code]; 15] = [
     &join([1, 1], [0, 1]),
 ];
 
-/// The same for the sums of the differences of colour.
+/// The same for the chroma DC levels.
 pub(crate) const SUM_ZEROS: [&[Code]; 3] =
     [&join([1, 2, 3, 3], [1, 1, 1, 0]), &join([1, 2, 2], [1, 1, 0]), &join([1, 1], [1, 0])];
 
-/// The number of zeros before a level, by the number of zeros that are left.
+/// The number of zeros before a level, by the number of remaining zeros.
 pub(crate) const RUNS: [&[Code]; 7] = [
     &join([1, 1], [1, 0]),
     &join([1, 2, 2], [1, 1, 0]),
@@ -114,7 +114,7 @@ pub(crate) const RUNS: [&[Code]; 7] = [
     &join([3, 3, 3, 3, 3, 3, 3, 4, 5, 6, 7, 8, 9, 10, 11], [7, 6, 5, 4, 3, 2, 1, 1, 1, 1, 1, 1, 1, 1, 1]),
 ];
 
-/// The numbers of the patterns of coded quarters in predicted macroblocks (table 9-4): 16 × colour + brightness.
+/// The numbers of the patterns of coded quarters in predicted macroblocks (table 9-4): 16 × chroma + luma.
 pub(crate) const PATTERNS: [u8; 48] = [
     0, 2, 3, 7, 4, 8, 17, 13, 5, 18, 9, 14, 10, 15, 16, 11, 1, 32, 33, 36, 34, 37, 44, 40, 35, 45, 38, 41, 39, 42, 43,
     19, 6, 24, 25, 20, 26, 21, 46, 28, 27, 47, 22, 29, 23, 30, 31, 12,
@@ -124,7 +124,7 @@ pub(crate) const PATTERNS: [u8; 48] = [
 mod tests {
     use super::*;
 
-    /// Whether no code begins another.
+    /// Whether no code is a prefix of another.
     fn is_prefix_free(codes: &[Code]) -> bool {
         let codes: Vec<Code> = codes.iter().copied().filter(|code| code.0 > 0).collect();
         let begins = |a: Code, b: Code| a.0 <= b.0 && u32::from(b.1) >> (b.0 - a.0) == u32::from(a.1);

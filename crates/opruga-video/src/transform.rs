@@ -1,4 +1,4 @@
-//! The transform of four by four numbers, its quantiser, and both backwards (H.264, clause 8.5).
+//! The transform of four by four numbers, its quantiser, and the inverses of both (H.264, clause 8.5).
 
 /// Four by four numbers, row by row.
 pub(crate) type Block = [i32; 16];
@@ -9,7 +9,7 @@ pub(crate) const ZIGZAG: [usize; 16] = [0, 1, 4, 8, 5, 2, 3, 6, 9, 12, 13, 10, 7
 /// The largest level: larger ones have no code in this profile.
 const LARGEST: i32 = 2063;
 
-/// Multipliers of the quantiser: at even rows and columns, at odd ones, and where one is even and the other odd.
+/// Multipliers of the quantiser: at even rows and columns, at odd ones, and for one even and one odd.
 const SCALES: [[i32; 3]; 6] = [
     [13107, 5243, 8066],
     [11916, 4660, 7490],
@@ -19,10 +19,10 @@ const SCALES: [[i32; 3]; 6] = [
     [7282, 2893, 4559],
 ];
 
-/// Multipliers of the way back, in the same order.
+/// Multipliers of the inverse, in the same order.
 const STEPS: [[i32; 3]; 6] = [[10, 16, 13], [11, 18, 14], [13, 20, 16], [14, 23, 18], [16, 25, 20], [18, 29, 23]];
 
-/// The quantiser of the differences of colour that belongs to one of the brightness.
+/// The chroma quantiser that belongs to a luma quantiser.
 pub(crate) fn chroma_quantiser(quantiser: u8) -> u8 {
     const ABOVE_29: [u8; 22] = [29, 30, 31, 32, 32, 33, 34, 34, 35, 35, 36, 36, 37, 37, 37, 38, 38, 38, 39, 39, 39, 39];
     if quantiser < 30 { quantiser } else { ABOVE_29[usize::from(quantiser) - 30] }
@@ -33,13 +33,13 @@ pub(crate) fn chroma_quantiser(quantiser: u8) -> u8 {
 pub(crate) struct Quantiser {
     scales: Block,
     steps: Block,
-    /// What is added before rounding down, for a block.
+    /// The value that is added before rounding down, for a block.
     round: i32,
     shift: u32,
 }
 
 impl Quantiser {
-    /// A quantiser; `share` of a step, one third or one sixth, is what a number needs less to reach the next level.
+    /// A quantiser whose rounding offset is 1/`share` of a step; `share` is 3 or 6.
     pub(crate) fn new(quantiser: u8, share: i32) -> Quantiser {
         let class = |index: usize| match (index / 4 % 2, index % 4 % 2) {
             (0, 0) => 0,
@@ -56,7 +56,7 @@ impl Quantiser {
         }
     }
 
-    /// Replaces numbers by levels, from the index `first` on; says whether any is left.
+    /// Replaces numbers by levels, starting at the index `first`; returns whether any is nonzero.
     pub(crate) fn quantise(&self, block: &mut Block, first: usize) -> bool {
         let mut any = 0;
         for index in first..16 {
@@ -68,7 +68,7 @@ impl Quantiser {
         any != 0
     }
 
-    /// Replaces the sums of blocks by levels; says whether any is left.
+    /// Replaces DC values by levels; returns whether any is nonzero.
     pub(crate) fn quantise_sums(&self, sums: &mut [i32]) -> bool {
         let mut any = 0;
         for sum in sums {
@@ -80,23 +80,23 @@ impl Quantiser {
         any != 0
     }
 
-    /// Replaces levels by numbers, from the index `first` on.
+    /// Replaces levels by numbers, starting at the index `first`.
     pub(crate) fn restore(&self, block: &mut Block, first: usize) {
         for index in first..16 {
             block[index] *= self.steps[index];
         }
     }
 
-    /// Replaces the levels of sixteen sums by the first numbers of the blocks.
+    /// Replaces the levels of sixteen DC values by the first numbers of the blocks.
     pub(crate) fn restore_sixteen(&self, sums: &mut Block) {
         hadamard(sums);
         for sum in sums.iter_mut() {
-            // The steps hold the shift by a sixth of the quantiser already.
+            // The steps already include the shift by a sixth of the quantiser.
             *sum = (*sum * self.steps[0] + 2) >> 2;
         }
     }
 
-    /// Replaces the levels of four sums by the first numbers of the blocks.
+    /// Replaces the levels of four DC values by the first numbers of the blocks.
     pub(crate) fn restore_four(&self, sums: &mut [i32; 4]) {
         hadamard_four(sums);
         for sum in sums.iter_mut() {
@@ -105,7 +105,7 @@ impl Quantiser {
     }
 }
 
-/// Turns differences into frequencies.
+/// Transforms differences to frequencies.
 pub(crate) fn forward(block: &mut Block) {
     for (start, step) in [(4, 1), (1, 4)] {
         for line in 0..4 {
@@ -121,7 +121,7 @@ pub(crate) fn forward(block: &mut Block) {
     }
 }
 
-/// Turns restored frequencies into differences and adds them to pixels.
+/// Transforms restored frequencies to differences and adds them to pixels.
 pub(crate) fn add_inverse(block: &Block, pixels: &mut [u8], stride: usize) {
     let mut work = *block;
     for (start, step) in [(4, 1), (1, 4)] {
@@ -199,7 +199,7 @@ mod tests {
         sums.iter_mut().for_each(|sum| *sum = (*sum + 1) >> 1);
         rule.quantise_sums(&mut sums);
         rule.restore_sixteen(&mut sums);
-        // The way back expects sums four times as large as the way there gives: 16 pixels, each divided by 64.
+        // The inverse expects DC values four times as large as those of the forward transform: 16 pixels, each divided by 64.
         assert!(sums.iter().zip(&wanted).all(|(a, b)| (a - 4 * b).abs() < 100), "{sums:?} {wanted:?}");
         let wanted = [640, -320, 64, 0];
         let mut sums = wanted;

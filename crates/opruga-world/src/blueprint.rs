@@ -283,7 +283,7 @@ pub enum LoadKind<const D: usize> {
     Pressure(f64),
     /// A force per volume at rest [N/m³]. It acts on the cells whose nodes are all selected, and their shape functions distribute it.
     BodyForce([f64; D]),
-    /// A force of constant size on every selected node, towards a fixed point.
+    /// A force of the same size on every selected node, towards a fixed point.
     Central {
         /// Its size [N]; negative: away from the point.
         value: f64,

@@ -58,7 +58,7 @@ impl<const D: usize> Potential<D> for NodeForces<D> {
 
 impl<const D: usize> Observe<D> for NodeForces<D> {}
 
-/// Forces of constant size towards a fixed point, with a factor over time: F = s (c − x)/|c − x|.
+/// Forces of equal size towards a fixed point, with a factor over time: F = s (c − x)/|c − x|.
 ///
 /// A node at the point itself feels no force, because there is no direction.
 #[derive(Debug)]

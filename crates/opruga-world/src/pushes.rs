@@ -99,7 +99,7 @@ impl<const D: usize> Meeting<D> {
         self.mixed.clear();
     }
 
-    /// Ends a frame: readings of bodies between frames do not include contact forces.
+    /// Ends a frame: queries of bodies between frames do not include contact forces.
     pub(crate) fn end(&mut self, islands: &mut [&mut Island<D>]) {
         self.pushed.iter().for_each(|pushed| islands[pushed.island].system.pushes = None);
     }

@@ -1,6 +1,6 @@
 //! Reads the boxes of an MP4 file.
 
-/// A box: its path such as `moov/trak`, and where its content lies.
+/// A box: its path such as `moov/trak`, and the range of its content.
 #[derive(Clone, Debug)]
 pub(super) struct Found {
     pub(super) path: String,
@@ -12,7 +12,7 @@ pub(super) fn number(bytes: &[u8], place: usize) -> usize {
     u32::from_be_bytes(bytes[place..place + 4].try_into().expect("four bytes")) as usize
 }
 
-/// All boxes of a file in their order; panics where lengths do not fit.
+/// All boxes of a file in order; panics if lengths are inconsistent.
 pub(super) fn read(bytes: &[u8]) -> Vec<Found> {
     let mut found = Vec::new();
     within(bytes, 0..bytes.len(), "", &mut found);
@@ -28,7 +28,7 @@ fn within(bytes: &[u8], part: std::ops::Range<usize>, path: &str, found: &mut Ve
         let path = if path.is_empty() { name.to_string() } else { format!("{path}/{name}") };
         let content = place + 8..place + length;
         found.push(Found { path: path.clone(), content: content.clone() });
-        // What comes before the first box within.
+        // The number of bytes before the first inner box.
         let head = match name {
             "moov" | "trak" | "mdia" | "minf" | "dinf" | "stbl" => Some(0),
             "stsd" | "dref" => Some(8),
@@ -50,7 +50,7 @@ pub(super) fn only<'a>(bytes: &'a [u8], path: &str) -> &'a [u8] {
     &bytes[first.content]
 }
 
-/// The parameters of a film and its pictures, as its boxes tell where they lie.
+/// The parameters of a film and its pictures, found through its boxes.
 pub(super) fn units(bytes: &[u8]) -> (Vec<&[u8]>, Vec<&[u8]>) {
     let table = "moov/trak/mdia/minf/stbl";
     let configuration = only(bytes, &format!("{table}/stsd/avc1/avcC"));

@@ -1,5 +1,4 @@
-//! A decoder for what the encoder writes, and for nothing else: it reads the bits by itself, and shares the tables,
-//! the prediction and the way back of the transform.
+//! A decoder only for the output of the encoder. It has its own bit reader, and shares the tables, the prediction and the inverse transform.
 
 use super::super::frame::Frame;
 use super::super::parameters::NUMBER_BITS;
@@ -14,7 +13,7 @@ struct Reader {
 }
 
 impl Reader {
-    /// The bits of a unit, without its head and what keeps it from looking like a start.
+    /// The bits of a unit, without its header and without the bytes that keep it from looking like a start.
     fn new(unit: &[u8]) -> Reader {
         let mut bytes: Vec<u8> = Vec::new();
         for (place, &byte) in unit.iter().enumerate().skip(1) {
@@ -50,13 +49,13 @@ impl Reader {
         if code % 2 == 1 { (code + 1) / 2 } else { -code / 2 }
     }
 
-    /// Whether anything but the end of the unit follows.
+    /// Whether anything follows before the end of the unit.
     fn has_more(&self) -> bool {
         let last = self.bytes.len() * 8 - 1 - self.bytes[self.bytes.len() - 1].trailing_zeros() as usize;
         self.place < last
     }
 
-    /// The place of the code that follows.
+    /// The index of the next code.
     fn code(&mut self, codes: &[Code]) -> usize {
         let start = self.place;
         for (place, &(length, value)) in codes.iter().enumerate().filter(|(_, code)| code.0 > 0) {
@@ -69,7 +68,7 @@ impl Reader {
         panic!("no code at bit {start}");
     }
 
-    /// Up to `most` levels, from the slowest frequency; none in `near` stands for the sums of colour.
+    /// Up to `most` levels, starting with the lowest frequency; if `near` is `None`, chroma DC levels.
     fn levels(&mut self, near: Option<u8>, most: usize) -> (Vec<i32>, u8) {
         let (ones, total) = match near {
             None => (self.code(SUM_COUNTS.as_flattened()), 5),
@@ -122,7 +121,7 @@ impl Reader {
     }
 }
 
-/// Decodes picture after picture.
+/// Decodes one picture after another.
 pub(super) struct Decoder {
     pub(super) size: [u32; 2],
     blocks: [usize; 2],
@@ -200,7 +199,7 @@ impl Decoder {
         &self.before
     }
 
-    /// The motion that is expected, and that of a macroblock that is left out.
+    /// The predicted motion, and that of a skipped macroblock.
     fn expected(&self, [x, y]: [usize; 2]) -> [Motion; 2] {
         let wide = self.blocks[0];
         let at = |x: usize, y: usize| (x < wide).then(|| self.motion[y * wide + x]);
@@ -210,7 +209,7 @@ impl Decoder {
         expected_motion(left, row.and_then(|y| at(x, y)), corner)
     }
 
-    /// Draws what is expected of a macroblock.
+    /// Draws the prediction of a macroblock.
     fn expect(&mut self, at: [usize; 2], pixels: impl Fn(&Frame, &Frame, usize) -> [u8; 256]) {
         for plane in 0..3 {
             let expected = pixels(&self.before, &self.drawn, plane);
@@ -221,7 +220,7 @@ impl Decoder {
         }
     }
 
-    /// The place of the number of levels of a block.
+    /// The index of the number of levels of a block.
     fn count_place(&self, plane: usize, [x, y]: [usize; 2], [column, row]: [usize; 2]) -> [usize; 2] {
         let side = if plane == 0 { 4 } else { 2 };
         [side * x + column, (side * y + row) * side * self.blocks[0]]
@@ -244,7 +243,7 @@ impl Decoder {
         }
     }
 
-    /// A macroblock from the frame before.
+    /// Decodes a macroblock predicted from the previous frame.
     fn moved(&mut self, reader: &mut Reader, at: [usize; 2]) {
         let expected = self.expected(at)[0];
         let motion = expected.map(|part| part + reader.se());
@@ -258,7 +257,7 @@ impl Decoder {
         self.residual(reader, at, [pattern & 15, pattern >> 4], false);
     }
 
-    /// A macroblock from its neighbours.
+    /// Decodes a macroblock predicted from its neighbours.
     fn alone(&mut self, reader: &mut Reader, at: [usize; 2], kind: u32) {
         self.motion[at[1] * self.blocks[0] + at[0]] = None;
         let luma = [Direction::Down, Direction::Right, Direction::Mean][kind as usize % 4];
@@ -269,7 +268,7 @@ impl Decoder {
         self.residual(reader, at, [if kind >= 12 { 15 } else { 0 }, kind / 4 % 3], true);
     }
 
-    /// Levels of a block in their places, from the place `first` on.
+    /// The levels of a block in their positions, starting at the position `first`.
     fn block(&mut self, reader: &mut Reader, plane: usize, at: [usize; 2], block: [usize; 2], first: usize) -> Block {
         let (levels, count) = reader.levels(Some(self.near(plane, at, block)), 16 - first);
         self.set_count(plane, at, block, count);
@@ -278,7 +277,7 @@ impl Decoder {
         out
     }
 
-    /// Reads what is left of a macroblock and adds it.
+    /// Reads the residual of a macroblock and adds it.
     fn residual(&mut self, reader: &mut Reader, at: [usize; 2], [luma, colour]: [u32; 2], alone: bool) {
         let mut sums = [0; 16];
         if alone {

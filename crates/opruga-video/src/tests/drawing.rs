@@ -2,7 +2,7 @@
 
 use crate::image::Image;
 
-/// A frame that can be drawn upon.
+/// A frame to draw on.
 #[derive(Clone)]
 pub(super) struct Drawing {
     pub(super) size: [u32; 2],
@@ -24,15 +24,15 @@ const DIGITS: [[u8; 5]; 10] = [
 ];
 
 impl Drawing {
-    /// One colour.
+    /// A frame of one colour.
     pub(super) fn new(width: u32, height: u32, [r, g, b]: [u8; 3]) -> Drawing {
         Drawing { size: [width, height], pixels: [r, g, b, 255].repeat((width * height) as usize) }
     }
-    /// The frame, as the film takes it.
+    /// The frame in the form that the film accepts.
     pub(super) fn image(&self) -> Image<'_> {
         Image { size: self.size, pixels: &self.pixels }
     }
-    /// Blends a colour into every pixel by the part of it that a shape covers.
+    /// Blends a colour into every pixel, weighted by the fraction that a shape covers.
     pub(super) fn blend(&mut self, colour: [u8; 3], covered: impl Fn(f32, f32) -> f32) {
         let width = self.size[0] as usize;
         for (index, pixel) in self.pixels.chunks_exact_mut(4).enumerate() {
@@ -46,11 +46,11 @@ impl Drawing {
     pub(super) fn disc(&mut self, [x, y]: [f32; 2], radius: f32, colour: [u8; 3]) {
         self.blend(colour, |px, py| radius + 0.5 - ((px - x) * (px - x) + (py - y) * (py - y)).sqrt());
     }
-    /// A rectangle from its left upper corner.
+    /// A rectangle, given by its upper left corner.
     pub(super) fn rectangle(&mut self, [x, y]: [f32; 2], [width, height]: [f32; 2], colour: [u8; 3]) {
         self.blend(colour, |px, py| if px >= x && py >= y && px < x + width && py < y + height { 1.0 } else { 0.0 });
     }
-    /// A number, three pixels for each of its own.
+    /// A number, with three pixels for each pixel of its digits.
     pub(super) fn number(&mut self, value: u32, [x, y]: [f32; 2], colour: [u8; 3]) {
         for (place, digit) in value.to_string().bytes().enumerate() {
             for (row, bits) in DIGITS[usize::from(digit - b'0')].iter().enumerate() {
@@ -61,7 +61,7 @@ impl Drawing {
             }
         }
     }
-    /// Copies a drawing; what sticks out is left away.
+    /// Copies a drawing; parts outside are cut off.
     pub(super) fn paste(&mut self, other: &Drawing, x: u32, y: u32) {
         for row in 0..other.size[1].min(self.size[1].saturating_sub(y)) {
             let columns = other.size[0].min(self.size[0].saturating_sub(x)) as usize;

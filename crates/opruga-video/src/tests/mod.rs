@@ -1,5 +1,5 @@
-//! Films as a whole. With `OPRUGA_FILMS=FOLDER` every film is written there too, as `NAME.mp4`, with what its decoder
-//! must show as `NAME.yuv`: `ffmpeg -i NAME.mp4 -f rawvideo OTHER.yuv` and `cmp` check both.
+//! Tests of complete films. With `OPRUGA_FILMS=FOLDER` every film is also written to that folder as `NAME.mp4`, and the expected output of its
+//! decoder as `NAME.yuv`. `ffmpeg -i NAME.mp4 -f rawvideo OTHER.yuv` and `cmp` compare both.
 
 mod boxes;
 mod decoder;
@@ -8,7 +8,7 @@ mod drawing;
 use super::*;
 use drawing::Drawing;
 
-/// A film, and what a decoder must show of each frame: three planes without what is cut off.
+/// A film, and the expected output of a decoder for each frame: three planes without the cropped part.
 struct Made {
     bytes: Vec<u8>,
     shown: Vec<[Vec<u8>; 3]>,
@@ -31,7 +31,7 @@ fn film(name: &str, size: [u32; 2], rate: f64, images: &[Drawing]) -> Made {
     Made { bytes, shown }
 }
 
-/// The planes of a frame as they are shown.
+/// The planes of a frame as shown.
 fn planes(frame: &frame::Frame, size: [u32; 2]) -> [Vec<u8>; 3] {
     std::array::from_fn(|plane| {
         let [width, height] = size.map(|side| (side as usize).next_multiple_of(2) / if plane == 0 { 1 } else { 2 });
@@ -59,7 +59,7 @@ fn scene([width, height]: [u32; 2], step: u32) -> Drawing {
     drawing
 }
 
-/// Every pixel by chance.
+/// A frame of random pixels.
 fn noise([width, height]: [u32; 2], seed: u32) -> Drawing {
     let mut state = seed;
     let mut image = Drawing::new(width, height, [0; 3]);
@@ -72,7 +72,7 @@ fn noise([width, height]: [u32; 2], seed: u32) -> Drawing {
     image
 }
 
-/// How well the brightness is kept [dB].
+/// The peak signal-to-noise ratio of the luma [dB].
 fn quality(image: Image<'_>, shown: &[Vec<u8>; 3]) -> f64 {
     let blocks = [image.width(), image.height()].map(|side| (side as usize).div_ceil(16));
     let mut frame = frame::Frame::new(blocks[0], blocks[1]);
@@ -100,7 +100,7 @@ fn a_drawn_film_is_small_and_sharp() {
         assert!(quality > 40.0, "{quality} dB");
     }
     assert!(made.bytes.len() < 60_000, "{} bytes", made.bytes.len());
-    // The disc passed through here; white is 235.
+    // The disc has passed through this part; white is 235.
     let last = &made.shown[44][0];
     let traces = (64..112).flat_map(|row| &last[row * 320 + 64..row * 320 + 112]).filter(|pixel| **pixel < 234).count();
     assert_eq!(traces, 0);
@@ -118,7 +118,7 @@ fn noise_of_any_size_is_coded() {
     }
 }
 
-/// Decodes a film from its bytes alone, and compares every pixel with what the encoder says that is shown.
+/// Decodes a film from its bytes alone, and compares every pixel with the output that the encoder expects.
 fn check_decoded(made: &Made, size: [u32; 2]) {
     let (parameters, pictures) = boxes::units(&made.bytes);
     assert_eq!(pictures.len(), made.shown.len());
@@ -133,7 +133,7 @@ fn check_decoded(made: &Made, size: [u32; 2]) {
 fn a_decoder_shows_what_the_encoder_expects() {
     let size = [200, 150];
     let mut images: Vec<Drawing> = (0..30).map(|step| scene(size, step)).collect();
-    // A cut, a picture that stays, and a picture that moves as a whole, also beyond its edges.
+    // A cut, an unchanged picture, and a picture that moves as a whole, including beyond its edges.
     images.push(noise(size, 5));
     images.extend([scene(size, 8), scene(size, 8)]);
     for step in 0..6 {
@@ -147,8 +147,8 @@ fn a_decoder_shows_what_the_encoder_expects() {
 
 #[test]
 fn known_films_have_known_bytes() {
-    // ffmpeg shows this film as the encoder says, byte by byte, and without a warning. It is made without lines and
-    // letters, whose pixels may differ on other machines.
+    // ffmpeg shows this film as the encoder expects, byte by byte, and without a warning. It is made without lines and letters, whose pixels may
+    // differ on other machines.
     let size = [98, 51];
     let mut images: Vec<Drawing> = Vec::new();
     for step in 0..12 {
