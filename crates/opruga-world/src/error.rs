@@ -66,7 +66,7 @@ messages! {
         Section { path: &'static str },
     }
 
-    /// Why a world could not be built, changed or stepped. The world is as it was before the call.
+    /// The reasons why a world could not be built, changed or stepped. The world is as it was before the call.
     #[derive(Clone, Debug, PartialEq)]
     pub enum WorldError {
         /// A model, integrator or collider refuses. The code is that of the source.

@@ -456,7 +456,7 @@ impl<const D: usize> Island<D> {
     }
 }
 
-/// Whether positions lie outside of a region.
+/// Whether positions are outside a region.
 fn left<const D: usize>(region: &[[f64; D]; 2], position: &[[f64; D]; 2]) -> bool {
     (0..D).any(|d| position[0][d] < region[0][d] || position[1][d] > region[1][d])
 }

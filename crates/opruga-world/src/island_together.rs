@@ -79,7 +79,7 @@ impl<const D: usize> Island<D> {
         }
     }
 
-    /// Ends such a frame.
+    /// Ends a frame that is stepped together with others.
     pub(crate) fn end_together(&mut self, plan: &FramePlan<D>) {
         match self.surveyed(plan.start) {
             Ok(survey) => {
