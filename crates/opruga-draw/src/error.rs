@@ -53,7 +53,7 @@ opruga_math::messages! {
         "draw.failed"
         #[error("a picture has {dimensions} dimensions; it must have 2 or 3")]
         Dimension { dimensions: u8 },
-        /// A frame of a video has another size than the video [pixels].
+        /// The size of a frame differs from that of the video [pixels].
         "draw.failed"
         #[error("a frame of {found:?} pixels was pushed to a video of {expected:?} pixels")]
         FrameSize { expected: [u32; 2], found: [u32; 2] },

@@ -22,10 +22,10 @@ pub enum Problem {
         /// The node.
         node: u32,
     },
-    /// Indices or boundary are broken; see the error.
+    /// The indices or the boundary are invalid; see the error.
     #[error(transparent)]
     Topology(#[from] MeshError),
-    /// The indices or the boundary are invalid; see the error.
+    /// An element has no length, area or volume, relative to its size.
     #[error("{element} {index} is degenerate: its measure is {}", number(*measure))]
     Degenerate {
         /// Kind of the element.
@@ -35,7 +35,7 @@ pub enum Problem {
         /// Its length [m], area [m²] or volume [m³].
         measure: f64,
     },
-    /// The element has no length, area or volume, relative to its size.
+    /// A filled cell has negative area or volume, or a negative Jacobian at one of its nodes.
     #[error("{element} {index} is inverted: its measure is {}", number(*measure))]
     Inverted {
         /// Kind of the cell.

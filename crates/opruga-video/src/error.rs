@@ -11,7 +11,7 @@ opruga_math::messages! {
         #[error("a film of {width} by {height} pixels is impossible")]
         #[allowed("1 to 16384 a side, and 35 million in all")]
         Size { width: u32, height: u32 },
-        /// A frame has another size than the film.
+        /// The size of a frame differs from that of the film.
         "video.frame_size"
         #[error("a frame has {width} by {height} pixels; the film has {film_width} by {film_height}")]
         FrameSize { width: u32, height: u32, film_width: u32, film_height: u32 },

@@ -18,9 +18,9 @@ pub trait AnyScene {
     fn name(&self) -> &str;
     /// A sentence for lists and pictures.
     fn title(&self) -> &str;
-    /// What pictures and plots call the unit of length.
+    /// The label of the unit of length in pictures and plots.
     fn length_unit(&self) -> &str;
-    /// Whose drawings, maps and surfaces the scene shows, and under which licence.
+    /// The authors and licences of the drawings, maps and surfaces in the scene.
     fn credit(&self) -> &str;
     /// What pictures of the scene show; z is 0 in the plane.
     fn pictured(&self) -> Pictured<3>;

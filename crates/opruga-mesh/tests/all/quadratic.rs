@@ -48,7 +48,8 @@ fn straight_quadratic_cells_measure_what_linear_ones_do() {
     close(plate.measure().unwrap().value(), 3.0);
     assert_eq!((solid.check(), plate.check()), (vec![], vec![]));
     assert_eq!(solid.cells.len(), 72);
-    // Nodes at all corners and middles of edges of a lattice twice as fine, but those in the middle of cubes' tetrahedra edges only.
+    // Nodes at all corners and midpoints of edges of a lattice twice as fine, except those in the middle of cubes, which are only on edges of
+    // tetrahedra.
     assert_eq!(plate.nodes(), 7 * 5);
     assert_eq!(solid.nodes(), 7 * 5 * 5);
 }
